@@ -1,0 +1,446 @@
+// kiln: exact image-based lighting. A panorama goes in, prefiltered radiance comes out.
+//
+// Read from top to bottom this header follows the light:
+//   context -> load -> spectrum -> lobe -> prefilter -> spherical harmonics -> save.
+//
+// Conventions, the same in every function and every file written (docs/conventions.md):
+//   - linear Rec. 709 radiance in the input's own unit, 32-bit float, three channels;
+//   - right-handed, +Y up; a panorama's centre column looks along -Z, +X to its right, row 0 is +Y;
+//   - cube faces +X -X +Y -Y +Z -Z as OpenGL and KTX order and orient them: texel (x, y) of face f
+//     is the radiance that arrives from the direction that texture(cube, direction) reads there;
+//   - texel centres at (i + 0.5) / n; roughness is perceptual, alpha = roughness^2.
+//
+// Functions that can fail return a kiln_result and, where `error` is not NULL, a sentence with the
+// numbers in it. Outputs are zeroed on failure. No function keeps a pointer to its arguments after
+// it returns, except kiln_context_create (callbacks) and kiln_lobe_custom (function and user data).
+//
+// One context may be used by one thread at a time; different contexts are independent.
+// SPDX-License-Identifier: MIT
+#ifndef KILN_H
+#define KILN_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#define KILN_VERSION_MAJOR 0
+#define KILN_VERSION_MINOR 1
+#define KILN_VERSION_PATCH 0
+
+#if defined(_WIN32) && defined(KILN_SHARED)
+#if defined(KILN_BUILD)
+#define KILN_API __declspec(dllexport)
+#else
+#define KILN_API __declspec(dllimport)
+#endif
+#elif defined(__GNUC__)
+#define KILN_API __attribute__((visibility("default")))
+#else
+#define KILN_API
+#endif
+
+#if defined(__GNUC__)
+#define KILN_CHECKED __attribute__((warn_unused_result))
+#else
+#define KILN_CHECKED
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// ---------------------------------------------------------------------------------------- results
+
+typedef enum kiln_result {
+    KILN_OK = 0,
+    KILN_ERROR_ARGUMENT,    ///< a value passed in is outside its range
+    KILN_ERROR_MEMORY,      ///< the allocator refused, or the context's limit is reached
+    KILN_ERROR_IO,          ///< a file cannot be opened, read, written or renamed
+    KILN_ERROR_FORMAT,      ///< a file's content is damaged or not what its name says
+    KILN_ERROR_UNSUPPORTED, ///< valid, but not something kiln reads or writes
+    KILN_ERROR_CANCELLED,   ///< the progress callback returned false
+} kiln_result;
+
+/// Filled by a function that fails: what happened, in one sentence with the numbers in it.
+typedef struct kiln_error {
+    kiln_result result;
+    char message[512];
+} kiln_error;
+
+/// The version of the library that is running, "0.1.0".
+KILN_API const char *kiln_version(void);
+
+// ---------------------------------------------------------------------------------------- context
+
+typedef struct kiln_context kiln_context;
+
+/// {0} is a good default: malloc, no limit, one thread a core, no progress, every instruction set.
+typedef struct kiln_context_def {
+    /// Returns `size` bytes aligned to 64, or NULL. May be NULL; then `release` must be too.
+    void *(*allocate)(void *user, size_t size);
+    void (*release)(void *user, void *memory, size_t size);
+    void *allocator_user;
+    size_t memory_limit; ///< bytes held at once; 0 for none
+    int thread_count;    ///< 1 to 256; 0 for one a core
+    /// Runs task(data, 0 .. count-1) in any order on any threads and returns when all are done.
+    /// May be NULL: then the context has threads of its own.
+    void (*parallel_for)(void *user, int count, void (*task)(void *data, int index), void *data);
+    void *parallel_user;
+    /// Called now and then from the calling thread with 0 <= fraction <= 1. Returning false cancels.
+    bool (*progress)(void *user, const char *stage, double fraction);
+    void *progress_user;
+    /// Highest instruction set to use. Results are the same bits for each; for tests and benches.
+    enum kiln_cpu {
+        KILN_CPU_BEST = 0,
+        KILN_CPU_SCALAR,
+        KILN_CPU_SSE2,
+        KILN_CPU_AVX2,
+        KILN_CPU_AVX512
+    } cpu;
+} kiln_context_def;
+
+/// `def` may be NULL for the defaults.
+KILN_API KILN_CHECKED kiln_result kiln_context_create(const kiln_context_def *def,
+                                                      kiln_context **context, kiln_error *error);
+/// `context` may be NULL.
+KILN_API void kiln_context_destroy(kiln_context *context);
+
+/// The instruction set in use: "scalar", "sse2", "avx2" or "avx512".
+KILN_API const char *kiln_context_cpu(const kiln_context *context);
+
+/// Bytes held by the context's objects now, and the most that were held at once.
+KILN_API void kiln_context_memory(const kiln_context *context, size_t *current, size_t *peak);
+
+// ------------------------------------------------------------------------- pictures of all directions
+
+enum { KILN_MAX_LEVELS = 16, KILN_MAX_SIZE = 32768, KILN_MAX_BANDS = 5 };
+
+typedef enum kiln_shape {
+    KILN_SHAPE_PANORAMA,   ///< equirectangular, size rows of 2 * size texels
+    KILN_SHAPE_CUBE,       ///< six faces of size * size texels, +X -X +Y -Y +Z -Z
+    KILN_SHAPE_OCTAHEDRON, ///< size * size texels, +Y in the centre, -Y in the corners
+} kiln_shape;
+
+/// Radiance by direction: RGB floats, row-major, face after face, level after level. Level k has
+/// the size max(1, size >> k). Made by kiln_map_create or a function that says so, released by
+/// kiln_map_free; the numbers may be read and written freely.
+typedef struct kiln_map {
+    kiln_shape shape;
+    int size;                           ///< of level 0: 1 to KILN_MAX_SIZE
+    int level_count;                    ///< 1 to KILN_MAX_LEVELS
+    float *level[KILN_MAX_LEVELS];      ///< kiln_map_texels(map, k) * 3 floats each
+    float roughness[KILN_MAX_LEVELS];   ///< what each level was filtered for, 0 to 1
+    void *owner;                        ///< kiln's own
+} kiln_map;
+
+/// A flat picture: tables, and files before their shape is known. 1 to 4 channels, row-major.
+typedef struct kiln_image {
+    int width, height, channels;
+    float *pixels;
+    void *owner; ///< kiln's own
+} kiln_image;
+
+/// All texels 0. `level_count` 0 means a full chain down to 1.
+KILN_API KILN_CHECKED kiln_result kiln_map_create(kiln_context *context, kiln_shape shape, int size,
+                                                  int level_count, kiln_map *map,
+                                                  kiln_error *error);
+KILN_API void kiln_map_free(kiln_map *map);
+KILN_API KILN_CHECKED kiln_result kiln_image_create(kiln_context *context, int width, int height,
+                                                    int channels, kiln_image *image,
+                                                    kiln_error *error);
+KILN_API void kiln_image_free(kiln_image *image);
+
+/// Size of a level, in texels along its short side: max(1, size >> level).
+KILN_API int kiln_map_level_size(const kiln_map *map, int level);
+/// Number of texels of a level, all faces: n * n * 6, n * 2n or n * n.
+KILN_API size_t kiln_map_texels(const kiln_map *map, int level);
+/// Unit direction of the centre of texel `index` (row-major, face after face) of a level.
+KILN_API void kiln_map_direction(const kiln_map *map, int level, size_t index, double direction[3]);
+
+/// Swaps left and right (x becomes -x) in place, on every level.
+KILN_API void kiln_map_mirror(kiln_map *map);
+/// Multiplies every texel by 2^stops.
+KILN_API void kiln_map_expose(kiln_map *map, double stops);
+
+/// The map in another shape or size, each texel the mean over its solid angle of the source's
+/// level 0, turned by `rotation` degrees about +Y (a panorama's content moves to the left).
+/// One level.
+KILN_API KILN_CHECKED kiln_result kiln_map_convert(kiln_context *context, const kiln_map *source,
+                                                   kiln_shape shape, int size, double rotation,
+                                                   kiln_map *map, kiln_error *error);
+
+// ---------------------------------------------------------------------------------- files, reading
+
+/// {0} is a good default.
+typedef struct kiln_load_def {
+    /// How a flat picture lies on the sphere. Auto: 2:1 is a panorama, 4:3 and 3:4 are crosses,
+    /// 6:1 and 1:6 are strips.
+    enum kiln_layout {
+        KILN_LAYOUT_AUTO = 0,
+        KILN_LAYOUT_PANORAMA,
+        KILN_LAYOUT_CROSS,
+        KILN_LAYOUT_STRIP,
+        KILN_LAYOUT_OCTAHEDRON
+    } layout;
+} kiln_load_def;
+
+/// Loads EXR, Radiance HDR or PNG (sRGB, decoded to linear), KTX2 or DDS cubes that kiln wrote, or
+/// six faces: a folder or a pattern with `%s` or `{face}` for px nx py ny pz nz. Not-a-number and
+/// negative texels become 0, infinities the largest finite value of their file's format; `def` may
+/// be NULL. Source: the content decides, never the name's ending.
+KILN_API KILN_CHECKED kiln_result kiln_map_load(kiln_context *context, const char *path,
+                                                const kiln_load_def *def, kiln_map *map,
+                                                kiln_error *error);
+/// The same from memory; `name` stands in messages.
+KILN_API KILN_CHECKED kiln_result kiln_map_decode(kiln_context *context, const void *bytes,
+                                                  size_t size, const char *name,
+                                                  const kiln_load_def *def, kiln_map *map,
+                                                  kiln_error *error);
+/// A flat picture as it is, without a shape.
+KILN_API KILN_CHECKED kiln_result kiln_image_load(kiln_context *context, const char *path,
+                                                  kiln_image *image, kiln_error *error);
+
+/// What a file is, without reading all of its texels. Strings end in NUL.
+typedef struct kiln_file_info {
+    char format[16];        ///< "exr", "hdr", "png", "ktx2", "dds"
+    char encoding[48];      ///< texel type and compression, "half rgb, piz"
+    char layout[24];        ///< "panorama", "cross", "strip", "cube", "octahedron", "image"
+    int width, height;      ///< of one face or of the picture
+    int face_count, level_count;
+    int channel_count;
+    uint64_t byte_count;
+    float roughness[KILN_MAX_LEVELS]; ///< of each level, where the file says; else -1
+    char writer[64];        ///< "kiln 0.1.0", or empty
+    char orientation[16];   ///< as the file states it, or empty
+    int sh_bands;           ///< 0 where the file holds no spherical harmonics
+    float sh[KILN_MAX_BANDS * KILN_MAX_BANDS][3];
+} kiln_file_info;
+
+KILN_API KILN_CHECKED kiln_result kiln_file_describe(kiln_context *context, const char *path,
+                                                     kiln_file_info *info, kiln_error *error);
+
+// --------------------------------------------------------------------------------------------- sky
+
+/// {0} stands for each default.
+typedef struct kiln_sky_def {
+    int size;         ///< rows of the panorama, 16 to 8192; 0 for 512
+    double elevation; ///< of the sun above the horizon in degrees, -5 to 90; see has_elevation
+    bool has_elevation; ///< false: 30 degrees
+    double azimuth;   ///< degrees from -Z toward +X
+    double turbidity; ///< 1.7 (clear) to 10 (hazy); 0 for 3
+    double albedo;    ///< of the ground below, 0 to 1; see has_albedo
+    bool has_albedo;  ///< false: 0.2
+} kiln_sky_def;
+
+/// An analytic daylight sky with a sun disc of 0.533 degrees whose irradiance is right whatever
+/// the texel size, as a panorama, in kcd/m^2 by channel. Source: docs/theory/sky.md.
+KILN_API KILN_CHECKED kiln_result kiln_sky(kiln_context *context, const kiln_sky_def *def,
+                                           kiln_map *map, kiln_error *error);
+
+// ------------------------------------------------------------------------------------------- lobes
+
+/// A zonal kernel: the weight of light that arrives at an angle to the output direction. Its
+/// scale does not matter, results are weighted means. Use the constructors below.
+typedef struct kiln_lobe {
+    enum kiln_lobe_kind {
+        KILN_LOBE_GGX,
+        KILN_LOBE_LAMBERT,
+        KILN_LOBE_CHARLIE,
+        KILN_LOBE_PHONG,
+        KILN_LOBE_CUSTOM
+    } kind;
+    double parameter; ///< alpha, exponent, or angular width
+    double (*evaluate)(void *user, double cos_theta);
+    void *user;
+} kiln_lobe;
+
+/// GGX with N = V = R: D(theta/2; alpha) max(cos theta, 0). alpha in [0, 1]; 0 is a perfect mirror,
+/// 1 is Lambert.
+KILN_API kiln_lobe kiln_lobe_ggx(double alpha);
+/// max(cos theta, 0).
+KILN_API kiln_lobe kiln_lobe_lambert(void);
+/// Charlie sheen (Estevez and Kulla 2017) with N = V = R: sin(theta/2)^(1/alpha) max(cos theta, 0),
+/// alpha in [0.01, 1].
+KILN_API kiln_lobe kiln_lobe_charlie(double alpha);
+/// max(cos theta, 0)^exponent, exponent in [1, 100000].
+KILN_API kiln_lobe kiln_lobe_phong(double exponent);
+/// The caller's own function of cos theta in [-1, 1], finite and not negative, called from any
+/// thread. `width` in (0, pi] is the angle in radians over which it changes most: it places the
+/// quadrature nodes and decides how fine the spectrum must be.
+KILN_API kiln_lobe kiln_lobe_custom(double (*evaluate)(void *user, double cos_theta), void *user,
+                                    double width);
+/// The lobe's weight at an angle, up to its scale.
+KILN_API double kiln_lobe_evaluate(const kiln_lobe *lobe, double cos_theta);
+
+// ---------------------------------------------------------------------------------------- spectrum
+
+/// The spherical harmonics of an environment: analyse once, filter as often as wanted.
+typedef struct kiln_spectrum kiln_spectrum;
+
+enum { KILN_MAX_DEGREE = 1600 };
+
+/// Analyses level 0 of a map. `degree` 1 to KILN_MAX_DEGREE; 0 chooses the size's own (size * 2).
+/// A panorama is transformed as it is, piecewise constant; other shapes are converted to one first.
+KILN_API KILN_CHECKED kiln_result kiln_spectrum_analyze(kiln_context *context, const kiln_map *map,
+                                                        int degree, kiln_spectrum **spectrum,
+                                                        kiln_error *error);
+/// The same row by row, north to south, for panoramas that do not fit in memory. `rows` holds
+/// row_count * 2 * size RGB texels. After `size` rows call finish, which takes the stream.
+typedef struct kiln_stream kiln_stream;
+KILN_API KILN_CHECKED kiln_result kiln_stream_begin(kiln_context *context, int size, int degree,
+                                                    kiln_stream **stream, kiln_error *error);
+KILN_API KILN_CHECKED kiln_result kiln_stream_rows(kiln_stream *stream, const float *rows,
+                                                   int row_count, kiln_error *error);
+KILN_API KILN_CHECKED kiln_result kiln_stream_finish(kiln_stream *stream, kiln_spectrum **spectrum,
+                                                     kiln_error *error);
+/// Gives a stream up unfinished. May be NULL.
+KILN_API void kiln_stream_cancel(kiln_stream *stream);
+KILN_API void kiln_spectrum_destroy(kiln_spectrum *spectrum);
+
+KILN_API int kiln_spectrum_degree(const kiln_spectrum *spectrum);
+/// Sum over m of |a_lm|^2 of the three channels, for degrees 0 to degree: degree + 1 numbers each.
+KILN_API void kiln_spectrum_power(const kiln_spectrum *spectrum, double (*power)[3]);
+
+/// One level: the environment seen through a lobe, turned by `rotation` degrees about +Y. Writes
+/// level `level` of `map`. Fails where the lobe is narrower than the spectrum can tell
+/// (kiln_prefilter handles those too, from the panorama itself).
+KILN_API KILN_CHECKED kiln_result kiln_spectrum_filter(kiln_context *context,
+                                                       const kiln_spectrum *spectrum,
+                                                       const kiln_lobe *lobe, double rotation,
+                                                       kiln_map *map, int level,
+                                                       kiln_error *error);
+
+// --------------------------------------------------------------------------------------- prefilter
+
+/// {0} is a good default: a cube of 256, full chain, GGX, roughness from 0 to 1 in equal steps.
+typedef struct kiln_prefilter_def {
+    kiln_shape shape;   ///< KILN_SHAPE_PANORAMA is 0; see has_shape
+    bool has_shape;     ///< false: a cube
+    int size;           ///< 1 to KILN_MAX_SIZE; 0 for 256
+    int level_count;    ///< 1 to KILN_MAX_LEVELS; 0 for all down to 1
+    const float *roughness; ///< level_count numbers in [0, 1]; NULL for level / (level_count - 1)
+    enum kiln_lobe_kind lobe; ///< GGX (alpha = roughness^2), Lambert, Charlie (the same alpha,
+                              ///< 0.01 at least) or Phong (exponent 2 / alpha^2 - 2, 1 at least)
+    double rotation;    ///< degrees about +Y
+} kiln_prefilter_def;
+
+/// Every level from one analysis. Roughness 0 with GGX is the mirror: true area weights. `def` may
+/// be NULL. `source` is any map; its level 0 is used.
+KILN_API KILN_CHECKED kiln_result kiln_prefilter(kiln_context *context, const kiln_map *source,
+                                                 const kiln_prefilter_def *def, kiln_map *map,
+                                                 kiln_error *error);
+
+/// The same sizes many times: everything that depends on them only is computed once.
+typedef struct kiln_plan kiln_plan;
+
+/// For panoramas of `source_size` rows. The plan keeps the context: destroy it first.
+KILN_API KILN_CHECKED kiln_result kiln_plan_create(kiln_context *context, int source_size,
+                                                   const kiln_prefilter_def *def, kiln_plan **plan,
+                                                   kiln_error *error);
+/// `map` is made by kiln_plan_map or has the same shape, size and levels.
+KILN_API KILN_CHECKED kiln_result kiln_plan_execute(kiln_plan *plan, const kiln_map *panorama,
+                                                    kiln_map *map, kiln_error *error);
+/// An empty map of the plan's shape, size, levels and roughness.
+KILN_API KILN_CHECKED kiln_result kiln_plan_map(const kiln_plan *plan, kiln_map *map,
+                                                kiln_error *error);
+/// The spectrum of the panorama executed last; the plan's own, valid until the next execution.
+KILN_API const kiln_spectrum *kiln_plan_spectrum(const kiln_plan *plan);
+KILN_API void kiln_plan_destroy(kiln_plan *plan);
+
+// ------------------------------------------------------------------------------ spherical harmonics
+
+/// Real, orthonormal, no Condon-Shortley sign, z the polar axis of the formulas but the directions
+/// are the world's (y up): 1, y, z, x, xy, yz, 3z^2-1, xz, x^2-y^2, ... in order l(l+1)+m.
+typedef struct kiln_sh {
+    int bands;       ///< 1 to KILN_MAX_BANDS
+    bool irradiance; ///< coefficients are multiplied by the cosine lobe's pi, 2pi/3, pi/4, 0, -pi/24
+    double window;   ///< width of the deringing window, 0 for none
+    double c[KILN_MAX_BANDS * KILN_MAX_BANDS][3];
+} kiln_sh;
+
+/// `window` > 0 multiplies band l by the Hanning window (1 + cos(pi l / window)) / 2 (Sloan 2008).
+/// `rotation` in degrees about +Y.
+KILN_API KILN_CHECKED kiln_result kiln_spectrum_sh(const kiln_spectrum *spectrum, int bands,
+                                                   bool irradiance, double window, double rotation,
+                                                   kiln_sh *sh, kiln_error *error);
+/// The value of the series in a unit direction; may be negative.
+KILN_API void kiln_sh_evaluate(const kiln_sh *sh, const double direction[3], double value[3]);
+
+// ------------------------------------------------------------------------- the textbook, by its name
+
+/// The methods that courses teach, with their defaults and their errors, to learn from and to
+/// compare with. See docs/theory/textbook.md.
+typedef struct kiln_textbook_def {
+    kiln_shape shape;      ///< of the result; KILN_SHAPE_PANORAMA as in the textbook
+    int size;              ///< rows or edge; 0 for 64
+    int level_count;       ///< prefilter only; 0 for all
+    int phi_count;         ///< irradiance: steps of phi; 0 for 100
+    int theta_count;       ///< irradiance: steps of theta; 0 for 100
+    int sample_count;      ///< prefilter: Hammersley points; 0 for 1024
+} kiln_textbook_def;
+
+/// Diffuse irradiance / pi * pi as the textbook's uniform sum over (phi, theta) gives it, divided
+/// by pi so that a white furnace is near 1.
+KILN_API KILN_CHECKED kiln_result kiln_textbook_irradiance(kiln_context *context,
+                                                           const kiln_map *panorama,
+                                                           const kiln_textbook_def *def,
+                                                           kiln_map *map, kiln_error *error);
+/// GGX importance sampling on Hammersley points with N = V = R, weighted by n.l, nearest texels.
+KILN_API KILN_CHECKED kiln_result kiln_textbook_prefilter(kiln_context *context,
+                                                          const kiln_map *panorama,
+                                                          const kiln_textbook_def *def,
+                                                          kiln_map *map, kiln_error *error);
+/// The 1024-sample split-sum table: x is n.v = i/(size-1), y is roughness = j/(size-1), row 0 at
+/// the top holds roughness 1; two channels (A, B). Where n.v is 0 the textbook divides 0 by 0; here
+/// the estimator's limit n.v -> 0 is evaluated, at n.v = 1e-4. `sample_count` 0 for 1024.
+KILN_API KILN_CHECKED kiln_result kiln_textbook_brdf(kiln_context *context, int size,
+                                                     int sample_count, kiln_image *table,
+                                                     kiln_error *error);
+
+// --------------------------------------------------------------------------------------- reference
+
+/// Brute force: the sum over every texel of a panorama in double precision, texels subdivided 8 x 8
+/// where the lobe is narrow. Slow; for tests, benches and error maps. `values` receives count * 3.
+KILN_API KILN_CHECKED kiln_result kiln_reference_filter(kiln_context *context,
+                                                        const kiln_map *panorama,
+                                                        const kiln_lobe *lobe, double rotation,
+                                                        const double (*directions)[3], int count,
+                                                        double (*values)[3], kiln_error *error);
+
+// ---------------------------------------------------------------------------------- files, writing
+
+typedef enum kiln_format {
+    KILN_FORMAT_AUTO = 0, ///< rgba16f for KTX2 and DDS, half for EXR, 8 bits for PNG
+    KILN_FORMAT_RGBA16F,
+    KILN_FORMAT_RGBA32F,
+    KILN_FORMAT_RGB9E5,
+    KILN_FORMAT_B10G11R11
+} kiln_format;
+
+/// {0} is a good default.
+typedef struct kiln_save_def {
+    kiln_format format;
+    int zstd;             ///< KTX2: compression level 1 to 22, 0 for none
+    const kiln_sh *sh;    ///< stored in the file's metadata where it has any; may be NULL
+    const char *lobe;     ///< name stored in the metadata; may be NULL
+} kiln_save_def;
+
+/// Writes a map whole or not at all: a temporary file beside `path`, fsync, rename. By ending:
+///   .ktx2 .dds   a cube with all levels in one file
+///   .exr .hdr .png, or a folder (ends in /)   with %s or {face} for the face and %d or {level} for
+///       the level in the name; a cube without them becomes six files NAME_px.exr ... a level
+/// `def` may be NULL. The number of files written goes to `file_count`, which may be NULL.
+KILN_API KILN_CHECKED kiln_result kiln_map_save(kiln_context *context, const kiln_map *map,
+                                                const char *path, const kiln_save_def *def,
+                                                int *file_count, kiln_error *error);
+/// A flat picture: .exr, .hdr (three channels) or .png (8 bits, values as they are, 0 to 1).
+KILN_API KILN_CHECKED kiln_result kiln_image_save(kiln_context *context, const kiln_image *image,
+                                                  const char *path, kiln_error *error);
+/// Coefficients as .json, .txt (one line each) or .h (a C array).
+KILN_API KILN_CHECKED kiln_result kiln_sh_save(kiln_context *context, const kiln_sh *sh,
+                                               const char *path, kiln_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

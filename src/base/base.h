@@ -1,0 +1,68 @@
+// The ground everything stands on: errors, memory, threads and the processor's abilities.
+#ifndef KI_BASE_H
+#define KI_BASE_H
+
+#include <kiln/kiln.h>
+
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+// ------------------------------------------------------------------------------------------ errors
+
+/// Writes the sentence (printf's format) to `error` unless that is NULL, and returns `result`.
+kiln_result ki_fail(kiln_error *error, kiln_result result, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+// ------------------------------------------------------------------------------------------ memory
+
+/// Returns `count` times `size` bytes, zeroed and aligned to 64, or NULL where the context's limit,
+/// the allocator or size_t does not suffice. Safe to call from any thread.
+void *ki_alloc(kiln_context *context, size_t count, size_t size);
+/// The same, not zeroed.
+void *ki_alloc_raw(kiln_context *context, size_t count, size_t size);
+/// `memory` may be NULL. It knows its context.
+void ki_free(void *memory);
+/// Fails with the sentence "out of memory: WHAT needs N bytes, ...".
+kiln_result ki_fail_memory(kiln_context *context, kiln_error *error, const char *what,
+                           size_t byte_count);
+/// Multiplies, or returns false on overflow.
+bool ki_mul_size(size_t a, size_t b, size_t *product);
+
+// ----------------------------------------------------------------------------------------- threads
+
+typedef void ki_task(void *data, int index);
+
+/// Runs task(data, 0 .. count-1) on the context's threads. The tasks must write different places:
+/// then the result cannot depend on their order.
+void ki_parallel_for(kiln_context *context, int count, ki_task *task, void *data);
+
+/// Reports progress; false when the caller wants to stop. From the calling thread only.
+bool ki_progress(kiln_context *context, const char *stage, double fraction);
+/// KILN_ERROR_CANCELLED with its sentence.
+kiln_result ki_fail_cancelled(kiln_error *error, const char *stage);
+
+// --------------------------------------------------------------------------------------- processor
+
+/// The instruction set kernels are chosen by.
+enum kiln_cpu ki_context_cpu(const kiln_context *context);
+int ki_context_threads(const kiln_context *context);
+
+// -------------------------------------------------------------------------------------- small sums
+
+static inline int ki_min(int a, int b)
+{
+    return a < b ? a : b;
+}
+
+static inline int ki_max(int a, int b)
+{
+    return a > b ? a : b;
+}
+
+static inline double ki_clamp(double x, double low, double high)
+{
+    return x < low ? low : x > high ? high : x;
+}
+
+#endif

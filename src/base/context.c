@@ -1,0 +1,188 @@
+// The context: allocator with its limit, error sentences, progress.
+#include "base/base.h"
+#include "base/context.h"
+
+#include <stdalign.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define KI_STR_(x) #x
+#define KI_STR(x) KI_STR_(x)
+
+const char *kiln_version(void)
+{
+    return KI_STR(KILN_VERSION_MAJOR) "." KI_STR(KILN_VERSION_MINOR) "." KI_STR(KILN_VERSION_PATCH);
+}
+
+kiln_result ki_fail(kiln_error *error, kiln_result result, const char *format, ...)
+{
+    if (error) {
+        error->result = result;
+        va_list list;
+        va_start(list, format);
+        vsnprintf(error->message, sizeof error->message, format, list);
+        va_end(list);
+    }
+    return result;
+}
+
+// Every block is preceded by 64 bytes that name its owner and size.
+typedef struct block_head {
+    alignas(64) kiln_context *context;
+    size_t size; // with the head
+} block_head;
+
+bool ki_mul_size(size_t a, size_t b, size_t *product)
+{
+    return !__builtin_mul_overflow(a, b, product);
+}
+
+static void *system_allocate(void *user, size_t size)
+{
+    (void)user;
+    return aligned_alloc(64, size);
+}
+
+static void system_release(void *user, void *memory, size_t size)
+{
+    (void)user;
+    (void)size;
+    free(memory);
+}
+
+void *ki_alloc_raw(kiln_context *context, size_t count, size_t size)
+{
+    size_t bytes;
+    if (!ki_mul_size(count, size, &bytes) || bytes > SIZE_MAX - 2 * sizeof(block_head))
+        return NULL;
+    bytes = (bytes + sizeof(block_head) + 63) & ~(size_t)63;
+
+    size_t held = atomic_fetch_add(&context->memory_held, bytes) + bytes;
+    if (context->def.memory_limit && (held > context->def.memory_limit || held < bytes)) {
+        atomic_fetch_sub(&context->memory_held, bytes);
+        return NULL;
+    }
+    block_head *head = context->def.allocate(context->def.allocator_user, bytes);
+    if (!head) {
+        atomic_fetch_sub(&context->memory_held, bytes);
+        return NULL;
+    }
+    size_t peak = atomic_load(&context->memory_peak);
+    while (held > peak && !atomic_compare_exchange_weak(&context->memory_peak, &peak, held)) {
+    }
+    head->context = context;
+    head->size = bytes;
+    return head + 1;
+}
+
+void *ki_alloc(kiln_context *context, size_t count, size_t size)
+{
+    void *memory = ki_alloc_raw(context, count, size);
+    if (memory)
+        memset(memory, 0, count * size);
+    return memory;
+}
+
+void ki_free(void *memory)
+{
+    if (!memory)
+        return;
+    block_head *head = (block_head *)memory - 1;
+    kiln_context *context = head->context;
+    size_t size = head->size;
+    atomic_fetch_sub(&context->memory_held, size);
+    context->def.release(context->def.allocator_user, head, size);
+}
+
+kiln_result ki_fail_memory(kiln_context *context, kiln_error *error, const char *what,
+                           size_t byte_count)
+{
+    if (context->def.memory_limit)
+        return ki_fail(error, KILN_ERROR_MEMORY,
+                       "out of memory: %s needs %zu bytes, %zu are held, the limit is %zu", what,
+                       byte_count, atomic_load(&context->memory_held), context->def.memory_limit);
+    return ki_fail(error, KILN_ERROR_MEMORY, "out of memory: %s needs %zu bytes", what, byte_count);
+}
+
+kiln_result kiln_context_create(const kiln_context_def *def, kiln_context **context,
+                                kiln_error *error)
+{
+    kiln_context_def d = def ? *def : (kiln_context_def){0};
+    *context = NULL;
+    if (!d.allocate != !d.release)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "allocate and release must be given together");
+    if (d.thread_count < 0 || d.thread_count > KI_MAX_THREADS)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "thread_count is %d, it must be 0 to %d",
+                       d.thread_count, KI_MAX_THREADS);
+    enum kiln_cpu best = ki_cpu_best();
+    if ((int)d.cpu < 0 || d.cpu > KILN_CPU_AVX512)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "cpu is %d, it must be 0 to %d", (int)d.cpu,
+                       (int)KILN_CPU_AVX512);
+    if (!d.allocate) {
+        d.allocate = system_allocate;
+        d.release = system_release;
+    }
+    if (d.cpu == KILN_CPU_BEST || d.cpu > best)
+        d.cpu = best;
+    if (d.thread_count == 0)
+        d.thread_count = ki_core_count();
+
+    kiln_context *c = d.allocate(d.allocator_user, sizeof *c);
+    if (!c)
+        return ki_fail(error, KILN_ERROR_MEMORY, "out of memory: a context needs %zu bytes",
+                       sizeof *c);
+    memset(c, 0, sizeof *c);
+    c->def = d;
+    if (!d.parallel_for && !ki_threads_start(c)) {
+        d.release(d.allocator_user, c, sizeof *c);
+        return ki_fail(error, KILN_ERROR_MEMORY, "cannot start %d threads", d.thread_count);
+    }
+    *context = c;
+    return KILN_OK;
+}
+
+void kiln_context_destroy(kiln_context *context)
+{
+    if (!context)
+        return;
+    if (!context->def.parallel_for)
+        ki_threads_stop(context);
+    kiln_context_def d = context->def;
+    d.release(d.allocator_user, context, sizeof *context);
+}
+
+void kiln_context_memory(const kiln_context *context, size_t *current, size_t *peak)
+{
+    if (current)
+        *current = atomic_load(&context->memory_held);
+    if (peak)
+        *peak = atomic_load(&context->memory_peak);
+}
+
+const char *kiln_context_cpu(const kiln_context *context)
+{
+    static const char *const names[] = {"best", "scalar", "sse2", "avx2", "avx512"};
+    return names[context->def.cpu];
+}
+
+enum kiln_cpu ki_context_cpu(const kiln_context *context)
+{
+    return context->def.cpu;
+}
+
+int ki_context_threads(const kiln_context *context)
+{
+    return context->def.thread_count;
+}
+
+bool ki_progress(kiln_context *context, const char *stage, double fraction)
+{
+    return !context->def.progress ||
+           context->def.progress(context->def.progress_user, stage, fraction);
+}
+
+kiln_result ki_fail_cancelled(kiln_error *error, const char *stage)
+{
+    return ki_fail(error, KILN_ERROR_CANCELLED, "stopped while %s", stage);
+}

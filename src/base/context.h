@@ -1,0 +1,37 @@
+// What a context is made of. Only the base folder looks inside.
+#ifndef KI_CONTEXT_H
+#define KI_CONTEXT_H
+
+#include <kiln/kiln.h>
+
+#include <pthread.h>
+#include <stdatomic.h>
+
+enum { KI_MAX_THREADS = 256 };
+
+typedef struct ki_pool {
+    pthread_mutex_t mutex;
+    pthread_cond_t work, done;
+    pthread_t thread[KI_MAX_THREADS];
+    int thread_count; // helpers; the caller works too
+    void (*task)(void *data, int index);
+    void *data;
+    int count;
+    atomic_int next;   // the first index nobody has taken
+    int running;       // helpers still at it
+    unsigned round;    // one a parallel_for
+    bool stop;
+} ki_pool;
+
+struct kiln_context {
+    kiln_context_def def;
+    atomic_size_t memory_held, memory_peak;
+    ki_pool pool;
+};
+
+bool ki_threads_start(kiln_context *context);
+void ki_threads_stop(kiln_context *context);
+int ki_core_count(void);
+enum kiln_cpu ki_cpu_best(void);
+
+#endif

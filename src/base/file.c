@@ -1,0 +1,191 @@
+#include "base/file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+kiln_result ki_file_read(kiln_context *context, const char *path, uint8_t **bytes, size_t *size,
+                         kiln_error *error)
+{
+    *bytes = NULL;
+    *size = 0;
+    bool from_stdin = !strcmp(path, "-");
+    int fd = from_stdin ? STDIN_FILENO : open(path, O_RDONLY | O_CLOEXEC);
+    if (fd < 0)
+        return ki_fail(error, KILN_ERROR_IO, "%s: cannot be opened: %s", path, strerror(errno));
+
+    kiln_result result = KILN_OK;
+    uint8_t *buffer = NULL;
+    size_t filled = 0, capacity = 0;
+    struct stat status;
+    if (fstat(fd, &status) == 0 && S_ISDIR(status.st_mode)) {
+        result = ki_fail(error, KILN_ERROR_IO, "%s: is a folder", path);
+        goto done;
+    }
+    // One byte more than the file holds, so that a regular file ends without growing the buffer.
+    capacity = S_ISREG(status.st_mode) && status.st_size > 0 ? (size_t)status.st_size + 1 : 65536;
+    for (;;) {
+        if (!buffer || filled == capacity) {
+            size_t wanted = buffer ? capacity * 2 : capacity;
+            uint8_t *larger = ki_alloc_raw(context, wanted, 1);
+            if (!larger) {
+                result = ki_fail_memory(context, error, path, wanted);
+                goto done;
+            }
+            if (buffer)
+                memcpy(larger, buffer, filled);
+            ki_free(buffer);
+            buffer = larger;
+            capacity = wanted;
+        }
+        ssize_t got = read(fd, buffer + filled, capacity - filled);
+        if (got < 0 && errno == EINTR)
+            continue;
+        if (got < 0) {
+            result = ki_fail(error, KILN_ERROR_IO, "%s: cannot be read after %zu bytes: %s", path,
+                             filled, strerror(errno));
+            goto done;
+        }
+        if (got == 0)
+            break;
+        filled += (size_t)got;
+    }
+    *bytes = buffer;
+    *size = filled;
+    buffer = NULL;
+done:
+    ki_free(buffer);
+    if (!from_stdin)
+        close(fd);
+    return result;
+}
+
+typedef struct set_entry {
+    struct set_entry *next;
+    char *path, *temporary;
+} set_entry;
+
+struct ki_file_set {
+    kiln_context *context;
+    set_entry *first, **last;
+};
+
+ki_file_set *ki_file_set_begin(kiln_context *context)
+{
+    ki_file_set *set = ki_alloc(context, 1, sizeof *set);
+    if (set) {
+        set->context = context;
+        set->last = &set->first;
+    }
+    return set;
+}
+
+static bool write_all(int fd, const uint8_t *bytes, size_t size)
+{
+    while (size) {
+        ssize_t put = write(fd, bytes, size);
+        if (put < 0 && errno == EINTR)
+            continue;
+        if (put <= 0)
+            return false;
+        bytes += put;
+        size -= (size_t)put;
+    }
+    return true;
+}
+
+// Creates PATH.kiln-PID-N.tmp, a name nobody has, with the permissions of an ordinary new file.
+static int create_temporary(char *name, size_t room, const char *path)
+{
+    for (int n = 0; n < 1000; n++) {
+        snprintf(name, room, "%s.kiln-%ld-%d.tmp", path, (long)getpid(), n);
+        int fd = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (fd >= 0 || errno != EEXIST)
+            return fd;
+    }
+    return -1;
+}
+
+kiln_result ki_file_set_add(ki_file_set *set, const char *path, const void *bytes, size_t size,
+                            kiln_error *error)
+{
+    size_t length = strlen(path), room = length + 64;
+    set_entry *entry = ki_alloc(set->context, 1, sizeof *entry + length + 1 + room);
+    if (!entry)
+        return ki_fail_memory(set->context, error, path, sizeof *entry + length + 1 + room);
+    entry->path = (char *)(entry + 1);
+    entry->temporary = entry->path + length + 1;
+    memcpy(entry->path, path, length + 1);
+
+    struct stat status;
+    if (stat(path, &status) == 0 && !S_ISREG(status.st_mode)) {
+        ki_free(entry);
+        return ki_fail(error, KILN_ERROR_IO, "%s: exists and is not a file", path);
+    }
+    int fd = create_temporary(entry->temporary, room, path);
+    if (fd < 0) {
+        ki_free(entry);
+        return ki_fail(error, KILN_ERROR_IO, "%s: cannot be created: %s", path, strerror(errno));
+    }
+    bool good = write_all(fd, bytes, size) && fsync(fd) == 0;
+    int reason = errno;
+    good = close(fd) == 0 && good;
+    if (!good) {
+        unlink(entry->temporary);
+        ki_free(entry);
+        return ki_fail(error, KILN_ERROR_IO, "%s: cannot write %zu bytes: %s", path, size,
+                       strerror(reason));
+    }
+    *set->last = entry;
+    set->last = &entry->next;
+    return KILN_OK;
+}
+
+static void free_entries(ki_file_set *set)
+{
+    for (set_entry *entry = set->first, *next; entry; entry = next) {
+        next = entry->next;
+        ki_free(entry);
+    }
+    ki_free(set);
+}
+
+kiln_result ki_file_set_commit(ki_file_set *set, kiln_error *error)
+{
+    kiln_result result = KILN_OK;
+    for (set_entry *entry = set->first; entry; entry = entry->next) {
+        if (result == KILN_OK && rename(entry->temporary, entry->path) != 0)
+            result = ki_fail(error, KILN_ERROR_IO, "%s: cannot be put in place: %s", entry->path,
+                             strerror(errno));
+        if (result != KILN_OK)
+            unlink(entry->temporary);
+    }
+    free_entries(set);
+    return result;
+}
+
+void ki_file_set_abandon(ki_file_set *set)
+{
+    if (!set)
+        return;
+    for (set_entry *entry = set->first; entry; entry = entry->next)
+        unlink(entry->temporary);
+    free_entries(set);
+}
+
+kiln_result ki_file_write(kiln_context *context, const char *path, const void *bytes, size_t size,
+                          kiln_error *error)
+{
+    ki_file_set *set = ki_file_set_begin(context);
+    if (!set)
+        return ki_fail_memory(context, error, path, sizeof *set);
+    kiln_result result = ki_file_set_add(set, path, bytes, size, error);
+    if (result != KILN_OK) {
+        ki_file_set_abandon(set);
+        return result;
+    }
+    return ki_file_set_commit(set, error);
+}

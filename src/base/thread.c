@@ -1,0 +1,101 @@
+// Threads that wait for work. Which thread takes which index is left to chance; what an index
+// computes is not.
+#include "base/base.h"
+#include "base/context.h"
+
+#include <unistd.h>
+
+int ki_core_count(void)
+{
+    long count = sysconf(_SC_NPROCESSORS_ONLN);
+    return count < 1 ? 1 : count > KI_MAX_THREADS ? KI_MAX_THREADS : (int)count;
+}
+
+static void take_all(ki_pool *pool)
+{
+    for (;;) {
+        int index = atomic_fetch_add(&pool->next, 1);
+        if (index >= pool->count)
+            return;
+        pool->task(pool->data, index);
+    }
+}
+
+static void *worker(void *data)
+{
+    ki_pool *pool = data;
+    unsigned seen = 0;
+    pthread_mutex_lock(&pool->mutex);
+    for (;;) {
+        while (pool->round == seen && !pool->stop)
+            pthread_cond_wait(&pool->work, &pool->mutex);
+        if (pool->stop)
+            break;
+        seen = pool->round;
+        pthread_mutex_unlock(&pool->mutex);
+        take_all(pool);
+        pthread_mutex_lock(&pool->mutex);
+        if (--pool->running == 0)
+            pthread_cond_signal(&pool->done);
+    }
+    pthread_mutex_unlock(&pool->mutex);
+    return NULL;
+}
+
+bool ki_threads_start(kiln_context *context)
+{
+    ki_pool *pool = &context->pool;
+    pthread_mutex_init(&pool->mutex, NULL);
+    pthread_cond_init(&pool->work, NULL);
+    pthread_cond_init(&pool->done, NULL);
+    for (int i = 1; i < context->def.thread_count; i++) {
+        if (pthread_create(&pool->thread[pool->thread_count], NULL, worker, pool)) {
+            ki_threads_stop(context);
+            return false;
+        }
+        pool->thread_count++;
+    }
+    return true;
+}
+
+void ki_threads_stop(kiln_context *context)
+{
+    ki_pool *pool = &context->pool;
+    pthread_mutex_lock(&pool->mutex);
+    pool->stop = true;
+    pthread_cond_broadcast(&pool->work);
+    pthread_mutex_unlock(&pool->mutex);
+    for (int i = 0; i < pool->thread_count; i++)
+        pthread_join(pool->thread[i], NULL);
+    pthread_cond_destroy(&pool->done);
+    pthread_cond_destroy(&pool->work);
+    pthread_mutex_destroy(&pool->mutex);
+}
+
+void ki_parallel_for(kiln_context *context, int count, ki_task *task, void *data)
+{
+    if (context->def.parallel_for) {
+        context->def.parallel_for(context->def.parallel_user, count, task, data);
+        return;
+    }
+    ki_pool *pool = &context->pool;
+    if (pool->thread_count == 0 || count < 2) {
+        for (int i = 0; i < count; i++)
+            task(data, i);
+        return;
+    }
+    pthread_mutex_lock(&pool->mutex);
+    pool->task = task;
+    pool->data = data;
+    pool->count = count;
+    atomic_store(&pool->next, 0);
+    pool->running = pool->thread_count;
+    pool->round++;
+    pthread_cond_broadcast(&pool->work);
+    pthread_mutex_unlock(&pool->mutex);
+    take_all(pool);
+    pthread_mutex_lock(&pool->mutex);
+    while (pool->running)
+        pthread_cond_wait(&pool->done, &pool->mutex);
+    pthread_mutex_unlock(&pool->mutex);
+}

@@ -1,0 +1,24 @@
+// Floats of 16, 14, 11 and 10 bits. Packing rounds to nearest, ties to even; values outside are
+// clamped to the largest finite one, not-a-number and negatives (where there is no sign) become 0.
+#ifndef KI_PACK_H
+#define KI_PACK_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+uint16_t ki_half_from_float(float value);
+float ki_float_from_half(uint16_t half);
+/// Shared exponent, 9 bits each (VK_FORMAT_E5B9G9R9_UFLOAT_PACK32, EXT_texture_shared_exponent).
+uint32_t ki_rgb9e5_from_float(const float rgb[3]);
+void ki_float_from_rgb9e5(uint32_t packed, float rgb[3]);
+/// VK_FORMAT_B10G11R11_UFLOAT_PACK32: red in the low bits.
+uint32_t ki_b10g11r11_from_float(const float rgb[3]);
+void ki_float_from_b10g11r11(uint32_t packed, float rgb[3]);
+
+/// `count` RGB floats to RGBA halves with alpha 1, fast.
+void ki_pack_rgba16f(const float *rgb, size_t count, uint16_t *rgba);
+/// sRGB transfer function, exact: [0,1] to linear and back.
+float ki_linear_from_srgb(float value);
+float ki_srgb_from_linear(float value);
+
+#endif

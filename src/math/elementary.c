@@ -1,0 +1,189 @@
+#include "math/math.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+// ------------------------------------------------------------------------------------ sine, cosine
+
+// Taylor polynomials on [-pi/4, pi/4]; the first terms left out are x^19/19! and x^18/18!, below
+// 1e-19 there.
+static double sine_near_zero(double x)
+{
+    double y = x * x;
+    double p = 1.0 / 355687428096000;
+    p = p * y - 1.0 / 1307674368000;
+    p = p * y + 1.0 / 6227020800;
+    p = p * y - 1.0 / 39916800;
+    p = p * y + 1.0 / 362880;
+    p = p * y - 1.0 / 5040;
+    p = p * y + 1.0 / 120;
+    p = p * y - 1.0 / 6;
+    return x + x * (y * p);
+}
+
+static double cosine_near_zero(double x)
+{
+    double y = x * x;
+    double p = 1.0 / 20922789888000;
+    p = p * y - 1.0 / 87178291200;
+    p = p * y + 1.0 / 479001600;
+    p = p * y - 1.0 / 3628800;
+    p = p * y + 1.0 / 40320;
+    p = p * y - 1.0 / 720;
+    p = p * y + 1.0 / 24;
+    p = p * y - 1.0 / 2;
+    return 1 + y * p;
+}
+
+// Cody and Waite: pi/2 in three parts of 33 bits, so that n times the first two is exact.
+void ki_sincos(double x, double *sine, double *cosine)
+{
+    static const double part1 = 1.57079632673412561417e+00;
+    static const double part2 = 6.07710050630396597660e-11;
+    static const double part3 = 2.02226624879595063154e-21;
+    double n = floor(x * (2 / KI_PI) + 0.5);
+    double r = ((x - n * part1) - n * part2) - n * part3;
+    double s = sine_near_zero(r), c = cosine_near_zero(r);
+    switch ((int64_t)n & 3) {
+    case 0:
+        *sine = s;
+        *cosine = c;
+        break;
+    case 1:
+        *sine = c;
+        *cosine = -s;
+        break;
+    case 2:
+        *sine = -s;
+        *cosine = -c;
+        break;
+    default:
+        *sine = -c;
+        *cosine = s;
+        break;
+    }
+}
+
+double ki_sin(double x)
+{
+    double s, c;
+    ki_sincos(x, &s, &c);
+    return s;
+}
+
+double ki_cos(double x)
+{
+    double s, c;
+    ki_sincos(x, &s, &c);
+    return c;
+}
+
+// --------------------------------------------------------------------------------- exponent, power
+
+static double scale_by_power_of_two(double x, int exponent)
+{
+    // Two steps, so that results below the normal range are rounded once, by the last product.
+    int half = exponent / 2;
+    uint64_t bits1 = (uint64_t)(half + 1023) << 52, bits2 = (uint64_t)(exponent - half + 1023) << 52;
+    double f1, f2;
+    memcpy(&f1, &bits1, sizeof f1);
+    memcpy(&f2, &bits2, sizeof f2);
+    return x * f1 * f2;
+}
+
+double ki_exp(double x)
+{
+    static const double log2_high = 6.93147180369123816490e-01, log2_low = 1.90821492927058770002e-10;
+    if (x > 709)
+        return 1.7976931348623157e308;
+    if (!(x > -745))
+        return 0;
+    double n = floor(x * 1.44269504088896340736 + 0.5);
+    double r = (x - n * log2_high) - n * log2_low;
+    // Taylor to r^13 / 13!, |r| <= 0.347: the next term is below 5e-18.
+    double p = 1.0 / 6227020800;
+    for (int k = 12; k >= 2; k--) {
+        static const double inverse[] = {0, 1, 1.0 / 2, 1.0 / 6, 1.0 / 24, 1.0 / 120, 1.0 / 720,
+            1.0 / 5040, 1.0 / 40320, 1.0 / 362880, 1.0 / 3628800, 1.0 / 39916800, 1.0 / 479001600};
+        p = p * r + inverse[k];
+    }
+    return scale_by_power_of_two(1 + (r + r * r * p), (int)n);
+}
+
+double ki_log(double x)
+{
+    static const double log2_high = 6.93147180369123816490e-01, log2_low = 1.90821492927058770002e-10;
+    int exponent = 0;
+    if (x < 2.2250738585072014e-308) {
+        x *= 18014398509481984.0; // 2^54
+        exponent = -54;
+    }
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    exponent += (int)(bits >> 52) - 1023;
+    bits = (bits & 0x000fffffffffffffu) | 0x3ff0000000000000u;
+    memcpy(&x, &bits, sizeof x);
+    if (x > 1.41421356237309514547) {
+        x *= 0.5;
+        exponent++;
+    }
+    // log x = 2 artanh(s), s = (x - 1) / (x + 1), |s| <= 0.1716; series to s^21.
+    double f = x - 1, s = f / (x + 1), y = s * s, p = 1.0 / 21;
+    for (int k = 19; k >= 3; k -= 2)
+        p = p * y + 1.0 / k;
+    double e = exponent;
+    // log(1+f) = f - s f + 2 s y p, arranged so that f is exact.
+    return e * log2_high + (f - (s * f - (2 * s * (y * p) + e * log2_low)));
+}
+
+double ki_pow(double x, double y)
+{
+    if (y == 0 || x == 1)
+        return 1;
+    if (!(x > 0))
+        return y > 0 ? 0 : 1.7976931348623157e308;
+    return ki_exp(y * ki_log(x));
+}
+
+// ---------------------------------------------------------------------------------------- arctangent
+
+// arctan of 0 <= x <= 1 by the nearest of 0, 1/4, 1/2, 3/4, 1:
+// arctan x = arctan c + arctan((x - c) / (1 + x c)), the rest below 0.125, series to its 17th power.
+static double arctangent(double x)
+{
+    static const double at[] = {0, 0.24497866312686415417, 0.46364760900080611621,
+                                0.64350110879328438680, 0.78539816339744830962};
+    int k = (int)(x * 4 + 0.5);
+    double c = k * 0.25;
+    double r = (x - c) / (1 + x * c), y = r * r, p = 1.0 / 17;
+    for (int n = 15; n >= 3; n -= 2)
+        p = 1.0 / n - p * y;
+    return at[k] + (r - r * y * p);
+}
+
+double ki_atan2(double y, double x)
+{
+    double ax = fabs(x), ay = fabs(y), angle;
+    if (ax == 0 && ay == 0)
+        return 0;
+    if (ay <= ax)
+        angle = arctangent(ay / ax);
+    else
+        angle = KI_PI / 2 - arctangent(ax / ay);
+    if (x < 0)
+        angle = KI_PI - angle;
+    return y < 0 ? -angle : angle;
+}
+
+double ki_asin(double x)
+{
+    double rest = (1 - x) * (1 + x);
+    return ki_atan2(x, rest > 0 ? sqrt(rest) : 0);
+}
+
+double ki_acos(double x)
+{
+    double rest = (1 - x) * (1 + x);
+    return ki_atan2(rest > 0 ? sqrt(rest) : 0, x);
+}

@@ -1,0 +1,27 @@
+// Elementary functions that give the same bits on every machine (only + - * / and sqrt are used,
+// and those are exact by IEEE 754), and quadrature. Errors are tested against libm.
+#ifndef KI_MATH_H
+#define KI_MATH_H
+
+#define KI_PI 3.14159265358979323846
+
+/// Error below 2 ulp for |x| < 1e5, absolute below 1e-16 near the zeros.
+void ki_sincos(double x, double *sine, double *cosine);
+double ki_sin(double x);
+double ki_cos(double x);
+/// Below 2 ulp; 0 for x < -745, the largest double above 709.
+double ki_exp(double x);
+/// Below 2 ulp; x > 0.
+double ki_log(double x);
+/// exp(y log x): relative error below 4e-16 * (1 + |y log x|); x >= 0.
+double ki_pow(double x, double y);
+/// Below 3 ulp.
+double ki_atan2(double y, double x);
+double ki_asin(double x);
+double ki_acos(double x);
+
+/// Gauss-Legendre nodes, increasing, and weights on [-1, 1]; exact to degree 2 count - 1. Error
+/// of nodes and weights below 4e-16 for count <= 4096.
+void ki_gauss_legendre(int count, double *nodes, double *weights);
+
+#endif

@@ -1,0 +1,30 @@
+#include "math/math.h"
+
+// Newton's method on P_n from the asymptotic guess cos(pi (i + 3/4) / (n + 1/2)); the weight is
+// 2 / ((1 - x^2) P_n'(x)^2). Abramowitz and Stegun 25.4.29.
+void ki_gauss_legendre(int count, double *nodes, double *weights)
+{
+    for (int i = 0; i < (count + 1) / 2; i++) {
+        double x = ki_cos(KI_PI * (i + 0.75) / (count + 0.5));
+        double slope = 1;
+        for (int step = 0; step < 8; step++) {
+            double p0 = 1, p1 = x;
+            for (int l = 2; l <= count; l++) {
+                double p2 = ((2 * l - 1) * x * p1 - (l - 1) * p0) / l;
+                p0 = p1;
+                p1 = p2;
+            }
+            slope = count * (x * p1 - p0) / (x * x - 1);
+            double change = p1 / slope;
+            x -= change;
+            if (change < 1e-16 && change > -1e-16)
+                break;
+        }
+        if (2 * i + 1 == count)
+            x = 0;
+        double weight = 2 / ((1 - x * x) * slope * slope);
+        nodes[count - 1 - i] = x;
+        nodes[i] = -x;
+        weights[i] = weights[count - 1 - i] = weight;
+    }
+}

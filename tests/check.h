@@ -1,0 +1,42 @@
+// cmocka with the headers it wants, and checks that print numbers.
+#ifndef KILN_CHECK_H
+#define KILN_CHECK_H
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <kiln/kiln.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/// |value - wanted| <= bound, all doubles.
+#define CHECK_NEAR(value, wanted, bound)                                                           \
+    do {                                                                                           \
+        double check_v = (value), check_w = (wanted), check_b = (bound);                           \
+        if (!(fabs(check_v - check_w) <= check_b))                                                 \
+            fail_msg("%s is %.17g, wanted %.17g +- %g (off by %g)", #value, check_v, check_w,      \
+                     check_b, check_v - check_w);                                                  \
+    } while (0)
+
+#define CHECK_BELOW(value, bound)                                                                  \
+    do {                                                                                           \
+        double check_v = (value), check_b = (bound);                                               \
+        if (!(check_v <= check_b))                                                                 \
+            fail_msg("%s is %g, the bound is %g", #value, check_v, check_b);                       \
+    } while (0)
+
+/// A call that must succeed; prints its sentence when it does not. `error` must be in scope.
+#define CHECK_OK(call)                                                                             \
+    do {                                                                                           \
+        if ((call) != KILN_OK)                                                                     \
+            fail_msg("%s: %s", #call, error.message);                                              \
+    } while (0)
+
+#endif
