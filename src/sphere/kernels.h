@@ -1,0 +1,70 @@
+// The inner loops of the spherical engine, compiled once an instruction set from kernels.inl.
+//
+// A vector has eight lanes on every instruction set and a lane is a pair of rings, one north of
+// the equator and its mirror image south of it; sums over lanes are taken in one fixed order. So
+// every path gives the same bits.
+#ifndef KI_KERNELS_H
+#define KI_KERNELS_H
+
+#include "base/base.h"
+
+#include <stddef.h>
+
+enum {
+    KI_LANES = 8,
+    KI_COMPONENTS = 6, // real and imaginary parts of three channels
+    KI_TAPS = 8,       // of the interpolation between rings, and between a ring's points
+    KI_TAP_STEPS = 256 // fractions the taps are tabulated for
+};
+
+/// One pass of a Stockham FFT.
+typedef struct ki_fft_pass {
+    int radix, length, stride; // of this pass: `length` = radix * the next one's length
+    const double *twiddles;    // [length / radix][radix - 1][2]
+    const double *roots;       // generic radices: [radix][2], else NULL
+} ki_fft_pass;
+
+enum { KI_FFT_PASSES = 24 };
+
+/// A forward transform of `length` complex numbers in eight lanes. Elements are 16 doubles: eight
+/// real, eight imaginary parts.
+typedef struct ki_fft {
+    int length, pass_count;
+    ki_fft_pass pass[KI_FFT_PASSES];
+    double *tables;
+} ki_fft;
+
+typedef struct ki_kernels {
+    /// Transforms `data` with `work` as the second buffer; returns whichever holds the result.
+    double *(*fft)(const ki_fft *fft, double *data, double *work);
+
+    /// accumulator[i] += weight * row[i].
+    void (*spread)(double *accumulator, const float *row, double weight, int count);
+
+    /// One order of the analysis: out[l - m][6] = sum over the vectors first .. last-1 and their
+    /// lanes of q_l times the even (l - m even) or odd half of data[vector][12][8].
+    /// `f` holds the recurrence's coefficients of l = m .., `twice_cos` and `start` [vector][8] the
+    /// rings' 2 cos theta and sin^m theta, `state` is scratch [vector][2][8].
+    void (*analyze)(const double *f, int count, const double *twice_cos, const double *start,
+                    const double *data, int first, int last, double *state, double *out);
+
+    /// The transpose, for one vector: out[12][8] = sum over l of q_l times coefficients[l - m][6],
+    /// even (l - m) in the first six, odd in the others. Two neighbouring vectors at once.
+    void (*synthesize)(const double *f, int count, const double *twice_cos, const double *start,
+                       const double *coefficients, double *out0, double *out1);
+
+    /// Interpolates `count` texels: position[i] = {ring, column} in units of the grid's spacing, not
+    /// negative. `grid` is [3][rows][pitch]; taps start at the integer part. Adds to rgb[i][3].
+    void (*interpolate)(const float *grid, size_t plane, size_t pitch, const float *ring_taps,
+                        const float *column_taps, const double *position, int count, float *rgb);
+
+    /// sum[channel][lane] += radiance[channel] * GGX weight, for eight directions [3][8] and
+    /// `count` points of [direction 3, radiance 3]. See ki_lobe_weight.
+    void (*points_ggx)(double alpha, const double *directions, const double (*points)[6], int count,
+                       double *sum);
+} ki_kernels;
+
+/// The kernels of the context's instruction set.
+const ki_kernels *ki_sphere_kernels(const kiln_context *context);
+
+#endif

@@ -1,0 +1,370 @@
+// The bodies. Before inclusion: KI_WIDTH, doubles in a native vector (1, 2, 4, 8), KI_BLOCK, degrees
+// that the analysis takes at once (2 or 4: as accumulators fit in registers), KI_TABLE, the name.
+#include "sphere/kernels.h"
+
+#include <string.h>
+
+enum { PARTS = KI_LANES / KI_WIDTH };
+
+#if KI_WIDTH == 1
+typedef double vec;
+#else
+typedef double vec __attribute__((vector_size(8 * KI_WIDTH), may_alias));
+#endif
+
+static inline vec splat(double x)
+{
+#if KI_WIDTH == 1
+    return x;
+#else
+    return (vec){0} + x;
+#endif
+}
+
+static inline vec load(const double *p)
+{
+    vec v;
+    memcpy(&v, p, sizeof v);
+    return v;
+}
+
+static inline void store(double *p, vec v)
+{
+    memcpy(p, &v, sizeof v);
+}
+
+static inline double sum_lanes(const double *v)
+{
+    return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
+}
+
+// --------------------------------------------------------------------------------------------- FFT
+
+// Multiplies the complex number (re, im) by w and stores it.
+static inline void store_twisted(double *to, vec re, vec im, const double *w)
+{
+    vec wr = splat(w[0]), wi = splat(w[1]);
+    store(to, re * wr - im * wi);
+    store(to + 8, re * wi + im * wr);
+}
+
+static void pass2(const ki_fft_pass *pass, const double *x, double *y)
+{
+    int m = pass->length / 2, s = pass->stride;
+    for (int p = 0; p < m; p++) {
+        const double *w = pass->twiddles + 2 * p;
+        for (int q = 0; q < s; q++) {
+            const double *a = x + 16 * (size_t)(q + s * p), *b = a + 16 * (size_t)(s * m);
+            double *to = y + 16 * (size_t)(q + s * 2 * p);
+            for (int h = 0; h < KI_LANES; h += KI_WIDTH) {
+                vec ar = load(a + h), ai = load(a + 8 + h), br = load(b + h), bi = load(b + 8 + h);
+                store(to + h, ar + br);
+                store(to + 8 + h, ai + bi);
+                store_twisted(to + 16 * s + h, ar - br, ai - bi, w);
+            }
+        }
+    }
+}
+
+static void pass3(const ki_fft_pass *pass, const double *x, double *y)
+{
+    const double half_root3 = 0.86602540378443864676;
+    int m = pass->length / 3, s = pass->stride;
+    for (int p = 0; p < m; p++) {
+        const double *w = pass->twiddles + 4 * p;
+        for (int q = 0; q < s; q++) {
+            const double *a = x + 16 * (size_t)(q + s * p), *b = a + 16 * (size_t)(s * m),
+                         *c = b + 16 * (size_t)(s * m);
+            double *to = y + 16 * (size_t)(q + s * 3 * p);
+            for (int h = 0; h < KI_LANES; h += KI_WIDTH) {
+                vec ar = load(a + h), ai = load(a + 8 + h);
+                vec br = load(b + h), bi = load(b + 8 + h);
+                vec cr = load(c + h), ci = load(c + 8 + h);
+                vec tr = br + cr, ti = bi + ci;
+                vec ur = ar - tr * 0.5, ui = ai - ti * 0.5;
+                vec vr = (bi - ci) * half_root3, vi = (cr - br) * half_root3;
+                store(to + h, ar + tr);
+                store(to + 8 + h, ai + ti);
+                store_twisted(to + 16 * s + h, ur + vr, ui + vi, w);
+                store_twisted(to + 32 * s + h, ur - vr, ui - vi, w + 2);
+            }
+        }
+    }
+}
+
+static void pass4(const ki_fft_pass *pass, const double *x, double *y)
+{
+    int m = pass->length / 4, s = pass->stride;
+    size_t apart = 16 * (size_t)(s * m);
+    for (int p = 0; p < m; p++) {
+        const double *w = pass->twiddles + 6 * p;
+        for (int q = 0; q < s; q++) {
+            const double *a = x + 16 * (size_t)(q + s * p);
+            double *to = y + 16 * (size_t)(q + s * 4 * p);
+            for (int h = 0; h < KI_LANES; h += KI_WIDTH) {
+                vec ar = load(a + h), ai = load(a + 8 + h);
+                vec br = load(a + apart + h), bi = load(a + apart + 8 + h);
+                vec cr = load(a + 2 * apart + h), ci = load(a + 2 * apart + 8 + h);
+                vec dr = load(a + 3 * apart + h), di = load(a + 3 * apart + 8 + h);
+                vec t0r = ar + cr, t0i = ai + ci, t1r = ar - cr, t1i = ai - ci;
+                vec t2r = br + dr, t2i = bi + di, t3r = bi - di, t3i = dr - br;
+                store(to + h, t0r + t2r);
+                store(to + 8 + h, t0i + t2i);
+                store_twisted(to + 16 * s + h, t1r + t3r, t1i + t3i, w);
+                store_twisted(to + 32 * s + h, t0r - t2r, t0i - t2i, w + 2);
+                store_twisted(to + 48 * s + h, t1r - t3r, t1i - t3i, w + 4);
+            }
+        }
+    }
+}
+
+// Any other radix, by its definition.
+static void pass_any(const ki_fft_pass *pass, const double *x, double *y)
+{
+    int r = pass->radix, m = pass->length / r, s = pass->stride;
+    size_t apart = 16 * (size_t)(s * m);
+    for (int p = 0; p < m; p++) {
+        for (int q = 0; q < s; q++) {
+            const double *a = x + 16 * (size_t)(q + s * p);
+            for (int j = 0; j < r; j++) {
+                static const double one[2] = {1, 0};
+                double *to = y + 16 * (size_t)(q + s * (r * p + j));
+                const double *w = j ? pass->twiddles + 2 * (p * (r - 1) + j - 1) : one;
+                for (int h = 0; h < KI_LANES; h += KI_WIDTH) {
+                    vec re = load(a + h), im = load(a + 8 + h);
+                    int turn = 0;
+                    for (int k = 1; k < r; k++) {
+                        turn += j;
+                        turn -= turn >= r ? r : 0;
+                        vec wr = splat(pass->roots[2 * turn]), wi = splat(pass->roots[2 * turn + 1]);
+                        vec br = load(a + apart * (size_t)k + h);
+                        vec bi = load(a + apart * (size_t)k + 8 + h);
+                        re += br * wr - bi * wi;
+                        im += br * wi + bi * wr;
+                    }
+                    store_twisted(to + h, re, im, w);
+                }
+            }
+        }
+    }
+}
+
+static double *fft(const ki_fft *plan, double *data, double *work)
+{
+    for (int i = 0; i < plan->pass_count; i++) {
+        const ki_fft_pass *pass = &plan->pass[i];
+        switch (pass->radix) {
+        case 2:
+            pass2(pass, data, work);
+            break;
+        case 3:
+            pass3(pass, data, work);
+            break;
+        case 4:
+            pass4(pass, data, work);
+            break;
+        default:
+            pass_any(pass, data, work);
+            break;
+        }
+        double *other = data;
+        data = work;
+        work = other;
+    }
+    return data;
+}
+
+// ------------------------------------------------------------------------------------------ rings
+
+static void spread(double *accumulator, const float *row, double weight, int count)
+{
+    for (int i = 0; i < count; i++)
+        accumulator[i] += weight * (double)row[i];
+}
+
+// ---------------------------------------------------------------------------------------- Legendre
+
+// q_l = 2 x q_{l-1} - f_l q_{l-2}: the associated Legendre functions up to a factor that depends
+// on l and m only (legendre.c).
+static void analyze(const double *f, int count, const double *twice_cos, const double *start,
+                    const double *data, int first, int last, double *state, double *out)
+{
+    for (int g = first; g < last; g++) {
+        memcpy(state + 16 * g, start + 8 * g, 8 * sizeof *state);
+        memset(state + 16 * g + 8, 0, 8 * sizeof *state);
+    }
+    for (int l = 0; l < count; l += KI_BLOCK) {
+        double sums[KI_BLOCK][KI_COMPONENTS][KI_LANES];
+        for (int h = 0; h < KI_LANES; h += KI_WIDTH) {
+            vec acc[KI_BLOCK][KI_COMPONENTS];
+            for (int k = 0; k < KI_BLOCK; k++)
+                for (int c = 0; c < KI_COMPONENTS; c++)
+                    acc[k][c] = splat(0);
+            vec f1 = splat(f[l + 1]), f2 = splat(f[l + 2]);
+#if KI_BLOCK == 4
+            vec f3 = splat(f[l + 3]), f4 = splat(f[l + 4]);
+#endif
+            for (int g = first; g < last; g++) {
+                double *st = state + 16 * g + h;
+                const double *even = data + 96 * (size_t)g + h, *odd = even + 48;
+                vec x = load(twice_cos + 8 * g + h);
+                vec q0 = load(st), before = load(st + 8);
+                vec q1 = x * q0 - f1 * before;
+                vec q2 = x * q1 - f2 * q0;
+#if KI_BLOCK == 4
+                vec q3 = x * q2 - f3 * q1;
+                vec q4 = x * q3 - f4 * q2;
+                store(st, q4);
+                store(st + 8, q3);
+#else
+                store(st, q2);
+                store(st + 8, q1);
+#endif
+                for (int c = 0; c < KI_COMPONENTS; c++) {
+                    vec e = load(even + 8 * c), o = load(odd + 8 * c);
+                    acc[0][c] += q0 * e;
+                    acc[1][c] += q1 * o;
+#if KI_BLOCK == 4
+                    acc[2][c] += q2 * e;
+                    acc[3][c] += q3 * o;
+#endif
+                }
+            }
+            for (int k = 0; k < KI_BLOCK; k++)
+                for (int c = 0; c < KI_COMPONENTS; c++)
+                    store(&sums[k][c][h], acc[k][c]);
+        }
+        for (int k = 0; k < KI_BLOCK && l + k < count; k++)
+            for (int c = 0; c < KI_COMPONENTS; c++)
+                out[KI_COMPONENTS * (l + k) + c] = sum_lanes(sums[k][c]);
+    }
+}
+
+// One part of a vector. Everything stays in registers.
+static inline void synthesize_one(const double *f, int count, vec x, vec q0, const double *b,
+                                  double *out)
+{
+    vec e[KI_COMPONENTS], o[KI_COMPONENTS], before = splat(0);
+    for (int c = 0; c < KI_COMPONENTS; c++)
+        e[c] = o[c] = splat(0);
+    for (int l = 0; l < count; l += 2, b += 12) {
+        vec q1 = x * q0 - splat(f[l + 1]) * before;
+        vec q2 = x * q1 - splat(f[l + 2]) * q0;
+        for (int c = 0; c < KI_COMPONENTS; c++) {
+            e[c] += q0 * splat(b[c]);
+            o[c] += q1 * splat(b[6 + c]);
+        }
+        before = q1;
+        q0 = q2;
+    }
+    for (int c = 0; c < KI_COMPONENTS; c++) {
+        store(out + 8 * c, e[c]);
+        store(out + 48 + 8 * c, o[c]);
+    }
+}
+
+#if KI_WIDTH == 8
+// Two vectors at once hide the recurrence's latency.
+static void synthesize(const double *f, int count, const double *twice_cos, const double *start,
+                       const double *b, double *out0, double *out1)
+{
+    vec x = load(twice_cos), y = load(twice_cos + 8), p0 = load(start), q0 = load(start + 8);
+    vec p_before = splat(0), q_before = splat(0);
+    vec pe[KI_COMPONENTS], po[KI_COMPONENTS], qe[KI_COMPONENTS], qo[KI_COMPONENTS];
+    for (int c = 0; c < KI_COMPONENTS; c++)
+        pe[c] = po[c] = qe[c] = qo[c] = splat(0);
+    for (int l = 0; l < count; l += 2, b += 12) {
+        vec f1 = splat(f[l + 1]), f2 = splat(f[l + 2]);
+        vec p1 = x * p0 - f1 * p_before, q1 = y * q0 - f1 * q_before;
+        vec p2 = x * p1 - f2 * p0, q2 = y * q1 - f2 * q0;
+        for (int c = 0; c < KI_COMPONENTS; c++) {
+            vec even = splat(b[c]), odd = splat(b[6 + c]);
+            pe[c] += p0 * even;
+            qe[c] += q0 * even;
+            po[c] += p1 * odd;
+            qo[c] += q1 * odd;
+        }
+        p_before = p1;
+        q_before = q1;
+        p0 = p2;
+        q0 = q2;
+    }
+    for (int c = 0; c < KI_COMPONENTS; c++) {
+        store(out0 + 8 * c, pe[c]);
+        store(out0 + 48 + 8 * c, po[c]);
+        store(out1 + 8 * c, qe[c]);
+        store(out1 + 48 + 8 * c, qo[c]);
+    }
+}
+#else
+static void synthesize(const double *f, int count, const double *twice_cos, const double *start,
+                       const double *b, double *out0, double *out1)
+{
+    for (int h = 0; h < KI_LANES; h += KI_WIDTH) {
+        synthesize_one(f, count, load(twice_cos + h), load(start + h), b, out0 + h);
+        synthesize_one(f, count, load(twice_cos + 8 + h), load(start + 8 + h), b, out1 + h);
+    }
+}
+#endif
+
+// ----------------------------------------------------------------------------------------- texels
+
+// Taps at a fraction, between the two nearest that are tabulated.
+static inline void taps_at(const float *table, double fraction, float taps[KI_TAPS])
+{
+    double at = fraction * KI_TAP_STEPS;
+    int step = (int)at;
+    float t = (float)(at - step);
+    const float *a = table + KI_TAPS * step, *b = a + KI_TAPS;
+    for (int i = 0; i < KI_TAPS; i++)
+        taps[i] = a[i] + t * (b[i] - a[i]);
+}
+
+static void interpolate(const float *grid, size_t plane, size_t pitch, const float *ring_taps,
+                        const float *column_taps, const double *position, int count, float *rgb)
+{
+    for (int i = 0; i < count; i++) {
+        size_t ring = (size_t)position[2 * i], column = (size_t)position[2 * i + 1];
+        float a[KI_TAPS], b[KI_TAPS];
+        taps_at(ring_taps, position[2 * i] - (double)ring, a);
+        taps_at(column_taps, position[2 * i + 1] - (double)column, b);
+        const float *corner = grid + ring * pitch + column;
+        for (int c = 0; c < 3; c++) {
+            float sums[KI_TAPS] = {0};
+            for (int k = 0; k < KI_TAPS; k++) {
+                const float *at = corner + (size_t)c * plane + (size_t)k * pitch;
+                for (int j = 0; j < KI_TAPS; j++)
+                    sums[j] += a[k] * at[j];
+            }
+            for (int j = 0; j < KI_TAPS; j++)
+                sums[j] *= b[j];
+            rgb[3 * i + c] += ((sums[0] + sums[4]) + (sums[2] + sums[6])) +
+                              ((sums[1] + sums[5]) + (sums[3] + sums[7]));
+        }
+    }
+}
+
+static void points_ggx(double alpha, const double *directions, const double (*points)[6], int count,
+                       double *sum)
+{
+    double a2 = alpha * alpha, half_b = 0.5 * (1 - a2);
+    for (int i = 0; i < count; i++) {
+        const double *p = points[i];
+        double weight[KI_LANES];
+        for (int j = 0; j < KI_LANES; j++) {
+            double x = directions[j] - p[0], y = directions[8 + j] - p[1],
+                   z = directions[16 + j] - p[2];
+            double versine = 0.5 * (x * x + y * y + z * z), c = 1 - versine;
+            double ratio = a2 / (a2 + half_b * versine);
+            c = c > 0 ? c : 0;
+            weight[j] = c * ratio * ratio;
+        }
+        for (int j = 0; j < KI_LANES; j++) {
+            sum[j] += p[3] * weight[j];
+            sum[8 + j] += p[4] * weight[j];
+            sum[16 + j] += p[5] * weight[j];
+        }
+    }
+}
+
+const ki_kernels KI_TABLE = {fft, spread, analyze, synthesize, interpolate, points_ggx};

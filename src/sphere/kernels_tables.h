@@ -1,0 +1,9 @@
+// One table of kernels an instruction set.
+#ifndef KI_KERNELS_TABLES_H
+#define KI_KERNELS_TABLES_H
+
+#include "sphere/kernels.h"
+
+extern const ki_kernels ki_kernels_scalar, ki_kernels_sse2, ki_kernels_avx2, ki_kernels_avx512;
+
+#endif
