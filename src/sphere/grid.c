@@ -1,0 +1,93 @@
+#include "sphere/grid.h"
+
+#include "math/math.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { UNKNOWNS = KI_TAPS + 1 }; // the taps and the constraint's multiplier
+
+// Solves a x = b in place by elimination with partial pivoting.
+static void solve(double a[UNKNOWNS][UNKNOWNS], double b[UNKNOWNS])
+{
+    for (int i = 0; i < UNKNOWNS; i++) {
+        int pivot = i;
+        for (int r = i + 1; r < UNKNOWNS; r++)
+            if (fabs(a[r][i]) > fabs(a[pivot][i]))
+                pivot = r;
+        for (int c = 0; c < UNKNOWNS; c++) {
+            double t = a[i][c];
+            a[i][c] = a[pivot][c];
+            a[pivot][c] = t;
+        }
+        double t = b[i];
+        b[i] = b[pivot];
+        b[pivot] = t;
+        for (int r = i + 1; r < UNKNOWNS; r++) {
+            double factor = a[r][i] / a[i][i];
+            for (int c = i; c < UNKNOWNS; c++)
+                a[r][c] -= factor * a[i][c];
+            b[r] -= factor * b[i];
+        }
+    }
+    for (int i = UNKNOWNS - 1; i >= 0; i--) {
+        for (int c = i + 1; c < UNKNOWNS; c++)
+            b[i] -= a[i][c] * b[c];
+        b[i] /= a[i][i];
+    }
+}
+
+// The interpolation of a random function with autocorrelation r(x) = sum_l density_l cos(l x) errs
+// least in the mean square with the weights that solve  sum_j r(x_i - x_j) w_j = r(x_i - x)
+// (Wiener's filter), here with the constraint sum w = 1.
+void ki_taps_design(double step, const double *density, int degree, double *taps)
+{
+    double total = 0, apart[KI_TAPS] = {0};
+    for (int l = 0; l <= degree; l++) {
+        total += density[l];
+        for (int d = 0; d < KI_TAPS; d++)
+            apart[d] += density[l] * ki_cos(l * d * step);
+    }
+    for (int n = 0; n <= KI_TAP_STEPS; n++) {
+        double fraction = (double)n / KI_TAP_STEPS, a[UNKNOWNS][UNKNOWNS], b[UNKNOWNS] = {0};
+        for (int i = 0; i < KI_TAPS; i++) {
+            for (int j = 0; j < KI_TAPS; j++)
+                a[i][j] = apart[i > j ? i - j : j - i] / total + (i == j ? 1e-14 : 0);
+            a[i][KI_TAPS] = a[KI_TAPS][i] = 1;
+        }
+        a[KI_TAPS][KI_TAPS] = 0;
+        // cos(l x) by l through its recurrence, whose error (about 1e-13) is far below the taps'.
+        double distance[KI_TAPS];
+        for (int i = 0; i < KI_TAPS; i++)
+            distance[i] = (fraction - (i - 3)) * step;
+        double twice[KI_TAPS], now[KI_TAPS], before[KI_TAPS];
+        for (int i = 0; i < KI_TAPS; i++) {
+            double c = ki_cos(distance[i]);
+            twice[i] = 2 * c;
+            now[i] = 1;
+            before[i] = c;
+        }
+        for (int l = 0; l <= degree; l++)
+            for (int i = 0; i < KI_TAPS; i++) {
+                b[i] += density[l] * now[i];
+                double next = twice[i] * now[i] - before[i];
+                before[i] = now[i];
+                now[i] = next;
+            }
+        for (int i = 0; i < KI_TAPS; i++)
+            b[i] /= total;
+        b[KI_TAPS] = 1;
+        solve(a, b);
+        memcpy(taps + (size_t)n * KI_TAPS, b, KI_TAPS * sizeof *taps);
+    }
+}
+
+void ki_taps_at(const double *taps, double fraction, double weights[KI_TAPS])
+{
+    double at = fraction * KI_TAP_STEPS;
+    int step = at < KI_TAP_STEPS ? (int)at : KI_TAP_STEPS - 1;
+    double t = at - step;
+    const double *a = taps + (size_t)step * KI_TAPS, *b = a + KI_TAPS;
+    for (int i = 0; i < KI_TAPS; i++)
+        weights[i] = a[i] + t * (b[i] - a[i]);
+}

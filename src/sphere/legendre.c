@@ -1,0 +1,108 @@
+#include "sphere/legendre.h"
+
+#include "math/math.h"
+#include "sphere/kernels.h"
+
+#include <math.h>
+
+enum { ROW_PADDING = 8 }; // kernels run past the last degree
+
+size_t ki_legendre_row(const ki_legendre *legendre, int m)
+{
+    size_t row = (size_t)m, length = (size_t)legendre->degree + 1 + ROW_PADDING;
+    return row * length - row * (row - (row > 0)) / 2;
+}
+
+bool ki_legendre_create(kiln_context *context, int degree, ki_legendre *legendre)
+{
+    *legendre = (ki_legendre){.degree = degree};
+    size_t count = ki_legendre_row(legendre, degree + 1);
+    legendre->f = ki_alloc_raw(context, count, sizeof(double));
+    legendre->scale = ki_alloc_raw(context, count, sizeof(double));
+    if (!legendre->f || !legendre->scale) {
+        ki_legendre_destroy(legendre);
+        return false;
+    }
+    // P_mm = sqrt((2m+1)!! / (2m)!! / 4 pi) sin^m; with a_l = sqrt((4 l^2 - 1) / (l^2 - m^2)),
+    // P_l = a_l (x P_{l-1} - P_{l-2} / a_{l-1}), so scale_l = a_l scale_{l-1} / 2, f_l = 4 / a_{l-1}^2.
+    double start = sqrt(1 / (4 * KI_PI));
+    for (int m = 0; m <= degree; m++) {
+        double *f = legendre->f + ki_legendre_row(legendre, m);
+        double *scale = legendre->scale + ki_legendre_row(legendre, m);
+        if (m > 0)
+            start *= sqrt((2.0 * m + 1) / (2.0 * m));
+        f[0] = f[1] = 0;
+        scale[0] = start;
+        double m2 = (double)m * m;
+        for (int i = 1; i < degree + 1 - m + ROW_PADDING; i++) {
+            double l = m + i, k = l - 1;
+            f[i] = i > 1 ? 4 * (k * k - m2) / (4 * k * k - 1) : 0;
+            scale[i] = scale[i - 1] * 0.5 * sqrt((4 * l * l - 1) / (l * l - m2));
+        }
+    }
+    return true;
+}
+
+void ki_legendre_destroy(ki_legendre *legendre)
+{
+    ki_free(legendre->f);
+    ki_free(legendre->scale);
+    *legendre = (ki_legendre){0};
+}
+
+// |P_lm| is below 1e-13 of its largest where m exceeds l sin theta by this much (Airy's decay
+// beyond the turning point).
+static double order_margin(double l_sin)
+{
+    return 12 + 9 * ki_pow(l_sin, 1.0 / 3);
+}
+
+bool ki_rings_create(kiln_context *context, int count, int degree, ki_rings *rings)
+{
+    count = (count + 31) / 32 * 32;
+    int vectors = count / (2 * KI_LANES), lanes = count / 2;
+    *rings = (ki_rings){.count = count, .vector_count = vectors, .degree = degree};
+    rings->twice_cos = ki_alloc_raw(context, (size_t)lanes, sizeof(double));
+    rings->start = ki_alloc_raw(context, (size_t)lanes * (size_t)(degree + 1), sizeof(double));
+    rings->first = ki_alloc(context, (size_t)degree + 1, sizeof(int));
+    if (!rings->twice_cos || !rings->start || !rings->first) {
+        ki_rings_destroy(rings);
+        return false;
+    }
+    for (int k = 0; k < lanes; k++) {
+        double sine, cosine, power = 1;
+        ki_sincos((k + 0.5) * KI_PI / count, &sine, &cosine);
+        rings->twice_cos[k] = 2 * cosine;
+        double reach = degree * sine + order_margin(degree * sine);
+        for (int m = 0; m <= degree; m++) {
+            rings->start[(size_t)m * (size_t)lanes + (size_t)k] = power;
+            power = power > 1e-280 ? power * sine : 0;
+            // The lane nearest the equator decides whether a vector is needed.
+            if (k % KI_LANES == KI_LANES - 1 && m > reach)
+                rings->first[m] = k / KI_LANES + 1;
+        }
+    }
+    return true;
+}
+
+void ki_rings_destroy(ki_rings *rings)
+{
+    ki_free(rings->twice_cos);
+    ki_free(rings->start);
+    ki_free(rings->first);
+    *rings = (ki_rings){0};
+}
+
+size_t ki_coefficient_row(int degree, int m)
+{
+    // Row k holds degree - k + 1 degrees, one more where that is odd.
+    size_t row = (size_t)m, length = (size_t)degree + 1;
+    size_t full = row * length - row * (row - (row > 0)) / 2;
+    size_t odd_rows = length % 2 ? (row + 1) / 2 : row / 2;
+    return KI_COMPONENTS * (full + odd_rows);
+}
+
+size_t ki_coefficient_count(int degree)
+{
+    return ki_coefficient_row(degree, degree + 1);
+}

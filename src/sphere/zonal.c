@@ -1,0 +1,149 @@
+#include "sphere/zonal.h"
+
+#include "math/math.h"
+#include "sphere/lobe.h"
+
+#include <math.h>
+
+enum { PANEL_NODES = 24 };
+
+double ki_zonal_step(const ki_zonal *zonal, double one_minus_cos)
+{
+    if (zonal->outer <= 0)
+        return 1;
+    // theta = 2 asin(sqrt((1 - cos) / 2)), and a step with six continuous derivatives.
+    double theta = 2 * ki_asin(sqrt(ki_clamp(0.5 * one_minus_cos, 0, 1)));
+    double t = ki_clamp((theta - zonal->inner) / (zonal->outer - zonal->inner), 0, 1);
+    double t2 = t * t, t4 = t2 * t2;
+    return t4 * t2 * t *
+           (1716 - t * (9009 - t * (20020 - t * (24024 - t * (16380 - t * (6006 - t * 924))))));
+}
+
+double ki_zonal_weight(const ki_zonal *zonal, double one_minus_cos)
+{
+    double step = ki_zonal_step(zonal, one_minus_cos);
+    return step > 0 ? step * ki_lobe_weight(&zonal->lobe, one_minus_cos) : 0;
+}
+
+// Panels of theta that double from a fraction of the lobe's width to pi, cut at the horizon, where
+// lobes have a kink, and at the step's ends; none longer than 24 nodes can follow P_limit.
+typedef struct panels {
+    double longest;
+    double *edges;
+    int count, room;
+} panels;
+
+static void add_panels(panels *p, double from, double to)
+{
+    int pieces = (int)ceil((to - from) / p->longest);
+    for (int i = 1; i <= pieces; i++) {
+        if (p->edges)
+            p->edges[p->count] = i == pieces ? to : from + (to - from) * i / pieces;
+        p->count++;
+    }
+}
+
+static void lay_panels(panels *p, const ki_zonal *zonal, double width)
+{
+    double cuts[] = {zonal->inner, zonal->outer, KI_PI / 2, KI_PI};
+    if (p->edges)
+        p->edges[0] = 0;
+    p->count = 1;
+    double at = 0, next = width / 16;
+    while (at < KI_PI) {
+        double to = next < KI_PI ? next : KI_PI;
+        for (int i = 0; i < 4; i++)
+            if (cuts[i] > at && cuts[i] < to)
+                to = cuts[i];
+        add_panels(p, at, to);
+        at = to;
+        if (at >= next)
+            next *= 2;
+    }
+}
+
+kiln_result ki_zonal_analyze(kiln_context *context, const ki_zonal *zonal, double tolerance,
+                             int limit, ki_zonal_spectrum *spectrum, kiln_error *error)
+{
+    kiln_result result = KILN_OK;
+    *spectrum = (ki_zonal_spectrum){0};
+    double rule[PANEL_NODES], rule_weights[PANEL_NODES];
+    ki_gauss_legendre(PANEL_NODES, rule, rule_weights);
+
+    panels p = {.longest = 16.0 / limit};
+    if (zonal->outer > 0 && p.longest > (zonal->outer - zonal->inner) / 2)
+        p.longest = (zonal->outer - zonal->inner) / 2;
+    double width = ki_clamp(ki_lobe_width(&zonal->lobe), 1e-7, 1);
+    lay_panels(&p, zonal, width);
+    size_t count = (size_t)(p.count - 1) * PANEL_NODES;
+    double *nodes = ki_alloc_raw(context, count, 4 * sizeof *nodes);
+    p.edges = ki_alloc_raw(context, (size_t)p.count, sizeof *p.edges);
+    spectrum->k = ki_alloc(context, (size_t)limit + 1, sizeof *spectrum->k);
+    if (!nodes || !p.edges || !spectrum->k) {
+        result = ki_fail_memory(context, error, "a lobe's spectrum", 4 * count * sizeof *nodes);
+        goto done;
+    }
+    lay_panels(&p, zonal, width);
+
+    // x = cos theta, w = weight(theta) dOmega, and the last two Legendre polynomials.
+    double *x = nodes, *w = x + count, *p0 = w + count, *p1 = p0 + count;
+    double whole = 0, sum = 0, squares = 0;
+    size_t n = 0;
+    for (int i = 0; i + 1 < p.count; i++) {
+        double half = (p.edges[i + 1] - p.edges[i]) / 2;
+        for (int j = 0; j < PANEL_NODES; j++, n++) {
+            double sine, cosine, theta = p.edges[i] + half * (1 + rule[j]);
+            ki_sincos(theta / 2, &sine, &cosine);
+            double versine = 2 * sine * sine, solid = 2 * KI_PI * 2 * sine * cosine * half;
+            double lobe = ki_lobe_weight(&zonal->lobe, versine);
+            double weight = lobe * ki_zonal_step(zonal, versine);
+            solid *= rule_weights[j];
+            x[n] = 1 - versine;
+            w[n] = weight * solid;
+            p0[n] = 1;
+            p1[n] = x[n];
+            whole += lobe * solid;
+            sum += w[n];
+            squares += weight * weight * solid;
+        }
+    }
+    if (!(whole > 0 && whole < 1e300 && squares < 1e300)) {
+        result = ki_fail(error, KILN_ERROR_ARGUMENT,
+                         "the lobe's integral is %g, it must be positive and finite", whole);
+        goto done;
+    }
+    spectrum->integral = whole;
+    spectrum->k[0] = sum / whole;
+
+    // Parseval: integral of weight^2 = sum (2l + 1) / 4 pi k_l^2.
+    double left = squares * 4 * KI_PI - sum * sum, stop = tolerance * tolerance * squares * 4 * KI_PI;
+    int l = 1;
+    for (; l <= limit && left > stop; l++) {
+        double part[4] = {0};
+        double a = (2 * l + 1.0) / (l + 1), b = (double)l / (l + 1);
+        for (size_t i = 0; i < count; i += 4)
+            for (size_t j = 0; j < 4; j++) {
+                double now = p1[i + j];
+                part[j] += w[i + j] * now;
+                p1[i + j] = a * x[i + j] * now - b * p0[i + j];
+                p0[i + j] = now;
+            }
+        double k = (part[0] + part[2]) + (part[1] + part[3]);
+        spectrum->k[l] = k / whole;
+        left -= (2 * l + 1) * k * k;
+    }
+    spectrum->degree = l - 1;
+    spectrum->rest = left > 0 ? sqrt(left / (squares * 4 * KI_PI)) : 0;
+done:
+    ki_free(nodes);
+    ki_free(p.edges);
+    if (result != KILN_OK)
+        ki_zonal_free(spectrum);
+    return result;
+}
+
+void ki_zonal_free(ki_zonal_spectrum *spectrum)
+{
+    ki_free(spectrum->k);
+    *spectrum = (ki_zonal_spectrum){0};
+}

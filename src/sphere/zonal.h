@@ -1,0 +1,33 @@
+// The spectra of lobes.
+#ifndef KI_ZONAL_H
+#define KI_ZONAL_H
+
+#include "base/base.h"
+
+/// A lobe, whole or without its centre: the weight is multiplied by a smooth step that is 0 below
+/// `inner` and 1 above `outer` radians. Both 0: the whole lobe.
+typedef struct ki_zonal {
+    kiln_lobe lobe;
+    double inner, outer;
+} ki_zonal;
+
+/// The weight at 1 - cos theta, see ki_lobe_weight.
+double ki_zonal_weight(const ki_zonal *zonal, double one_minus_cos);
+/// The step alone.
+double ki_zonal_step(const ki_zonal *zonal, double one_minus_cos);
+
+typedef struct ki_zonal_spectrum {
+    double integral; // of the whole lobe's weight over the sphere
+    int degree;      // where the rest is below the tolerance, or the limit
+    double rest;     // relative L2 norm of what lies beyond `degree`
+    double *k;       // [limit + 1], k_l / integral of the whole lobe; 0 beyond `degree`
+} ki_zonal_spectrum;
+
+/// k_l = 2 pi integral of weight(theta) P_l(cos theta) d cos theta up to the degree beyond which
+/// less than `tolerance` of the L2 norm is left (the error, relative to the result, for a single
+/// bright point), at most `limit`.
+kiln_result ki_zonal_analyze(kiln_context *context, const ki_zonal *zonal, double tolerance,
+                             int limit, ki_zonal_spectrum *spectrum, kiln_error *error);
+void ki_zonal_free(ki_zonal_spectrum *spectrum);
+
+#endif
