@@ -1,0 +1,344 @@
+// Options with ranges, sentences, the job with its progress line and signals.
+#include "cli.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <math.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+// --------------------------------------------------------------------------------------- sentences
+
+static void say(const char *format, va_list list)
+{
+    fputs("kiln: ", stderr);
+    vfprintf(stderr, format, list);
+    fputc('\n', stderr);
+}
+
+int cli_wrong(const cli_command *command, const char *format, ...)
+{
+    va_list list;
+    va_start(list, format);
+    say(format, list);
+    va_end(list);
+    fprintf(stderr, "Try 'kiln %s%s--help'.\n", command ? command->name : "", command ? " " : "");
+    return CLI_WRONG;
+}
+
+int cli_fail(const char *format, ...)
+{
+    va_list list;
+    va_start(list, format);
+    say(format, list);
+    va_end(list);
+    return CLI_FAILED;
+}
+
+const char *cli_bytes(double bytes, char text[32])
+{
+    static const char *const units[] = {"bytes", "kB", "MB", "GB", "TB"};
+    int unit = 0;
+    while (bytes >= 1000 && unit < 4) {
+        bytes /= 1000;
+        unit++;
+    }
+    snprintf(text, 32, unit ? "%.3g %s" : "%.0f %s", bytes >= 999.5 ? 999 : bytes, units[unit]);
+    return text;
+}
+
+// ----------------------------------------------------------------------------------------- options
+
+// The long name of an option, looked for in included tables too.
+static const char *option_name(const struct poptOption *table, int option)
+{
+    const char *name = NULL;
+    for (; !name && (table->longName || table->arg); table++) {
+        if (table->argInfo == POPT_ARG_INCLUDE_TABLE)
+            name = option_name(table->arg, option);
+        else if (table->val == option)
+            name = table->longName;
+    }
+    return name;
+}
+
+int cli_arguments_read(cli_arguments *a, const cli_command *command, int argc, const char **argv)
+{
+    *a = (cli_arguments){.command = command};
+    a->popt = poptGetContext(NULL, argc, argv, command->options, 0);
+    if (!a->popt)
+        return cli_fail("out of memory");
+    poptSetOtherOptionHelp(a->popt, command->arguments);
+
+    int option;
+    while ((option = poptGetNextOpt(a->popt)) > 0) {
+        char *text = poptGetOptArg(a->popt);
+        if (a->value[option]) {
+            free(text);
+            return cli_wrong(command, "--%s is given twice", option_name(command->options, option));
+        }
+        a->value[option] = text ? text : strdup("");
+        if (!a->value[option])
+            return cli_fail("out of memory");
+    }
+    if (a->value[CLI_HELP]) {
+        printf("%s\n\n", command->summary);
+        poptPrintHelp(a->popt, stdout, 0);
+        printf("\n%s", command->details);
+        return CLI_DONE;
+    }
+    const char *bad = poptBadOption(a->popt, 0);
+    if (option == POPT_ERROR_BADOPT)
+        return cli_wrong(command, "%s: no such option", bad);
+    if (option == POPT_ERROR_NOARG)
+        return cli_wrong(command, "%s needs a value", bad);
+    if (option < -1)
+        return cli_wrong(command, "%s: %s", bad, poptStrerror(option));
+    a->rest = poptGetArgs(a->popt);
+    while (a->rest && a->rest[a->rest_count])
+        a->rest_count++;
+    return CLI_GO;
+}
+
+void cli_arguments_free(cli_arguments *a)
+{
+    for (int i = 0; i < CLI_MAX_OPTIONS; i++)
+        free(a->value[i]);
+    poptFreeContext(a->popt);
+}
+
+int cli_integer(const cli_arguments *a, int option, const char *name, int low, int high, int *value)
+{
+    const char *text = a->value[option];
+    if (!text)
+        return CLI_GO;
+    char *end;
+    errno = 0;
+    long n = strtol(text, &end, 10);
+    if (end == text || *end)
+        return cli_wrong(a->command, "%s is '%s', it must be a whole number from %d to %d", name,
+                         text, low, high);
+    if (errno || n < low || n > high)
+        return cli_wrong(a->command, "%s is %s, it must be from %d to %d", name, text, low, high);
+    *value = (int)n;
+    return CLI_GO;
+}
+
+int cli_number(const cli_arguments *a, int option, const char *name, double low, double high,
+               double *value)
+{
+    const char *text = a->value[option];
+    if (!text)
+        return CLI_GO;
+    char *end;
+    double x = strtod(text, &end);
+    if (end == text || *end)
+        return cli_wrong(a->command, "%s is '%s', it must be a number from %g to %g", name, text,
+                         low, high);
+    if (!(x >= low && x <= high))
+        return cli_wrong(a->command, "%s is %s, it must be from %g to %g", name, text, low, high);
+    *value = x;
+    return CLI_GO;
+}
+
+int cli_choice(const cli_arguments *a, int option, const char *name, const char *const *words,
+               int *value)
+{
+    const char *text = a->value[option];
+    if (!text)
+        return CLI_GO;
+    char list[256] = "";
+    for (int i = 0; words[i]; i++) {
+        if (!strcmp(text, words[i])) {
+            *value = i;
+            return CLI_GO;
+        }
+        size_t used = strlen(list);
+        snprintf(list + used, sizeof list - used, "%s%s",
+                 !i             ? ""
+                 : words[i + 1] ? ", "
+                                : " or ",
+                 words[i]);
+    }
+    return cli_wrong(a->command, "%s is '%s', it must be %s", name, text, list);
+}
+
+const char *cli_ending(const char *path)
+{
+    static char ending[8];
+    size_t length = strlen(path);
+    struct stat status;
+    if ((length && path[length - 1] == '/') ||
+        (stat(path, &status) == 0 && S_ISDIR(status.st_mode)))
+        return "/";
+    const char *slash = strrchr(path, '/'), *dot = strrchr(path, '.');
+    ending[0] = 0;
+    if (dot && dot > path && (!slash || dot > slash + 1) && strlen(dot + 1) < sizeof ending)
+        for (size_t i = 0; i <= strlen(dot + 1); i++)
+            ending[i] = (char)tolower((unsigned char)dot[1 + i]);
+    return ending;
+}
+
+int cli_check_folder(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    if (!slash || !slash[1])
+        return CLI_GO; // here, or a folder that will be made
+    char folder[4096];
+    size_t length = slash == path ? 1 : (size_t)(slash - path);
+    if (length >= sizeof folder)
+        return cli_fail("%.60s...: the name is too long", path);
+    memcpy(folder, path, length);
+    folder[length] = 0;
+    struct stat status;
+    if (strchr(folder, '%') || strchr(folder, '{'))
+        return CLI_GO;
+    if (stat(folder, &status) != 0)
+        return cli_fail(errno == ENOENT ? "%s: there is no folder %s"
+                                        : "%s: cannot enter the folder %s",
+                        path, folder);
+    if (!S_ISDIR(status.st_mode))
+        return cli_fail("%s: %s is not a folder", path, folder);
+    return CLI_GO;
+}
+
+// ----------------------------------------------------------------------------------------- signals
+
+static volatile sig_atomic_t caught;
+
+static void on_signal(int signal)
+{
+    caught = signal;
+}
+
+bool cli_interrupted(void)
+{
+    return caught != 0;
+}
+
+static const int stopping[] = {SIGINT, SIGTERM, SIGHUP};
+
+// Reads and writes that wait are interrupted (no SA_RESTART). What the parent has set to be
+// ignored, as nohup does, stays ignored.
+static void catch_signals(void)
+{
+    struct sigaction action = {.sa_handler = on_signal}, old;
+    sigemptyset(&action.sa_mask);
+    for (int i = 0; i < 3; i++)
+        if (sigaction(stopping[i], NULL, &old) == 0 && old.sa_handler != SIG_IGN)
+            sigaction(stopping[i], &action, NULL);
+    // A reader that went away shows as a failed write, so that no temporary file is left.
+    signal(SIGPIPE, SIG_IGN);
+}
+
+// --------------------------------------------------------------------------------------------- job
+
+double cli_seconds(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+enum { PROGRESS_WIDTH = 40 };
+
+void cli_clear_progress(cli_job *job)
+{
+    if (job->drawn > 0)
+        fprintf(stderr, "\r%*s\r", PROGRESS_WIDTH, "");
+    job->drawn = 0;
+}
+
+static bool progress(void *user, const char *stage, double fraction)
+{
+    cli_job *job = user;
+    double now = cli_seconds();
+    if (job->on_terminal && now - job->began > 0.5 && now - job->drawn > 0.1 && !caught) {
+        char line[PROGRESS_WIDTH + 1];
+        snprintf(line, sizeof line, "kiln: %s %.0f %%", stage, 100 * fraction);
+        fprintf(stderr, "\r%-*s", PROGRESS_WIDTH, line);
+        job->drawn = now;
+    }
+    return !caught;
+}
+
+// What the machine has: beyond it a bake would be killed without a sentence.
+static size_t physical_memory(void)
+{
+    long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE);
+    return pages > 0 && page > 0 ? (size_t)pages * (size_t)page : 0;
+}
+
+int cli_job_begin(cli_job *job, int threads, bool quiet)
+{
+    *job = (cli_job){.began = cli_seconds(), .on_terminal = !quiet && isatty(STDERR_FILENO)};
+    catch_signals();
+    kiln_context_def def = {
+        .thread_count = threads,
+        .progress = progress,
+        .progress_user = job,
+        .memory_limit = physical_memory(),
+    };
+    // The library's threads inherit the mask, so that signals reach this thread and end its waits.
+    sigset_t mask, old;
+    sigemptyset(&mask);
+    for (int i = 0; i < 3; i++)
+        sigaddset(&mask, stopping[i]);
+    sigprocmask(SIG_BLOCK, &mask, &old);
+    kiln_result result = kiln_context_create(&def, &job->context, &job->error);
+    sigprocmask(SIG_SETMASK, &old, NULL);
+    return result == KILN_OK ? CLI_GO : CLI_FAILED;
+}
+
+int cli_job_end(cli_job *job, int code)
+{
+    cli_clear_progress(job);
+    if (code == CLI_FAILED && !caught && job->error.message[0])
+        cli_fail("%s", job->error.message);
+    kiln_context_destroy(job->context);
+    return code == CLI_FAILED && caught ? 128 + (int)caught : code;
+}
+
+void cli_warn(cli_job *job, const char *format, ...)
+{
+    cli_clear_progress(job);
+    fputs("kiln: warning: ", stderr);
+    va_list list;
+    va_start(list, format);
+    vfprintf(stderr, format, list);
+    va_end(list);
+    fputc('\n', stderr);
+}
+
+// ------------------------------------------------------------------------------------------ output
+
+int cli_print_json(cJSON *json)
+{
+    char *text = json ? cJSON_Print(json) : NULL;
+    cJSON_Delete(json);
+    if (!text)
+        return cli_fail("out of memory");
+    puts(text);
+    free(text);
+    return CLI_DONE;
+}
+
+int cli_close_output(int code)
+{
+    bool failed = ferror(stdout) != 0;
+    errno = 0;
+    failed = fflush(stdout) != 0 || failed;
+    if (!failed)
+        return code;
+    if (errno == EPIPE)
+        return 128 + SIGPIPE; // the reader has gone and knows it
+    if (code == CLI_DONE)
+        cli_fail("standard output: %s", errno ? strerror(errno) : "cannot be written");
+    return code == CLI_DONE ? CLI_FAILED : code;
+}
