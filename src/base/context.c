@@ -41,7 +41,7 @@ bool ki_mul_size(size_t a, size_t b, size_t *product)
 static void *system_allocate(void *user, size_t size)
 {
     (void)user;
-    return aligned_alloc(64, size);
+    return aligned_alloc(64, (size + 63) & ~(size_t)63);
 }
 
 static void system_release(void *user, void *memory, size_t size)

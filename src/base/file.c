@@ -42,8 +42,12 @@ kiln_result ki_file_read(kiln_context *context, const char *path, uint8_t **byte
             capacity = wanted;
         }
         ssize_t got = read(fd, buffer + filled, capacity - filled);
-        if (got < 0 && errno == EINTR)
-            continue;
+        if (got < 0 && errno == EINTR) {
+            if (ki_progress(context, "reading", 0))
+                continue;
+            result = ki_fail_cancelled(error, "reading");
+            goto done;
+        }
         if (got < 0) {
             result = ki_fail(error, KILN_ERROR_IO, "%s: cannot be read after %zu bytes: %s", path,
                              filled, strerror(errno));
@@ -83,17 +87,27 @@ ki_file_set *ki_file_set_begin(kiln_context *context)
     return set;
 }
 
-static bool write_all(int fd, const uint8_t *bytes, size_t size)
+enum { WRITE_STEP = 4 << 20 };
+
+// False with errno set; ECANCELED where the progress callback said so.
+static bool write_all(kiln_context *context, int fd, const uint8_t *bytes, size_t size)
 {
-    while (size) {
-        ssize_t put = write(fd, bytes, size);
+    for (size_t done = 0; done < size;) {
+        if (!ki_progress(context, "writing", (double)done / (double)size)) {
+            errno = ECANCELED;
+            return false;
+        }
+        size_t left = size - done;
+        ssize_t put = write(fd, bytes + done, left < WRITE_STEP ? left : WRITE_STEP);
         if (put < 0 && errno == EINTR)
             continue;
         if (put <= 0)
             return false;
-        bytes += put;
-        size -= (size_t)put;
+        done += (size_t)put;
     }
+    while (fsync(fd) != 0)
+        if (errno != EINTR)
+            return false;
     return true;
 }
 
@@ -130,12 +144,14 @@ kiln_result ki_file_set_add(ki_file_set *set, const char *path, const void *byte
         ki_free(entry);
         return ki_fail(error, KILN_ERROR_IO, "%s: cannot be created: %s", path, strerror(errno));
     }
-    bool good = write_all(fd, bytes, size) && fsync(fd) == 0;
+    bool good = write_all(set->context, fd, bytes, size);
     int reason = errno;
     good = close(fd) == 0 && good;
     if (!good) {
         unlink(entry->temporary);
         ki_free(entry);
+        if (reason == ECANCELED)
+            return ki_fail_cancelled(error, "writing");
         return ki_fail(error, KILN_ERROR_IO, "%s: cannot write %zu bytes: %s", path, size,
                        strerror(reason));
     }
@@ -155,7 +171,10 @@ static void free_entries(ki_file_set *set)
 
 kiln_result ki_file_set_commit(ki_file_set *set, kiln_error *error)
 {
+    // The last moment at which nothing has happened yet.
     kiln_result result = KILN_OK;
+    if (!ki_progress(set->context, "writing", 1))
+        result = ki_fail_cancelled(error, "writing");
     for (set_entry *entry = set->first; entry; entry = entry->next) {
         if (result == KILN_OK && rename(entry->temporary, entry->path) != 0)
             result = ki_fail(error, KILN_ERROR_IO, "%s: cannot be put in place: %s", entry->path,
