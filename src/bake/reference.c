@@ -1,0 +1,598 @@
+// Brute force with its error under control.
+//
+// For a direction d the wanted value is
+//
+//     sum over texels t of  L_t I_t  /  sum of I_t,     I_t = integral over t of k(d . w) dw.
+//
+// I_t is a product Gauss-Legendre rule in (theta, phi), with as many nodes as the lobe needs at the
+// texel's distance from its peak: GGX falls over the length sqrt(width^2 + distance^2), since its
+// nearest complex poles lie that far away. Most texels are done a row at a time with 1 or 2 x 2
+// nodes; those near the peak, and those that the horizon crosses, one by one: cut into four as often
+// as needed, then 4 x 4 nodes.
+#include "bake/reference.h"
+
+#include "image/image.h"
+#include "math/math.h"
+#include "sphere/lobe.h"
+
+#include <math.h>
+#include <string.h>
+
+enum {
+    GROUP = 8,      // directions that share a pass over the rows
+    BATCH = 16,     // groups between two reports of progress
+    MAX_DEPTH = 48, // of the cutting: a texel's 2^48th part is below a double's resolution
+};
+
+// Gauss-Legendre nodes on [-1, 1] and weights that add to 1.
+static const double pair_node = 0.57735026918962576451;
+static const double quad_node[4] = {-0.86113631159405257522, -0.33998104358485626480,
+                                    0.33998104358485626480, 0.86113631159405257522};
+static const double quad_weight[4] = {0.17392742256872692869, 0.32607257743127307131,
+                                      0.32607257743127307131, 0.17392742256872692869};
+
+// ------------------------------------------------------------------------------------------- setup
+
+typedef struct row_geometry {
+    double cos_centre, sin_centre;
+    double cos_mean, sin_mean; // mean over the row's texels of cos and sin theta
+    double cos_pair[2], sin_pair[2];
+    double area; // of one texel in steradians
+} row_geometry;
+
+// What the cells of one depth have in common: texels are depth 0.
+typedef struct cell_geometry {
+    double theta_size, phi_size;
+    double theta_cos[4], theta_sin[4], phi_cos[4], phi_sin[4]; // of the nodes' offsets
+    double theta_quarter_cos, theta_quarter_sin, phi_quarter_cos, phi_quarter_sin;
+} cell_geometry;
+
+typedef struct reference {
+    const float *texels;
+    int width, height;
+    row_geometry *rows;
+    double
+        *columns[6]; // means of sin phi and cos phi over each column, sine and cosine at its nodes
+    cell_geometry cells[MAX_DEPTH + 1];
+
+    kiln_lobe lobe;
+    bool rational; // GGX, and Lambert, which is its alpha = 1
+    bool linear;   // in cos theta: the mean direction is exact
+    double a2;     // alpha^2 of a rational lobe
+    double cut;    // cos theta below which the lobe is nothing
+    bool kink;     // the lobe has an edge there
+    double lobe_width;
+    int depth_limit;
+    ki_reference_rule rule;
+
+    const double (*directions)[3]; // turned, unit
+    double (*values)[3];
+    int count;
+    double *scratch; // of a batch
+    size_t scratch_size;
+} reference;
+
+static void set_rows(reference *r)
+{
+    double step = KI_PI / r->height;
+    for (int y = 0; y < r->height; y++) {
+        row_geometry *row = &r->rows[y];
+        double s0, c0, s1, c1, centre = step * (y + 0.5);
+        ki_sincos(step * y, &s0, &c0);
+        ki_sincos(step * (y + 1), &s1, &c1);
+        ki_sincos(centre, &row->sin_centre, &row->cos_centre);
+        // cos a - cos b = 2 sin((a + b) / 2) sin((b - a) / 2), without the cancellation.
+        double height = 2 * row->sin_centre * ki_sin(step / 2);
+        row->area = height * (2 * KI_PI / r->width);
+        // Means weighted by sin theta.
+        row->cos_mean = row->cos_centre * ki_cos(step / 2);
+        row->sin_mean = (step - (s1 * c1 - s0 * c0)) / (2 * height);
+        for (int k = 0; k < 2; k++)
+            ki_sincos(centre + (k ? 1 : -1) * pair_node * step / 2, &row->sin_pair[k],
+                      &row->cos_pair[k]);
+    }
+}
+
+static void set_columns(reference *r)
+{
+    double step = 2 * KI_PI / r->width;
+    double mean = ki_sin(step / 2) / (step / 2);
+    for (int x = 0; x < r->width; x++) {
+        double centre = 2 * KI_PI * ((x + 0.5) / r->width - 0.5);
+        ki_sincos(centre, &r->columns[0][x], &r->columns[1][x]);
+        r->columns[0][x] *= mean;
+        r->columns[1][x] *= mean;
+        for (int k = 0; k < 2; k++)
+            ki_sincos(centre + (k ? 1 : -1) * pair_node * step / 2, &r->columns[2 + 2 * k][x],
+                      &r->columns[3 + 2 * k][x]);
+    }
+}
+
+static void set_cells(reference *r)
+{
+    double theta = KI_PI / r->height, phi = 2 * KI_PI / r->width;
+    for (int d = 0; d <= MAX_DEPTH; d++, theta /= 2, phi /= 2) {
+        cell_geometry *cell = &r->cells[d];
+        cell->theta_size = theta;
+        cell->phi_size = phi;
+        for (int k = 0; k < 4; k++) {
+            ki_sincos(quad_node[k] * theta / 2, &cell->theta_sin[k], &cell->theta_cos[k]);
+            ki_sincos(quad_node[k] * phi / 2, &cell->phi_sin[k], &cell->phi_cos[k]);
+        }
+        ki_sincos(theta / 4, &cell->theta_quarter_sin, &cell->theta_quarter_cos);
+        ki_sincos(phi / 4, &cell->phi_quarter_sin, &cell->phi_quarter_cos);
+    }
+}
+
+static void set_lobe(reference *r, const kiln_lobe *lobe)
+{
+    r->lobe = *lobe;
+    r->lobe_width = ki_lobe_width(lobe);
+    r->rational = lobe->kind == KILN_LOBE_GGX || lobe->kind == KILN_LOBE_LAMBERT;
+    r->depth_limit = lobe->kind == KILN_LOBE_CHARLIE ? 6 : MAX_DEPTH;
+    r->kink = lobe->kind != KILN_LOBE_CUSTOM;
+    r->cut = r->kink ? 0 : -2;
+    if (r->rational) {
+        double alpha = lobe->kind == KILN_LOBE_GGX ? lobe->parameter : 1;
+        r->a2 = alpha * alpha;
+        r->lobe_width = 2 * alpha;
+        r->linear = alpha == 1;
+    } else if (lobe->kind == KILN_LOBE_PHONG) {
+        // cos^n below e^-60 of its peak is left out: 1e-26.
+        double cut = ki_exp(-60 / lobe->parameter);
+        if (cut > 0.01) {
+            r->cut = cut;
+            r->kink = false;
+        }
+    }
+}
+
+// ---------------------------------------------------------------------------------- texel by texel
+
+// The length over which the lobe changes at a distance from its peak.
+static double lobe_scale(const reference *r, double distance)
+{
+    if (r->rational)
+        return sqrt(r->lobe_width * r->lobe_width + distance * distance);
+    if (r->lobe.kind == KILN_LOBE_CHARLIE && distance < r->lobe_width)
+        return distance; // a power of the distance, not always a smooth one
+    if (r->lobe.kind == KILN_LOBE_CUSTOM && distance > 4 * r->lobe_width)
+        return distance / 4;
+    return r->lobe_width;
+}
+
+// Mean over a cell's (theta, phi) rectangle of k sin theta.
+static double cell_nodes(const reference *r, const double d[3], const cell_geometry *cell,
+                         double sin_theta, double cos_theta, double sin_phi, double cos_phi)
+{
+    double px[4], pz[4], far[4][4], weight[4][4], total = 0;
+    for (int k = 0; k < 4; k++) {
+        px[k] = sin_phi * cell->phi_cos[k] + cos_phi * cell->phi_sin[k];
+        pz[k] = sin_phi * cell->phi_sin[k] - cos_phi * cell->phi_cos[k];
+    }
+    double sines[4];
+    for (int i = 0; i < 4; i++) {
+        double st = sin_theta * cell->theta_cos[i] + cos_theta * cell->theta_sin[i];
+        double ct = cos_theta * cell->theta_cos[i] - sin_theta * cell->theta_sin[i];
+        double dy = d[1] - ct;
+        sines[i] = st;
+        // 1 - cos theta = |d - l|^2 / 2, exact where it is small.
+        for (int k = 0; k < 4; k++) {
+            double dx = d[0] - st * px[k], dz = d[2] - st * pz[k];
+            far[i][k] = 0.5 * (dx * dx + dy * dy + dz * dz);
+        }
+    }
+    if (r->rational) {
+        double a2 = r->a2, slope = 0.5 * (1 - a2);
+        for (int i = 0; i < 4; i++)
+            for (int k = 0; k < 4; k++) {
+                double c = 1 - far[i][k], ratio = a2 / (a2 + slope * far[i][k]);
+                weight[i][k] = (c > 0 ? c : 0) * ratio * ratio;
+            }
+    } else {
+        for (int i = 0; i < 4; i++)
+            for (int k = 0; k < 4; k++)
+                weight[i][k] = ki_lobe_weight(&r->lobe, far[i][k]);
+    }
+    for (int i = 0; i < 4; i++) {
+        double line = 0;
+        for (int k = 0; k < 4; k++)
+            line += quad_weight[k] * weight[i][k];
+        total += quad_weight[i] * sines[i] * line;
+    }
+    return total;
+}
+
+// The same, cut as often as the lobe asks for.
+static double cell_mean(const reference *r, const double d[3], int depth, double sin_theta,
+                        double cos_theta, double sin_phi, double cos_phi)
+{
+    const cell_geometry *cell = &r->cells[depth];
+    double dx = d[0] - sin_theta * sin_phi, dy = d[1] - cos_theta;
+    double dz = d[2] + sin_theta * cos_phi;
+    double chord2 = dx * dx + dy * dy + dz * dz;
+
+    double width = sin_theta + 0.5 * cell->theta_size;
+    width = cell->phi_size * (width < 1 ? width : 1);
+    double size = cell->theta_size > width ? cell->theta_size : width;
+    double reach = 0.51 * sqrt(cell->theta_size * cell->theta_size + width * width);
+    double distance = sqrt(chord2) - reach;
+    bool cut = size > r->rule.quads * lobe_scale(r, distance > 0 ? distance : 0);
+    cut |= r->kink && size > r->rule.edge && fabs(1 - 0.5 * chord2) < reach;
+    if (!cut || depth == r->depth_limit)
+        return cell_nodes(r, d, cell, sin_theta, cos_theta, sin_phi, cos_phi);
+
+    double total = 0;
+    for (int i = 0; i < 2; i++) {
+        double sign = i ? 1 : -1;
+        double ts = sign * cell->theta_quarter_sin, tc = cell->theta_quarter_cos;
+        double st = sin_theta * tc + cos_theta * ts, ct = cos_theta * tc - sin_theta * ts;
+        for (int k = 0; k < 2; k++) {
+            double ps = (k ? 1 : -1) * cell->phi_quarter_sin, pc = cell->phi_quarter_cos;
+            total += cell_mean(r, d, depth + 1, st, ct, sin_phi * pc + cos_phi * ps,
+                               cos_phi * pc - sin_phi * ps);
+        }
+    }
+    return 0.25 * total;
+}
+
+// -------------------------------------------------------------------------------------- row by row
+
+// A direction looked in, on its way through the rows. The part of d . l that varies along a row is
+// sin theta times `along`.
+typedef struct look {
+    double d[3], sin_theta;
+    double column;    // of its azimuth, in texels; centres are whole numbers
+    double *along[3]; // mean, node, node
+    double sum[4];    // three channels and the weights
+} look;
+
+// Columns are counted from the ray's azimuth and may run over the picture's edge.
+typedef struct span {
+    int first, last;
+} span;
+
+// The columns whose centres have d . l > threshold in a row.
+static span columns_above(const reference *r, const look *ray, const row_geometry *row,
+                          double threshold)
+{
+    double p = ray->d[1] * row->cos_centre, q = ray->sin_theta * row->sin_centre;
+    double half;
+    if (p - q > threshold)
+        half = r->width;
+    else if (!(p + q > threshold))
+        return (span){0, -1};
+    else
+        half = ki_acos(ki_clamp((threshold - p) / q, -1, 1)) * (r->width / (2 * KI_PI));
+    span s = {(int)ceil(ray->column - half), (int)floor(ray->column + half)};
+    if (half >= 0.5 * r->width || s.last - s.first + 1 > r->width) {
+        s.first = (int)ceil(ray->column - 0.5 * r->width);
+        s.last = s.first + r->width - 1;
+    }
+    return s;
+}
+
+static int wrap(const reference *r, int x)
+{
+    return x < 0 ? x + r->width : x >= r->width ? x - r->width : x;
+}
+
+// k at 2 x 2 nodes, averaged.
+static void fill_pairs(const reference *r, const look *ray, const row_geometry *row, int first,
+                       int last, double *restrict weight)
+{
+    const double *restrict ea = ray->along[1], *restrict eb = ray->along[2];
+    double p0 = ray->d[1] * row->cos_pair[0], p1 = ray->d[1] * row->cos_pair[1];
+    double q0 = row->sin_pair[0], q1 = row->sin_pair[1];
+    double w0 = 0.5 * q0 / (q0 + q1), w1 = 0.5 * q1 / (q0 + q1);
+    if (!r->rational) {
+        for (int x = first; x <= last; x++) {
+            double a = p0 + q0 * ea[x], b = p0 + q0 * eb[x];
+            double c = p1 + q1 * ea[x], d = p1 + q1 * eb[x];
+            weight[x] = w0 * (ki_lobe_weight(&r->lobe, 1 - a) + ki_lobe_weight(&r->lobe, 1 - b)) +
+                        w1 * (ki_lobe_weight(&r->lobe, 1 - c) + ki_lobe_weight(&r->lobe, 1 - d));
+        }
+        return;
+    }
+    double a2 = r->a2, high = 0.5 * (1 + a2), slope = 0.5 * (1 - a2);
+    for (int x = first; x <= last; x++) {
+        double ca = p0 + q0 * ea[x], cb = p0 + q0 * eb[x];
+        double cc = p1 + q1 * ea[x], cd = p1 + q1 * eb[x];
+        double da = high - slope * ca, db = high - slope * cb;
+        double dc = high - slope * cc, dd = high - slope * cd;
+        double rest = a2 / ((da * db) * (dc * dd)); // one division for four
+        double ra = rest * db * (dc * dd), rb = rest * da * (dc * dd);
+        double rc = rest * (da * db) * dd, rd = rest * (da * db) * dc;
+        ca = ca > 0 ? ca : 0;
+        cb = cb > 0 ? cb : 0;
+        cc = cc > 0 ? cc : 0;
+        cd = cd > 0 ? cd : 0;
+        weight[x] = w0 * (ca * (ra * ra) + cb * (rb * rb)) + w1 * (cc * (rc * rc) + cd * (rd * rd));
+    }
+}
+
+// k at the texels' mean directions: right to first order in cos theta.
+static void fill_means(const reference *r, const look *ray, const row_geometry *row, int first,
+                       int last, double *restrict weight)
+{
+    const double *restrict e = ray->along[0];
+    double p = ray->d[1] * row->cos_mean, q = row->sin_mean;
+    if (!r->rational) {
+        for (int x = first; x <= last; x++)
+            weight[x] = ki_lobe_weight(&r->lobe, 1 - (p + q * e[x]));
+        return;
+    }
+    double a2 = r->a2, high = 0.5 * (1 + a2), slope = 0.5 * (1 - a2);
+    for (int x = first; x <= last; x++) {
+        double c = p + q * e[x], ratio = a2 / (high - slope * c);
+        weight[x] = (c > 0 ? c : 0) * ratio * ratio;
+    }
+}
+
+typedef double lanes __attribute__((vector_size(32), aligned(8)));
+
+// Adds weight times texel for the columns first .. last, in four lanes that start at `first`.
+static void gather(look *ray, const double *weight, const double *const plane[3], int first,
+                   int last, double area)
+{
+    lanes red = {0}, green = {0}, blue = {0}, all = {0};
+    int x = first;
+    for (; x + 3 <= last; x += 4) {
+        lanes w, l0, l1, l2;
+        memcpy(&w, weight + x, sizeof w);
+        memcpy(&l0, plane[0] + x, sizeof l0);
+        memcpy(&l1, plane[1] + x, sizeof l1);
+        memcpy(&l2, plane[2] + x, sizeof l2);
+        red += w * l0;
+        green += w * l1;
+        blue += w * l2;
+        all += w;
+    }
+    double sum[4] = {
+        (red[0] + red[1]) + (red[2] + red[3]), (green[0] + green[1]) + (green[2] + green[3]),
+        (blue[0] + blue[1]) + (blue[2] + blue[3]), (all[0] + all[1]) + (all[2] + all[3])};
+    for (; x <= last; x++) {
+        for (int c = 0; c < 3; c++)
+            sum[c] += weight[x] * plane[c][x];
+        sum[3] += weight[x];
+    }
+    for (int c = 0; c < 4; c++)
+        ray->sum[c] += area * sum[c];
+}
+
+static void refine(const reference *r, const look *ray, const row_geometry *row, span s,
+                   double *weight)
+{
+    double step = 2 * KI_PI / r->width, step_theta = KI_PI / r->height;
+    // From the mean over (theta, phi) to the mean over the solid angle.
+    double scale = step * step_theta / row->area;
+    for (int i = s.first; i <= s.last; i++) {
+        int x = wrap(r, i);
+        double sine, cosine;
+        ki_sincos(2 * KI_PI * ((x + 0.5) / r->width - 0.5), &sine, &cosine);
+        weight[x] = scale * cell_mean(r, ray->d, 0, row->sin_centre, row->cos_centre, sine, cosine);
+    }
+}
+
+// Means or pairs: which rule a row's texels need where they are nearest to the lobe's peak; `near`
+// is the cosine of the distance inside which pairs do not suffice either.
+static bool means_suffice(const reference *r, const look *ray, const row_geometry *row,
+                          double *near)
+{
+    double theta_size = KI_PI / r->height;
+    double width = 2 * KI_PI / r->width * row->sin_centre;
+    double size = theta_size > width ? theta_size : width;
+    double c = ray->d[1] * row->cos_centre + ray->sin_theta * row->sin_centre;
+    double nearest = ki_acos(ki_clamp(c, -1, 1)) - 0.5 * theta_size;
+
+    double length = size / r->rule.pairs; // the scale that pairs need
+    *near = 2;
+    if (r->rational) {
+        double rest = length * length - r->lobe_width * r->lobe_width;
+        if (rest > 0)
+            *near = ki_cos(ki_clamp(sqrt(rest) + size, 0, KI_PI));
+    } else if (r->lobe.kind == KILN_LOBE_CUSTOM) {
+        if (length > r->lobe_width)
+            *near = ki_cos(ki_clamp(4 * length + size, 0, KI_PI));
+    } else if (length > r->lobe_width) {
+        *near = -2;
+    } else if (r->lobe.kind == KILN_LOBE_CHARLIE) {
+        *near = ki_cos(ki_clamp(length + size, 0, KI_PI));
+    }
+    return r->linear || size < r->rule.centre * lobe_scale(r, nearest > 0 ? nearest : 0);
+}
+
+static void row_of_ray(const reference *r, look *ray, const row_geometry *row,
+                       const double *const plane[3], double *weight)
+{
+    double width = 2 * KI_PI / r->width * (row->sin_centre + KI_PI / r->height);
+    double margin = 0.51 * sqrt(width * width + (KI_PI / r->height) * (KI_PI / r->height));
+    span outer = columns_above(r, ray, row, r->cut - margin);
+    if (outer.last < outer.first)
+        return;
+
+    double near;
+    bool means = means_suffice(r, ray, row, &near);
+    // The part left of the picture's edge, the part in it, and the part right of it.
+    int w = r->width;
+    span piece[3] = {{outer.first + w, ki_min(outer.last, -1) + w},
+                     {ki_max(outer.first, 0), ki_min(outer.last, w - 1)},
+                     {ki_max(outer.first, w) - w, outer.last - w}};
+    span inner = columns_above(r, ray, row, near - margin);
+    bool all = inner.first <= outer.first && inner.last >= outer.last;
+    for (int k = 0; k < 3 && !all; k++) {
+        if (means)
+            fill_means(r, ray, row, piece[k].first, piece[k].last, weight);
+        else
+            fill_pairs(r, ray, row, piece[k].first, piece[k].last, weight);
+    }
+    if (inner.last >= inner.first)
+        refine(r, ray, row,
+               (span){ki_max(inner.first, outer.first), ki_min(inner.last, outer.last)}, weight);
+    if (r->kink && !all) {
+        span whole = columns_above(r, ray, row, r->cut + margin);
+        if (whole.last < whole.first)
+            whole = (span){outer.last + 1, outer.last};
+        refine(r, ray, row, (span){outer.first, ki_min(whole.first - 1, outer.last)}, weight);
+        refine(r, ray, row, (span){ki_max(whole.last + 1, outer.first), outer.last}, weight);
+    }
+    for (int k = 0; k < 3; k++)
+        if (piece[k].first <= piece[k].last)
+            gather(ray, weight, plane, piece[k].first, piece[k].last, row->area);
+}
+
+static void start_ray(const reference *r, look *ray, const double direction[3], double *along)
+{
+    memcpy(ray->d, direction, sizeof ray->d);
+    ray->sin_theta = sqrt(direction[0] * direction[0] + direction[2] * direction[2]);
+    double u, v;
+    ki_direction_panorama(direction, &u, &v);
+    ray->column = u * r->width - 0.5;
+    memset(ray->sum, 0, sizeof ray->sum);
+    for (int k = 0; k < 3; k++) {
+        const double *sine = r->columns[2 * k], *cosine = r->columns[2 * k + 1];
+        ray->along[k] = along + (size_t)k * (size_t)r->width;
+        for (int x = 0; x < r->width; x++)
+            ray->along[k][x] = direction[0] * sine[x] - direction[2] * cosine[x];
+    }
+}
+
+static void run_group(void *data, int index)
+{
+    const reference *r = data;
+    size_t width = (size_t)r->width;
+    int first = index * GROUP, count = ki_min(GROUP, r->count - first);
+    double *scratch = r->scratch + (size_t)index * r->scratch_size;
+    double *plane[3] = {scratch, scratch + width, scratch + 2 * width};
+    double *weight = scratch + 3 * width;
+    look rays[GROUP];
+    for (int i = 0; i < count; i++)
+        start_ray(r, &rays[i], r->directions[first + i], scratch + (4 + 3 * (size_t)i) * width);
+
+    for (int y = 0; y < r->height; y++) {
+        const float *texel = r->texels + (size_t)y * width * 3;
+        for (size_t x = 0; x < width; x++)
+            for (size_t c = 0; c < 3; c++)
+                plane[c][x] = (double)texel[3 * x + c];
+        for (int i = 0; i < count; i++)
+            row_of_ray(r, &rays[i], &r->rows[y], (const double *const *)plane, weight);
+    }
+    for (int i = 0; i < count; i++)
+        for (int c = 0; c < 3; c++)
+            r->values[first + i][c] = rays[i].sum[3] > 0 ? rays[i].sum[c] / rays[i].sum[3] : 0;
+}
+
+// ------------------------------------------------------------------------------------------- whole
+
+static void mirror(const kiln_map *panorama, const double direction[3], double value[3])
+{
+    double u, v;
+    ki_direction_panorama(direction, &u, &v);
+    int height = panorama->size, width = 2 * height;
+    int x = ki_min((int)(u * width), width - 1), y = ki_min((int)(v * height), height - 1);
+    const float *texel = panorama->level[0] + 3 * ((size_t)y * (size_t)width + (size_t)x);
+    for (int c = 0; c < 3; c++)
+        value[c] = (double)texel[c];
+}
+
+// Turns the directions and makes them unit.
+static void set_directions(double (*to)[3], const double (*from)[3], int count, double rotation)
+{
+    for (int i = 0; i < count; i++) {
+        double length =
+            sqrt(from[i][0] * from[i][0] + from[i][1] * from[i][1] + from[i][2] * from[i][2]);
+        double unit[3] = {from[i][0] / length, from[i][1] / length, from[i][2] / length};
+        ki_turn(unit, rotation, to[i]);
+    }
+}
+
+static kiln_result integrate(kiln_context *context, reference *r, kiln_error *error)
+{
+    static const char stage[] = "reference";
+    int groups = (r->count + GROUP - 1) / GROUP;
+    for (int done = 0; done < groups; done += BATCH) {
+        if (!ki_progress(context, stage, (double)done / groups))
+            return ki_fail_cancelled(error, stage);
+        reference batch = *r;
+        batch.directions += (ptrdiff_t)done * GROUP;
+        batch.values += (ptrdiff_t)done * GROUP;
+        batch.count -= done * GROUP;
+        ki_parallel_for(context, ki_min(BATCH, groups - done), run_group, &batch);
+    }
+    return ki_progress(context, stage, 1) ? KILN_OK : ki_fail_cancelled(error, stage);
+}
+
+kiln_result ki_reference_integrate(kiln_context *context, const kiln_map *panorama,
+                                   const kiln_lobe *lobe, double rotation,
+                                   const double (*directions)[3], int count,
+                                   const ki_reference_rule *rule, double (*values)[3],
+                                   kiln_error *error)
+{
+    kiln_result result = KILN_OK;
+    size_t width = 2 * (size_t)panorama->size;
+    double(*turned)[3] = NULL, *columns = NULL;
+    reference *r = ki_alloc(context, 1, sizeof *r);
+    int groups = ki_min(BATCH, (count + GROUP - 1) / GROUP);
+    if (count < 1)
+        goto done;
+    turned = ki_alloc(context, (size_t)count, sizeof *turned);
+    columns = ki_alloc(context, 6 * width, sizeof *columns);
+    if (r) {
+        r->texels = panorama->level[0];
+        r->width = 2 * panorama->size;
+        r->height = panorama->size;
+        r->rows = ki_alloc_raw(context, (size_t)r->height, sizeof *r->rows);
+        r->scratch_size = (4 + 3 * (size_t)GROUP) * width;
+        r->scratch = ki_alloc_raw(context, (size_t)groups * r->scratch_size, sizeof(double));
+    }
+    if (!turned || !columns || !r || !r->rows || !r->scratch) {
+        result = ki_fail_memory(context, error, "the reference's scratch",
+                                (size_t)groups * (4 + 3 * (size_t)GROUP) * width * sizeof(double));
+        goto done;
+    }
+    set_directions(turned, directions, count, rotation);
+    if (lobe->kind == KILN_LOBE_GGX && lobe->parameter < 1e-9) {
+        for (int i = 0; i < count; i++)
+            mirror(panorama, (const double *)turned[i], values[i]);
+        goto done;
+    }
+    for (size_t k = 0; k < 6; k++)
+        r->columns[k] = columns + k * width;
+    r->rule = rule ? *rule : (ki_reference_rule){0};
+    if (r->rule.centre == 0)
+        r->rule.centre = 1.0 / 300;
+    if (r->rule.pairs == 0)
+        r->rule.pairs = 1.0 / 20;
+    if (r->rule.quads == 0)
+        r->rule.quads = 0.5;
+    if (r->rule.edge == 0)
+        r->rule.edge = 0.0016;
+    set_rows(r);
+    set_columns(r);
+    set_cells(r);
+    set_lobe(r, lobe);
+    r->directions = (const double(*)[3])turned;
+    r->values = values;
+    r->count = count;
+    result = integrate(context, r, error);
+done:
+    if (r) {
+        ki_free(r->scratch);
+        ki_free(r->rows);
+    }
+    ki_free(r);
+    ki_free(columns);
+    ki_free(turned);
+    if (result && count > 0)
+        memset(values, 0, (size_t)count * sizeof *values);
+    return result;
+}
+
+kiln_result ki_reference_filter(kiln_context *context, const kiln_map *panorama,
+                                const kiln_lobe *lobe, double rotation,
+                                const double (*directions)[3], int count, double (*values)[3],
+                                kiln_error *error)
+{
+    return ki_reference_integrate(context, panorama, lobe, rotation, directions, count, NULL,
+                                  values, error);
+}
