@@ -299,7 +299,8 @@ KILN_API void kiln_spectrum_destroy(kiln_spectrum *spectrum);
 
 KILN_API int kiln_spectrum_degree(const kiln_spectrum *spectrum);
 /// Sum over m of |a_lm|^2 of the three channels, for degrees 0 to degree: degree + 1 numbers each.
-KILN_API void kiln_spectrum_power(const kiln_spectrum *spectrum, double (*power)[3]);
+KILN_API KILN_CHECKED kiln_result kiln_spectrum_power(const kiln_spectrum *spectrum,
+                                                      double (*power)[3], kiln_error *error);
 
 /// One level: the environment seen through a lobe, turned by `rotation` degrees about +Y. Writes
 /// level `level` of `map`. Fails where the lobe is narrower than the spectrum can tell

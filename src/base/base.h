@@ -37,6 +37,11 @@ typedef void ki_task(void *data, int index);
 /// then the result cannot depend on their order.
 void ki_parallel_for(kiln_context *context, int count, ki_task *task, void *data);
 
+/// The same for tasks that need scratch of their own: `worker` is below ki_context_threads and no
+/// two tasks with the same worker run at once.
+void ki_parallel_workers(kiln_context *context, int count,
+                         void (*task)(void *data, int worker, int index), void *data);
+
 /// Reports progress; false when the caller wants to stop. From the calling thread only.
 bool ki_progress(kiln_context *context, const char *stage, double fraction);
 /// KILN_ERROR_CANCELLED with its sentence.

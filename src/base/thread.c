@@ -21,7 +21,7 @@ static void take_all(ki_pool *pool)
     }
 }
 
-static void *worker(void *data)
+static void *thread_main(void *data)
 {
     ki_pool *pool = data;
     unsigned seen = 0;
@@ -49,7 +49,7 @@ bool ki_threads_start(kiln_context *context)
     pthread_cond_init(&pool->work, NULL);
     pthread_cond_init(&pool->done, NULL);
     for (int i = 1; i < context->def.thread_count; i++) {
-        if (pthread_create(&pool->thread[pool->thread_count], NULL, worker, pool)) {
+        if (pthread_create(&pool->thread[pool->thread_count], NULL, thread_main, pool)) {
             ki_threads_stop(context);
             return false;
         }
@@ -98,4 +98,29 @@ void ki_parallel_for(kiln_context *context, int count, ki_task *task, void *data
     while (pool->running)
         pthread_cond_wait(&pool->done, &pool->mutex);
     pthread_mutex_unlock(&pool->mutex);
+}
+
+typedef struct workers {
+    void (*task)(void *data, int worker, int index);
+    void *data;
+    int count;
+    atomic_int next;
+} workers;
+
+static void work(void *data, int worker)
+{
+    workers *w = data;
+    for (;;) {
+        int index = atomic_fetch_add(&w->next, 1);
+        if (index >= w->count)
+            return;
+        w->task(w->data, worker, index);
+    }
+}
+
+void ki_parallel_workers(kiln_context *context, int count,
+                         void (*task)(void *data, int worker, int index), void *data)
+{
+    workers w = {.task = task, .data = data, .count = count};
+    ki_parallel_for(context, ki_min(context->def.thread_count, count), work, &w);
 }

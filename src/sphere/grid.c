@@ -82,6 +82,13 @@ void ki_taps_design(double step, const double *density, int degree, double *taps
     }
 }
 
+// GGX's transform falls like exp(-2 alpha l), and is left at about exp(-10.4).
+void ki_model_density(int degree, double *density)
+{
+    for (int l = 0; l <= degree; l++)
+        density[l] = (2 * l + 1) * ki_exp(-2 * 10.4 * l / degree);
+}
+
 void ki_taps_at(const double *taps, double fraction, double weights[KI_TAPS])
 {
     double at = fraction * KI_TAP_STEPS;

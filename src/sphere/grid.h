@@ -10,6 +10,9 @@
 /// stays one. Writes (KI_TAP_STEPS + 1) * KI_TAPS doubles.
 void ki_taps_design(double step, const double *density, int degree, double *taps);
 
+/// A density for spectra about to be filtered by a lobe that just fits into the degree.
+void ki_model_density(int degree, double *density);
+
 /// The taps at a fraction in [0, 1], from the table.
 void ki_taps_at(const double *taps, double fraction, double weights[KI_TAPS]);
 

@@ -41,6 +41,9 @@ typedef struct ki_kernels {
     /// accumulator[i] += weight * row[i].
     void (*spread)(double *accumulator, const float *row, double weight, int count);
 
+    /// Sums a row of `count` RGB texels by channel; returns its largest value.
+    float (*sum_row)(const float *row, int count, double sum[3]);
+
     /// One order of the analysis: out[l - m][6] = sum over the vectors first .. last-1 and their
     /// lanes of q_l times the even (l - m even) or odd half of data[vector][12][8].
     /// `f` holds the recurrence's coefficients of l = m .., `twice_cos` and `start` [vector][8] the

@@ -182,6 +182,30 @@ static void spread(double *accumulator, const float *row, double weight, int cou
         accumulator[i] += weight * (double)row[i];
 }
 
+static float sum_row(const float *row, int count, double sum[3])
+{
+    double sums[3 * KI_LANES] = {0};
+    float peaks[3 * KI_LANES] = {0};
+    int i = 0;
+    for (; i + KI_LANES <= count; i += KI_LANES, row += 3 * KI_LANES)
+        for (int j = 0; j < 3 * KI_LANES; j++) {
+            sums[j] += (double)row[j];
+            peaks[j] = row[j] > peaks[j] ? row[j] : peaks[j];
+        }
+    for (int j = 0; j < 3 * (count - i); j++) {
+        sums[j] += (double)row[j];
+        peaks[j] = row[j] > peaks[j] ? row[j] : peaks[j];
+    }
+    float peak = 0;
+    for (int c = 0; c < 3; c++)
+        sum[c] = 0;
+    for (int j = 0; j < 3 * KI_LANES; j++) {
+        sum[j % 3] += sums[j];
+        peak = peaks[j] > peak ? peaks[j] : peak;
+    }
+    return peak;
+}
+
 // ---------------------------------------------------------------------------------------- Legendre
 
 // q_l = 2 x q_{l-1} - f_l q_{l-2}: the associated Legendre functions up to a factor that depends
@@ -367,4 +391,4 @@ static void points_ggx(double alpha, const double *directions, const double (*po
     }
 }
 
-const ki_kernels KI_TABLE = {fft, spread, analyze, synthesize, interpolate, points_ggx};
+const ki_kernels KI_TABLE = {fft, spread, sum_row, analyze, synthesize, interpolate, points_ggx};

@@ -1,0 +1,78 @@
+// The recipe and its plan.
+#include "bake/prefilter.h"
+
+#include "bake/plan.h"
+#include "image/image.h"
+
+kiln_result kiln_plan_create(kiln_context *context, int source_size, const kiln_prefilter_def *def,
+                             kiln_plan **plan, kiln_error *error)
+{
+    *plan = NULL;
+    if (source_size < 1 || source_size > KILN_MAX_SIZE / 2)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "source_size is %d rows, it must be 1 to %d",
+                       source_size, KILN_MAX_SIZE / 2);
+    return ki_plan_create(context, source_size, def, plan, error);
+}
+
+void kiln_plan_destroy(kiln_plan *plan)
+{
+    ki_plan_destroy(plan);
+}
+
+kiln_result kiln_plan_map(const kiln_plan *plan, kiln_map *map, kiln_error *error)
+{
+    kiln_result result = kiln_map_create(plan->context, plan->def.shape, plan->def.size,
+                                         plan->def.level_count, map, error);
+    for (int i = 0; i < map->level_count; i++)
+        map->roughness[i] = plan->roughness[i];
+    return result;
+}
+
+kiln_result kiln_plan_execute(kiln_plan *plan, const kiln_map *panorama, kiln_map *map,
+                              kiln_error *error)
+{
+    kiln_result result = ki_map_check(panorama, error);
+    if (result != KILN_OK || (result = ki_map_check(map, error)) != KILN_OK)
+        return result;
+    if (panorama->shape != KILN_SHAPE_PANORAMA || panorama->size != plan->source_size)
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "the plan is for panoramas of %d rows, this map has shape %d and size %d",
+                       plan->source_size, (int)panorama->shape, panorama->size);
+    if (map->shape != plan->def.shape || map->size != plan->def.size ||
+        map->level_count != plan->def.level_count)
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "the plan writes shape %d, size %d, %d levels; this map has %d, %d, %d",
+                       (int)plan->def.shape, plan->def.size, plan->def.level_count,
+                       (int)map->shape, map->size, map->level_count);
+    return ki_plan_execute(plan, panorama, map, error);
+}
+
+const kiln_spectrum *kiln_plan_spectrum(const kiln_plan *plan)
+{
+    return plan->spectrum;
+}
+
+kiln_result kiln_prefilter(kiln_context *context, const kiln_map *source,
+                           const kiln_prefilter_def *def, kiln_map *map, kiln_error *error)
+{
+    kiln_map panorama = {0};
+    kiln_plan *plan = NULL;
+    *map = (kiln_map){0};
+    kiln_result result = ki_map_check(source, error);
+    if (result == KILN_OK && source->shape != KILN_SHAPE_PANORAMA) {
+        int size = ki_min(2 * source->size, KILN_MAX_SIZE / 2);
+        result = kiln_map_convert(context, source, KILN_SHAPE_PANORAMA, size, 0, &panorama, error);
+        source = &panorama;
+    }
+    if (result == KILN_OK)
+        result = kiln_plan_create(context, source->size, def, &plan, error);
+    if (result == KILN_OK)
+        result = kiln_plan_map(plan, map, error);
+    if (result == KILN_OK)
+        result = kiln_plan_execute(plan, source, map, error);
+    if (result != KILN_OK)
+        kiln_map_free(map);
+    kiln_plan_destroy(plan);
+    kiln_map_free(&panorama);
+    return result;
+}

@@ -1,0 +1,22 @@
+// What a plan is made of.
+#ifndef KI_PLAN_H
+#define KI_PLAN_H
+
+#include "image/resample.h"
+#include "sphere/level.h"
+#include "sphere/spectrum.h"
+
+struct kiln_plan {
+    kiln_context *context;
+    kiln_prefilter_def def; // resolved
+    int source_size;
+    float roughness[KILN_MAX_LEVELS];
+    ki_analysis *analysis;
+    ki_intake *intake;
+    kiln_spectrum *spectrum; // of the last execution
+    // One of the two a level.
+    ki_resample_plan *mirrors[KILN_MAX_LEVELS];
+    ki_level *levels[KILN_MAX_LEVELS];
+};
+
+#endif

@@ -1,0 +1,194 @@
+#include "bake/prefilter.h"
+
+#include "bake/plan.h"
+#include "math/math.h"
+#include "sphere/grid.h"
+#include "sphere/lobe.h"
+
+#include <math.h>
+#include <string.h>
+
+const double ki_prefilter_tolerance = 1.5e-4;
+
+bool ki_is_mirror(const kiln_lobe *lobe)
+{
+    return lobe->kind == KILN_LOBE_GGX && lobe->parameter < 1e-7;
+}
+
+static kiln_lobe lobe_of_roughness(enum kiln_lobe_kind kind, double roughness)
+{
+    double alpha = roughness * roughness;
+    switch (kind) {
+    case KILN_LOBE_LAMBERT:
+        return kiln_lobe_lambert();
+    case KILN_LOBE_CHARLIE:
+        return kiln_lobe_charlie(fmax(alpha, 0.01));
+    case KILN_LOBE_PHONG:
+        return kiln_lobe_phong(ki_clamp(2 / (alpha * alpha) - 2, 1, 100000));
+    default:
+        return kiln_lobe_ggx(alpha);
+    }
+}
+
+kiln_result ki_prefilter_resolve(const kiln_prefilter_def *def, kiln_prefilter_def *resolved,
+                                 float roughness[KILN_MAX_LEVELS],
+                                 kiln_lobe lobes[KILN_MAX_LEVELS], kiln_error *error)
+{
+    kiln_prefilter_def d = def ? *def : (kiln_prefilter_def){0};
+    if (!d.has_shape)
+        d.shape = KILN_SHAPE_CUBE;
+    d.has_shape = true;
+    d.size = d.size ? d.size : 256;
+    if (d.size < 1 || d.size > KILN_MAX_SIZE)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "size is %d, it must be 1 to %d", d.size,
+                       KILN_MAX_SIZE);
+    int full = 1;
+    while (d.size >> full)
+        full++;
+    d.level_count = d.level_count ? d.level_count : full;
+    if (d.level_count < 1 || d.level_count > full)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "level_count is %d, a size of %d has 1 to %d",
+                       d.level_count, d.size, full);
+    if ((int)d.lobe < 0 || d.lobe > KILN_LOBE_PHONG)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "lobe %d is not one of GGX, Lambert, Charlie "
+                       "and Phong", (int)d.lobe);
+    if (!(fabs(d.rotation) <= 1e6))
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "rotation is %g degrees, it must be within 1e6",
+                       d.rotation);
+    for (int i = 0; i < d.level_count; i++) {
+        roughness[i] = d.level_count > 1 ? (float)i / (float)(d.level_count - 1) : 0;
+        if (d.roughness)
+            roughness[i] = d.roughness[i];
+        if (!(roughness[i] >= 0 && roughness[i] <= 1))
+            return ki_fail(error, KILN_ERROR_ARGUMENT,
+                           "the roughness of level %d is %g, it must be 0 to 1", i,
+                           (double)roughness[i]);
+        lobes[i] = lobe_of_roughness(d.lobe, (double)roughness[i]);
+    }
+    d.roughness = NULL;
+    *resolved = d;
+    return KILN_OK;
+}
+
+kiln_result ki_lobe_spectrum(kiln_context *context, const kiln_lobe *lobe, bool split,
+                             ki_zonal *zonal, ki_zonal_spectrum *spectrum, kiln_error *error)
+{
+    *zonal = (ki_zonal){.lobe = *lobe};
+    double tolerance = ki_prefilter_tolerance, guess = 160 + 14 / ki_lobe_width(lobe);
+    int limit = guess < KILN_MAX_DEGREE ? (int)guess : KILN_MAX_DEGREE;
+    if (guess < 2 * KILN_MAX_DEGREE || !split) {
+        kiln_result result = ki_zonal_analyze(context, zonal, tolerance, limit, spectrum, error);
+        if (result != KILN_OK || spectrum->rest <= tolerance)
+            return result;
+        if (limit < KILN_MAX_DEGREE) {
+            ki_zonal_free(spectrum);
+            result = ki_zonal_analyze(context, zonal, tolerance, KILN_MAX_DEGREE, spectrum, error);
+        }
+        // A kink at the horizon makes long but thin tails, which no split would mend.
+        if (result != KILN_OK || spectrum->rest <= 10 * tolerance || !split)
+            return result;
+        ki_zonal_free(spectrum);
+    }
+    zonal->inner = 0.01;
+    zonal->outer = 0.05;
+    return ki_zonal_analyze(context, zonal, tolerance, KILN_MAX_DEGREE, spectrum, error);
+}
+
+kiln_result ki_plan_create(kiln_context *context, int source_size, const kiln_prefilter_def *def,
+                           kiln_plan **plan, kiln_error *error)
+{
+    kiln_result result = KILN_OK;
+    kiln_lobe lobes[KILN_MAX_LEVELS];
+    ki_zonal zonals[KILN_MAX_LEVELS];
+    ki_zonal_spectrum spectra[KILN_MAX_LEVELS] = {{0}};
+    double *density = NULL;
+    kiln_plan *p = *plan = ki_alloc(context, 1, sizeof *p);
+    if (!p)
+        return ki_fail_memory(context, error, "a plan", sizeof *p);
+    p->context = context;
+    p->source_size = source_size;
+    result = ki_prefilter_resolve(def, &p->def, p->roughness, lobes, error);
+    if (result != KILN_OK)
+        goto done;
+
+    int degree = 192;
+    for (int i = 0; i < p->def.level_count; i++) {
+        if (ki_is_mirror(&lobes[i]))
+            continue;
+        result = ki_lobe_spectrum(context, &lobes[i], true, &zonals[i], &spectra[i], error);
+        if (result != KILN_OK)
+            goto done;
+        degree = ki_max(degree, spectra[i].degree);
+    }
+    density = ki_alloc(context, (size_t)degree + 1, sizeof *density);
+    if (!density) {
+        result = ki_fail_memory(context, error, "a plan", (size_t)degree * sizeof *density);
+        goto done;
+    }
+    ki_model_density(degree, density);
+    result = ki_analysis_create(context, source_size, degree, density, &p->analysis, error);
+    if (result == KILN_OK)
+        result = ki_intake_create(p->analysis, &p->intake, error);
+    if (result == KILN_OK)
+        result = ki_spectrum_create(p->analysis, &p->spectrum, error);
+    for (int i = 0; i < p->def.level_count && result == KILN_OK; i++) {
+        int size = ki_max(1, p->def.size >> i);
+        if (ki_is_mirror(&lobes[i]))
+            result = ki_resample_plan_create(context, KILN_SHAPE_PANORAMA, source_size,
+                                             p->def.shape, size, p->def.rotation, &p->mirrors[i],
+                                             error);
+        else
+            result = ki_level_create(context, &p->analysis->legendre, &zonals[i], &spectra[i],
+                                     p->def.shape, size, &p->levels[i], error);
+    }
+done:
+    ki_free(density);
+    for (int i = 0; i < KILN_MAX_LEVELS; i++)
+        ki_zonal_free(&spectra[i]);
+    if (result != KILN_OK) {
+        ki_plan_destroy(p);
+        *plan = NULL;
+    }
+    return result;
+}
+
+kiln_result ki_plan_execute(kiln_plan *p, const kiln_map *panorama, kiln_map *map, kiln_error *error)
+{
+    static const char stage[] = "filtering";
+    kiln_result result;
+    if (!ki_progress(p->context, stage, 0))
+        return ki_fail_cancelled(error, stage);
+    ki_intake_restart(p->intake);
+    result = ki_intake_rows(p->intake, panorama->level[0], panorama->size, error);
+    if (result == KILN_OK)
+        result = ki_intake_finish(p->intake, p->spectrum, error);
+    // The first level has four times the texels of the next and so on: progress goes by that.
+    double done = 0.25;
+    for (int i = 0; i < p->def.level_count && result == KILN_OK; i++) {
+        if (!ki_progress(p->context, stage, done))
+            return ki_fail_cancelled(error, stage);
+        if (p->mirrors[i])
+            ki_resample_execute(p->mirrors[i], panorama->level[0], map->level[i]);
+        else
+            result = ki_level_execute(p->levels[i], p->spectrum, panorama, p->def.rotation, map, i,
+                                      error);
+        map->roughness[i] = p->roughness[i];
+        done += (1 - done) / 2;
+    }
+    ki_progress(p->context, stage, 1);
+    return result;
+}
+
+void ki_plan_destroy(kiln_plan *plan)
+{
+    if (!plan)
+        return;
+    for (int i = 0; i < KILN_MAX_LEVELS; i++) {
+        ki_resample_plan_destroy(plan->mirrors[i]);
+        ki_level_destroy(plan->levels[i]);
+    }
+    kiln_spectrum_destroy(plan->spectrum);
+    ki_intake_destroy(plan->intake);
+    ki_analysis_destroy(plan->analysis);
+    ki_free(plan);
+}

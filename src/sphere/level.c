@@ -1,0 +1,348 @@
+#include "sphere/level.h"
+
+#include "image/image.h"
+#include "math/math.h"
+#include "sphere/grid.h"
+#include "sphere/points.h"
+
+#include <math.h>
+#include <string.h>
+
+// Rows and columns around the grid that repeat its other side, for the taps.
+enum { PAD = 4, TAP_OFFSET = KI_TAPS / 2 - 1 };
+
+struct ki_level {
+    kiln_context *context;
+    const ki_kernels *kernels;
+    const ki_legendre *legendre;
+    ki_zonal zonal;
+    ki_zonal_spectrum lobe;
+    kiln_shape shape;
+    int size, degree;
+    ki_rings rings;
+    ki_fft fft;
+    float *ring_taps, *column_taps;
+    double *coefficients;
+    size_t pitch, plane;
+    float *grid; // [3][PAD + rings + PAD][pitch]
+    double *scratch;
+    size_t scratch_size;
+    double *positions; // of faces +X and +Y, or of all texels: ring, column
+
+    // During an execution.
+    const kiln_spectrum *spectrum;
+    const kiln_map *panorama;
+    double rotation;
+    const ki_points *points;
+    kiln_map *map;
+    int index;
+};
+
+static bool design_taps(ki_level *level)
+{
+    double *density = ki_alloc_raw(level->context, (size_t)level->degree + 1, sizeof *density);
+    double *taps = ki_alloc_raw(level->context, KI_TAPS * (KI_TAP_STEPS + 1), sizeof *taps);
+    size_t count = (KI_TAP_STEPS + 2) * KI_TAPS; // one row more: a fraction may round up to 1
+    level->ring_taps = ki_alloc(level->context, count, sizeof(float));
+    level->column_taps = ki_alloc(level->context, count, sizeof(float));
+    bool good = density && taps && level->ring_taps && level->column_taps;
+    for (int axis = 0; good && axis < 2; axis++) {
+        double step = axis ? 2 * KI_PI / level->fft.length : KI_PI / level->rings.count;
+        float *out = axis ? level->column_taps : level->ring_taps;
+        for (int l = 0; l <= level->degree; l++)
+            density[l] = (2 * l + 1) * level->lobe.k[l] * level->lobe.k[l];
+        ki_taps_design(step, density, level->degree, taps);
+        for (int i = 0; i < KI_TAPS * (KI_TAP_STEPS + 1); i++)
+            out[i] = (float)taps[i];
+    }
+    ki_free(density);
+    ki_free(taps);
+    return good;
+}
+
+// Where texels lie on the grid. Faces of the same kind differ by a quarter turn or a reflection.
+static void place_texels(ki_level *level)
+{
+    int n = level->size;
+    kiln_map map = {.shape = level->shape, .size = n, .level_count = 1};
+    size_t face = (size_t)n * (size_t)n;
+    size_t count = level->shape == KILN_SHAPE_CUBE ? 2 * face : kiln_map_texels(&map, 0);
+    for (size_t i = 0; i < count; i++) {
+        double direction[3], u, v;
+        bool top = level->shape == KILN_SHAPE_CUBE && i >= face;
+        kiln_map_direction(&map, 0, top ? i + face : i, direction);
+        ki_direction_panorama(direction, &u, &v);
+        level->positions[2 * i] = v * level->rings.count - 0.5 + (PAD - TAP_OFFSET);
+        level->positions[2 * i + 1] = u * level->fft.length;
+    }
+}
+
+kiln_result ki_level_create(kiln_context *context, const ki_legendre *legendre,
+                            const ki_zonal *zonal, ki_zonal_spectrum *spectrum, kiln_shape shape,
+                            int size, ki_level **level, kiln_error *error)
+{
+    ki_level *v = *level = ki_alloc(context, 1, sizeof *v);
+    if (!v) {
+        ki_zonal_free(spectrum);
+        return ki_fail_memory(context, error, "a level's plan", sizeof *v);
+    }
+    *v = (ki_level){.context = context,
+                    .kernels = ki_sphere_kernels(context),
+                    .legendre = legendre,
+                    .zonal = *zonal,
+                    .lobe = *spectrum,
+                    .shape = shape,
+                    .size = size,
+                    .degree = spectrum->degree > 8 ? spectrum->degree : 8};
+    *spectrum = (ki_zonal_spectrum){0};
+    if (v->degree > legendre->degree)
+        v->degree = legendre->degree;
+    int oversampled = v->degree + v->degree / 2 + 8;
+    size_t threads = (size_t)ki_context_threads(context);
+    kiln_map map = {.shape = shape, .size = size, .level_count = 1};
+    size_t texels = kiln_map_texels(&map, 0) / (shape == KILN_SHAPE_CUBE ? 3 : 1);
+    if (!ki_rings_create(context, oversampled, v->degree, &v->rings) ||
+        !ki_fft_create(context, ki_fft_good_length(2 * oversampled), &v->fft))
+        goto failed;
+    v->pitch = ((size_t)v->fft.length + 2 * PAD + 15) / 16 * 16;
+    v->plane = v->pitch * (size_t)(v->rings.count + 2 * PAD);
+    v->scratch_size = (size_t)(v->degree + 1) * 2 * 96 + 2 * 16 * (size_t)v->fft.length;
+    v->coefficients = ki_alloc(context, ki_coefficient_count(v->degree), sizeof(double));
+    v->grid = ki_alloc_raw(context, 3 * v->plane, sizeof(float));
+    v->scratch = ki_alloc_raw(context, threads * v->scratch_size, sizeof(double));
+    v->positions = ki_alloc_raw(context, texels, 2 * sizeof(double));
+    if (!v->coefficients || !v->grid || !v->scratch || !v->positions || !design_taps(v))
+        goto failed;
+    place_texels(v);
+    return KILN_OK;
+failed:
+    ki_level_destroy(v);
+    *level = NULL;
+    return ki_fail_memory(context, error, "a level's plan", texels * 2 * sizeof(double));
+}
+
+void ki_level_destroy(ki_level *level)
+{
+    if (!level)
+        return;
+    ki_zonal_free(&level->lobe);
+    ki_rings_destroy(&level->rings);
+    ki_fft_destroy(&level->fft);
+    ki_free(level->ring_taps);
+    ki_free(level->column_taps);
+    ki_free(level->coefficients);
+    ki_free(level->grid);
+    ki_free(level->scratch);
+    ki_free(level->positions);
+    ki_free(level);
+}
+
+// Task: one order's coefficients times the lobe's, turned, scaled for the recurrence.
+static void weigh_order(void *data, int m)
+{
+    ki_level *v = data;
+    const double *from = v->spectrum->a + ki_coefficient_row(v->spectrum->degree, m);
+    const double *scale = v->legendre->scale + ki_legendre_row(v->legendre, m);
+    double *to = v->coefficients + ki_coefficient_row(v->degree, m), sine, cosine;
+    ki_sincos(m * v->rotation * KI_PI / 180, &sine, &cosine);
+    for (int i = 0; i <= v->degree - m; i++) {
+        double weight = v->lobe.k[m + i] * scale[i];
+        for (int c = 0; c < 3; c++) {
+            double re = from[6 * i + 2 * c] * weight, im = from[6 * i + 2 * c + 1] * weight;
+            to[6 * i + 2 * c] = re * cosine - im * sine;
+            to[6 * i + 2 * c + 1] = re * sine + im * cosine;
+        }
+    }
+}
+
+// Puts a channel of a vector's orders into a buffer for the transform: northern ring as real part,
+// southern as imaginary, real and imaginary parts swapped, which makes the transform the inverse.
+static void place_orders(const ki_level *v, const double *orders, int vector, int channel,
+                         double *buffer)
+{
+    int length = v->fft.length;
+    memset(buffer, 0, 16 * (size_t)length * sizeof *buffer);
+    for (int m = 0; m <= v->degree; m++) {
+        if (vector < v->rings.first[m])
+            continue;
+        const double *even = orders + 192 * (size_t)m + 16 * channel, *odd = even + 48;
+        double *plus = buffer + 16 * (size_t)m, *minus = buffer + 16 * (size_t)(m ? length - m : 0);
+        for (int j = 0; j < KI_LANES; j++) {
+            double nr = even[j] + odd[j], ni = even[8 + j] + odd[8 + j];
+            double sr = even[j] - odd[j], si = even[8 + j] - odd[8 + j];
+            if (m == 0) {
+                plus[j] = sr;
+                plus[8 + j] = nr;
+            } else {
+                plus[j] = ni + sr;
+                plus[8 + j] = nr - si;
+                minus[j] = sr - ni;
+                minus[8 + j] = nr + si;
+            }
+        }
+    }
+}
+
+// Task: the rings of two vectors.
+static void synthesize_rings(void *data, int worker, int index)
+{
+    ki_level *v = data;
+    double *orders = v->scratch + (size_t)worker * v->scratch_size;
+    double *buffer = orders + 192 * (size_t)(v->degree + 1);
+    int length = v->fft.length, vectors = v->rings.vector_count;
+    for (int m = 0; m <= v->degree; m++) {
+        if (2 * index + 1 < v->rings.first[m])
+            continue;
+        size_t row = ki_legendre_row(v->legendre, m);
+        double *out = orders + 192 * (size_t)m;
+        v->kernels->synthesize(v->legendre->f + row, v->degree - m + 1,
+                               v->rings.twice_cos + 16 * index,
+                               v->rings.start + 8 * ((size_t)m * (size_t)vectors + 2 * (size_t)index),
+                               v->coefficients + ki_coefficient_row(v->degree, m), out, out + 96);
+    }
+    for (int half = 0; half < 2; half++)
+        for (int c = 0; c < 3; c++) {
+            int vector = 2 * index + half;
+            place_orders(v, orders + 96 * half, vector, c, buffer);
+            const double *z = v->kernels->fft(&v->fft, buffer, buffer + 16 * (size_t)length);
+            for (int j = 0; j < KI_LANES; j++) {
+                int k = KI_LANES * vector + j;
+                float *plane = v->grid + (size_t)c * v->plane + TAP_OFFSET;
+                float *north = plane + (size_t)(PAD + k) * v->pitch;
+                float *south = plane + (size_t)(PAD + v->rings.count - 1 - k) * v->pitch;
+                for (int x = 0; x < length; x++) {
+                    north[x] = (float)z[16 * x + 8 + j];
+                    south[x] = (float)z[16 * x + j];
+                }
+            }
+        }
+}
+
+// Continues the grid across the poles, where the other side is half a turn away, and around.
+static void pad_grid(ki_level *v)
+{
+    int length = v->fft.length, rings = v->rings.count;
+    for (int c = 0; c < 3; c++) {
+        float *plane = v->grid + (size_t)c * v->plane + TAP_OFFSET;
+        for (int k = 0; k < PAD; k++) {
+            size_t half = (size_t)length / 2 * sizeof *plane;
+            float *ends[2] = {plane + (size_t)(PAD - 1 - k) * v->pitch,
+                              plane + (size_t)(PAD + rings + k) * v->pitch};
+            const float *mirrored[2] = {plane + (size_t)(PAD + k) * v->pitch,
+                                        plane + (size_t)(PAD + rings - 1 - k) * v->pitch};
+            for (int e = 0; e < 2; e++) {
+                memcpy(ends[e], mirrored[e] + length / 2, half);
+                memcpy(ends[e] + length / 2, mirrored[e], half);
+            }
+        }
+        for (int k = 0; k < rings + 2 * PAD; k++) {
+            float *row = plane + (size_t)k * v->pitch;
+            for (int x = 1; x <= TAP_OFFSET; x++)
+                row[-x] = row[length - x];
+            for (int x = 0; x <= KI_TAPS - TAP_OFFSET; x++)
+                row[length + x] = row[x];
+        }
+    }
+}
+
+enum { CHUNK = 32 }; // texels at once, a multiple of the lanes
+
+// Positions on the grid of texels first .. first + count - 1, all of one row of one face.
+static void find_positions(const ki_level *v, size_t first, int count, double *positions)
+{
+    size_t n = (size_t)v->size, face = first / (n * n), at = first % (n * n);
+    int length = v->fft.length;
+    if (v->shape != KILN_SHAPE_CUBE) {
+        memcpy(positions, v->positions + 2 * first, 2 * (size_t)count * sizeof *positions);
+        return;
+    }
+    // Of +X -X +Y -Y +Z -Z: a side face is another one turned; -Y is +Y turned upside down.
+    static const int quarters[6] = {0, 2, 0, 0, 1, 3};
+    bool side = face < 2 || face > 3, bottom = face == 3;
+    size_t y = at / n, x = at % n, from = (bottom ? n - 1 - y : y) * n + x + (side ? 0 : n * n);
+    double turn = quarters[face] * 0.25 * length;
+    for (int i = 0; i < count; i++) {
+        double ring = v->positions[2 * (from + (size_t)i)];
+        double column = v->positions[2 * (from + (size_t)i) + 1] + turn;
+        positions[2 * i] = bottom ? v->rings.count - 1 + 2 * (PAD - TAP_OFFSET) - ring : ring;
+        positions[2 * i + 1] = column >= length ? column - length : column;
+    }
+}
+
+static void add_suns(const ki_level *v, size_t first, int count, float *rgb)
+{
+    for (int i = 0; i < count; i += KI_LANES) {
+        double directions[3 * KI_LANES], sum[3 * KI_LANES] = {0};
+        for (int j = 0; j < KI_LANES; j++) {
+            double d[3];
+            size_t texel = first + (size_t)(i + j < count ? i + j : count - 1);
+            kiln_map_direction(v->map, v->index, texel, d);
+            for (int k = 0; k < 3; k++)
+                directions[KI_LANES * k + j] = d[k];
+        }
+        ki_points_add(v->points, directions, sum);
+        for (int j = 0; j < KI_LANES && i + j < count; j++)
+            for (int c = 0; c < 3; c++)
+                rgb[3 * (i + j) + c] += (float)sum[KI_LANES * c + j];
+    }
+}
+
+static void add_surroundings(const ki_level *v, size_t first, int count, float *rgb)
+{
+    for (int i = 0; i < count; i++) {
+        double direction[3], turned[3], sum[3] = {0};
+        kiln_map_direction(v->map, v->index, first + (size_t)i, direction);
+        ki_turn(direction, v->rotation, turned);
+        ki_surroundings_add(v->panorama, &v->zonal, v->lobe.integral, turned, sum);
+        for (int c = 0; c < 3; c++)
+            rgb[3 * i + c] += (float)sum[c];
+    }
+}
+
+// Task: a row of texels.
+static void fill_row(void *data, int index)
+{
+    ki_level *v = data;
+    int width, height;
+    ki_level_extent(v->map, v->index, &width, &height);
+    for (int x = 0; x < width; x += CHUNK) {
+        int count = width - x < CHUNK ? width - x : CHUNK;
+        size_t first = (size_t)index * (size_t)width + (size_t)x;
+        float rgb[3 * CHUNK] = {0};
+        double positions[2 * CHUNK];
+        find_positions(v, first, count, positions);
+        v->kernels->interpolate(v->grid, v->plane, v->pitch, v->ring_taps, v->column_taps, positions,
+                                count, rgb);
+        if (v->points->sun_count)
+            add_suns(v, first, count, rgb);
+        if (v->zonal.outer > 0)
+            add_surroundings(v, first, count, rgb);
+        float *out = v->map->level[v->index] + 3 * first;
+        for (int i = 0; i < 3 * count; i++)
+            out[i] = rgb[i] < 0 ? 0 : rgb[i];
+    }
+}
+
+kiln_result ki_level_execute(ki_level *v, const kiln_spectrum *spectrum, const kiln_map *panorama,
+                             double rotation, kiln_map *map, int index, kiln_error *error)
+{
+    ki_points points;
+    kiln_result result = ki_points_create(spectrum, &v->zonal, v->lobe.integral, rotation, &points,
+                                          error);
+    if (result != KILN_OK)
+        return result;
+    v->spectrum = spectrum;
+    v->panorama = panorama;
+    v->rotation = rotation;
+    v->points = &points;
+    v->map = map;
+    v->index = index;
+    int width, height;
+    ki_level_extent(map, index, &width, &height);
+    ki_parallel_for(v->context, v->degree + 1, weigh_order, v);
+    ki_parallel_workers(v->context, v->rings.vector_count / 2, synthesize_rings, v);
+    pad_grid(v);
+    ki_parallel_for(v->context, height, fill_row, v);
+    ki_points_destroy(&points);
+    return KILN_OK;
+}

@@ -1,0 +1,31 @@
+// The part of a filtered environment that is summed over texels instead of transformed: the suns,
+// and the surroundings of a direction for lobes too narrow for the spectrum.
+#ifndef KI_POINTS_H
+#define KI_POINTS_H
+
+#include "sphere/spectrum.h"
+#include "sphere/zonal.h"
+
+/// The suns of a spectrum as points on the sphere, as finely divided as a lobe asks for.
+typedef struct ki_points {
+    const ki_kernels *kernels;
+    ki_zonal zonal;
+    int sun_count, far_count, near_count; // points a sun
+    double (*centres)[3];
+    double near_versine;    // 1 - cos of the distance within which `near` is used
+    double (*far)[6];       // [sun][far_count]: direction, radiance times solid angle / integral
+    double (*near)[6];      // [sun][near_count]
+} ki_points;
+
+kiln_result ki_points_create(const kiln_spectrum *spectrum, const ki_zonal *zonal, double integral,
+                             double rotation, ki_points *points, kiln_error *error);
+void ki_points_destroy(ki_points *points);
+/// Adds the suns' light to eight unit directions [3][8]: sum[channel][lane].
+void ki_points_add(const ki_points *points, const double *directions, double *sum);
+
+/// The mean, weighted by what `zonal` leaves out of its lobe, of the texels around a direction:
+/// adds radiance * (lobe - zonal) / integral to rgb. For zonals with an inner radius.
+void ki_surroundings_add(const kiln_map *panorama, const ki_zonal *zonal, double integral,
+                         const double direction[3], double rgb[3]);
+
+#endif

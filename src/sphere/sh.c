@@ -1,0 +1,129 @@
+#include "sphere/sh.h"
+
+#include "image/image.h"
+#include "math/math.h"
+
+#include <math.h>
+#include <string.h>
+
+// Real orthonormal spherical harmonics as polynomials; the normalisations are the usual closed
+// forms, e.g. Sloan, "Stupid Spherical Harmonics Tricks" (2008), appendix A2, without its signs.
+void ki_sh_basis(const double d[3], double y[25])
+{
+    double x = d[0], v = d[1], z = d[2], x2 = x * x, v2 = v * v, z2 = z * z;
+    double unit = sqrt(1 / KI_PI);
+    y[0] = 0.5 * unit;
+    double k = sqrt(3.0) / 2 * unit;
+    y[1] = k * v;
+    y[2] = k * z;
+    y[3] = k * x;
+    k = sqrt(15.0) / 2 * unit;
+    y[4] = k * x * v;
+    y[5] = k * v * z;
+    y[6] = sqrt(5.0) / 4 * unit * (3 * z2 - 1);
+    y[7] = k * x * z;
+    y[8] = k / 2 * (x2 - v2);
+    double k3 = sqrt(35.0 / 2) / 4 * unit, k1 = sqrt(21.0 / 2) / 4 * unit;
+    k = sqrt(105.0) / 4 * unit;
+    y[9] = k3 * v * (3 * x2 - v2);
+    y[10] = 2 * k * x * v * z;
+    y[11] = k1 * v * (5 * z2 - 1);
+    y[12] = sqrt(7.0) / 4 * unit * z * (5 * z2 - 3);
+    y[13] = k1 * x * (5 * z2 - 1);
+    y[14] = k * z * (x2 - v2);
+    y[15] = k3 * x * (x2 - 3 * v2);
+    double k4 = 3.0 / 4 * sqrt(35.0) * unit, k43 = 3.0 / 4 * sqrt(35.0 / 2) * unit;
+    double k2 = 3.0 / 4 * sqrt(5.0) * unit, k41 = 3.0 / 4 * sqrt(5.0 / 2) * unit;
+    y[16] = k4 * x * v * (x2 - v2);
+    y[17] = k43 * v * z * (3 * x2 - v2);
+    y[18] = k2 * x * v * (7 * z2 - 1);
+    y[19] = k41 * v * z * (7 * z2 - 3);
+    y[20] = 3.0 / 16 * unit * (35 * z2 * z2 - 30 * z2 + 3);
+    y[21] = k41 * x * z * (7 * z2 - 3);
+    y[22] = k2 / 2 * (x2 - v2) * (7 * z2 - 1);
+    y[23] = k43 * x * z * (x2 - 3 * v2);
+    y[24] = k4 / 4 * (x2 * (x2 - 3 * v2) - v2 * (3 * x2 - v2));
+}
+
+// The engine's polar axis is +Y, the basis' is z: the first bands are evaluated on a product grid
+// that integrates polynomials of twice the degree exactly, and projected again.
+kiln_result ki_sh_project(const kiln_spectrum *spectrum, int bands, bool irradiance, double window,
+                          double rotation, kiln_sh *sh, kiln_error *error)
+{
+    enum { DEGREE = KILN_MAX_BANDS - 1, RINGS = 8, COLUMNS = 16 };
+    kiln_context *context = spectrum->context;
+    ki_legendre legendre;
+    size_t count = ki_coefficient_count(DEGREE);
+    double *a = ki_alloc(context, count, sizeof *a);
+    if (!a || !ki_legendre_create(context, DEGREE, &legendre)) {
+        ki_free(a);
+        return ki_fail_memory(context, error, "spherical harmonics", count * sizeof *a);
+    }
+    for (int m = 0; m <= DEGREE; m++)
+        for (int l = m; l <= DEGREE && l <= spectrum->degree; l++)
+            memcpy(a + ki_coefficient_row(DEGREE, m) + 6 * (l - m),
+                   spectrum->a + ki_coefficient_row(spectrum->degree, m) + 6 * (l - m),
+                   6 * sizeof *a);
+    kiln_result result = ki_spectrum_add_suns(spectrum, DEGREE, a, error);
+    if (result != KILN_OK)
+        goto done;
+
+    double nodes[RINGS], weights[RINGS];
+    ki_gauss_legendre(RINGS, nodes, weights);
+    for (int j = 0; j < RINGS; j++)
+        for (int i = 0; i < COLUMNS; i++) {
+            double sine = sqrt((1 - nodes[j]) * (1 + nodes[j])), value[3] = {0}, power = 1;
+            double u = (double)i / COLUMNS;
+            for (int m = 0; m <= DEGREE; m++, power *= sine) {
+                const double *f = legendre.f + ki_legendre_row(&legendre, m);
+                const double *scale = legendre.scale + ki_legendre_row(&legendre, m);
+                const double *row = a + ki_coefficient_row(DEGREE, m);
+                double q = power, before = 0, re, im;
+                ki_sincos(2 * KI_PI * m * (u + rotation / 360), &im, &re);
+                for (int l = 0; l <= DEGREE - m; l++, row += 6) {
+                    double p = q * scale[l] * (m ? 2 : 1);
+                    for (int c = 0; c < 3; c++)
+                        value[c] += p * (row[2 * c] * re - row[2 * c + 1] * im);
+                    double next = 2 * nodes[j] * q - f[l + 1] * before;
+                    before = q;
+                    q = next;
+                }
+            }
+            // Place of (u, theta): ki_panorama_direction with cos theta given.
+            double y[25], s, c;
+            ki_sincos(2 * KI_PI * u, &s, &c);
+            ki_sh_basis((double[3]){-sine * s, nodes[j], sine * c}, y);
+            for (int k = 0; k < bands * bands; k++)
+                for (int n = 0; n < 3; n++)
+                    sh->c[k][n] += y[k] * value[n] * weights[j] * 2 * KI_PI / COLUMNS;
+        }
+
+    // Ramamoorthi and Hanrahan 2001, eq. 8; A_3 = 0, A_4 = -pi / 24.
+    static const double cosine_lobe[] = {KI_PI, 2 * KI_PI / 3, KI_PI / 4, 0, -KI_PI / 24};
+    for (int l = 0; l < bands; l++)
+        for (int k = l * l; k < (l + 1) * (l + 1); k++)
+            for (int c = 0; c < 3; c++) {
+                double factor = irradiance ? cosine_lobe[l] : 1;
+                if (window > 0)
+                    factor *= l < window ? (1 + ki_cos(KI_PI * l / window)) / 2 : 0;
+                sh->c[k][c] *= factor;
+            }
+    sh->bands = bands;
+    sh->irradiance = irradiance;
+    sh->window = window;
+done:
+    ki_legendre_destroy(&legendre);
+    ki_free(a);
+    return result;
+}
+
+void ki_sh_evaluate(const kiln_sh *sh, const double direction[3], double value[3])
+{
+    double y[25];
+    ki_sh_basis(direction, y);
+    for (int c = 0; c < 3; c++) {
+        value[c] = 0;
+        for (int k = 0; k < sh->bands * sh->bands; k++)
+            value[c] += y[k] * sh->c[k][c];
+    }
+}

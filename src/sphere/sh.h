@@ -1,0 +1,13 @@
+// The first bands, as engines want them.
+#ifndef KI_SH_H
+#define KI_SH_H
+
+#include "sphere/spectrum.h"
+
+/// The 25 basis functions in a unit direction; see kiln_sh.
+void ki_sh_basis(const double direction[3], double y[KILN_MAX_BANDS * KILN_MAX_BANDS]);
+kiln_result ki_sh_project(const kiln_spectrum *spectrum, int bands, bool irradiance, double window,
+                          double rotation, kiln_sh *sh, kiln_error *error);
+void ki_sh_evaluate(const kiln_sh *sh, const double direction[3], double value[3]);
+
+#endif

@@ -1,0 +1,476 @@
+#include "sphere/spectrum.h"
+
+#include "math/math.h"
+#include "sphere/grid.h"
+
+#include <math.h>
+#include <string.h>
+
+// A sun holds at least this much of the panorama's light in one channel ...
+static const double sun_share = 1e-3;
+// ... and is at least this much brighter than the mean.
+static const double sun_contrast = 16;
+
+// ---------------------------------------------------------------------------------------- the plan
+
+// The integral over the row from theta0 to theta1 of each ring's interpolating function, times sin
+// theta. Rings k < 0 or k >= count lie beyond a pole. Returns the number of weights; with
+// `weights` NULL only counts.
+static int spread_row(double theta0, double theta1, int ring_count, const double *taps, int *first,
+                      double *weights)
+{
+    static const int nodes_count = 6;
+    double nodes[6], node_weights[6];
+    ki_gauss_legendre(nodes_count, nodes, node_weights);
+    double scale = ring_count / KI_PI; // ring k is at scale theta = k + 1/2
+    int low = (int)floor(theta0 * scale - 0.5), high = (int)floor(theta1 * scale - 0.5);
+    *first = low - 3;
+    int count = high - low + KI_TAPS;
+    if (!weights)
+        return count;
+    memset(weights, 0, (size_t)count * sizeof *weights);
+    for (int k = low; k <= high; k++) {
+        double a = fmax(theta0, (k + 0.5) / scale), b = fmin(theta1, (k + 1.5) / scale);
+        for (int n = 0; n < nodes_count && b > a; n++) {
+            double theta = a + (b - a) * 0.5 * (1 + nodes[n]), tap[KI_TAPS];
+            double weight = node_weights[n] * (b - a) * 0.5 * ki_sin(theta);
+            ki_taps_at(taps, ki_clamp(theta * scale - 0.5 - k, 0, 1), tap);
+            for (int i = 0; i < KI_TAPS; i++)
+                weights[k - low + i] += weight * tap[i];
+        }
+    }
+    return count;
+}
+
+static bool plan_rows(ki_analysis *analysis, const double *taps)
+{
+    int size = analysis->size, rings = analysis->rings.count;
+    analysis->row_first = ki_alloc_raw(analysis->context, (size_t)size, sizeof(int));
+    analysis->row_start = ki_alloc_raw(analysis->context, (size_t)size + 1, sizeof(int));
+    if (!analysis->row_first || !analysis->row_start)
+        return false;
+    int total = 0;
+    for (int pass = 0; pass < 2; pass++) {
+        total = 0;
+        for (int j = 0; j < size; j++) {
+            double *weights = pass ? analysis->row_weights + total : NULL;
+            analysis->row_start[j] = total;
+            total += spread_row(j * KI_PI / size, (j + 1) * KI_PI / size, rings, taps,
+                                &analysis->row_first[j], weights);
+        }
+        analysis->row_start[size] = total;
+        if (!pass)
+            analysis->row_weights =
+                ki_alloc_raw(analysis->context, (size_t)total, sizeof(double));
+        if (!analysis->row_weights)
+            return false;
+    }
+    return true;
+}
+
+kiln_result ki_analysis_create(kiln_context *context, int size, int degree, const double *density,
+                               ki_analysis **analysis, kiln_error *error)
+{
+    ki_analysis *a = *analysis = ki_alloc(context, 1, sizeof *a);
+    double *taps = ki_alloc_raw(context, KI_TAPS * (KI_TAP_STEPS + 1), sizeof *taps);
+    if (!a || !taps)
+        goto failed;
+    a->context = context;
+    a->kernels = ki_sphere_kernels(context);
+    a->size = size;
+    a->degree = degree;
+    a->column = ki_alloc_raw(context, (size_t)degree + 1, 2 * sizeof(double));
+    // Half as many rings again as the degree: the taps' error is below the degree's own.
+    if (!a->column || !ki_legendre_create(context, degree, &a->legendre) ||
+        !ki_rings_create(context, degree + degree / 2 + 8, degree, &a->rings) ||
+        !ki_fft_create(context, 2 * size, &a->fft))
+        goto failed;
+
+    // The integral of exp(-i m phi) over column x is exp(-i m (x + 1/2) d) d sinc(m d / 2), d its
+    // width; the Fourier transform supplies exp(-i m x d).
+    double d = KI_PI / size;
+    for (int m = 0; m <= degree; m++) {
+        double sine, cosine, width = m ? ki_sin(m * d / 2) * 2 / m : d;
+        ki_sincos(-m * d / 2, &sine, &cosine);
+        a->column[2 * m] = cosine * width;
+        a->column[2 * m + 1] = sine * width;
+    }
+    ki_taps_design(KI_PI / a->rings.count, density, degree, taps);
+    if (!plan_rows(a, taps))
+        goto failed;
+    ki_free(taps);
+    return KILN_OK;
+failed:
+    ki_free(taps);
+    ki_analysis_destroy(a);
+    *analysis = NULL;
+    return ki_fail_memory(context, error, "the analysis' tables",
+                          (size_t)degree * (size_t)degree * 16);
+}
+
+void ki_analysis_destroy(ki_analysis *analysis)
+{
+    if (!analysis)
+        return;
+    ki_legendre_destroy(&analysis->legendre);
+    ki_rings_destroy(&analysis->rings);
+    ki_fft_destroy(&analysis->fft);
+    ki_free(analysis->column);
+    ki_free(analysis->row_first);
+    ki_free(analysis->row_start);
+    ki_free(analysis->row_weights);
+    ki_free(analysis);
+}
+
+kiln_result ki_spectrum_create(const ki_analysis *analysis, kiln_spectrum **spectrum,
+                               kiln_error *error)
+{
+    kiln_context *context = analysis->context;
+    kiln_spectrum *s = *spectrum = ki_alloc(context, 1, sizeof *s);
+    if (s) {
+        *s = (kiln_spectrum){
+            .context = context, .degree = analysis->degree, .size = analysis->size};
+        s->a = ki_alloc(context, ki_coefficient_count(s->degree), sizeof *s->a);
+    }
+    if (s && s->a)
+        return KILN_OK;
+    kiln_spectrum_destroy(s);
+    *spectrum = NULL;
+    return ki_fail_memory(context, error, "a spectrum",
+                          ki_coefficient_count(analysis->degree) * sizeof(double));
+}
+
+void kiln_spectrum_destroy(kiln_spectrum *spectrum)
+{
+    if (!spectrum)
+        return;
+    ki_free(spectrum->a);
+    ki_free(spectrum->suns);
+    ki_free(spectrum);
+}
+
+// ------------------------------------------------------------------------------------------ intake
+
+struct ki_intake {
+    const ki_analysis *analysis;
+    int row_count;      // taken so far
+    double *rings;      // [ring][2 size][3]
+    double *row_sums;   // [size][3], radiance summed over each row
+    float *row_peaks;   // [size]
+    double total[3];    // radiance times solid angle so far
+    ki_sun *candidates; // brighter than their share of what had come by then
+    int candidate_count, candidate_room;
+
+    double *orders; // [degree + 1][vector][12][8], a ring vector's Fourier coefficients
+    double *scratch; // a worker's: two FFT buffers, or a state for the recurrence
+    size_t scratch_size;
+
+    const float *rows; // being taken in
+    int rows_here;
+    kiln_spectrum *spectrum; // being written
+};
+
+enum { COLUMN_TASKS = 16 }; // of each half of a row
+
+kiln_result ki_intake_create(const ki_analysis *analysis, ki_intake **intake, kiln_error *error)
+{
+    kiln_context *context = analysis->context;
+    size_t width = 2 * (size_t)analysis->size, rings = (size_t)analysis->rings.count;
+    size_t threads = (size_t)ki_context_threads(context), row, ring_bytes;
+    size_t vectors = (size_t)analysis->rings.vector_count;
+    ki_intake *in = *intake = ki_alloc(context, 1, sizeof *in);
+    if (!in)
+        return ki_fail_memory(context, error, "an analysis", sizeof *in);
+    in->analysis = analysis;
+    in->scratch_size = 2 * 16 * width > 16 * vectors ? 2 * 16 * width : 16 * vectors;
+    if (!ki_mul_size(width, 3 * sizeof(double), &row) || !ki_mul_size(row, rings, &ring_bytes))
+        ring_bytes = SIZE_MAX;
+    in->rings = ki_alloc(context, ring_bytes, 1);
+    in->row_sums = ki_alloc_raw(context, (size_t)analysis->size, 3 * sizeof(double));
+    in->row_peaks = ki_alloc_raw(context, (size_t)analysis->size, sizeof(float));
+    in->candidate_room = 4096;
+    in->candidates = ki_alloc_raw(context, (size_t)in->candidate_room, sizeof *in->candidates);
+    in->orders = ki_alloc_raw(context, ((size_t)analysis->degree + 1) * vectors, 96 * sizeof(double));
+    in->scratch = ki_alloc_raw(context, threads * in->scratch_size, sizeof(double));
+    if (in->rings && in->row_sums && in->row_peaks && in->candidates && in->orders && in->scratch)
+        return KILN_OK;
+    ki_intake_destroy(in);
+    *intake = NULL;
+    return ki_fail_memory(context, error, "the rings of an analysis", ring_bytes);
+}
+
+void ki_intake_destroy(ki_intake *intake)
+{
+    if (!intake)
+        return;
+    ki_free(intake->rings);
+    ki_free(intake->row_sums);
+    ki_free(intake->row_peaks);
+    ki_free(intake->candidates);
+    ki_free(intake->orders);
+    ki_free(intake->scratch);
+    ki_free(intake);
+}
+
+void ki_intake_restart(ki_intake *intake)
+{
+    const ki_analysis *analysis = intake->analysis;
+    intake->row_count = intake->candidate_count = 0;
+    memset(intake->total, 0, sizeof intake->total);
+    memset(intake->rings, 0,
+           (size_t)analysis->rings.count * (size_t)analysis->size * 6 * sizeof(double));
+}
+
+int ki_intake_count(const ki_intake *intake)
+{
+    return intake->row_count;
+}
+
+// Where a ring that may lie beyond a pole really is, and whether half a turn away.
+static int real_ring(int ring, int count, bool *turned)
+{
+    *turned = ring < 0 || ring >= count;
+    return ring < 0 ? -1 - ring : ring >= count ? 2 * count - 1 - ring : ring;
+}
+
+// Task: some columns of all rings. Both halves of a row are cut alike, so that a ring half a turn
+// away receives the same piece of the other half.
+static void spread_columns(void *data, int index)
+{
+    ki_intake *in = data;
+    const ki_analysis *a = in->analysis;
+    int half = index / COLUMN_TASKS, piece = index % COLUMN_TASKS, size = a->size;
+    int from = piece * size / COLUMN_TASKS, count = (piece + 1) * size / COLUMN_TASKS - from;
+    size_t here = 3 * ((size_t)half * (size_t)size + (size_t)from);
+    size_t there = 3 * ((size_t)(1 - half) * (size_t)size + (size_t)from);
+    for (int j = 0; j < in->rows_here; j++) {
+        const float *row = in->rows + (size_t)j * (size_t)size * 6;
+        int start = a->row_start[in->row_count + j], end = a->row_start[in->row_count + j + 1];
+        for (int i = start; i < end; i++) {
+            bool turned;
+            int ring = real_ring(a->row_first[in->row_count + j] + i - start, a->rings.count, &turned);
+            a->kernels->spread(in->rings + (size_t)ring * (size_t)size * 6 + here,
+                               row + (turned ? there : here), a->row_weights[i], 3 * count);
+        }
+    }
+}
+
+static void sum_one_row(void *data, int index)
+{
+    ki_intake *in = data;
+    int size = in->analysis->size, row = in->row_count + index;
+    in->row_peaks[row] = in->analysis->kernels->sum_row(
+        in->rows + (size_t)index * (size_t)size * 6, 2 * size, in->row_sums + 3 * (size_t)row);
+}
+
+static double row_solid_angle(int row, int size)
+{
+    // Of one texel: the column's width times the difference of cos theta.
+    double high = ki_sin((row + 0.5) * KI_PI / size) * ki_sin(KI_PI / size / 2);
+    return KI_PI / size * 2 * high;
+}
+
+static bool is_sun(const float rgb[3], double solid, const double total[3])
+{
+    for (int c = 0; c < 3; c++)
+        if ((double)rgb[c] * solid > sun_share * total[c] && total[c] > 0)
+            return true;
+    return false;
+}
+
+// Drops candidates that later light has outshone.
+static void prune(ki_intake *in)
+{
+    int kept = 0;
+    for (int i = 0; i < in->candidate_count; i++) {
+        ki_sun sun = in->candidates[i];
+        if (is_sun(sun.radiance, row_solid_angle(sun.row, in->analysis->size), in->total))
+            in->candidates[kept++] = sun;
+    }
+    in->candidate_count = kept;
+}
+
+static void gather_candidates(ki_intake *in)
+{
+    int size = in->analysis->size;
+    for (int j = 0; j < in->rows_here; j++) {
+        int row = in->row_count + j;
+        double solid = row_solid_angle(row, size);
+        for (int c = 0; c < 3; c++)
+            in->total[c] += solid * in->row_sums[3 * row + c];
+        float peak = in->row_peaks[row], peaks[3] = {peak, peak, peak};
+        if (!is_sun(peaks, solid, in->total))
+            continue;
+        for (int x = 0; x < 2 * size; x++) {
+            const float *rgb = in->rows + 3 * ((size_t)j * 2 * (size_t)size + (size_t)x);
+            if (!is_sun(rgb, solid, in->total))
+                continue;
+            if (in->candidate_count == in->candidate_room)
+                prune(in);
+            if (in->candidate_count < in->candidate_room)
+                in->candidates[in->candidate_count++] =
+                    (ki_sun){row, x, {rgb[0], rgb[1], rgb[2]}};
+        }
+    }
+}
+
+kiln_result ki_intake_rows(ki_intake *in, const float *rows, int count, kiln_error *error)
+{
+    if (count < 0 || count > in->analysis->size - in->row_count)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "%d rows after %d: the panorama has %d", count,
+                       in->row_count, in->analysis->size);
+    in->rows = rows;
+    in->rows_here = count;
+    ki_parallel_for(in->analysis->context, count, sum_one_row, in);
+    gather_candidates(in);
+    ki_parallel_for(in->analysis->context, 2 * COLUMN_TASKS, spread_columns, in);
+    in->row_count += count;
+    return KILN_OK;
+}
+
+// Takes the suns out of the rings and into the spectrum.
+static bool settle_suns(ki_intake *in, kiln_spectrum *spectrum)
+{
+    const ki_analysis *a = in->analysis;
+    int size = a->size, count = 0;
+    prune(in);
+    for (int i = 0; i < in->candidate_count; i++) {
+        const ki_sun *sun = &in->candidates[i];
+        bool bright = false;
+        for (int c = 0; c < 3; c++)
+            bright |= (double)sun->radiance[c] * 4 * KI_PI > sun_contrast * in->total[c] &&
+                      in->total[c] > 0;
+        if (bright)
+            in->candidates[count++] = *sun;
+    }
+    ki_free(spectrum->suns);
+    spectrum->sun_count = 0;
+    spectrum->suns = ki_alloc_raw(a->context, (size_t)count + 1, sizeof *spectrum->suns);
+    if (!spectrum->suns)
+        return false;
+    memcpy(spectrum->suns, in->candidates, (size_t)count * sizeof *spectrum->suns);
+    spectrum->sun_count = count;
+    for (int i = 0; i < count; i++) {
+        const ki_sun *sun = &spectrum->suns[i];
+        int start = a->row_start[sun->row], end = a->row_start[sun->row + 1];
+        for (int k = start; k < end; k++) {
+            bool turned;
+            int ring = real_ring(a->row_first[sun->row] + k - start, a->rings.count, &turned);
+            int column = (sun->column + (turned ? size : 0)) % (2 * size);
+            double *at = in->rings + 3 * ((size_t)ring * 2 * (size_t)size + (size_t)column);
+            for (int c = 0; c < 3; c++)
+                at[c] -= a->row_weights[k] * (double)sun->radiance[c];
+        }
+    }
+    return true;
+}
+
+// ---------------------------------------------------------------------------------------- analysis
+
+// Task: the Fourier transforms of eight pairs of rings, one channel. Real and imaginary part carry
+// the northern and the southern ring; their sum and difference meet the even and odd functions.
+static void transform_rings(void *data, int worker, int index)
+{
+    ki_intake *in = data;
+    const ki_analysis *a = in->analysis;
+    int vector = index / 3, channel = index % 3, width = 2 * a->size, rings = a->rings.count;
+    size_t pitch = 3 * (size_t)width, vectors = (size_t)a->rings.vector_count;
+    double *buffer = in->scratch + (size_t)worker * in->scratch_size;
+    const double *north[KI_LANES], *south[KI_LANES];
+    for (int j = 0; j < KI_LANES; j++) {
+        north[j] = in->rings + (size_t)(KI_LANES * vector + j) * pitch + channel;
+        south[j] = in->rings + (size_t)(rings - 1 - KI_LANES * vector - j) * pitch + channel;
+    }
+    for (int x = 0; x < width; x++)
+        for (int j = 0; j < KI_LANES; j++) {
+            buffer[16 * x + j] = north[j][3 * x];
+            buffer[16 * x + 8 + j] = south[j][3 * x];
+        }
+    const double *z = a->kernels->fft(&a->fft, buffer, buffer + 16 * (size_t)width);
+    for (int m = 0, i = 0; m <= a->degree; m++, i = i + 1 == width ? 0 : i + 1) {
+        if (vector < a->rings.first[m])
+            continue;
+        const double *p = z + 16 * (size_t)i, *q = z + 16 * (size_t)(i ? width - i : 0);
+        double *even = in->orders + 96 * ((size_t)m * vectors + (size_t)vector) + 16 * channel;
+        double *odd = even + 48, fr = a->column[2 * m] * 0.5, fi = a->column[2 * m + 1] * 0.5;
+        for (int j = 0; j < KI_LANES; j++) {
+            double nr = p[j] + q[j], ni = p[8 + j] - q[8 + j];
+            double sr = p[8 + j] + q[8 + j], si = q[j] - p[j];
+            double er = nr + sr, ei = ni + si, dr = nr - sr, di = ni - si;
+            even[j] = er * fr - ei * fi;
+            even[8 + j] = er * fi + ei * fr;
+            odd[j] = dr * fr - di * fi;
+            odd[8 + j] = dr * fi + di * fr;
+        }
+    }
+}
+
+// Task: one order.
+static void analyze_order(void *data, int worker, int m)
+{
+    ki_intake *in = data;
+    const ki_analysis *a = in->analysis;
+    size_t vectors = (size_t)a->rings.vector_count, row = ki_legendre_row(&a->legendre, m);
+    int count = a->degree - m + 1;
+    double *out = in->spectrum->a + ki_coefficient_row(a->degree, m);
+    a->kernels->analyze(a->legendre.f + row, count, a->rings.twice_cos,
+                        a->rings.start + 8 * vectors * (size_t)m,
+                        in->orders + 96 * vectors * (size_t)m, a->rings.first[m],
+                        a->rings.vector_count, in->scratch + (size_t)worker * in->scratch_size, out);
+    for (int i = 0; i < count; i++)
+        for (int c = 0; c < KI_COMPONENTS; c++)
+            out[KI_COMPONENTS * i + c] *= a->legendre.scale[row + (size_t)i];
+}
+
+kiln_result ki_intake_finish(ki_intake *in, kiln_spectrum *spectrum, kiln_error *error)
+{
+    const ki_analysis *a = in->analysis;
+    if (in->row_count != a->size)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "the panorama has %d rows, only %d came", a->size,
+                       in->row_count);
+    if (!settle_suns(in, spectrum))
+        return ki_fail_memory(a->context, error, "the list of suns",
+                              (size_t)in->candidate_count * sizeof(ki_sun));
+    in->spectrum = spectrum;
+    ki_parallel_workers(a->context, 3 * a->rings.vector_count, transform_rings, in);
+    ki_parallel_workers(a->context, a->degree + 1, analyze_order, in);
+    return KILN_OK;
+}
+
+// -------------------------------------------------------------------------------------------- suns
+
+kiln_result ki_spectrum_add_suns(const kiln_spectrum *spectrum, int degree, double *a,
+                                 kiln_error *error)
+{
+    // Two Gauss nodes across a texel's height and the exact integral over its width.
+    kiln_context *context = spectrum->context;
+    ki_legendre legendre;
+    if (!ki_legendre_create(context, degree, &legendre))
+        return ki_fail_memory(context, error, "the suns' coefficients",
+                              ki_coefficient_count(degree) * 2 * sizeof(double));
+    double step = KI_PI / spectrum->size;
+    for (int i = 0; i < 2 * spectrum->sun_count; i++) {
+        const ki_sun *sun = &spectrum->suns[i / 2];
+        double theta = step * (sun->row + 0.5 + (i % 2 ? 0.5 : -0.5) / sqrt(3.0)), sine, cosine;
+        ki_sincos(theta, &sine, &cosine);
+        double area = row_solid_angle(sun->row, spectrum->size) / 2, power = 1;
+        for (int m = 0; m <= degree; m++, power *= sine) {
+            double re, im, half = m * step / 2, width = m ? ki_sin(half) / half : 1;
+            ki_sincos(-(sun->column + 0.5) * m * step, &im, &re);
+            const double *f = legendre.f + ki_legendre_row(&legendre, m);
+            const double *scale = legendre.scale + ki_legendre_row(&legendre, m);
+            double *out = a + ki_coefficient_row(degree, m), q = power, before = 0;
+            for (int l = 0; l <= degree - m; l++) {
+                double p = q * scale[l] * area * width, next = 2 * cosine * q - f[l + 1] * before;
+                before = q;
+                q = next;
+                for (int c = 0; c < 3; c++) {
+                    out[KI_COMPONENTS * l + 2 * c] += p * re * (double)sun->radiance[c];
+                    out[KI_COMPONENTS * l + 2 * c + 1] += p * im * (double)sun->radiance[c];
+                }
+            }
+        }
+    }
+    ki_legendre_destroy(&legendre);
+    return KILN_OK;
+}
