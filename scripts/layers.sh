@@ -1,0 +1,40 @@
+#!/bin/sh
+# Checks that includes go one way through the layers. Prints file:line of every one that does not.
+#   scripts/layers.sh [ROOT]
+set -eu
+cd "${1:-$(dirname "$0")/..}"
+
+# shellcheck disable=SC2016 # the dollars are awk's
+status=$(
+    find src cli bench examples viewer -name '*.[ch]' -o -name '*.inl' 2>/dev/null | sort |
+        xargs awk '
+    BEGIN {
+        # Each folder of src and those it may include.
+        may["base"] = "base"
+        may["math"] = "base math"
+        may["image"] = "base math image"
+        may["codec"] = "base math image codec"
+        may["sphere"] = "base math image sphere"
+        may["brdf"] = "base math brdf"
+        may["bake"] = "base math image sphere brdf bake"
+        may["engine"] = "base math image codec sphere brdf bake engine"
+        may["api"] = may["engine"] " api"
+    }
+    /^[ \t]*#[ \t]*include/ {
+        name = $0
+        sub(/^[^"<]*["<]/, "", name)
+        sub(/[">].*$/, "", name)
+        split(FILENAME, path, "/")
+        split(name, wanted, "/")
+        system_header = $0 ~ /</
+        if (path[1] == "src" && !system_header) {
+            if (!(path[2] in may))
+                print FILENAME ":" FNR ": src/" path[2] " is not in the table of layers"
+            else if (index(" " may[path[2]] " ", " " wanted[1] " ") == 0 || name !~ /\//)
+                print FILENAME ":" FNR ": " path[2] " may not include \"" name "\""
+        }
+        if (path[1] != "src" && (!system_header && name ~ /\// || wanted[1] == "kiln" && name != "kiln/kiln.h"))
+            print FILENAME ":" FNR ": " path[1] " may include <kiln/kiln.h> only, not \"" name "\""
+    }'
+)
+[ -z "$status" ] || { printf '%s\n' "$status"; exit 1; }
