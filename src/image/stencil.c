@@ -1,0 +1,543 @@
+// Areas of overlap between great-circle polygons and the texels of a panorama.
+//
+// On the sphere, area is dphi dz with z = cos theta: rows and columns of a panorama are rectangles
+// in (phi, z), and a great circle that is no meridian is a curve z(phi),
+//
+//     cot theta = c(phi) = A cos phi + B sin phi,     z = c / sqrt(1 + c^2).
+//
+// By Green's theorem the area of a polygon within the texel of column i and row j is the sum over
+// its arcs, with sign, of the area north of the arc within that texel. Per column and arc that is:
+// all of the rows north of the arc, nothing of those south of it, and in between differences of
+//
+//     G(Z) = integral of max(0, Z - z) dphi
+//
+// at the rows' borders Z. With s(phi) = -c'(phi) = A sin phi - B cos phi, q = sqrt(1 + c^2) and
+// K = sqrt(1 + A^2 + B^2),
+//
+//     integral of z dphi = I = arcsin(s / K),     cos I = q / K,
+//
+// so that I(b) - I(a) = arcsin((s_b q_a - s_a q_b) / K^2) has no cancellation worth speaking of, and
+// neither arcsin nor arctan is needed where the angles are small: a short series does.
+#include "image/stencil.h"
+#include "math/math.h"
+
+#include <math.h>
+#include <string.h>
+
+// A corner of the grid. x is towards the grid's first direction, y a quarter turn east, z up.
+typedef struct corner {
+    double x, y, z;      // not normalised
+    double cosine, sine; // of phi
+    double height;       // z / length
+    double radius;       // of (x, y)
+    int column, row;     // of the panorama
+} corner;
+
+// Area north of an arc in one texel, and the width for which all rows north of `row` count too.
+typedef struct entry {
+    int column, row;
+    double area, width;
+} entry;
+
+typedef struct trace {
+    entry *entries;
+    int count;
+    int first_column, end_column, first_row, end_row;
+} trace;
+
+// A point of an arc that is being traced.
+typedef struct node {
+    double cosine, sine; // of phi
+    double s, q, z;
+} node;
+
+typedef struct builder {
+    kiln_context *context;
+    const ki_stencil_grid *grid;
+    const double *height, *cotangent; // of the borders between rows, height + 1 each
+    const double *cosine, *sine;      // of the borders between columns, from first_border
+    int first_border, end_border;
+    ki_stencil_chunk *chunk;
+    double *area, *width; // the box that is being filled
+    size_t box_room;
+} builder;
+
+int ki_stencil_grid_rows(const ki_stencil_grid *grid)
+{
+    switch (grid->kind) {
+    case KI_STENCIL_OCTAHEDRON:
+        return grid->halved ? grid->half / 2 : grid->half - 1;
+    case KI_STENCIL_RIM:
+        return grid->halved ? (grid->half + 1) / 2 : grid->half;
+    default:
+        return grid->half;
+    }
+}
+
+void ki_stencil_grid_range(const ki_stencil_grid *grid, int j, int *first, int *end)
+{
+    switch (grid->kind) {
+    case KI_STENCIL_SIDE:
+        *first = grid->halved ? 0 : -grid->half;
+        *end = grid->half;
+        break;
+    case KI_STENCIL_TOP:
+        *first = grid->halved ? j : 0;
+        *end = grid->half;
+        break;
+    case KI_STENCIL_OCTAHEDRON:
+        *first = grid->halved ? j : 0;
+        *end = grid->half - 1 - j;
+        break;
+    default:
+        *first = grid->half - 1 - j;
+        *end = grid->half - j;
+        break;
+    }
+}
+
+// --------------------------------------------------------------------------------------------- arcs
+
+// The angle with this sine and cosine, within a half turn.
+static inline double angle(double sine, double cosine)
+{
+    if (fabs(sine) > 0.1 || cosine < 0)
+        return ki_atan2(sine, cosine);
+    // The next term is below 2e-15 of the first.
+    double y = sine * sine;
+    double p = 10395.0 / 599040;
+    p = p * y + 945.0 / 42240;
+    p = p * y + 105.0 / 3456;
+    p = p * y + 15.0 / 336;
+    p = p * y + 3.0 / 40;
+    p = p * y + 1.0 / 6;
+    return sine + sine * (y * p);
+}
+
+static inline double angle_between(const node *a, const node *b)
+{
+    return angle(b->sine * a->cosine - b->cosine * a->sine,
+                 b->cosine * a->cosine + b->sine * a->sine);
+}
+
+static inline double integral_between(const node *a, const node *b, double inverse_k2)
+{
+    return angle((b->s * a->q - a->s * b->q) * inverse_k2,
+                 (a->q * b->q + a->s * b->s) * inverse_k2);
+}
+
+static inline node node_at(double a, double b, double cosine, double sine)
+{
+    double c = a * cosine + b * sine, q = sqrt(1 + c * c);
+    return (node){cosine, sine, a * sine - b * cosine, q, c / q};
+}
+
+// The row with height[row] >= z > height[row + 1], searched from `row`.
+static inline int find_row(const builder *b, double z, int row)
+{
+    while (row > 0 && z > b->height[row])
+        row--;
+    while (row < b->grid->height - 1 && z <= b->height[row + 1])
+        row++;
+    return row;
+}
+
+// The column of a direction, searched from `column`.
+static inline int find_column(const builder *b, double cosine, double sine, int column)
+{
+    const double *bc = b->cosine - b->first_border, *bs = b->sine - b->first_border;
+    while (column > b->first_border && sine * bc[column] - cosine * bs[column] < 0)
+        column--;
+    while (column < b->end_border - 2 && sine * bc[column + 1] - cosine * bs[column + 1] >= 0)
+        column++;
+    return column;
+}
+
+static inline void add_entry(trace *arc, int column, int row, double area, double width)
+{
+    arc->entries[arc->count++] = (entry){column, row, area, width};
+}
+
+// One column's part of an arc, along which z rises or falls only. Returns the row at `end`.
+static int trace_piece(const builder *b, trace *arc, const node *start, const node *end, int column,
+                       int row, double sign, double a_, double b_, double inverse_k2)
+{
+    const double *height = b->height;
+    double width = angle_between(start, end);
+    double integral = integral_between(start, end, inverse_k2);
+    int last = find_row(b, end->z, row);
+    int north = ki_min(row, last), south = ki_max(row, last);
+    double rest = height[north] * width - integral; // G of the row's northern border
+    double kappa2 = a_ * a_ + b_ * b_;
+    const node *low = row < last ? end : start;
+    for (int j = north; j <= south; j++) {
+        double next = 0;
+        if (j < south) {
+            // Where the arc meets the row's southern border.
+            double c = b->cotangent[j + 1], s2 = kappa2 - c * c;
+            double s = copysign(s2 > 0 ? sqrt(s2) : 0, start->s + end->s);
+            node cut = {(a_ * c - b_ * s) / kappa2, (b_ * c + a_ * s) / kappa2, s, sqrt(1 + c * c),
+                        height[j + 1]};
+            double w = angle_between(&cut, low);
+            double i = integral_between(&cut, low, inverse_k2);
+            next = fabs(height[j + 1] * w - i);
+        }
+        add_entry(arc, column, j, sign * (rest - next), j == north ? sign * width : 0);
+        rest = next;
+    }
+    arc->first_row = ki_min(arc->first_row, north);
+    arc->end_row = ki_max(arc->end_row, south + 1);
+    return last;
+}
+
+// Follows the great circle from one corner to another and writes what lies north of it, positive
+// where phi grows. Meridians leave nothing.
+static void trace_arc(const builder *b, const corner *from, const corner *to, trace *arc)
+{
+    arc->count = 0;
+    arc->first_column = arc->first_row = INT32_MAX;
+    arc->end_column = arc->end_row = INT32_MIN;
+    double cross = from->x * to->y - from->y * to->x, sign = 1;
+    if (!(fabs(cross) > 1e-14 * from->radius * to->radius))
+        return;
+    if (cross < 0) {
+        const corner *swap = from;
+        from = to;
+        to = swap;
+        sign = -1;
+        cross = -cross;
+    }
+    double a_ = (from->z * to->y - from->y * to->z) / cross;
+    double b_ = (from->x * to->z - from->z * to->x) / cross;
+    double kappa2 = a_ * a_ + b_ * b_, inverse_k2 = 1 / (1 + kappa2);
+    node at = node_at(a_, b_, from->cosine, from->sine);
+    int column = from->column, row = from->row;
+    arc->first_column = column;
+    for (;;) {
+        bool last = column >= to->column;
+        if (last && column > from->column && to->sine * at.cosine - to->cosine * at.sine < 1e-14) {
+            column--; // the corner lies on the border
+            break;
+        }
+        int border = column + 1 - b->first_border;
+        node next = last ? node_at(a_, b_, to->cosine, to->sine)
+                         : node_at(a_, b_, b->cosine[border], b->sine[border]);
+        if (at.s * next.s < 0) {
+            // The arc's highest or lowest point lies between.
+            double kappa = sqrt(kappa2);
+            double c = a_ / kappa, s = b_ / kappa;
+            if (c * at.cosine + s * at.sine < 0) {
+                c = -c;
+                s = -s;
+            }
+            node top = node_at(a_, b_, c, s);
+            top.s = 0;
+            row = trace_piece(b, arc, &at, &top, column, row, sign, a_, b_, inverse_k2);
+            at = top;
+        }
+        row = trace_piece(b, arc, &at, &next, column, row, sign, a_, b_, inverse_k2);
+        if (last)
+            break;
+        at = next;
+        column++;
+    }
+    arc->end_column = column + 1;
+}
+
+// -------------------------------------------------------------------------------------------- texels
+
+static bool grow(kiln_context *context, void **memory, size_t *room, size_t used, size_t wanted,
+                 size_t size)
+{
+    if (wanted <= *room)
+        return true;
+    size_t more = *room + *room / 2;
+    more = more < wanted ? wanted : more;
+    void *larger = ki_alloc_raw(context, more, size);
+    if (!larger)
+        return false;
+    if (used)
+        memcpy(larger, *memory, used * size);
+    ki_free(*memory);
+    *memory = larger;
+    *room = more;
+    return true;
+}
+
+static void add_arc(const builder *b, const trace *arc, double sign, int column, int row,
+                    size_t columns)
+{
+    for (int k = 0; k < arc->count; k++) {
+        const entry *e = &arc->entries[k];
+        size_t at = (size_t)(e->row - row) * columns + (size_t)(e->column - column);
+        b->area[at] += sign * e->area;
+        b->width[at] += sign * e->width;
+    }
+}
+
+// The stencil of the polygon whose arcs are, counter-clockwise seen from below (east, then north
+// on a side), arcs[0] + arcs[1] - arcs[2] - arcs[3].
+static bool add_stencil(builder *b, const trace *const arcs[4], bool pole)
+{
+    int column = INT32_MAX, row = INT32_MAX, end_column = INT32_MIN, end_row = INT32_MIN;
+    for (int k = 0; k < 4; k++) {
+        column = ki_min(column, arcs[k]->first_column);
+        row = ki_min(row, arcs[k]->first_row);
+        end_column = ki_max(end_column, arcs[k]->end_column);
+        end_row = ki_max(end_row, arcs[k]->end_row);
+    }
+    if (pole)
+        row = 0;
+    ki_stencil_chunk *chunk = b->chunk;
+    size_t columns = ((size_t)(end_column - column) + 3) & ~(size_t)3;
+    size_t rows = (size_t)(end_row - row), cells = rows * columns;
+    if (cells > b->box_room) {
+        size_t room = cells + cells / 2;
+        ki_free(b->area);
+        b->area = ki_alloc_raw(b->context, 2 * room, sizeof *b->area);
+        b->box_room = b->area ? room : 0;
+        if (!b->area)
+            return false;
+    }
+    b->width = b->area + cells;
+    memset(b->area, 0, 2 * cells * sizeof *b->area);
+    static const double signs[4] = {1, 1, -1, -1};
+    for (int k = 0; k < 4; k++)
+        add_arc(b, arcs[k], signs[k], column, row, columns);
+
+    if (!grow(b->context, (void **)&chunk->weights, &chunk->weight_room, chunk->weight_count,
+              chunk->weight_count + cells, sizeof(float)))
+        return false;
+    double total = 0;
+    for (size_t r = rows; r-- > 0;) {
+        double *area = b->area + r * columns, *width = b->width + r * columns;
+        double tall = b->height[(size_t)row + r] - b->height[(size_t)row + r + 1];
+        const double *below = r + 1 < rows ? width + columns : NULL;
+        for (size_t c = 0; c < columns; c++) {
+            if (below) {
+                area[c] += tall * below[c];
+                width[c] += below[c];
+            }
+            area[c] = area[c] > 0 ? area[c] : 0;
+            total += area[c];
+        }
+    }
+    float *weights = chunk->weights + chunk->weight_count;
+    double scale = total > 0 ? 1 / total : 0;
+    for (size_t k = 0; k < cells; k++)
+        weights[k] = (float)(b->area[k] * scale);
+    chunk->weight_count += cells;
+    chunk->first_row = ki_min(chunk->first_row, row);
+    chunk->end_row = ki_max(chunk->end_row, end_row);
+    chunk->stencils[chunk->stencil_count++] =
+        (ki_stencil){column, row, (uint16_t)(columns / 4), (uint16_t)rows, (float)total};
+    return true;
+}
+
+// Line j of the grid's corners, first <= i <= end.
+static void fill_corners(const builder *b, int j, int first, int end, corner *corners)
+{
+    const ki_stencil_grid *grid = b->grid;
+    int column = b->first_border, row = grid->height / 4;
+    for (int i = first; i <= end; i++) {
+        corner *c = &corners[i - first];
+        double p = (double)i / grid->half, q = (double)j / grid->half;
+        if (grid->kind == KI_STENCIL_SIDE)
+            *c = (corner){.x = 1, .y = p, .z = q};
+        else if (grid->kind == KI_STENCIL_TOP)
+            *c = (corner){.x = p, .y = q, .z = 1};
+        else
+            *c = (corner){.x = p, .y = q, .z = (double)(grid->half - i - j) / grid->half};
+        double r2 = c->x * c->x + c->y * c->y;
+        c->radius = sqrt(r2);
+        c->cosine = r2 > 0 ? c->x / c->radius : 1;
+        c->sine = r2 > 0 ? c->y / c->radius : 0;
+        c->height = c->z / sqrt(r2 + c->z * c->z);
+        column = c->column = find_column(b, c->cosine, c->sine, column);
+        row = c->row = find_row(b, c->height, row);
+    }
+}
+
+static corner below_horizon(const builder *b, const corner *above)
+{
+    corner c = *above;
+    c.z = -c.z;
+    c.height = -c.height;
+    c.row = find_row(b, c.height, b->grid->height - 1 - c.row);
+    return c;
+}
+
+typedef struct build_job {
+    kiln_context *context;
+    ki_stencil_grid *grid;
+    const double *height, *cotangent, *cosine, *sine;
+    int first_border, end_border;
+} build_job;
+
+static void build_chunk(void *data, int index)
+{
+    const build_job *job = data;
+    const ki_stencil_grid *grid = job->grid;
+    ki_stencil_chunk *chunk = &grid->chunks[index];
+    builder b = {.context = job->context,
+                 .grid = grid,
+                 .height = job->height,
+                 .cotangent = job->cotangent,
+                 .cosine = job->cosine,
+                 .sine = job->sine,
+                 .first_border = job->first_border,
+                 .end_border = job->end_border,
+                 .chunk = chunk};
+    int begin = index * KI_STENCIL_ROWS;
+    int stop = ki_min(begin + KI_STENCIL_ROWS, ki_stencil_grid_rows(grid));
+    int first, end;
+    ki_stencil_grid_range(grid, begin, &first, &end);
+    // A line of arcs crosses every column once and every row twice at most, and has a node a texel.
+    int count = (grid->kind == KI_STENCIL_RIM ? 2 : 2 * grid->half) + 2;
+    size_t line = (size_t)(job->end_border - job->first_border) + 2 * (size_t)grid->height +
+                  3 * (size_t)count + 16;
+    corner *corners = ki_alloc_raw(job->context, 2 * (size_t)count, sizeof *corners);
+    entry *entries = ki_alloc_raw(job->context, 4 * line, sizeof *entries);
+    trace *arcs = ki_alloc_raw(job->context, 2 * (size_t)count + 4, sizeof *arcs);
+    size_t guess = 0;
+    for (int j = begin; j < stop; j++) {
+        ki_stencil_grid_range(grid, j, &first, &end);
+        guess += (size_t)(end - first);
+    }
+    chunk->first_row = INT32_MAX;
+    chunk->end_row = 0;
+    chunk->stencils = ki_alloc_raw(job->context, guess + 1, sizeof *chunk->stencils);
+    chunk->stencil_room = guess + 1;
+    bool fine = corners && entries && arcs && chunk->stencils;
+
+    corner *line_corners[2] = {corners, corners + count};
+    trace *line_arcs[2] = {arcs, arcs + count}, *sides = arcs + 2 * count;
+    entry *line_entries[2] = {entries, entries + line};
+    entry *side_entries[2] = {entries + 2 * line, entries + 3 * line};
+    bool started = false;
+    int shift = 0;
+    for (int j = begin; fine && j < stop; j++) {
+        ki_stencil_grid_range(grid, j, &first, &end);
+        if (grid->kind == KI_STENCIL_RIM) {
+            corner low[2], high[2];
+            fill_corners(&b, j, first, end, low);
+            fill_corners(&b, j + 1, first, end, high);
+            corner under = below_horizon(&b, &low[0]);
+            const corner *loop[5] = {&low[0], &low[1], &under, &high[0], &low[0]};
+            trace four[4];
+            for (int k = 0; k < 4; k++) {
+                four[k].entries = entries + (size_t)k * line;
+                // The last two run against the direction add_stencil expects.
+                if (k < 2)
+                    trace_arc(&b, loop[k], loop[k + 1], &four[k]);
+                else
+                    trace_arc(&b, loop[k + 1], loop[k], &four[k]);
+            }
+            fine =
+                add_stencil(&b, (const trace *[4]){&four[0], &four[1], &four[2], &four[3]}, false);
+            continue;
+        }
+        // Lines j and j + 1; the second becomes the first of the next row.
+        for (int k = started ? 1 : 0; k < 2; k++) {
+            fill_corners(&b, j + k, first, end, line_corners[k]);
+            entry *next = line_entries[k];
+            for (int i = 0; i < end - first; i++) {
+                trace *a = &line_arcs[k][i];
+                a->entries = next;
+                trace_arc(&b, &line_corners[k][i], &line_corners[k][i + 1], a);
+                next += a->count;
+            }
+        }
+        const corner *low = line_corners[0] + (started ? shift : 0), *high = line_corners[1];
+        const trace *bottom = line_arcs[0] + (started ? shift : 0), *top = line_arcs[1];
+        sides[0].entries = side_entries[0];
+        sides[1].entries = side_entries[1];
+        trace_arc(&b, &low[0], &high[0], &sides[0]);
+        for (int i = 0; fine && i < end - first; i++) {
+            trace *left = &sides[i & 1], *right = &sides[(i + 1) & 1];
+            trace_arc(&b, &low[i + 1], &high[i + 1], right);
+            bool pole = low[i].radius == 0;
+            fine = add_stencil(&b, (const trace *[4]){&bottom[i], right, &top[i], left}, pole);
+        }
+        int next_first = first, next_end = end;
+        if (j + 1 < stop)
+            ki_stencil_grid_range(grid, j + 1, &next_first, &next_end);
+        shift = next_first - first;
+        corner *swap_corners = line_corners[0];
+        line_corners[0] = line_corners[1];
+        line_corners[1] = swap_corners;
+        trace *swap_arcs = line_arcs[0];
+        line_arcs[0] = line_arcs[1];
+        line_arcs[1] = swap_arcs;
+        entry *swap_entries = line_entries[0];
+        line_entries[0] = line_entries[1];
+        line_entries[1] = swap_entries;
+        started = true;
+    }
+    chunk->failed = !fine;
+    ki_free(b.area);
+    ki_free(arcs);
+    ki_free(entries);
+    ki_free(corners);
+}
+
+kiln_result ki_stencil_grid_build(kiln_context *context, ki_stencil_grid *grid, kiln_error *error)
+{
+    kiln_result result = KILN_OK;
+    int rows = grid->height, width = 2 * rows;
+    // Borders between columns from -45 or 0 degrees to 45 or 90, and one more on either side.
+    double step = 2 * KI_PI / width, eighth = width / 8.0;
+    double low = grid->kind == KI_STENCIL_SIDE ? -eighth : 0;
+    double high = grid->kind == KI_STENCIL_SIDE ? eighth : 2 * eighth;
+    build_job job = {.context = context, .grid = grid};
+    job.first_border = (int)floor(low + grid->offset) - 1;
+    job.end_border = (int)floor(high + grid->offset) + 3;
+    size_t borders = (size_t)(job.end_border - job.first_border), edges = (size_t)rows + 1;
+    double *table = ki_alloc_raw(context, 2 * (borders + edges), sizeof *table);
+    grid->chunk_count = (ki_stencil_grid_rows(grid) + KI_STENCIL_ROWS - 1) / KI_STENCIL_ROWS;
+    grid->chunks = ki_alloc(context, (size_t)grid->chunk_count, sizeof *grid->chunks);
+    if (!table || !grid->chunks) {
+        result = ki_fail_memory(context, error, "resampling",
+                                2 * (borders + edges) * sizeof *table +
+                                    (size_t)grid->chunk_count * sizeof *grid->chunks);
+        goto done;
+    }
+    double *height = table, *cotangent = height + edges, *cosine = cotangent + edges;
+    double *sine = cosine + borders;
+    for (int j = 0; 2 * j <= rows; j++) {
+        double s, c;
+        ki_sincos(KI_PI * j / rows, &s, &c);
+        c = 2 * j == rows ? 0 : c;
+        height[j] = c;
+        height[rows - j] = -c;
+        cotangent[j] = j ? c / s : 1e300;
+        cotangent[rows - j] = -cotangent[j];
+    }
+    for (size_t k = 0; k < borders; k++)
+        ki_sincos((job.first_border + (double)k - grid->offset) * step, &sine[k], &cosine[k]);
+    job.height = height;
+    job.cotangent = cotangent;
+    job.cosine = cosine;
+    job.sine = sine;
+    ki_parallel_for(context, grid->chunk_count, build_chunk, &job);
+    for (int k = 0; k < grid->chunk_count; k++)
+        if (grid->chunks[k].failed && !result)
+            result = ki_fail_memory(context, error, "resampling",
+                                    grid->chunks[k].weight_count * sizeof(float));
+done:
+    ki_free(table);
+    if (result)
+        ki_stencil_grid_free(grid);
+    return result;
+}
+
+void ki_stencil_grid_free(ki_stencil_grid *grid)
+{
+    for (int k = 0; grid->chunks && k < grid->chunk_count; k++) {
+        ki_free(grid->chunks[k].stencils);
+        ki_free(grid->chunks[k].weights);
+    }
+    ki_free(grid->chunks);
+    grid->chunks = NULL;
+    grid->chunk_count = 0;
+}
