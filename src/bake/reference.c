@@ -147,6 +147,21 @@ static void set_lobe(reference *r, const kiln_lobe *lobe)
     }
 }
 
+static void set_rule(reference *r, const ki_reference_rule *rule)
+{
+    r->rule.centre = rule->centre > 0 ? rule->centre : 1.0 / 300;
+    r->rule.pairs = rule->pairs > 0 ? rule->pairs : 1.0 / 20;
+    r->rule.quads = rule->quads > 0 ? rule->quads : 0.5;
+    r->rule.edge = rule->edge;
+    if (!(rule->edge > 0)) {
+        // GGX at the horizon, compared with its integral, weighs 4 alpha^2 / (1 + alpha^2)^2 of
+        // what Lambert does at most.
+        r->rule.edge = 0.0025;
+        if (r->rational)
+            r->rule.edge *= (1 + r->a2) / (2 * sqrt(r->a2));
+    }
+}
+
 // ---------------------------------------------------------------------------------- texel by texel
 
 // The length over which the lobe changes at a distance from its peak.
@@ -558,19 +573,11 @@ kiln_result ki_reference_integrate(kiln_context *context, const kiln_map *panora
     }
     for (size_t k = 0; k < 6; k++)
         r->columns[k] = columns + k * width;
-    r->rule = rule ? *rule : (ki_reference_rule){0};
-    if (r->rule.centre == 0)
-        r->rule.centre = 1.0 / 300;
-    if (r->rule.pairs == 0)
-        r->rule.pairs = 1.0 / 20;
-    if (r->rule.quads == 0)
-        r->rule.quads = 0.5;
-    if (r->rule.edge == 0)
-        r->rule.edge = 0.0016;
     set_rows(r);
     set_columns(r);
     set_cells(r);
     set_lobe(r, lobe);
+    set_rule(r, rule ? rule : &(ki_reference_rule){0});
     r->directions = (const double(*)[3])turned;
     r->values = values;
     r->count = count;

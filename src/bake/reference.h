@@ -10,7 +10,7 @@ typedef struct ki_reference_rule {
     double centre; ///< below it one value at the texel's mean direction; default 1/300
     double pairs;  ///< below it 2 x 2 Gauss-Legendre nodes; default 1/20
     double quads;  ///< below it 4 x 4, else the cell is cut into four; default 1/2
-    double edge;   ///< radians: larger cells that the lobe's horizon crosses are cut; 0.0016
+    double edge; ///< radians: larger cells that the lobe's horizon crosses are cut; default 0.0025
 } ki_reference_rule;
 
 /// For each direction (any length but 0): the sum over the texels of a panorama of radiance times
