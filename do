@@ -5,7 +5,7 @@ cd "$(dirname "$0")"
 
 # What each part needs, as tool:package where a tool shows that it is there, else as a package.
 build_needs="cmake:cmake ninja:ninja-build cc:gcc pkg-config:pkg-config libc6-dev libopenexr-dev
-    libpng-dev libzstd-dev libpopt-dev libcjson-dev libcmocka-dev"
+    libdeflate-dev libpng-dev libzstd-dev libpopt-dev libcjson-dev libcmocka-dev"
 test_needs="node:nodejs npm:npm mandoc:mandoc clang-format:clang-format script:bsdutils"
 bench_needs="cmgen:libfilament-tools oiiotool:openimageio-tools"
 lint_needs="clang-tidy:clang-tidy clang-format:clang-format cppcheck:cppcheck shellcheck:shellcheck"

@@ -1,0 +1,47 @@
+#!/bin/sh
+# Installs a build, moves it, and builds the consumer from it in every way that is promised.
+#   package.sh BUILD_FOLDER
+set -eu
+build=$1
+consumer=$(cd "$(dirname "$0")" && pwd)/consumer
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+say() { printf '%s\n' "$*"; }
+
+cmake --install "$build" --prefix "$work/first" >"$work/log" || { cat "$work/log"; exit 1; }
+# Nothing may know where it was installed first.
+mv "$work/first" "$work/moved"
+prefix=$work/moved
+pc=$(find "$prefix" -name kiln.pc)
+libdir=$(dirname "$(dirname "$pc")")
+
+for static in OFF ON; do
+    {
+        cmake -S "$consumer" -B "$work/cmake-$static" -G Ninja -DSTATIC=$static \
+            -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_BUILD_TYPE=Release &&
+            cmake --build "$work/cmake-$static"
+    } >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
+    say "find_package, STATIC=$static: $("$work/cmake-$static/consumer")"
+done
+
+export PKG_CONFIG_PATH="$libdir/pkgconfig"
+flags="-std=c17 -Wall -Wextra -Werror"
+# shellcheck disable=SC2046,SC2086 # flags are words
+cc $flags $(pkg-config --cflags kiln) "$consumer/main.c" -o "$work/shared" \
+    $(pkg-config --libs kiln)
+say "pkg-config, shared: $(LD_LIBRARY_PATH=$libdir "$work/shared")"
+rm "$libdir"/libkiln.so*
+# shellcheck disable=SC2046,SC2086
+cc $flags $(pkg-config --cflags kiln) "$consumer/main.c" -o "$work/static" \
+    $(pkg-config --static --libs kiln)
+say "pkg-config, static: $("$work/static")"
+
+[ "$("$prefix/bin/kiln" --version)" = "kiln $(pkg-config --modversion kiln)" ]
+[ -s "$prefix/share/man/man1/kiln.1" ]
+# A program in C++ can include the header.
+if command -v c++ >/dev/null; then
+    printf '#include <kiln/kiln.h>\nint main() { return kiln_version() == nullptr; }\n' >"$work/a.cpp"
+    # shellcheck disable=SC2046
+    c++ -std=c++17 -Wall -Wextra -Wpedantic -Werror -fsyntax-only $(pkg-config --cflags kiln) "$work/a.cpp"
+fi
