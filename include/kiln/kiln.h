@@ -375,33 +375,37 @@ typedef struct kiln_textbook_def {
     kiln_shape shape;      ///< of the result; KILN_SHAPE_PANORAMA as in the textbook
     int size;              ///< rows or edge; 0 for 64
     int level_count;       ///< prefilter only; 0 for all
-    int phi_count;         ///< irradiance: steps of phi; 0 for 100
-    int theta_count;       ///< irradiance: steps of theta; 0 for 100
-    int sample_count;      ///< prefilter: Hammersley points; 0 for 1024
+    int phi_count;         ///< irradiance: steps of phi, to 65536; 0 for 100
+    int theta_count;       ///< irradiance: steps of theta, to 65536; 0 for 100
+    int sample_count;      ///< prefilter: Hammersley points, to 1048576; 0 for 1024
 } kiln_textbook_def;
 
-/// Diffuse irradiance / pi * pi as the textbook's uniform sum over (phi, theta) gives it, divided
-/// by pi so that a white furnace is near 1.
+/// Irradiance / pi as the textbook's uniform sum over (phi, theta) gives it: white stays near 1
+/// (0.99992 with 100 x 100). A panorama's texels look where the textbook's do, at i / (width - 1) and
+/// j / (height - 1), which is up to half a texel from their centres.
 KILN_API KILN_CHECKED kiln_result kiln_textbook_irradiance(kiln_context *context,
                                                            const kiln_map *panorama,
                                                            const kiln_textbook_def *def,
                                                            kiln_map *map, kiln_error *error);
-/// GGX importance sampling on Hammersley points with N = V = R, weighted by n.l, nearest texels.
+/// GGX importance sampling on Hammersley points with N = V = R, weighted by n.l, nearest texels;
+/// roughness level / (level_count - 1). A panorama's texels as for kiln_textbook_irradiance.
 KILN_API KILN_CHECKED kiln_result kiln_textbook_prefilter(kiln_context *context,
                                                           const kiln_map *panorama,
                                                           const kiln_textbook_def *def,
                                                           kiln_map *map, kiln_error *error);
 /// The 1024-sample split-sum table: x is n.v = i/(size-1), y is roughness = j/(size-1), row 0 at
 /// the top holds roughness 1; two channels (A, B). Where n.v is 0 the textbook divides 0 by 0; here
-/// the estimator's limit n.v -> 0 is evaluated, at n.v = 1e-4. `sample_count` 0 for 1024.
+/// the estimator's limit n.v -> 0 is evaluated, at n.v = 1e-4. `size` 2 to 4096; `sample_count` to
+/// 1048576, 0 for 1024.
 KILN_API KILN_CHECKED kiln_result kiln_textbook_brdf(kiln_context *context, int size,
                                                      int sample_count, kiln_image *table,
                                                      kiln_error *error);
 
 // --------------------------------------------------------------------------------------- reference
 
-/// Brute force: the sum over every texel of a panorama in double precision, texels subdivided 8 x 8
-/// where the lobe is narrow. Slow; for tests, benches and error maps. `values` receives count * 3.
+/// Brute force: the sum over every texel of a panorama in double precision, the lobe integrated over
+/// each texel by as many nodes as it needs there, to 1e-6 of the result. Slow; for tests, benches
+/// and error maps. Directions are unit (to 0.001); `values` receives count * 3.
 KILN_API KILN_CHECKED kiln_result kiln_reference_filter(kiln_context *context,
                                                         const kiln_map *panorama,
                                                         const kiln_lobe *lobe, double rotation,

@@ -158,7 +158,7 @@ static void set_rule(reference *r, const ki_reference_rule *rule)
         // what Lambert does at most.
         r->rule.edge = 0.0025;
         if (r->rational)
-            r->rule.edge *= (1 + r->a2) / (2 * sqrt(r->a2));
+            r->rule.edge = ki_clamp(0.0025 * (1 + r->a2) / (2 * sqrt(r->a2)), 0, 0.01);
     }
 }
 
