@@ -42,8 +42,8 @@ kiln_result kiln_plan_execute(kiln_plan *plan, const kiln_map *panorama, kiln_ma
         map->level_count != plan->def.level_count)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
                        "the plan writes shape %d, size %d, %d levels; this map has %d, %d, %d",
-                       (int)plan->def.shape, plan->def.size, plan->def.level_count,
-                       (int)map->shape, map->size, map->level_count);
+                       (int)plan->def.shape, plan->def.size, plan->def.level_count, (int)map->shape,
+                       map->size, map->level_count);
     return ki_plan_execute(plan, panorama, map, error);
 }
 

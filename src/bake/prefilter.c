@@ -31,8 +31,8 @@ static kiln_lobe lobe_of_roughness(enum kiln_lobe_kind kind, double roughness)
 }
 
 kiln_result ki_prefilter_resolve(const kiln_prefilter_def *def, kiln_prefilter_def *resolved,
-                                 float roughness[KILN_MAX_LEVELS],
-                                 kiln_lobe lobes[KILN_MAX_LEVELS], kiln_error *error)
+                                 float roughness[KILN_MAX_LEVELS], kiln_lobe lobes[KILN_MAX_LEVELS],
+                                 kiln_error *error)
 {
     kiln_prefilter_def d = def ? *def : (kiln_prefilter_def){0};
     if (!d.has_shape)
@@ -50,8 +50,10 @@ kiln_result ki_prefilter_resolve(const kiln_prefilter_def *def, kiln_prefilter_d
         return ki_fail(error, KILN_ERROR_ARGUMENT, "level_count is %d, a size of %d has 1 to %d",
                        d.level_count, d.size, full);
     if ((int)d.lobe < 0 || d.lobe > KILN_LOBE_PHONG)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "lobe %d is not one of GGX, Lambert, Charlie "
-                       "and Phong", (int)d.lobe);
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "lobe %d is not one of GGX, Lambert, Charlie "
+                       "and Phong",
+                       (int)d.lobe);
     if (!(fabs(d.rotation) <= 1e6))
         return ki_fail(error, KILN_ERROR_ARGUMENT, "rotation is %g degrees, it must be within 1e6",
                        d.rotation);
@@ -134,9 +136,9 @@ kiln_result ki_plan_create(kiln_context *context, int source_size, const kiln_pr
     for (int i = 0; i < p->def.level_count && result == KILN_OK; i++) {
         int size = ki_max(1, p->def.size >> i);
         if (ki_is_mirror(&lobes[i]))
-            result = ki_resample_plan_create(context, KILN_SHAPE_PANORAMA, source_size,
-                                             p->def.shape, size, p->def.rotation, &p->mirrors[i],
-                                             error);
+            result =
+                ki_resample_plan_create(context, KILN_SHAPE_PANORAMA, source_size, p->def.shape,
+                                        size, p->def.rotation, &p->mirrors[i], error);
         else
             result = ki_level_create(context, &p->analysis->legendre, &zonals[i], &spectra[i],
                                      p->def.shape, size, &p->levels[i], error);
@@ -152,7 +154,8 @@ done:
     return result;
 }
 
-kiln_result ki_plan_execute(kiln_plan *p, const kiln_map *panorama, kiln_map *map, kiln_error *error)
+kiln_result ki_plan_execute(kiln_plan *p, const kiln_map *panorama, kiln_map *map,
+                            kiln_error *error)
 {
     static const char stage[] = "filtering";
     kiln_result result;

@@ -13,8 +13,8 @@ extern const double ki_prefilter_tolerance;
 
 /// Fills in the defaults and checks. `levels` receives the lobe of each level.
 kiln_result ki_prefilter_resolve(const kiln_prefilter_def *def, kiln_prefilter_def *resolved,
-                                 float roughness[KILN_MAX_LEVELS],
-                                 kiln_lobe lobes[KILN_MAX_LEVELS], kiln_error *error);
+                                 float roughness[KILN_MAX_LEVELS], kiln_lobe lobes[KILN_MAX_LEVELS],
+                                 kiln_error *error);
 /// Whether a lobe is a perfect mirror: such levels are resampled by area.
 bool ki_is_mirror(const kiln_lobe *lobe);
 

@@ -1,6 +1,6 @@
 // The context: allocator with its limit, error sentences, progress.
-#include "base/base.h"
 #include "base/context.h"
+#include "base/base.h"
 
 #include <stdalign.h>
 #include <stdio.h>

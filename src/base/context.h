@@ -17,9 +17,9 @@ typedef struct ki_pool {
     void (*task)(void *data, int index);
     void *data;
     int count;
-    atomic_int next;   // the first index nobody has taken
-    int running;       // helpers still at it
-    unsigned round;    // one a parallel_for
+    atomic_int next; // the first index nobody has taken
+    int running;     // helpers still at it
+    unsigned round;  // one a parallel_for
     bool stop;
 } ki_pool;
 

@@ -85,7 +85,8 @@ static double scale_by_power_of_two(double x, int exponent)
 {
     // Two steps, so that results below the normal range are rounded once, by the last product.
     int half = exponent / 2;
-    uint64_t bits1 = (uint64_t)(half + 1023) << 52, bits2 = (uint64_t)(exponent - half + 1023) << 52;
+    uint64_t bits1 = (uint64_t)(half + 1023) << 52, bits2 = (uint64_t)(exponent - half + 1023)
+                                                            << 52;
     double f1, f2;
     memcpy(&f1, &bits1, sizeof f1);
     memcpy(&f2, &bits2, sizeof f2);
@@ -94,7 +95,8 @@ static double scale_by_power_of_two(double x, int exponent)
 
 double ki_exp(double x)
 {
-    static const double log2_high = 6.93147180369123816490e-01, log2_low = 1.90821492927058770002e-10;
+    static const double log2_high = 6.93147180369123816490e-01,
+                        log2_low = 1.90821492927058770002e-10;
     if (x > 709)
         return 1.7976931348623157e308;
     if (!(x > -745))
@@ -104,8 +106,19 @@ double ki_exp(double x)
     // Taylor to r^13 / 13!, |r| <= 0.347: the next term is below 5e-18.
     double p = 1.0 / 6227020800;
     for (int k = 12; k >= 2; k--) {
-        static const double inverse[] = {0, 1, 1.0 / 2, 1.0 / 6, 1.0 / 24, 1.0 / 120, 1.0 / 720,
-            1.0 / 5040, 1.0 / 40320, 1.0 / 362880, 1.0 / 3628800, 1.0 / 39916800, 1.0 / 479001600};
+        static const double inverse[] = {0,
+                                         1,
+                                         1.0 / 2,
+                                         1.0 / 6,
+                                         1.0 / 24,
+                                         1.0 / 120,
+                                         1.0 / 720,
+                                         1.0 / 5040,
+                                         1.0 / 40320,
+                                         1.0 / 362880,
+                                         1.0 / 3628800,
+                                         1.0 / 39916800,
+                                         1.0 / 479001600};
         p = p * r + inverse[k];
     }
     return scale_by_power_of_two(1 + (r + r * r * p), (int)n);
@@ -113,7 +126,8 @@ double ki_exp(double x)
 
 double ki_log(double x)
 {
-    static const double log2_high = 6.93147180369123816490e-01, log2_low = 1.90821492927058770002e-10;
+    static const double log2_high = 6.93147180369123816490e-01,
+                        log2_low = 1.90821492927058770002e-10;
     int exponent = 0;
     if (x < 2.2250738585072014e-308) {
         x *= 18014398509481984.0; // 2^54

@@ -34,6 +34,15 @@ typedef struct ki_fft {
     double *tables;
 } ki_fft;
 
+/// Suns as points, each a direction and a radiance times solid angle. Eight directions at a time use
+/// one point where all are farther than far_versine (1 - cos) from the sun, four beyond near_versine;
+/// else, and where the sun is within `horizon` (in cos) of the edge of a lobe, near_count points.
+typedef struct ki_sun_points {
+    int count, near_count;
+    double far_versine, near_versine, horizon;
+    double (*centre)[6], (*pairs)[6], (*near)[6]; // [count], [count][4], [count][near_count]
+} ki_sun_points;
+
 typedef struct ki_kernels {
     /// Transforms `data` with `work` as the second buffer; returns whichever holds the result.
     double *(*fft)(const ki_fft *fft, double *data, double *work);
@@ -61,10 +70,10 @@ typedef struct ki_kernels {
     void (*interpolate)(const float *grid, size_t plane, size_t pitch, const float *ring_taps,
                         const float *column_taps, const double *position, int count, float *rgb);
 
-    /// sum[channel][lane] += radiance[channel] * GGX weight, for eight directions [3][8] and
-    /// `count` points of [direction 3, radiance 3]. See ki_lobe_weight.
-    void (*points_ggx)(double alpha, const double *directions, const double (*points)[6], int count,
-                       double *sum);
+    /// sum[channel][lane] += light of the suns through the GGX lobe, for eight directions [3][8]. See
+    /// ki_lobe_weight.
+    void (*suns_ggx)(const ki_sun_points *suns, double alpha, const double *directions,
+                     double *sum);
 } ki_kernels;
 
 /// The kernels of the context's instruction set.

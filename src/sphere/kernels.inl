@@ -33,6 +33,30 @@ static inline void store(double *p, vec v)
     memcpy(p, &v, sizeof v);
 }
 
+#if KI_WIDTH == 1
+static inline vec positive(vec x)
+{
+    return x > 0 ? x : 0;
+}
+typedef float floats;
+#else
+typedef int64_t mask __attribute__((vector_size(8 * KI_WIDTH)));
+
+static inline vec positive(vec x)
+{
+    return (vec)((mask)x & (mask)(x > 0));
+}
+typedef float floats __attribute__((vector_size(4 * (KI_WIDTH < 4 ? 4 : 8)), may_alias));
+#endif
+enum { FLOATS = sizeof(floats) / sizeof(float) };
+
+static inline floats load_floats(const float *p)
+{
+    floats v;
+    memcpy(&v, p, sizeof v);
+    return v;
+}
+
 static inline double sum_lanes(const double *v)
 {
     return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
@@ -136,7 +160,8 @@ static void pass_any(const ki_fft_pass *pass, const double *x, double *y)
                     for (int k = 1; k < r; k++) {
                         turn += j;
                         turn -= turn >= r ? r : 0;
-                        vec wr = splat(pass->roots[2 * turn]), wi = splat(pass->roots[2 * turn + 1]);
+                        vec wr = splat(pass->roots[2 * turn]),
+                            wi = splat(pass->roots[2 * turn + 1]);
                         vec br = load(a + apart * (size_t)k + h);
                         vec bi = load(a + apart * (size_t)k + 8 + h);
                         re += br * wr - bi * wi;
@@ -353,42 +378,70 @@ static void interpolate(const float *grid, size_t plane, size_t pitch, const flo
         taps_at(ring_taps, position[2 * i] - (double)ring, a);
         taps_at(column_taps, position[2 * i + 1] - (double)column, b);
         const float *corner = grid + ring * pitch + column;
-        for (int c = 0; c < 3; c++) {
-            float sums[KI_TAPS] = {0};
-            for (int k = 0; k < KI_TAPS; k++) {
-                const float *at = corner + (size_t)c * plane + (size_t)k * pitch;
-                for (int j = 0; j < KI_TAPS; j++)
-                    sums[j] += a[k] * at[j];
+        for (int c = 0; c < 3; c++, corner += plane) {
+            float sums[KI_TAPS];
+            for (int h = 0; h < KI_TAPS; h += FLOATS) {
+                floats sum = load_floats(corner + h) * a[0];
+                for (int k = 1; k < KI_TAPS; k++)
+                    sum += load_floats(corner + (size_t)k * pitch + h) * a[k];
+                sum *= load_floats(b + h);
+                memcpy(sums + h, &sum, sizeof sum);
             }
-            for (int j = 0; j < KI_TAPS; j++)
-                sums[j] *= b[j];
             rgb[3 * i + c] += ((sums[0] + sums[4]) + (sums[2] + sums[6])) +
                               ((sums[1] + sums[5]) + (sums[3] + sums[7]));
         }
     }
 }
 
-static void points_ggx(double alpha, const double *directions, const double (*points)[6], int count,
-                       double *sum)
+static inline vec versine(const double *directions, int h, const double *p)
 {
-    double a2 = alpha * alpha, half_b = 0.5 * (1 - a2);
-    for (int i = 0; i < count; i++) {
-        const double *p = points[i];
-        double weight[KI_LANES];
-        for (int j = 0; j < KI_LANES; j++) {
-            double x = directions[j] - p[0], y = directions[8 + j] - p[1],
-                   z = directions[16 + j] - p[2];
-            double versine = 0.5 * (x * x + y * y + z * z), c = 1 - versine;
-            double ratio = a2 / (a2 + half_b * versine);
-            c = c > 0 ? c : 0;
-            weight[j] = c * ratio * ratio;
+    vec x = load(directions + h) - p[0], y = load(directions + 8 + h) - p[1],
+        z = load(directions + 16 + h) - p[2];
+    return ((x * x + y * y) + z * z) * 0.5;
+}
+
+// Adds a list of points; the same arithmetic in every lane.
+static inline void add_points(double a2, const double *directions, const double (*points)[6],
+                              int count, double *sum)
+{
+    double half_b = 0.5 * (1 - a2);
+    for (int h = 0; h < KI_LANES; h += KI_WIDTH) {
+        vec red = load(sum + h), green = load(sum + 8 + h), blue = load(sum + 16 + h);
+        for (int i = 0; i < count; i++) {
+            vec v = versine(directions, h, points[i]);
+            vec ratio = a2 / (a2 + v * half_b);
+            vec weight = positive(1 - v) * (ratio * ratio);
+            red += weight * points[i][3];
+            green += weight * points[i][4];
+            blue += weight * points[i][5];
         }
-        for (int j = 0; j < KI_LANES; j++) {
-            sum[j] += p[3] * weight[j];
-            sum[8 + j] += p[4] * weight[j];
-            sum[16 + j] += p[5] * weight[j];
-        }
+        store(sum + h, red);
+        store(sum + 8 + h, green);
+        store(sum + 16 + h, blue);
     }
 }
 
-const ki_kernels KI_TABLE = {fft, spread, sum_row, analyze, synthesize, interpolate, points_ggx};
+static void suns_ggx(const ki_sun_points *suns, double alpha, const double *directions, double *sum)
+{
+    double a2 = alpha * alpha;
+    for (int i = 0; i < suns->count; i++) {
+        double distances[KI_LANES], nearest = 2, edge = 2;
+        for (int h = 0; h < KI_LANES; h += KI_WIDTH)
+            store(distances + h, versine(directions, h, suns->centre[i]));
+        for (int j = 0; j < KI_LANES; j++) {
+            double above = distances[j] < 1 ? 1 - distances[j] : distances[j] - 1;
+            nearest = distances[j] < nearest ? distances[j] : nearest;
+            edge = above < edge ? above : edge;
+        }
+        if (edge < suns->horizon || nearest < suns->near_versine)
+            add_points(a2, directions,
+                       (const double(*)[6])suns->near + (size_t)suns->near_count * (size_t)i,
+                       suns->near_count, sum);
+        else if (nearest < suns->far_versine)
+            add_points(a2, directions, (const double(*)[6])suns->pairs + 4 * (size_t)i, 4, sum);
+        else
+            add_points(a2, directions, (const double(*)[6])suns->centre + i, 1, sum);
+    }
+}
+
+const ki_kernels KI_TABLE = {fft, spread, sum_row, analyze, synthesize, interpolate, suns_ggx};

@@ -195,10 +195,10 @@ static void synthesize_rings(void *data, int worker, int index)
             continue;
         size_t row = ki_legendre_row(v->legendre, m);
         double *out = orders + 192 * (size_t)m;
-        v->kernels->synthesize(v->legendre->f + row, v->degree - m + 1,
-                               v->rings.twice_cos + 16 * index,
-                               v->rings.start + 8 * ((size_t)m * (size_t)vectors + 2 * (size_t)index),
-                               v->coefficients + ki_coefficient_row(v->degree, m), out, out + 96);
+        v->kernels->synthesize(
+            v->legendre->f + row, v->degree - m + 1, v->rings.twice_cos + 16 * index,
+            v->rings.start + 8 * ((size_t)m * (size_t)vectors + 2 * (size_t)index),
+            v->coefficients + ki_coefficient_row(v->degree, m), out, out + 96);
     }
     for (int half = 0; half < 2; half++)
         for (int c = 0; c < 3; c++) {
@@ -269,14 +269,28 @@ static void find_positions(const ki_level *v, size_t first, int count, double *p
     }
 }
 
+// kiln_map_direction with less ado for cubes.
+static void find_direction(const ki_level *v, size_t texel, double d[3])
+{
+    if (v->shape != KILN_SHAPE_CUBE) {
+        kiln_map_direction(v->map, v->index, texel, d);
+        return;
+    }
+    size_t n = (size_t)v->size, row = texel / n;
+    ki_face_direction((int)(row / n), (2.0 * (double)(texel % n) + 1) / v->size - 1,
+                      (2.0 * (double)(row % n) + 1) / v->size - 1, d);
+    double scale = 1 / sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    for (int k = 0; k < 3; k++)
+        d[k] *= scale;
+}
+
 static void add_suns(const ki_level *v, size_t first, int count, float *rgb)
 {
     for (int i = 0; i < count; i += KI_LANES) {
         double directions[3 * KI_LANES], sum[3 * KI_LANES] = {0};
         for (int j = 0; j < KI_LANES; j++) {
             double d[3];
-            size_t texel = first + (size_t)(i + j < count ? i + j : count - 1);
-            kiln_map_direction(v->map, v->index, texel, d);
+            find_direction(v, first + (size_t)(i + j < count ? i + j : count - 1), d);
             for (int k = 0; k < 3; k++)
                 directions[KI_LANES * k + j] = d[k];
         }
@@ -311,9 +325,9 @@ static void fill_row(void *data, int index)
         float rgb[3 * CHUNK] = {0};
         double positions[2 * CHUNK];
         find_positions(v, first, count, positions);
-        v->kernels->interpolate(v->grid, v->plane, v->pitch, v->ring_taps, v->column_taps, positions,
-                                count, rgb);
-        if (v->points->sun_count)
+        v->kernels->interpolate(v->grid, v->plane, v->pitch, v->ring_taps, v->column_taps,
+                                positions, count, rgb);
+        if (v->points->suns.count)
             add_suns(v, first, count, rgb);
         if (v->zonal.outer > 0)
             add_surroundings(v, first, count, rgb);
@@ -327,8 +341,8 @@ kiln_result ki_level_execute(ki_level *v, const kiln_spectrum *spectrum, const k
                              double rotation, kiln_map *map, int index, kiln_error *error)
 {
     ki_points points;
-    kiln_result result = ki_points_create(spectrum, &v->zonal, v->lobe.integral, rotation, &points,
-                                          error);
+    kiln_result result =
+        ki_points_create(spectrum, &v->zonal, v->lobe.integral, rotation, &points, error);
     if (result != KILN_OK)
         return result;
     v->spectrum = spectrum;

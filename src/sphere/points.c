@@ -7,126 +7,116 @@
 #include <math.h>
 #include <string.h>
 
-enum { MOST_CELLS = 24, GATHER = 512 };
+enum { MOST_CELLS = 24 };
 
 // Two Gauss nodes on [-1, 1].
 static const double node = 0.57735026918962576451;
 
-// Writes 4 cells^2 points that share a texel's solid angle: cells of equal area, two by two Gauss
-// nodes in each.
-static void divide(const ki_sun *sun, int size, int cells, double rotation, double integral,
-                   double (*points)[6])
+// 1 - cos of the angle between two unit directions, precise for small ones.
+static double versine(const double *a, const double *b)
 {
-    double step = KI_PI / size, top = ki_cos(sun->row * step), bottom = ki_cos((sun->row + 1) * step);
-    double area = step * (top - bottom) / (4.0 * cells * cells * integral);
-    int n = 2 * cells, at = 0;
+    double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
+    return 0.5 * (x * x + y * y + z * z);
+}
+
+// Writes n^2 points that share a texel's solid angle, at the given offsets across it in [0, 1].
+static void divide(const ki_sun *sun, int size, int n, const double *offsets, double rotation,
+                   double integral, double (*points)[6])
+{
+    double step = KI_PI / size, top = ki_cos(sun->row * step),
+           bottom = ki_cos((sun->row + 1) * step);
+    double area = step * (top - bottom) / ((double)n * n * integral);
     for (int j = 0; j < n; j++) {
-        double v = (j / 2 + 0.5 + (j % 2 ? node : -node) / 2) / cells;
-        double cosine = top + (bottom - top) * v, sine = sqrt(fmax(0, (1 - cosine) * (1 + cosine)));
-        for (int i = 0; i < n; i++, at++) {
-            double u = (sun->column + (i / 2 + 0.5 + (i % 2 ? node : -node) / 2) / cells) / (2.0 * size);
-            double s, c, unturned[3];
+        double cosine = top + (bottom - top) * offsets[j];
+        double sine = sqrt(fmax(0, (1 - cosine) * (1 + cosine)));
+        for (int i = 0; i < n; i++, points++) {
+            double s, c, turned[3];
+            ki_sincos((sun->column + offsets[i]) * step, &s, &c);
             // See ki_panorama_direction.
-            ki_sincos(2 * KI_PI * u, &s, &c);
-            unturned[0] = -sine * s;
-            unturned[1] = cosine;
-            unturned[2] = sine * c;
-            ki_turn(unturned, -rotation, points[at]);
-            for (int k = 0; k < 3; k++)
-                points[at][3 + k] = area * (double)sun->radiance[k];
+            ki_turn((double[3]){-sine * s, cosine, sine * c}, -rotation, turned);
+            for (int k = 0; k < 3; k++) {
+                (*points)[k] = turned[k];
+                (*points)[3 + k] = area * (double)sun->radiance[k];
+            }
         }
     }
 }
 
+// A texel of size h seen at a distance or through a lobe of width s errs by about (h/s)^2 / 24 times
+// k'' s^2 / k (20 in GGX's tail) as one point, by (h/s)^4 / 4320 times 840 as two by two Gauss nodes.
 kiln_result ki_points_create(const kiln_spectrum *spectrum, const ki_zonal *zonal, double integral,
                              double rotation, ki_points *points, kiln_error *error)
 {
     kiln_context *context = spectrum->context;
     *points = (ki_points){.kernels = ki_sphere_kernels(context),
                           .zonal = *zonal,
-                          .sun_count = spectrum->sun_count,
-                          .far_count = 4,
-                          .near_count = 4};
-    if (!spectrum->sun_count)
+                          .suns = {.count = spectrum->sun_count}};
+    ki_sun_points *suns = &points->suns;
+    if (!suns->count)
         return KILN_OK;
     double texel = KI_PI / spectrum->size, width = ki_lobe_width(&zonal->lobe);
-    int cells = (int)ki_clamp(ceil(texel / width / 0.3), 1, MOST_CELLS);
-    points->near_count = 4 * cells * cells;
-    points->near_versine = cells > 1 ? 1 - ki_cos(fmin(KI_PI, 12 * texel)) : 0;
-    size_t suns = (size_t)spectrum->sun_count;
-    points->centres = ki_alloc_raw(context, suns, sizeof *points->centres);
-    points->far = ki_alloc_raw(context, suns * 4, sizeof *points->far);
-    points->near = ki_alloc_raw(context, suns * (size_t)points->near_count, sizeof *points->near);
-    if (!points->centres || !points->far || !points->near) {
+    int cells = (int)ki_clamp(ceil(texel / width / 0.3), 2, MOST_CELLS);
+    suns->near_count = 4 * cells * cells;
+    suns->near_versine = texel > 0.3 * width ? 1 - ki_cos(fmin(KI_PI, 12 * texel)) : -1;
+    suns->far_versine = width > 128 * texel ? -1 : 1 - ki_cos(fmin(KI_PI, 128 * texel));
+    suns->horizon = texel;
+    size_t count = (size_t)suns->count, near_count = (size_t)suns->near_count;
+    suns->centre = ki_alloc_raw(context, count, sizeof *suns->centre);
+    suns->pairs = ki_alloc_raw(context, count * 4, sizeof *suns->pairs);
+    suns->near = ki_alloc_raw(context, count * near_count, sizeof *suns->near);
+    if (!suns->centre || !suns->pairs || !suns->near) {
         ki_points_destroy(points);
-        return ki_fail_memory(context, error, "the suns",
-                              suns * (size_t)points->near_count * sizeof *points->near);
+        return ki_fail_memory(context, error, "the suns", count * near_count * sizeof *suns->near);
     }
-    for (int i = 0; i < spectrum->sun_count; i++) {
+    double middle = 0.5, pair[2] = {0.5 - node / 2, 0.5 + node / 2}, fine[2 * MOST_CELLS];
+    for (int i = 0; i < cells; i++) {
+        fine[2 * i] = (i + pair[0]) / cells;
+        fine[2 * i + 1] = (i + pair[1]) / cells;
+    }
+    for (size_t i = 0; i < count; i++) {
         const ki_sun *sun = &spectrum->suns[i];
-        double centre[3];
-        ki_panorama_direction((sun->column + 0.5) / (2.0 * spectrum->size),
-                              (sun->row + 0.5) / spectrum->size, centre);
-        ki_turn(centre, -rotation, points->centres[i]);
-        divide(sun, spectrum->size, 1, rotation, integral, points->far + 4 * (size_t)i);
-        divide(sun, spectrum->size, cells, rotation, integral,
-               points->near + (size_t)points->near_count * (size_t)i);
+        int size = spectrum->size;
+        divide(sun, size, 1, &middle, rotation, integral, suns->centre + i);
+        divide(sun, size, 2, pair, rotation, integral, suns->pairs + 4 * i);
+        divide(sun, size, 2 * cells, fine, rotation, integral, suns->near + near_count * i);
     }
     return KILN_OK;
 }
 
 void ki_points_destroy(ki_points *points)
 {
-    ki_free(points->centres);
-    ki_free(points->far);
-    ki_free(points->near);
+    ki_free(points->suns.centre);
+    ki_free(points->suns.pairs);
+    ki_free(points->suns.near);
     *points = (ki_points){0};
-}
-
-static void add_points(const ki_points *points, const double *directions, const double (*list)[6],
-                       int count, double *sum)
-{
-    const kiln_lobe *lobe = &points->zonal.lobe;
-    if (lobe->kind == KILN_LOBE_LAMBERT) {
-        points->kernels->points_ggx(1, directions, list, count, sum);
-        return;
-    }
-    if (lobe->kind == KILN_LOBE_GGX && points->zonal.outer <= 0) {
-        points->kernels->points_ggx(lobe->parameter, directions, list, count, sum);
-        return;
-    }
-    for (int i = 0; i < count; i++)
-        for (int j = 0; j < KI_LANES; j++) {
-            double x = directions[j] - list[i][0], y = directions[8 + j] - list[i][1],
-                   z = directions[16 + j] - list[i][2];
-            double weight = ki_zonal_weight(&points->zonal, 0.5 * (x * x + y * y + z * z));
-            for (int c = 0; c < 3; c++)
-                sum[8 * c + j] += weight * list[i][3 + c];
-        }
 }
 
 void ki_points_add(const ki_points *points, const double *directions, double *sum)
 {
-    if (points->near_versine <= 0) {
-        add_points(points, directions, (const double(*)[6])points->far, 4 * points->sun_count, sum);
+    const ki_sun_points *suns = &points->suns;
+    const kiln_lobe *lobe = &points->zonal.lobe;
+    bool ggx = lobe->kind == KILN_LOBE_GGX && points->zonal.outer <= 0;
+    if (ggx || lobe->kind == KILN_LOBE_LAMBERT) {
+        points->kernels->suns_ggx(suns, ggx ? lobe->parameter : 1, directions, sum);
         return;
     }
-    for (int i = 0; i < points->sun_count; i++) {
-        double nearest = 2;
+    // Other lobes are rare: one lane at a time.
+    for (int i = 0; i < suns->count; i++)
         for (int j = 0; j < KI_LANES; j++) {
-            double x = directions[j] - points->centres[i][0],
-                   y = directions[8 + j] - points->centres[i][1],
-                   z = directions[16 + j] - points->centres[i][2];
-            nearest = fmin(nearest, 0.5 * (x * x + y * y + z * z));
+            const double direction[3] = {directions[j], directions[8 + j], directions[16 + j]};
+            const double(*list)[6] = (const double(*)[6])suns->pairs + 4 * (size_t)i;
+            int count = 4;
+            double away = versine(direction, suns->centre[i]);
+            if (away < suns->near_versine || fabs(1 - away) < suns->horizon) {
+                count = suns->near_count;
+                list = (const double(*)[6])suns->near + (size_t)count * (size_t)i;
+            }
+            for (int n = 0; n < count; n++) {
+                double weight = ki_zonal_weight(&points->zonal, versine(direction, list[n]));
+                for (int c = 0; c < 3; c++)
+                    sum[8 * c + j] += weight * list[n][3 + c];
+            }
         }
-        if (nearest > points->near_versine)
-            add_points(points, directions, (const double(*)[6])points->far + 4 * (size_t)i, 4, sum);
-        else
-            add_points(points, directions,
-                       (const double(*)[6])points->near +
-                           (size_t)points->near_count * (size_t)i,
-                       points->near_count, sum);
-    }
 }
 
 // -------------------------------------------------------------------------------- narrow lobes
@@ -143,9 +133,8 @@ static double integrate_cell(const cell_sum *sum, double phi, double dphi, doubl
 {
     double sine, cosine, ring = sqrt(fmax(0, (1 - z) * (1 + z)));
     ki_sincos(phi, &sine, &cosine);
-    double x = -ring * sine - sum->direction[0], y = z - sum->direction[1],
-           w = ring * cosine - sum->direction[2];
-    double versine = 0.5 * (x * x + y * y + w * w), distance = sqrt(2 * versine);
+    const double centre[3] = {-ring * sine, z, ring * cosine};
+    double distance = sqrt(2 * versine(centre, sum->direction));
     double extent = fmax(dphi * ring, dz / fmax(ring, dz));
     if (depth < 40 && extent > 0.5 * fmax(distance - 0.5 * extent, 0.3 * sum->width)) {
         double total = 0;
@@ -158,12 +147,9 @@ static double integrate_cell(const cell_sum *sum, double phi, double dphi, doubl
     for (int k = 0; k < 4; k++) {
         double zk = z + (k / 2 ? 0.5 : -0.5) * node * dz, r = sqrt(fmax(0, (1 - zk) * (1 + zk)));
         ki_sincos(phi + (k % 2 ? 0.5 : -0.5) * node * dphi, &sine, &cosine);
-        x = -r * sine - sum->direction[0];
-        y = zk - sum->direction[1];
-        w = r * cosine - sum->direction[2];
-        versine = 0.5 * (x * x + y * y + w * w);
-        total += ki_lobe_weight(&sum->zonal->lobe, versine) *
-                 (1 - ki_zonal_step(sum->zonal, versine));
+        const double at[3] = {-r * sine, zk, r * cosine};
+        double away = versine(at, sum->direction);
+        total += ki_lobe_weight(&sum->zonal->lobe, away) * (1 - ki_zonal_step(sum->zonal, away));
     }
     return total * 0.25 * dphi * dz;
 }
@@ -182,7 +168,8 @@ void ki_surroundings_add(const kiln_map *panorama, const ki_zonal *zonal, double
     double span = KI_PI;
     if (theta - reach > 0 && theta + reach < KI_PI)
         span = ki_asin(fmin(1, ki_sin(reach) / sine));
-    int columns = 2 * size, from = (int)floor((phi - span) / step), to = (int)floor((phi + span) / step);
+    int columns = 2 * size, from = (int)floor((phi - span) / step),
+        to = (int)floor((phi + span) / step);
     if (to - from >= columns) {
         from = 0;
         to = columns - 1;
@@ -193,7 +180,8 @@ void ki_surroundings_add(const kiln_map *panorama, const ki_zonal *zonal, double
         for (int i = from; i <= to; i++) {
             int column = ((i % columns) + columns) % columns;
             double weight = integrate_cell(&sum, (i + 0.5) * step, step, 0.5 * (top + bottom),
-                                           top - bottom, 0) / integral;
+                                           top - bottom, 0) /
+                            integral;
             for (int c = 0; c < 3; c++)
                 rgb[c] += weight * (double)row[3 * column + c];
         }

@@ -10,11 +10,7 @@
 typedef struct ki_points {
     const ki_kernels *kernels;
     ki_zonal zonal;
-    int sun_count, far_count, near_count; // points a sun
-    double (*centres)[3];
-    double near_versine;    // 1 - cos of the distance within which `near` is used
-    double (*far)[6];       // [sun][far_count]: direction, radiance times solid angle / integral
-    double (*near)[6];      // [sun][near_count]
+    ki_sun_points suns;
 } ki_points;
 
 kiln_result ki_points_create(const kiln_spectrum *spectrum, const ki_zonal *zonal, double integral,

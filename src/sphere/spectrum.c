@@ -13,15 +13,14 @@ static const double sun_contrast = 16;
 
 // ---------------------------------------------------------------------------------------- the plan
 
+enum { ROW_NODES = 6 };
+
 // The integral over the row from theta0 to theta1 of each ring's interpolating function, times sin
 // theta. Rings k < 0 or k >= count lie beyond a pole. Returns the number of weights; with
 // `weights` NULL only counts.
-static int spread_row(double theta0, double theta1, int ring_count, const double *taps, int *first,
-                      double *weights)
+static int spread_row(double theta0, double theta1, int ring_count, const double *taps,
+                      const double rule[2][ROW_NODES], int *first, double *weights)
 {
-    static const int nodes_count = 6;
-    double nodes[6], node_weights[6];
-    ki_gauss_legendre(nodes_count, nodes, node_weights);
     double scale = ring_count / KI_PI; // ring k is at scale theta = k + 1/2
     int low = (int)floor(theta0 * scale - 0.5), high = (int)floor(theta1 * scale - 0.5);
     *first = low - 3;
@@ -31,9 +30,9 @@ static int spread_row(double theta0, double theta1, int ring_count, const double
     memset(weights, 0, (size_t)count * sizeof *weights);
     for (int k = low; k <= high; k++) {
         double a = fmax(theta0, (k + 0.5) / scale), b = fmin(theta1, (k + 1.5) / scale);
-        for (int n = 0; n < nodes_count && b > a; n++) {
-            double theta = a + (b - a) * 0.5 * (1 + nodes[n]), tap[KI_TAPS];
-            double weight = node_weights[n] * (b - a) * 0.5 * ki_sin(theta);
+        for (int n = 0; n < ROW_NODES && b > a; n++) {
+            double theta = a + (b - a) * 0.5 * (1 + rule[0][n]), tap[KI_TAPS];
+            double weight = rule[1][n] * (b - a) * 0.5 * ki_sin(theta);
             ki_taps_at(taps, ki_clamp(theta * scale - 0.5 - k, 0, 1), tap);
             for (int i = 0; i < KI_TAPS; i++)
                 weights[k - low + i] += weight * tap[i];
@@ -49,6 +48,8 @@ static bool plan_rows(ki_analysis *analysis, const double *taps)
     analysis->row_start = ki_alloc_raw(analysis->context, (size_t)size + 1, sizeof(int));
     if (!analysis->row_first || !analysis->row_start)
         return false;
+    double rule[2][ROW_NODES];
+    ki_gauss_legendre(ROW_NODES, rule[0], rule[1]);
     int total = 0;
     for (int pass = 0; pass < 2; pass++) {
         total = 0;
@@ -56,12 +57,11 @@ static bool plan_rows(ki_analysis *analysis, const double *taps)
             double *weights = pass ? analysis->row_weights + total : NULL;
             analysis->row_start[j] = total;
             total += spread_row(j * KI_PI / size, (j + 1) * KI_PI / size, rings, taps,
-                                &analysis->row_first[j], weights);
+                                (const double(*)[ROW_NODES])rule, &analysis->row_first[j], weights);
         }
         analysis->row_start[size] = total;
         if (!pass)
-            analysis->row_weights =
-                ki_alloc_raw(analysis->context, (size_t)total, sizeof(double));
+            analysis->row_weights = ki_alloc_raw(analysis->context, (size_t)total, sizeof(double));
         if (!analysis->row_weights)
             return false;
     }
@@ -128,8 +128,8 @@ kiln_result ki_spectrum_create(const ki_analysis *analysis, kiln_spectrum **spec
     kiln_context *context = analysis->context;
     kiln_spectrum *s = *spectrum = ki_alloc(context, 1, sizeof *s);
     if (s) {
-        *s = (kiln_spectrum){
-            .context = context, .degree = analysis->degree, .size = analysis->size};
+        *s =
+            (kiln_spectrum){.context = context, .degree = analysis->degree, .size = analysis->size};
         s->a = ki_alloc(context, ki_coefficient_count(s->degree), sizeof *s->a);
     }
     if (s && s->a)
@@ -161,7 +161,7 @@ struct ki_intake {
     ki_sun *candidates; // brighter than their share of what had come by then
     int candidate_count, candidate_room;
 
-    double *orders; // [degree + 1][vector][12][8], a ring vector's Fourier coefficients
+    double *orders;  // [degree + 1][vector][12][8], a ring vector's Fourier coefficients
     double *scratch; // a worker's: two FFT buffers, or a state for the recurrence
     size_t scratch_size;
 
@@ -190,7 +190,8 @@ kiln_result ki_intake_create(const ki_analysis *analysis, ki_intake **intake, ki
     in->row_peaks = ki_alloc_raw(context, (size_t)analysis->size, sizeof(float));
     in->candidate_room = 4096;
     in->candidates = ki_alloc_raw(context, (size_t)in->candidate_room, sizeof *in->candidates);
-    in->orders = ki_alloc_raw(context, ((size_t)analysis->degree + 1) * vectors, 96 * sizeof(double));
+    in->orders =
+        ki_alloc_raw(context, ((size_t)analysis->degree + 1) * vectors, 96 * sizeof(double));
     in->scratch = ki_alloc_raw(context, threads * in->scratch_size, sizeof(double));
     if (in->rings && in->row_sums && in->row_peaks && in->candidates && in->orders && in->scratch)
         return KILN_OK;
@@ -248,7 +249,8 @@ static void spread_columns(void *data, int index)
         int start = a->row_start[in->row_count + j], end = a->row_start[in->row_count + j + 1];
         for (int i = start; i < end; i++) {
             bool turned;
-            int ring = real_ring(a->row_first[in->row_count + j] + i - start, a->rings.count, &turned);
+            int ring =
+                real_ring(a->row_first[in->row_count + j] + i - start, a->rings.count, &turned);
             a->kernels->spread(in->rings + (size_t)ring * (size_t)size * 6 + here,
                                row + (turned ? there : here), a->row_weights[i], 3 * count);
         }
@@ -259,8 +261,8 @@ static void sum_one_row(void *data, int index)
 {
     ki_intake *in = data;
     int size = in->analysis->size, row = in->row_count + index;
-    in->row_peaks[row] = in->analysis->kernels->sum_row(
-        in->rows + (size_t)index * (size_t)size * 6, 2 * size, in->row_sums + 3 * (size_t)row);
+    in->row_peaks[row] = in->analysis->kernels->sum_row(in->rows + (size_t)index * (size_t)size * 6,
+                                                        2 * size, in->row_sums + 3 * (size_t)row);
 }
 
 static double row_solid_angle(int row, int size)
@@ -308,8 +310,7 @@ static void gather_candidates(ki_intake *in)
             if (in->candidate_count == in->candidate_room)
                 prune(in);
             if (in->candidate_count < in->candidate_room)
-                in->candidates[in->candidate_count++] =
-                    (ki_sun){row, x, {rgb[0], rgb[1], rgb[2]}};
+                in->candidates[in->candidate_count++] = (ki_sun){row, x, {rgb[0], rgb[1], rgb[2]}};
         }
     }
 }
@@ -413,10 +414,10 @@ static void analyze_order(void *data, int worker, int m)
     size_t vectors = (size_t)a->rings.vector_count, row = ki_legendre_row(&a->legendre, m);
     int count = a->degree - m + 1;
     double *out = in->spectrum->a + ki_coefficient_row(a->degree, m);
-    a->kernels->analyze(a->legendre.f + row, count, a->rings.twice_cos,
-                        a->rings.start + 8 * vectors * (size_t)m,
-                        in->orders + 96 * vectors * (size_t)m, a->rings.first[m],
-                        a->rings.vector_count, in->scratch + (size_t)worker * in->scratch_size, out);
+    a->kernels->analyze(
+        a->legendre.f + row, count, a->rings.twice_cos, a->rings.start + 8 * vectors * (size_t)m,
+        in->orders + 96 * vectors * (size_t)m, a->rings.first[m], a->rings.vector_count,
+        in->scratch + (size_t)worker * in->scratch_size, out);
     for (int i = 0; i < count; i++)
         for (int c = 0; c < KI_COMPONENTS; c++)
             out[KI_COMPONENTS * i + c] *= a->legendre.scale[row + (size_t)i];
@@ -426,8 +427,8 @@ kiln_result ki_intake_finish(ki_intake *in, kiln_spectrum *spectrum, kiln_error 
 {
     const ki_analysis *a = in->analysis;
     if (in->row_count != a->size)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "the panorama has %d rows, only %d came", a->size,
-                       in->row_count);
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "the panorama has %d rows, only %d came",
+                       a->size, in->row_count);
     if (!settle_suns(in, spectrum))
         return ki_fail_memory(a->context, error, "the list of suns",
                               (size_t)in->candidate_count * sizeof(ki_sun));

@@ -32,10 +32,10 @@ typedef struct ki_analysis {
     int size, degree;
     ki_legendre legendre;
     ki_rings rings;
-    ki_fft fft;         // of a row
-    double *column;     // [degree + 1][2], a column's width and place: the integral of exp(-i m phi)
-    int *row_first;     // [size], first ring a row is spread to; may lie beyond a pole
-    int *row_start;     // [size + 1], into row_weights
+    ki_fft fft;     // of a row
+    double *column; // [degree + 1][2], a column's width and place: the integral of exp(-i m phi)
+    int *row_first; // [size], first ring a row is spread to; may lie beyond a pole
+    int *row_start; // [size + 1], into row_weights
     double *row_weights;
 } ki_analysis;
 

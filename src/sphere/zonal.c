@@ -116,7 +116,8 @@ kiln_result ki_zonal_analyze(kiln_context *context, const ki_zonal *zonal, doubl
     spectrum->k[0] = sum / whole;
 
     // Parseval: integral of weight^2 = sum (2l + 1) / 4 pi k_l^2.
-    double left = squares * 4 * KI_PI - sum * sum, stop = tolerance * tolerance * squares * 4 * KI_PI;
+    double left = squares * 4 * KI_PI - sum * sum,
+           stop = tolerance * tolerance * squares * 4 * KI_PI;
     int l = 1;
     for (; l <= limit && left > stop; l++) {
         double part[4] = {0};
