@@ -145,8 +145,8 @@ lint)
     say "layers" && scripts/layers.sh
     say "formatting" && scripts/format.sh --check
     say "shellcheck"
-    shellcheck ./do .ci/run
-    find scripts tests bench -name "*.sh" -not -path "*/node_modules/*" -exec shellcheck {} +
+    shellcheck -S warning ./do .ci/run
+    find scripts tests bench -name "*.sh" -not -path "*/node_modules/*" -exec shellcheck -x -P SCRIPTDIR -S warning {} +
     build release
     say "cppcheck"
     cppcheck --quiet --error-exitcode=1 --inline-suppr --std=c11 -I include -I src \

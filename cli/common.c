@@ -233,8 +233,10 @@ static void catch_signals(void)
     for (int i = 0; i < 3; i++)
         if (sigaction(stopping[i], NULL, &old) == 0 && old.sa_handler != SIG_IGN)
             sigaction(stopping[i], &action, NULL);
-    // A reader that went away shows as a failed write, so that no temporary file is left.
+    // A reader that went away and a file grown too large show as failed writes, so that no
+    // temporary file is left.
     signal(SIGPIPE, SIG_IGN);
+    signal(SIGXFSZ, SIG_IGN);
 }
 
 // --------------------------------------------------------------------------------------------- job

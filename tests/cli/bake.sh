@@ -1,0 +1,103 @@
+#!/bin/sh
+# Bakes that work: what is written, where, and that it says the same by every way.
+# shellcheck source=lib.sh
+. "$(dirname "$0")/lib.sh"
+
+expect 0 "" sky -o sky.exr --size 64 --elevation 20 --quiet
+[ ! -s log/out ] || die "quiet is not quiet"
+export small="--size 16 --exposure -8"
+
+# shellcheck disable=SC2086 # $small is several words
+{
+    expect 0 "" bake sky.exr -o a.ktx2 $small
+    [ "$(wc -l <log/out)" = 1 ] || die "one line says what was done"
+    only sky.exr a.ktx2
+    # By standard input, another number of threads, and over a file that is there.
+    "$KILN" bake - -o b.ktx2 $small -q <sky.exr || die "standard input"
+    same a.ktx2 b.ktx2
+    expect 0 "" bake sky.exr -o b.ktx2 $small -q --threads 3
+    same a.ktx2 b.ktx2
+    cp sky.exr -- -sky.exr
+    expect 0 "" bake $small -q -o b.ktx2 -- -sky.exr
+    same a.ktx2 b.ktx2
+    rm -- -sky.exr b.ktx2 a.ktx2
+
+    # --zstd without a level does not take the next word for one.
+    expect 0 "" bake $small --zstd sky.exr -o z.ktx2
+    expect 0 "" bake $small --zstd=3 sky.exr -o y.ktx2
+    same y.ktx2 z.ktx2
+    rm y.ktx2 z.ktx2
+
+    # Everything at once, with a report that is JSON and tells the truth.
+    expect 0 "" bake sky.exr -o a.ktx2 $small --irradiance d.ktx2 --irradiance-size 8 \
+        --sh sh.json --sh-bands 4 --sh-irradiance --sh-window 6 --mirror --rotate -30 --json
+    node -e '
+        const report = JSON.parse(require("fs").readFileSync("log/out", "utf8"));
+        const wanted = [16, 8, 4, 2, 1];
+        const good = report.output.file_count === 3 && report.output.level_count === 5 &&
+            report.input.width === 128 && report.input.height === 64 &&
+            report.input.shape === "panorama" && report.output.shape === "cube" &&
+            report.output.levels.every((l, i) => l.size === wanted[i] && l.roughness === i / 4) &&
+            report.degree > 0 && report.seconds.total > 0 && report.peak_memory.process > 0;
+        const sh = JSON.parse(require("fs").readFileSync("sh.json", "utf8"));
+        process.exit(good && sh ? 0 : 1);' || die "the report"
+    only sky.exr a.ktx2 d.ktx2 sh.json
+    expect 0 "" info --json a.ktx2 d.ktx2 sky.exr
+    node -e '
+        const [a, d, sky] = JSON.parse(require("fs").readFileSync("log/out", "utf8"));
+        const good = a.format === "ktx2" && a.width === 16 && a.level_count === 5 &&
+            a.face_count === 6 && a.roughness.length === 5 && a.roughness[1] === 0.25 &&
+            a.sh_radiance.length === 16 && a.sh_radiance[0].length === 3 &&
+            d.width === 8 && d.level_count === 1 && sky.format === "exr" && sky.width === 128 &&
+            sky.layout === "panorama";
+        process.exit(good ? 0 : 1);' || die "info"
+    expect 0 "" info a.ktx2
+    grep -q '5 levels' log/out || die "info in words"
+    rm a.ktx2 d.ktx2 sh.json
+
+    # Six faces, by pattern, as a folder, in any order: the same cube.
+    expect 0 "" bake sky.exr -o 'face_%s.exr' $small --levels 1 --format rgba32f -q
+    only sky.exr face_px.exr face_nx.exr face_py.exr face_ny.exr face_pz.exr face_nz.exr
+    expect 0 "" bake 'face_%s.exr' -o a.dds --size 8
+    expect 0 "" bake face_nx.exr face_ny.exr face_nz.exr face_px.exr face_py.exr face_pz.exr \
+        -o b.dds --size 8
+    same a.dds b.dds
+    expect 0 "" bake 'face_{face}.exr' -o b.dds --size 8
+    same a.dds b.dds
+    mkdir folder
+    for face in px nx py ny pz nz; do mv face_$face.exr folder/$face.exr; done
+    expect 0 "" bake folder -o b.dds --size 8
+    same a.dds b.dds
+    i=0
+    for face in px nx py ny pz nz; do mv folder/$face.exr $i.exr && i=$((i + 1)); done
+    expect 0 "" bake 0.exr 1.exr 2.exr 3.exr 4.exr 5.exr -o b.dds --size 8
+    same a.dds b.dds
+    expect 1 "must be square" bake sky.exr sky.exr sky.exr sky.exr sky.exr sky.exr -o b.dds
+    rm ./[0-5].exr ./*.dds
+
+    # Panoramas, one file a level, by the textbook and exactly.
+    for method in exact textbook; do
+        expect 0 "" bake sky.exr -o "$method"'_%d.hdr' --shape panorama --method $method \
+            --size 16 --levels 2 --exposure -8
+    done
+    only sky.exr exact_0.hdr exact_1.hdr textbook_0.hdr textbook_1.hdr
+    rm ./*.hdr
+    expect 0 "" bake sky.exr -o t.ktx2 $small --method textbook --lobe lambert --phi-steps 20 \
+        --theta-steps 10
+    expect 0 "" bake sky.exr -o t.ktx2 $small --lobe charlie --roughness 0.2,0.5
+    expect 0 "" bake sky.exr -o t.ktx2 $small --lobe phong --format rgb9e5 --verbose
+    grep -q 'level 4 .* size 1 ' log/out || die "verbose names the levels"
+    rm t.ktx2
+
+    # Light beyond what halves hold is cut off, and said to be.
+    expect 0 "kiln: warning: t.ktx2: .* above 65504 .* --exposure -" bake sky.exr -o t.ktx2 \
+        --size 16 --exposure 10
+    expect 0 "" bake sky.exr -o t.ktx2 --size 16 --exposure 10 --quiet
+    expect 0 "" bake sky.exr -o t.ktx2 --size 16 --exposure 10 --format rgba32f
+    rm t.ktx2
+}
+
+expect 0 "" tables --method textbook -o t.exr --size 16 --samples 16
+expect 0 "" tables --method textbook -o t.png --size 16 --samples 16 -q
+only sky.exr t.exr t.png
+passed

@@ -1,0 +1,106 @@
+#!/bin/sh
+# Wrong command lines: a sentence, a hint, exit 2, and nothing written.
+# shellcheck source=lib.sh
+. "$(dirname "$0")/lib.sh"
+
+got=0
+"$KILN" >log/out 2>log/err || got=$?
+[ $got = 2 ] && grep -q 'Usage: kiln' log/err && [ ! -s log/out ] || die "kiln alone"
+expect 2 "frob: no such command" frob
+expect 2 "frob: no such command" help frob
+expect 2 "\-\-frob: no such option" --frob
+expect 0 "" --help
+grep -q 'kiln bake' log/out || die "help without the commands"
+expect 0 "" --version
+grep -qx 'kiln [0-9]*\.[0-9]*\.[0-9]*' log/out || die "version"
+for command in bake info sky tables; do
+    expect 0 "" help $command
+    cp log/out log/help
+    grep -q '^Examples:' log/out || die "no examples"
+    expect 0 "" $command --help
+    same log/out log/help
+    expect 2 "kiln $command --help" $command --frob
+done
+
+# Inputs and outputs.
+expect 2 "no input" bake
+expect 2 "no input" bake -o out.ktx2
+expect 2 "no output" bake in.exr
+expect 2 "2 inputs" bake a.exr b.exr -o out.ktx2
+expect 2 "7 inputs" bake 1 2 3 4 5 6 7 -o out.ktx2
+expect 2 "which face" bake a b c d e f_px.exr -o out.ktx2
+expect 2 "standard input" bake a b c d e - -o out.ktx2
+expect 2 "must end in" bake in.exr -o out
+expect 2 "must end in" bake in.exr -o out.jpg
+expect 2 "must end in" bake in.exr -o .exr
+expect 2 "standard output" bake in.exr -o -
+expect 2 "same file" bake in.exr -o out.exr --irradiance out.exr
+expect 2 "must end in .json" bake in.exr -o out.ktx2 --sh sh.xml
+expect 1 "there is no folder nowhere" bake in.exr -o nowhere/out.ktx2
+expect 1 "there is no folder nowhere" bake in.exr -o out.ktx2 --sh nowhere/sh.json
+
+# Values out of their range, with the range.
+expect 2 "size is 0, it must be from 1 to 32768" bake in.exr -o out.ktx2 --size 0
+expect 2 "size is 32769, it must be from 1 to 32768" bake in.exr -o out.ktx2 --size 32769
+expect 2 "size is 99999999999999999999" bake in.exr -o out.ktx2 --size 99999999999999999999
+expect 2 "whole number" bake in.exr -o out.ktx2 --size 1e3
+expect 2 "whole number" bake in.exr -o out.ktx2 --size ''
+expect 2 "\-\-size needs a value" bake in.exr -o out.ktx2 --size
+expect 2 "from 1 to 16" bake in.exr -o out.ktx2 --levels 17
+expect 2 "5 levels: a size of 8 has 4" bake in.exr -o out.ktx2 --size 8 --levels 5
+expect 2 "from 1 to 22" bake in.exr -o out.ktx2 --zstd=23
+expect 2 "from 1 to 5" bake in.exr -o out.ktx2 --sh-bands 6
+expect 2 "from 1 to 256" bake in.exr -o out.ktx2 --threads 0
+expect 2 "must be from -64 to 64" bake in.exr -o out.ktx2 --exposure 65
+expect 2 "must be from -64 to 64" bake in.exr -o out.ktx2 --exposure nan
+expect 2 "must be a number" bake in.exr -o out.ktx2 --rotate left
+expect 2 "number 2 is 1.5" bake in.exr -o out.ktx2 --roughness 0,1.5
+expect 2 "commas" bake in.exr -o out.ktx2 --roughness 0,,1
+expect 2 "commas" bake in.exr -o out.ktx2 --roughness 0,1,
+expect 2 "commas" bake in.exr -o out.ktx2 --roughness ''
+expect 2 "more than 16" bake in.exr -o out.ktx2 --roughness 0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0
+for option in lobe shape method format layout; do
+    expect 2 "$option is 'frob', it must be .* or " bake in.exr -o out.ktx2 --$option frob
+done
+
+# What does not go together.
+expect 2 "given twice" bake in.exr -o out.ktx2 --size 8 --size 8
+expect 2 "contradict" bake in.exr -o out.ktx2 --quiet --verbose
+expect 2 "contradict" bake in.exr -o out.ktx2 --json --verbose
+expect 2 "contradict" bake in.exr -o out.ktx2 --sh a.json --sh-radiance --sh-irradiance
+expect 2 "2 numbers, but --levels is 3" bake in.exr -o out.ktx2 --roughness 0,1 --levels 3
+expect 2 "needs --sh" bake in.exr -o out.ktx2 --sh-window 4
+expect 2 "needs --sh" bake in.exr -o out.ktx2 --sh-irradiance
+expect 2 "needs --sh" bake in.exr -o out.dds --sh-bands 4
+expect 2 "needs --irradiance" bake in.exr -o out.ktx2 --irradiance-size 8
+expect 2 "for --method textbook" bake in.exr -o out.ktx2 --samples 8
+expect 2 "for --method textbook" bake in.exr -o out.ktx2 --phi-steps 8
+expect 2 "not charlie" bake in.exr -o out.ktx2 --method textbook --lobe charlie
+expect 2 "leave --roughness out" bake in.exr -o out.ktx2 --method textbook --roughness 0,1
+expect 2 "for --lobe ggx" bake in.exr -o out.ktx2 --method textbook --lobe lambert --samples 8
+expect 2 "are for irradiance" bake in.exr -o out.ktx2 --method textbook --phi-steps 8
+expect 2 "one level, not 3" bake in.exr -o out.ktx2 --lobe lambert --levels 3
+expect 2 "holds a cube" bake in.exr -o out.ktx2 --shape panorama
+expect 2 "holds a cube" bake in.exr -o out.dds --shape octahedron
+expect 2 "holds a cube" bake in.exr -o out.exr --shape panorama --irradiance diffuse.ktx2
+expect 2 "for .ktx2 and .dds" bake in.exr -o out.exr --format rgb9e5
+expect 2 "one format only" bake in.exr -o out.hdr --format rgba16f
+expect 2 "one format only" bake in.exr -o out.png --format rgba32f
+expect 2 "zstd is for .ktx2" bake in.exr -o out.dds --zstd
+expect 2 "not for six faces" bake 1 2 3 4 5 6 -o out.ktx2 --layout cross
+
+expect 2 "no output" sky
+expect 2 "takes no input" sky in.exr -o out.exr
+expect 2 "must end in .exr or .hdr" sky -o out.png
+expect 2 "from -5 to 90" sky -o out.exr --elevation 91
+expect 2 "from 1.7 to 10" sky -o out.exr --turbidity 1
+expect 2 "from 0 to 1" sky -o out.exr --albedo 2
+expect 2 "from 16 to 8192" sky -o out.exr --size 8
+expect 2 "no method" tables -o out.exr
+expect 2 "only textbook" tables -o out.exr --method exact
+expect 2 "must end in" tables -o out.ktx2 --method textbook
+expect 2 "from 2 to 4096" tables -o out.exr --method textbook --size 1
+expect 2 "no input" info
+
+[ -z "$(find . -type f -not -path './log/*')" ] || die "something was written"
+passed
