@@ -19,8 +19,13 @@ enum {
     MAX_GRIDS = 8,
     FEWEST = 32, // texels along a face below which a finer map is made first
     BANDS = 8,   // of rows that are scattered into at once
+    AHEAD = 192, // stencils from asking for texels to reading them
     FLUSH = 64   // blocks of 4 texels that are added up in float
 };
+
+// Loops that are wanted once with `mirror` and once without. (GCC drops calls to functions that do
+// nothing but prefetch, so that one too.)
+#define ALWAYS_INLINE __attribute__((always_inline)) static inline
 
 typedef enum plan_kind { GATHER, SCATTER, SEPARABLE, FACES, SUBSAMPLE } plan_kind;
 
@@ -54,10 +59,14 @@ struct ki_resample_plan {
     int sub;
 };
 
+// For columns that are not far outside: no division.
 static inline int wrap(int column, int width)
 {
-    column %= width;
-    return column < 0 ? column + width : column;
+    while (column < 0)
+        column += width;
+    while (column >= width)
+        column -= width;
+    return column;
 }
 
 // --------------------------------------------------------------------------------------- plan, grids
@@ -252,7 +261,7 @@ static inline lanes load(const float *from)
     return v;
 }
 
-static inline void add_blocks(sums *sum, const float *texels, const float *weights, int blocks,
+ALWAYS_INLINE void add_blocks(sums *sum, const float *texels, const float *weights, int blocks,
                               bool mirror)
 {
     if (mirror)
@@ -276,12 +285,19 @@ static inline void add_blocks(sums *sum, const float *texels, const float *weigh
     }
 }
 
-static inline void flush(sums *sum, double rgb[3])
+// Red, green and blue in the first three lanes.
+static inline lanes total(const sums *sum)
 {
     lanes a = sum->a, b = sum->b, c = sum->c;
-    rgb[0] += (double)((a[0] + a[3]) + (b[2] + c[1]));
-    rgb[1] += (double)((a[1] + b[0]) + (b[3] + c[2]));
-    rgb[2] += (double)((a[2] + b[1]) + (c[0] + c[3]));
+    return (a + __builtin_shufflevector(a, b, 3, 4, 5, 5)) +
+           (__builtin_shufflevector(b, c, 2, 3, 4, 4) + __builtin_shufflevector(c, c, 1, 2, 3, 3));
+}
+
+static inline void flush(sums *sum, double rgb[3])
+{
+    lanes t = total(sum);
+    for (int c = 0; c < 3; c++)
+        rgb[c] += (double)t[c];
     *sum = (sums){0};
 }
 
@@ -317,32 +333,51 @@ static void gather_slowly(const float *source, int width, ptrdiff_t stride,
     flush(&sum, rgb);
 }
 
-static inline void gather_place(const ki_stencil_grid *grid, int chunk,
+// Asks for the texels of a stencil that comes soon: what a grid reads lies in many short pieces.
+ALWAYS_INLINE void prefetch(const ki_stencil_grid *grid, const ki_stencil_place *place,
+                            const ki_stencil *s, const float *source)
+{
+    int height = grid->height, width = 2 * height, rows = s->rows;
+    if (rows * s->blocks > 64)
+        return;
+    int row = place->flip ? height - s->row - rows : s->row;
+    const float *texels = source + 3 * ((ptrdiff_t)row * width + first_column(s, place, width));
+    for (int r = 0; r < rows; r++, texels += 3 * (ptrdiff_t)width)
+        for (int k = 0; k < s->blocks; k += 2)
+            __builtin_prefetch(texels + 12 * k);
+}
+
+ALWAYS_INLINE void gather_place(const ki_stencil_grid *grid, int chunk,
                                 const ki_stencil_place *place, bool mirror, const float *source,
                                 float *target)
 {
     int height = grid->height, width = 2 * height;
     ptrdiff_t stride = 3 * (ptrdiff_t)width * (place->flip ? -1 : 1);
     cursor c = cursor_start(grid, chunk, place);
+    const ki_stencil *last = c.stencil + grid->chunks[chunk].stencil_count - 1;
     do {
         const ki_stencil *s = c.stencil;
+        if (last - s >= AHEAD)
+            prefetch(grid, place, s + AHEAD, source);
         int column = first_column(s, place, width), blocks = s->blocks, rows = s->rows;
         int row = place->flip ? height - 1 - s->row : s->row;
         const float *line = source + (ptrdiff_t)3 * width * row;
-        double rgb[3] = {0, 0, 0};
+        float *out = target + 3 * c.texel;
         if (rows * blocks <= FLUSH && column + 4 * blocks <= width) {
             const float *texels = line + 3 * (ptrdiff_t)column, *weights = c.weights;
             sums sum = {0};
             for (int r = 0; r < rows; r++, texels += stride, weights += 4 * blocks)
                 add_blocks(&sum, texels, weights, blocks, mirror);
-            flush(&sum, rgb);
+            lanes rgb = total(&sum);
+            out[0] = rgb[0];
+            out[1] = rgb[1];
+            out[2] = rgb[2];
         } else {
+            double rgb[3] = {0, 0, 0};
             gather_slowly(line, width, stride, s, c.weights, column, mirror, rgb);
+            for (int k = 0; k < 3; k++)
+                out[k] = (float)rgb[k];
         }
-        float *out = target + 3 * c.texel;
-        out[0] = (float)rgb[0];
-        out[1] = (float)rgb[1];
-        out[2] = (float)rgb[2];
     } while (cursor_next(&c));
 }
 

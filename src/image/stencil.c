@@ -57,6 +57,7 @@ typedef struct builder {
     const double *height, *cotangent; // of the borders between rows, height + 1 each
     const double *cosine, *sine;      // of the borders between columns, from first_border
     int first_border, end_border;
+    bool small; // columns below 45 degrees
     ki_stencil_chunk *chunk;
     double *area, *width; // the box that is being filled
     size_t box_room;
@@ -98,32 +99,39 @@ void ki_stencil_grid_range(const ki_stencil_grid *grid, int j, int *first, int *
 
 // --------------------------------------------------------------------------------------------- arcs
 
-// The angle with this sine and cosine, within a half turn.
-static inline double angle(double sine, double cosine)
+// The angle with this sine and cosine, within a half turn. Small ones by the series of arcsin, whose
+// next term is below 1e-16 of the first; no angle between neighbouring nodes is above 45 degrees
+// where there are eight columns or more.
+static inline double angle(double sine, double cosine, bool small)
 {
-    if (fabs(sine) > 0.1 || cosine < 0)
+    double y = sine * sine, p;
+    if (small && y < 1e-4) {
+        p = 15.0 / 336;
+    } else if (small && y < 1e-2) {
+        p = 135135.0 / 9676800;
+        p = p * y + 10395.0 / 599040;
+        p = p * y + 945.0 / 42240;
+        p = p * y + 105.0 / 3456;
+        p = p * y + 15.0 / 336;
+    } else {
         return ki_atan2(sine, cosine);
-    // The next term is below 2e-15 of the first.
-    double y = sine * sine;
-    double p = 10395.0 / 599040;
-    p = p * y + 945.0 / 42240;
-    p = p * y + 105.0 / 3456;
-    p = p * y + 15.0 / 336;
+    }
     p = p * y + 3.0 / 40;
     p = p * y + 1.0 / 6;
     return sine + sine * (y * p);
 }
 
-static inline double angle_between(const node *a, const node *b)
+static inline double angle_between(const builder *b, const node *from, const node *to)
 {
-    return angle(b->sine * a->cosine - b->cosine * a->sine,
-                 b->cosine * a->cosine + b->sine * a->sine);
+    return angle(to->sine * from->cosine - to->cosine * from->sine,
+                 to->cosine * from->cosine + to->sine * from->sine, b->small);
 }
 
-static inline double integral_between(const node *a, const node *b, double inverse_k2)
+static inline double integral_between(const builder *b, const node *from, const node *to,
+                                      double inverse_k2)
 {
-    return angle((b->s * a->q - a->s * b->q) * inverse_k2,
-                 (a->q * b->q + a->s * b->s) * inverse_k2);
+    return angle((to->s * from->q - from->s * to->q) * inverse_k2,
+                 (from->q * to->q + from->s * to->s) * inverse_k2, b->small);
 }
 
 static inline node node_at(double a, double b, double cosine, double sine)
@@ -163,8 +171,8 @@ static int trace_piece(const builder *b, trace *arc, const node *start, const no
                        int row, double sign, double a_, double b_, double inverse_k2)
 {
     const double *height = b->height;
-    double width = angle_between(start, end);
-    double integral = integral_between(start, end, inverse_k2);
+    double width = angle_between(b, start, end);
+    double integral = integral_between(b, start, end, inverse_k2);
     int last = find_row(b, end->z, row);
     int north = ki_min(row, last), south = ki_max(row, last);
     double rest = height[north] * width - integral; // G of the row's northern border
@@ -178,8 +186,8 @@ static int trace_piece(const builder *b, trace *arc, const node *start, const no
             double s = copysign(s2 > 0 ? sqrt(s2) : 0, start->s + end->s);
             node cut = {(a_ * c - b_ * s) / kappa2, (b_ * c + a_ * s) / kappa2, s, sqrt(1 + c * c),
                         height[j + 1]};
-            double w = angle_between(&cut, low);
-            double i = integral_between(&cut, low, inverse_k2);
+            double w = angle_between(b, &cut, low);
+            double i = integral_between(b, &cut, low, inverse_k2);
             next = fabs(height[j + 1] * w - i);
         }
         add_entry(arc, column, j, sign * (rest - next), j == north ? sign * width : 0);
@@ -387,7 +395,8 @@ static void build_chunk(void *data, int index)
                  .sine = job->sine,
                  .first_border = job->first_border,
                  .end_border = job->end_border,
-                 .chunk = chunk};
+                 .chunk = chunk,
+                 .small = grid->height >= 4};
     int begin = index * KI_STENCIL_ROWS;
     int stop = ki_min(begin + KI_STENCIL_ROWS, ki_stencil_grid_rows(grid));
     int first, end;
@@ -408,7 +417,9 @@ static void build_chunk(void *data, int index)
     chunk->end_row = 0;
     chunk->stencils = ki_alloc_raw(job->context, guess + 1, sizeof *chunk->stencils);
     chunk->stencil_room = guess + 1;
-    bool fine = corners && entries && arcs && chunk->stencils;
+    chunk->weight_room = 20 * guess;
+    chunk->weights = ki_alloc_raw(job->context, chunk->weight_room, sizeof *chunk->weights);
+    bool fine = corners && entries && arcs && chunk->stencils && chunk->weights;
 
     corner *line_corners[2] = {corners, corners + count};
     trace *line_arcs[2] = {arcs, arcs + count}, *sides = arcs + 2 * count;
