@@ -77,6 +77,8 @@ kiln_result ki_lobe_spectrum(kiln_context *context, const kiln_lobe *lobe, bool 
 {
     *zonal = (ki_zonal){.lobe = *lobe};
     double tolerance = ki_prefilter_tolerance, guess = 160 + 14 / ki_lobe_width(lobe);
+    // Charlie is narrow at the horizon, not around its centre.
+    split = split && lobe->kind != KILN_LOBE_CHARLIE;
     int limit = guess < KILN_MAX_DEGREE ? (int)guess : KILN_MAX_DEGREE;
     if (guess < 2 * KILN_MAX_DEGREE || !split) {
         kiln_result result = ki_zonal_analyze(context, zonal, tolerance, limit, spectrum, error);

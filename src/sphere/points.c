@@ -55,7 +55,9 @@ kiln_result ki_points_create(const kiln_spectrum *spectrum, const ki_zonal *zona
     if (!suns->count)
         return KILN_OK;
     double texel = KI_PI / spectrum->size, width = ki_lobe_width(&zonal->lobe);
-    int cells = (int)ki_clamp(ceil(texel / width / 0.3), 2, MOST_CELLS);
+    // Two by two at least, for texels that the horizon cuts; Charlie is steep there.
+    int least = zonal->lobe.kind == KILN_LOBE_CHARLIE ? 8 : 2;
+    int cells = (int)ki_clamp(ceil(texel / width / 0.3), least, MOST_CELLS);
     suns->near_count = 4 * cells * cells;
     suns->near_versine = texel > 0.3 * width ? 1 - ki_cos(fmin(KI_PI, 12 * texel)) : -1;
     suns->far_versine = width > 128 * texel ? -1 : 1 - ki_cos(fmin(KI_PI, 128 * texel));
