@@ -1,0 +1,329 @@
+// Loading: what a file or a set of files holds, laid out on the sphere.
+#include "base/file.h"
+#include "codec/codec.h"
+
+#include <dirent.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+// ---------------------------------------------------------------------------------------- layouts
+
+// Copies a face of `size` texels a side from a picture, where its upper left corner lies at (x, y);
+// turned by half a turn or not.
+static void cut_face(const kiln_image *image, int x, int y, int size, bool turned, float *face)
+{
+    for (int row = 0; row < size; row++) {
+        const float *from =
+            image->pixels + 3 * ((size_t)(y + row) * (size_t)image->width + (size_t)x);
+        if (!turned) {
+            memcpy(face + 3 * (size_t)row * (size_t)size, from, 3 * (size_t)size * sizeof *face);
+            continue;
+        }
+        float *to = face + 3 * ((size_t)(size - 1 - row) * (size_t)size + (size_t)size - 1);
+        for (int i = 0; i < size; i++, to -= 3)
+            memcpy(to, from + 3 * i, 3 * sizeof *to);
+    }
+}
+
+// Column and row of a face, in faces.
+typedef struct face_place {
+    int x, y;
+} face_place;
+
+// +X -X +Y -Y +Z -Z. In the upright cross -Z hangs below -Y, upside down.
+static const face_place wide_cross[6] = {{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {3, 1}};
+static const face_place tall_cross[6] = {{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {1, 3}};
+
+static kiln_result make_cube(kiln_context *context, const kiln_image *image, int size,
+                             const face_place places[6], bool turn_last, kiln_map *map,
+                             kiln_error *error)
+{
+    *map = (kiln_map){.shape = KILN_SHAPE_CUBE, .size = size, .level_count = 1};
+    kiln_result result = ki_map_allocate(context, map, error);
+    size_t face_floats = 3 * (size_t)size * (size_t)size;
+    for (int face = 0; face < 6 && result == KILN_OK; face++)
+        cut_face(image, places[face].x * size, places[face].y * size, size, turn_last && face == 5,
+                 map->level[0] + face_floats * (size_t)face);
+    return result;
+}
+
+// The picture's memory becomes the map's.
+static kiln_result take_over(kiln_image *image, kiln_shape shape, int size, kiln_map *map)
+{
+    *map = (kiln_map){.shape = shape, .size = size, .level_count = 1, .owner = image->owner};
+    map->level[0] = image->pixels;
+    *image = (kiln_image){0};
+    return KILN_OK;
+}
+
+static kiln_result lay_out(kiln_context *context, kiln_image *image, const char *name,
+                           enum kiln_layout layout, kiln_map *map, kiln_error *error)
+{
+    int64_t w = image->width, h = image->height;
+    bool any = layout == KILN_LAYOUT_AUTO;
+    if ((any || layout == KILN_LAYOUT_PANORAMA) && w == 2 * h)
+        return take_over(image, KILN_SHAPE_PANORAMA, image->height, map);
+    if (layout == KILN_LAYOUT_OCTAHEDRON && w == h)
+        return take_over(image, KILN_SHAPE_OCTAHEDRON, image->height, map);
+    if ((any || layout == KILN_LAYOUT_CROSS) && 3 * w == 4 * h && w % 4 == 0)
+        return make_cube(context, image, image->width / 4, wide_cross, false, map, error);
+    if ((any || layout == KILN_LAYOUT_CROSS) && 4 * w == 3 * h && w % 3 == 0)
+        return make_cube(context, image, image->width / 3, tall_cross, true, map, error);
+    if ((any || layout == KILN_LAYOUT_STRIP) && (w == 6 * h || 6 * w == h)) {
+        face_place places[6];
+        for (int face = 0; face < 6; face++)
+            places[face] = w > h ? (face_place){face, 0} : (face_place){0, face};
+        return make_cube(context, image, ki_min(image->width, image->height), places, false, map,
+                         error);
+    }
+    static const char *const wanted[] = {
+        "2:1 (panorama), 4:3 or 3:4 (cross), 6:1 or 1:6 (strip)",
+        "2:1 for a panorama",
+        "4:3 or 3:4 for a cross",
+        "6:1 or 1:6 for a strip",
+        "1:1 for an octahedron",
+    };
+    return ki_fail(error, KILN_ERROR_FORMAT, "%s: is %lld x %lld, its sides must be %s%s", name,
+                   (long long)w, (long long)h, wanted[layout],
+                   any && w == h ? "; a square may be an octahedron, which the layout must say"
+                                 : "");
+}
+
+// -------------------------------------------------------------------------------------- one file
+
+static kiln_result check_def(const kiln_load_def *def, kiln_error *error)
+{
+    if (def && ((int)def->layout < 0 || def->layout > KILN_LAYOUT_OCTAHEDRON))
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "layout is %d, it must be 0 to %d",
+                       (int)def->layout, (int)KILN_LAYOUT_OCTAHEDRON);
+    return KILN_OK;
+}
+
+kiln_result kiln_map_decode(kiln_context *context, const void *bytes, size_t size, const char *name,
+                            const kiln_load_def *def, kiln_map *map, kiln_error *error)
+{
+    *map = (kiln_map){0};
+    kiln_result result = check_def(def, error);
+    if (result != KILN_OK)
+        return result;
+    kiln_file_info info;
+    ki_decoded decoded;
+    result = ki_decode(context, bytes, size, name ? name : "memory", &decoded, &info, error);
+    if (result != KILN_OK)
+        return result;
+    if (decoded.is_map) {
+        *map = decoded.map;
+        return KILN_OK;
+    }
+    result = lay_out(context, &decoded.image, name ? name : "memory",
+                     def ? def->layout : KILN_LAYOUT_AUTO, map, error);
+    if (result == KILN_OK && info.roughness[0] >= 0)
+        map->roughness[0] = info.roughness[0];
+    ki_decoded_free(&decoded);
+    return result;
+}
+
+static kiln_result load_image(kiln_context *context, const char *path, kiln_image *image,
+                              kiln_file_info *info, kiln_error *error)
+{
+    *image = (kiln_image){0};
+    uint8_t *bytes;
+    size_t size;
+    kiln_result result = ki_file_read(context, path, &bytes, &size, error);
+    if (result != KILN_OK)
+        return result;
+    ki_decoded decoded;
+    result = ki_decode(context, bytes, size, path, &decoded, info, error);
+    ki_free(bytes);
+    if (result == KILN_OK && decoded.is_map) {
+        ki_decoded_free(&decoded);
+        return ki_fail(error, KILN_ERROR_UNSUPPORTED, "%s: holds a cube, not a flat picture", path);
+    }
+    if (result == KILN_OK)
+        *image = decoded.image;
+    return result;
+}
+
+kiln_result kiln_image_load(kiln_context *context, const char *path, kiln_image *image,
+                            kiln_error *error)
+{
+    return load_image(context, path, image, NULL, error);
+}
+
+kiln_result kiln_file_describe(kiln_context *context, const char *path, kiln_file_info *info,
+                               kiln_error *error)
+{
+    memset(info, 0, sizeof *info);
+    uint8_t *bytes;
+    size_t size;
+    kiln_result result = ki_file_read(context, path, &bytes, &size, error);
+    if (result != KILN_OK)
+        return result;
+    result = ki_decode(context, bytes, size, path, NULL, info, error);
+    ki_free(bytes);
+    return result;
+}
+
+// -------------------------------------------------------------------------------------- six files
+
+// A face's path: what stands before and after its two letters.
+typedef struct face_paths {
+    char *before, *after;
+} face_paths;
+
+static void free_paths(face_paths *paths)
+{
+    ki_free(paths->before);
+    ki_free(paths->after);
+}
+
+static char *copy_text(kiln_context *context, const char *text, size_t length)
+{
+    char *copy = ki_alloc(context, length + 1, 1);
+    if (copy)
+        memcpy(copy, text, length);
+    return copy;
+}
+
+static kiln_result split_path(kiln_context *context, const char *path, const char *at,
+                              size_t length, face_paths *paths, kiln_error *error)
+{
+    paths->before = copy_text(context, path, (size_t)(at - path));
+    paths->after = copy_text(context, at + length, strlen(at + length));
+    return paths->before && paths->after ? KILN_OK
+                                         : ki_fail_memory(context, error, path, strlen(path) + 2);
+}
+
+// Where a file's name holds "px" as a face: px.exr, NAME_px.exr, px_0.exr or NAME_px_0.exr; NULL
+// where it does not. The level's number, if any, is 0.
+static const char *face_in(const char *name)
+{
+    const char *dot = strrchr(name, '.');
+    if (!dot || (strcmp(dot, ".exr") != 0 && strcmp(dot, ".hdr") != 0 && strcmp(dot, ".png") != 0))
+        return NULL;
+    const char *end = dot;
+    if (end - name > 2 && end[-1] == '0' && end[-2] == '_')
+        end -= 2;
+    const char *at = end - 2;
+    return at >= name && !strncmp(at, "px", 2) && (at == name || at[-1] == '_') ? at : NULL;
+}
+
+// A name that is nothing but the face comes first, then the order of the bytes.
+static bool goes_before(const char *a, const char *b)
+{
+    size_t before_a = (size_t)(face_in(a) - a), before_b = (size_t)(face_in(b) - b);
+    if (!before_a != !before_b)
+        return !before_a;
+    return strcmp(a, b) < 0;
+}
+
+static kiln_result search_folder(kiln_context *context, const char *path, face_paths *paths,
+                                 kiln_error *error)
+{
+    DIR *folder = opendir(path);
+    if (!folder)
+        return ki_fail(error, KILN_ERROR_IO, "%s: the folder cannot be opened", path);
+    char best[256] = "", other[256] = "";
+    for (struct dirent *entry; (entry = readdir(folder));) {
+        if (strlen(entry->d_name) >= sizeof best || !face_in(entry->d_name))
+            continue;
+        if (!best[0] || goes_before(entry->d_name, best)) {
+            memcpy(other, best, sizeof best);
+            strcpy(best, entry->d_name);
+        } else if (!other[0] || goes_before(entry->d_name, other)) {
+            strcpy(other, entry->d_name);
+        }
+    }
+    closedir(folder);
+    if (!best[0])
+        return ki_fail(error, KILN_ERROR_IO,
+                       "%s: holds no face named px.exr, NAME_px.exr or the like (exr, hdr, png)",
+                       path);
+    if (other[0] && face_in(best) > best)
+        return ki_fail(error, KILN_ERROR_IO,
+                       "%s: holds both %.64s and %.64s; name the faces by a pattern with %%s", path,
+                       best, other);
+    size_t length = strlen(path);
+    bool slash = length && path[length - 1] == '/';
+    size_t room = length + strlen(best) + 2;
+    char *full = ki_alloc(context, room, 1);
+    if (!full)
+        return ki_fail_memory(context, error, path, room);
+    snprintf(full, room, "%s%s%s", path, slash ? "" : "/", best);
+    const char *at = full + room - 1 - strlen(best) - (slash ? 1 : 0) + (face_in(best) - best);
+    kiln_result result = split_path(context, full, at, 2, paths, error);
+    ki_free(full);
+    return result;
+}
+
+static kiln_result load_faces(kiln_context *context, const face_paths *paths, kiln_map *map,
+                              kiln_error *error)
+{
+    size_t room = strlen(paths->before) + strlen(paths->after) + 3;
+    char *path = ki_alloc(context, room, 1);
+    if (!path)
+        return ki_fail_memory(context, error, "a path", room);
+    kiln_result result = KILN_OK;
+    for (int face = 0; face < 6 && result == KILN_OK; face++) {
+        snprintf(path, room, "%s%s%s", paths->before, ki_face_names[face], paths->after);
+        kiln_image image;
+        kiln_file_info info;
+        result = load_image(context, path, &image, &info, error);
+        if (result != KILN_OK)
+            break;
+        int size = image.width;
+        if (image.width != image.height) {
+            result = ki_fail(error, KILN_ERROR_FORMAT, "%s: is %d x %d, a face must be square",
+                             path, image.width, image.height);
+        } else if (face == 0) {
+            *map = (kiln_map){.shape = KILN_SHAPE_CUBE, .size = size, .level_count = 1};
+            result = ki_map_allocate(context, map, error);
+            if (result == KILN_OK && info.roughness[0] >= 0)
+                map->roughness[0] = info.roughness[0];
+        } else if (size != map->size) {
+            result = ki_fail(error, KILN_ERROR_FORMAT, "%s: is %d x %d, the first face %d x %d",
+                             path, size, size, map->size, map->size);
+        }
+        if (result == KILN_OK)
+            cut_face(&image, 0, 0, size, false,
+                     map->level[0] + 3 * (size_t)size * (size_t)size * (size_t)face);
+        kiln_image_free(&image);
+    }
+    ki_free(path);
+    if (result != KILN_OK)
+        kiln_map_free(map);
+    return result;
+}
+
+kiln_result kiln_map_load(kiln_context *context, const char *path, const kiln_load_def *def,
+                          kiln_map *map, kiln_error *error)
+{
+    *map = (kiln_map){0};
+    kiln_result result = check_def(def, error);
+    if (result != KILN_OK)
+        return result;
+
+    face_paths paths = {0};
+    const char *braces = strstr(path, "{face}"), *percent = strstr(path, "%s");
+    struct stat status;
+    bool folder = stat(path, &status) == 0 && S_ISDIR(status.st_mode);
+    if (braces || percent || folder) {
+        result = folder ? search_folder(context, path, &paths, error)
+                        : split_path(context, path, braces ? braces : percent, braces ? 6 : 2,
+                                     &paths, error);
+        if (result == KILN_OK)
+            result = load_faces(context, &paths, map, error);
+        free_paths(&paths);
+        return result;
+    }
+    uint8_t *bytes;
+    size_t size;
+    result = ki_file_read(context, path, &bytes, &size, error);
+    if (result != KILN_OK)
+        return result;
+    result = kiln_map_decode(context, bytes, size, path, def, map, error);
+    ki_free(bytes);
+    return result;
+}

@@ -1,0 +1,181 @@
+// DDS cubes: written with the DX10 header, read with it or with the two older codes of float
+// formats. The file has no place for metadata. Each face is followed by its smaller levels.
+#include "codec/codec.h"
+#include "codec/texel.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum {
+    HEADER_SIZE = 124,
+    FLAGS = 0x1 | 0x2 | 0x4 | 0x8 | 0x1000 | 0x20000, // caps, sizes, pitch, format, levels
+    FORMAT_SIZE = 32,
+    FORMAT_FOURCC = 0x4,
+    CAPS = 0x8 | 0x1000 | 0x400000, // complex, texture, levels
+    CAPS2_CUBE = 0x200,
+    CAPS2_ALL_FACES = 0xfc00,
+    DIMENSION_2D = 3,
+    MISC_CUBE = 0x4,
+    LEGACY_RGBA16F = 113,
+    LEGACY_RGBA32F = 116,
+};
+
+static uint32_t fourcc(const char code[4])
+{
+    uint32_t value;
+    memcpy(&value, code, 4);
+    return value;
+}
+
+kiln_result ki_dds_encode(const kiln_map *map, const kiln_save_def *def, ki_writer *writer,
+                          kiln_error *error)
+{
+    const ki_texel *texel = ki_texel_of_format(def->format);
+    if (map->shape != KILN_SHAPE_CUBE)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "a DDS file holds a cube, not another shape");
+    if (!texel)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "format is %d, it must be 0 to %d",
+                       (int)def->format, (int)KILN_FORMAT_B10G11R11);
+    if (def->zstd)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "zstd is %d, a DDS file has no compression",
+                       def->zstd);
+    ki_writer *w = writer;
+    ki_write(w, "DDS ", 4);
+    ki_write_u32(w, HEADER_SIZE);
+    ki_write_u32(w, FLAGS);
+    ki_write_u32(w, (uint32_t)map->size);
+    ki_write_u32(w, (uint32_t)map->size);
+    ki_write_u32(w, (uint32_t)map->size * (uint32_t)texel->bytes);
+    ki_write_u32(w, 0); // depth
+    ki_write_u32(w, (uint32_t)map->level_count);
+    for (int i = 0; i < 11; i++)
+        ki_write_u32(w, 0);
+    ki_write_u32(w, FORMAT_SIZE);
+    ki_write_u32(w, FORMAT_FOURCC);
+    ki_write(w, "DX10", 4);
+    for (int i = 0; i < 5; i++) // bits and masks
+        ki_write_u32(w, 0);
+    ki_write_u32(w, CAPS);
+    ki_write_u32(w, CAPS2_CUBE | CAPS2_ALL_FACES);
+    for (int i = 0; i < 3; i++)
+        ki_write_u32(w, 0);
+    ki_write_u32(w, texel->dxgi);
+    ki_write_u32(w, DIMENSION_2D);
+    ki_write_u32(w, MISC_CUBE);
+    ki_write_u32(w, 1); // cubes
+    ki_write_u32(w, 0); // alpha mode not stated
+    for (int face = 0; face < 6; face++) {
+        for (int k = 0; k < map->level_count; k++) {
+            size_t texels = kiln_map_texels(map, k) / 6;
+            uint8_t *room = ki_write_room(w, texels * (size_t)texel->bytes);
+            if (!room)
+                return ki_fail_memory(w->context, error, "a DDS file", w->size);
+            ki_texels_pack(texel, map->level[k] + 3 * texels * (size_t)face, texels, room);
+        }
+    }
+    return KILN_OK;
+}
+
+typedef struct dds_header {
+    uint32_t width, height, levels;
+    const ki_texel *texel;
+} dds_header;
+
+static kiln_result read_header(ki_reader *r, const char *name, dds_header *h, kiln_error *error)
+{
+    ki_read_bytes(r, 4);
+    uint32_t header_size = ki_read_u32(r);
+    ki_read_u32(r); // flags, which writers get wrong
+    h->height = ki_read_u32(r);
+    h->width = ki_read_u32(r);
+    ki_read_u32(r); // pitch
+    ki_read_u32(r); // depth
+    h->levels = ki_read_u32(r);
+    ki_read_bytes(r, 44);
+    ki_read_u32(r);
+    uint32_t format_flags = ki_read_u32(r), code = ki_read_u32(r);
+    ki_read_bytes(r, 20);
+    ki_read_u32(r);
+    uint32_t caps2 = ki_read_u32(r);
+    ki_read_bytes(r, 12);
+    if (r->failed || header_size != HEADER_SIZE)
+        return ki_fail(error, KILN_ERROR_FORMAT, "%s: the DDS header is cut off or damaged", name);
+    bool cube = (caps2 & CAPS2_CUBE) && (caps2 & CAPS2_ALL_FACES) == CAPS2_ALL_FACES;
+    uint32_t format = 0, cubes = 1;
+    if ((format_flags & FORMAT_FOURCC) && code == fourcc("DX10")) {
+        format = ki_read_u32(r);
+        ki_read_u32(r);
+        cube = ki_read_u32(r) & MISC_CUBE;
+        cubes = ki_read_u32(r);
+        ki_read_u32(r);
+        h->texel = ki_texel_of_dxgi(format);
+        if (r->failed)
+            return ki_fail(error, KILN_ERROR_FORMAT, "%s: the DDS header is cut off", name);
+    } else if (format_flags & FORMAT_FOURCC) {
+        h->texel = code == LEGACY_RGBA16F   ? ki_texel_of_format(KILN_FORMAT_RGBA16F)
+                   : code == LEGACY_RGBA32F ? ki_texel_of_format(KILN_FORMAT_RGBA32F)
+                                            : NULL;
+        format = code;
+    } else {
+        h->texel = NULL;
+    }
+    if (!cube || cubes != 1)
+        return ki_fail(error, KILN_ERROR_UNSUPPORTED,
+                       "%s: is no single cube of six faces, others are not read", name);
+    if (!h->texel)
+        return ki_fail(error, KILN_ERROR_UNSUPPORTED,
+                       "%s: has pixel format %u; DXGI 2, 10, 26 and 67 and the codes 113 and 116 "
+                       "are read",
+                       name, format);
+    if (h->width < 1 || h->width != h->height || h->width > KILN_MAX_SIZE)
+        return ki_fail(error, KILN_ERROR_FORMAT,
+                       "%s: faces are %u x %u, they must be square and 1 to %d", name, h->width,
+                       h->height, KILN_MAX_SIZE);
+    h->levels = h->levels ? h->levels : 1;
+    if (h->levels > KILN_MAX_LEVELS || h->width >> (h->levels - 1) == 0)
+        return ki_fail(error, KILN_ERROR_FORMAT, "%s: has %u levels for a size of %u", name,
+                       h->levels, h->width);
+    return KILN_OK;
+}
+
+kiln_result ki_dds_decode(kiln_context *context, const uint8_t *bytes, size_t size,
+                          const char *name, kiln_map *map, kiln_file_info *info, kiln_error *error)
+{
+    if (map)
+        *map = (kiln_map){0};
+    dds_header h = {0};
+    ki_reader r = ki_reader_make(bytes, size);
+    kiln_result result = read_header(&r, name, &h, error);
+    if (result != KILN_OK)
+        return result;
+    uint64_t wanted = 0;
+    for (uint32_t k = 0; k < h.levels; k++)
+        wanted += 6 * (uint64_t)(h.width >> k) * (h.width >> k) * (uint64_t)h.texel->bytes;
+    if (wanted > ki_reader_left(&r))
+        return ki_fail(error, KILN_ERROR_FORMAT,
+                       "%s: its levels need %llu bytes, %zu are left behind the header", name,
+                       (unsigned long long)wanted, ki_reader_left(&r));
+    snprintf(info->format, sizeof info->format, "dds");
+    snprintf(info->encoding, sizeof info->encoding, "%s", h.texel->name);
+    info->width = info->height = (int)h.width;
+    info->face_count = 6;
+    info->level_count = (int)h.levels;
+    info->channel_count = h.texel->bytes == 4 ? 3 : 4;
+    if (!map)
+        return KILN_OK;
+
+    *map = (kiln_map){.shape = KILN_SHAPE_CUBE, .size = (int)h.width, .level_count = (int)h.levels};
+    result = ki_map_allocate(context, map, error);
+    if (result != KILN_OK)
+        return result;
+    for (int face = 0; face < 6; face++) {
+        for (int k = 0; k < map->level_count; k++) {
+            size_t texels = kiln_map_texels(map, k) / 6;
+            const uint8_t *from = ki_read_bytes(&r, texels * (size_t)h.texel->bytes);
+            ki_texels_unpack(h.texel, from, texels, map->level[k] + 3 * texels * (size_t)face);
+        }
+    }
+    for (int k = 0; k < map->level_count; k++)
+        map->roughness[k] = map->level_count > 1 ? (float)k / (float)(map->level_count - 1) : 0;
+    return KILN_OK;
+}

@@ -1,0 +1,541 @@
+// DWAA and DWAB: 8 x 8 blocks of a discrete cosine transform of half floats in a perceptual scale,
+// for the channels that its rules name; runs or zlib for the others. The format is described in
+// "DreamWorks Animation Lossy Compression" (OpenEXR 2.2); here is its decoder.
+#include "base/bytes.h"
+#include "codec/exr.h"
+#include "image/pack.h"
+#include "math/math.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { SCHEME_ZLIB = 0, SCHEME_DCT = 1, SCHEME_RUNS = 2 };
+enum { MAX_RULES = 256, AC_HUFFMAN = 0, AC_DEFLATE = 1, END_OF_BLOCK = 0xff00 };
+
+// -------------------------------------------------------------------------------------- the curve
+
+enum { TABLE_TASKS = 64, TABLE_STRETCH = 0x7c00 / TABLE_TASKS };
+
+// x^2.2 up to 1, e^(2.2 (x - 1)) above; infinities and not-a-number were never stored and give 0.
+static void linear_stretch(void *data, int index)
+{
+    uint16_t *table = data;
+    for (int i = index * TABLE_STRETCH; i < (index + 1) * TABLE_STRETCH; i++) {
+        double x = (double)ki_float_from_half((uint16_t)i);
+        double y = 0;
+        if (x > 8)
+            y = 65536; // larger than any half
+        else if (x > 1)
+            y = ki_exp(2.2 * (x - 1));
+        else if (x > 0x1p-12) // below, less than half of the smallest
+            y = ki_pow(x, 2.2);
+        uint16_t half = ki_half_from_float((float)y);
+        table[i] = half;
+        table[0x8000 + i] = (uint16_t)(0x8000 | half);
+    }
+}
+
+void ki_dwa_linear_table(kiln_context *context, uint16_t *table)
+{
+    memset(table, 0, 65536 * sizeof *table);
+    ki_parallel_for(context, TABLE_TASKS, linear_stretch, table);
+}
+
+// ------------------------------------------------------------------------------------- the header
+
+typedef struct counts {
+    uint64_t version, zlib_size, zlib_packed, ac_packed, dc_packed, runs_packed, runs_size,
+        runs_raw, ac_count, dc_count, ac_compression;
+} counts;
+
+typedef struct dwa_rule {
+    char suffix[32];
+    int scheme, place, type; // place of a channel in a colour triple, -1 for none
+    bool any_case;
+} dwa_rule;
+
+// What becomes of a channel.
+typedef struct dwa_plan {
+    int scheme;
+    int width, height;   // in samples
+    const uint8_t *from; // its raw bytes where it is not transformed
+    bool done;
+} dwa_plan;
+
+typedef struct dwa {
+    const ki_exr_box *box;
+    const uint16_t *table;
+    counts counts;
+    dwa_rule rules[MAX_RULES];
+    int rule_count;
+    dwa_plan plans[KI_EXR_MAX_CHANNELS];
+    uint8_t *raw;
+    const uint16_t *ac, *ac_end, *dc, *dc_end;
+} dwa;
+
+static void read_counts(ki_reader *r, counts *c)
+{
+    uint64_t *field[] = {&c->version,   &c->zlib_size,   &c->zlib_packed,   &c->ac_packed,
+                         &c->dc_packed, &c->runs_packed, &c->runs_size,     &c->runs_raw,
+                         &c->ac_count,  &c->dc_count,    &c->ac_compression};
+    for (size_t i = 0; i < sizeof field / sizeof *field; i++)
+        *field[i] = ki_read_u64(r);
+}
+
+static void add_rule(dwa *d, const char *suffix, int scheme, int place, int type, bool any_case)
+{
+    dwa_rule *added = &d->rules[d->rule_count++];
+    strcpy(added->suffix, suffix);
+    added->scheme = scheme;
+    added->place = place;
+    added->type = type;
+    added->any_case = any_case;
+}
+
+// Files before version 2 do not carry their rules.
+static void add_old_rules(dwa *d)
+{
+    static const struct {
+        char suffix[8];
+        int place;
+    } transformed[] = {{"r", 0},   {"red", 0},  {"g", 1},  {"grn", 1}, {"green", 1}, {"b", 2},
+                       {"blu", 2}, {"blue", 2}, {"y", -1}, {"by", -1}, {"ry", -1}};
+    for (size_t i = 0; i < sizeof transformed / sizeof *transformed; i++)
+        for (int type = EXR_PIXEL_HALF; type <= EXR_PIXEL_FLOAT; type++)
+            add_rule(d, transformed[i].suffix, SCHEME_DCT, transformed[i].place, type, true);
+    for (int type = EXR_PIXEL_UINT; type <= EXR_PIXEL_FLOAT; type++)
+        add_rule(d, "a", SCHEME_RUNS, -1, type, true);
+}
+
+// A rule: suffix with its NUL; a byte of place + 1 (4 bits), scheme (2 bits) and, in the last bit,
+// whether case does not matter; the pixel type.
+static bool read_rules(dwa *d, ki_reader *r)
+{
+    const uint8_t *head = ki_read_bytes(r, 2);
+    size_t size = head ? (size_t)(head[0] | head[1] << 8) : 0;
+    const uint8_t *bytes = size >= 2 ? ki_read_bytes(r, size - 2) : NULL;
+    if (!bytes)
+        return false;
+    ki_reader rules = ki_reader_make(bytes, size - 2);
+    while (ki_reader_left(&rules)) {
+        dwa_rule *read = &d->rules[d->rule_count];
+        size_t length = 0;
+        const uint8_t *at = rules.at;
+        while (length < ki_reader_left(&rules) && at[length])
+            length++;
+        if (length >= sizeof read->suffix || !ki_read_bytes(&rules, length + 1))
+            return false;
+        memcpy(read->suffix, at, length + 1);
+        int value = ki_read_u8(&rules);
+        read->place = (value >> 4) - 1;
+        read->scheme = value >> 2 & 3;
+        read->any_case = value & 1;
+        read->type = ki_read_u8(&rules);
+        if (rules.failed || read->place > 2 || read->scheme > SCHEME_RUNS ||
+            read->type > EXR_PIXEL_FLOAT || ++d->rule_count == MAX_RULES)
+            return false;
+    }
+    return true;
+}
+
+static char lower(char c)
+{
+    return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
+}
+
+static bool rule_fits(const dwa_rule *rule, const char *suffix, int type)
+{
+    if (rule->type != type)
+        return false;
+    const char *wanted = rule->suffix;
+    for (; *wanted && *suffix; wanted++, suffix++)
+        if (rule->any_case ? lower(*wanted) != lower(*suffix) : *wanted != *suffix)
+            return false;
+    return *wanted == *suffix;
+}
+
+static const char *suffix_of(const char *name)
+{
+    const char *dot = strrchr(name, '.');
+    return dot ? dot + 1 : name;
+}
+
+// The order of the layers of two channels, which is that of their names before the last dot.
+static int compare_layers(const char *a, const char *b)
+{
+    size_t length_a = (size_t)(suffix_of(a) - a), length_b = (size_t)(suffix_of(b) - b);
+    length_a -= length_a > 0;
+    length_b -= length_b > 0;
+    int order = memcmp(a, b, length_a < length_b ? length_a : length_b);
+    return order ? order : (length_a > length_b) - (length_a < length_b);
+}
+
+// --------------------------------------------------------------------------------------- transform
+
+// One of the two passes of the inverse transform, along k, for eight columns at once:
+// the even coefficients give a part that is the same at both ends, the odd ones its difference.
+static void inverse_pass(float v[8][8])
+{
+    // cos(pi / 4), cos(pi / 16), cos(pi / 8), cos(3 pi / 16), cos(5 pi / 16), cos(3 pi / 8) and
+    // cos(7 pi / 16), halved.
+    static const float a = 0.35355339F, b = 0.49039264F, c = 0.46193977F, d = 0.41573481F,
+                       e = 0.27778512F, f = 0.19134172F, g = 0.09754516F;
+    for (int i = 0; i < 8; i++) {
+        float odd0 = b * v[1][i] + d * v[3][i] + e * v[5][i] + g * v[7][i];
+        float odd1 = d * v[1][i] - g * v[3][i] - b * v[5][i] - e * v[7][i];
+        float odd2 = e * v[1][i] - b * v[3][i] + g * v[5][i] + d * v[7][i];
+        float odd3 = g * v[1][i] - e * v[3][i] + d * v[5][i] - b * v[7][i];
+        float sum = a * (v[0][i] + v[4][i]), difference = a * (v[0][i] - v[4][i]);
+        float wide = c * v[2][i] + f * v[6][i], narrow = f * v[2][i] - c * v[6][i];
+        float even0 = sum + wide, even1 = difference + narrow;
+        float even2 = difference - narrow, even3 = sum - wide;
+        v[0][i] = even0 + odd0;
+        v[1][i] = even1 + odd1;
+        v[2][i] = even2 + odd2;
+        v[3][i] = even3 + odd3;
+        v[4][i] = even3 - odd3;
+        v[5][i] = even2 - odd2;
+        v[6][i] = even1 - odd1;
+        v[7][i] = even0 - odd0;
+    }
+}
+
+// Place of each coefficient in the zigzag order, column * 8 + row.
+static const uint8_t zigzag[64] = {0,  8,  1,  2,  9,  16, 24, 17, 10, 3,  4,  11, 18, 25, 32, 40,
+                                   33, 26, 19, 12, 5,  6,  13, 20, 27, 34, 41, 48, 56, 49, 42, 35,
+                                   28, 21, 14, 7,  15, 22, 29, 36, 43, 50, 57, 58, 51, 44, 37, 30,
+                                   23, 31, 38, 45, 52, 59, 60, 53, 46, 39, 47, 54, 61, 62, 55, 63};
+
+// Coefficients, half floats in zigzag order, to the samples of a block, row by row.
+static void inverse_transform(const uint16_t coefficients[64], float samples[64])
+{
+    float values[64], columns[8][8], rows[8][8];
+    ki_floats_from_halfs(coefficients, 64, values);
+    for (int i = 0; i < 64; i++)
+        columns[zigzag[i] / 8][zigzag[i] % 8] = values[i];
+    inverse_pass(columns);
+    for (int y = 0; y < 8; y++)
+        for (int x = 0; x < 8; x++)
+            rows[y][x] = columns[x][y];
+    inverse_pass(rows);
+    memcpy(samples, rows, sizeof rows);
+}
+
+// The coefficients of a block behind its first: values, runs of zeros (0xff01 to 0xff3f) and an
+// end. Returns the last place that is not zero, or -1.
+static int read_block(dwa *d, uint16_t block[64])
+{
+    int last = 0;
+    for (int i = 1; i < 64;) {
+        if (d->ac == d->ac_end)
+            return -1;
+        uint16_t value = *d->ac++;
+        if (value == END_OF_BLOCK)
+            break;
+        if (value >> 8 == 0xff) {
+            i += value & 0xff;
+            continue;
+        }
+        last = i;
+        block[i++] = value;
+    }
+    return last;
+}
+
+// Writes a row of a block, at most 8 samples, to its place in the raw lines.
+static void put_row(const dwa *d, int bytes, bool linear, const uint16_t *halfs, int count,
+                    uint8_t *to)
+{
+    uint16_t row[8] = {0};
+    for (int x = 0; x < count; x++)
+        row[x] = linear ? halfs[x] : d->table[halfs[x]];
+    if (bytes == 2) {
+        memcpy(to, row, 2 * (size_t)count);
+    } else {
+        float values[8];
+        ki_floats_from_halfs(row, 8, values);
+        memcpy(to, values, 4 * (size_t)count);
+    }
+}
+
+// Where the samples of a channel on line `line` of the box begin, counted in lines that have any.
+static void find_lines(const dwa *d, int index, size_t *offset)
+{
+    const ki_exr_box *box = d->box;
+    size_t at = 0;
+    int line = 0;
+    for (int y = box->y; y < box->y + box->height; y++)
+        for (int c = 0; c < box->channel_count; c++) {
+            const ki_exr_channel *channel = &box->channels[c];
+            if (!ki_exr_line_has(channel, y))
+                continue;
+            if (c == index)
+                offset[line++] = at;
+            at += (size_t)ki_exr_samples(box->x, box->width, channel->x_sampling) *
+                  (size_t)channel->bytes;
+        }
+}
+
+// One channel, or three that were stored as luma and two differences.
+static bool transform(dwa *d, const int *members, int count, size_t *const offset[3])
+{
+    int width = d->plans[members[0]].width, height = d->plans[members[0]].height;
+    int across = (width + 7) / 8, down = (height + 7) / 8;
+    size_t blocks = (size_t)across * (size_t)down;
+    if ((size_t)(d->dc_end - d->dc) < blocks * (size_t)count)
+        return false;
+    for (int by = 0; by < down; by++) {
+        for (int bx = 0; bx < across; bx++) {
+            float samples[3][64];
+            bool flat = true;
+            for (int k = 0; k < count; k++) {
+                uint16_t block[64] = {0};
+                block[0] = d->dc[(size_t)k * blocks + (size_t)by * (size_t)across + (size_t)bx];
+                int last = read_block(d, block);
+                if (last < 0)
+                    return false;
+                if (last == 0) {
+                    float value = ki_float_from_half(block[0]) * 0.125F;
+                    for (int i = 0; i < 64; i++)
+                        samples[k][i] = value;
+                } else {
+                    flat = false;
+                    inverse_transform(block, samples[k]);
+                }
+            }
+            for (int i = 0; count == 3 && i < (flat ? 8 : 64); i++) {
+                float luma = samples[0][i], blue = samples[1][i], red = samples[2][i];
+                samples[0][i] = luma + 1.5747F * red;
+                samples[1][i] = luma - 0.1873F * blue - 0.4682F * red;
+                samples[2][i] = luma + 1.8556F * blue;
+            }
+            int columns = ki_min(8, width - 8 * bx), lines = ki_min(8, height - 8 * by);
+            for (int k = 0; k < count; k++) {
+                const ki_exr_channel *channel = &d->box->channels[members[k]];
+                uint16_t halfs[64];
+                ki_halfs_from_floats(samples[k], flat ? 8 : 64, halfs);
+                for (int y = 0; y < lines; y++)
+                    put_row(d, channel->bytes, count == 1 && channel->linear,
+                            halfs + (flat ? 0 : 8 * y), columns,
+                            d->raw + offset[k][8 * by + y] +
+                                (size_t)(8 * bx) * (size_t)channel->bytes);
+            }
+        }
+    }
+    d->dc += blocks * (size_t)count;
+    for (int k = 0; k < count; k++)
+        d->plans[members[k]].done = true;
+    return true;
+}
+
+// ------------------------------------------------------------------------------------------- chunk
+
+// Three channels of one layer, by place, -1 where missing.
+typedef struct triple {
+    const char *name; // of one of them
+    int member[3];
+} triple;
+
+// Finds every channel's scheme, and the triples in the order of their layers.
+static int make_plan(dwa *d, triple *triples)
+{
+    const ki_exr_box *box = d->box;
+    int count = 0;
+    for (int c = 0; c < box->channel_count; c++) {
+        const ki_exr_channel *channel = &box->channels[c];
+        dwa_plan *plan = &d->plans[c];
+        plan->width = ki_exr_samples(box->x, box->width, channel->x_sampling);
+        plan->height = ki_exr_samples(box->y, box->height, channel->y_sampling);
+        int place = -1;
+        for (int i = 0; i < d->rule_count; i++) {
+            const dwa_rule *rule = &d->rules[i];
+            if (rule_fits(rule, suffix_of(channel->name), channel->type)) {
+                plan->scheme = rule->scheme;
+                place = rule->place >= 0 ? rule->place : place;
+            }
+        }
+        if (place < 0)
+            continue;
+        int t = 0;
+        while (t < count && compare_layers(triples[t].name, channel->name) < 0)
+            t++;
+        if (t == count || compare_layers(triples[t].name, channel->name) != 0) {
+            memmove(triples + t + 1, triples + t, (size_t)(count - t) * sizeof *triples);
+            triples[t] = (triple){channel->name, {-1, -1, -1}};
+            count++;
+        }
+        triples[t].member[place] = c;
+    }
+    return count;
+}
+
+static bool whole_triple(const dwa *d, const int member[3])
+{
+    for (int k = 0; k < 3; k++) {
+        if (member[k] < 0)
+            return false;
+        const ki_exr_channel *c = &d->box->channels[member[k]];
+        const ki_exr_channel *first = &d->box->channels[member[0]];
+        if (c->x_sampling != first->x_sampling || c->y_sampling != first->y_sampling)
+            return false;
+    }
+    return true;
+}
+
+static size_t plane_size(const dwa *d, int scheme)
+{
+    size_t size = 0;
+    for (int c = 0; c < d->box->channel_count; c++)
+        if (d->plans[c].scheme == scheme)
+            size += (size_t)d->plans[c].width * (size_t)d->plans[c].height *
+                    (size_t)d->box->channels[c].bytes;
+    return size;
+}
+
+// Blocks of all transformed channels.
+static size_t block_count(const dwa *d)
+{
+    size_t count = 0;
+    for (int c = 0; c < d->box->channel_count; c++)
+        if (d->plans[c].scheme == SCHEME_DCT)
+            count += (size_t)((d->plans[c].width + 7) / 8) * (size_t)((d->plans[c].height + 7) / 8);
+    return count;
+}
+
+// Copies what was not transformed: lines as they are, or bytes of equal rank together.
+static void copy_plain(dwa *d, int index, const size_t *offset)
+{
+    const dwa_plan *plan = &d->plans[index];
+    size_t bytes = (size_t)d->box->channels[index].bytes;
+    size_t width = (size_t)plan->width, plane = width * (size_t)plan->height;
+    for (size_t y = 0; y < (size_t)plan->height; y++) {
+        uint8_t *to = d->raw + offset[y];
+        if (plan->scheme == SCHEME_ZLIB) {
+            memcpy(to, plan->from + y * width * bytes, width * bytes);
+            continue;
+        }
+        for (size_t x = 0; x < width; x++)
+            for (size_t b = 0; b < bytes; b++)
+                to[x * bytes + b] = plan->from[b * plane + y * width + x];
+    }
+}
+
+kiln_result ki_exr_undo_dwa(kiln_context *context, const ki_exr_box *box, const uint16_t *table,
+                            const uint8_t *packed, size_t packed_size, uint8_t *raw)
+{
+    kiln_result result = KILN_ERROR_MEMORY;
+    uint8_t *plain = NULL, *runs = NULL, *scratch = NULL;
+    uint16_t *ac = NULL, *dc = NULL;
+    size_t *offset = NULL;
+    triple *triples = NULL;
+    dwa *d = ki_alloc(context, 1, sizeof *d);
+    if (!d)
+        return KILN_ERROR_MEMORY;
+    d->box = box;
+    d->table = table;
+    d->raw = raw;
+
+    ki_reader r = ki_reader_make(packed, packed_size);
+    counts *n = &d->counts;
+    read_counts(&r, n);
+    result = KILN_ERROR_FORMAT;
+    if (r.failed || n->version > 2)
+        goto done;
+    if (n->version < 2)
+        add_old_rules(d);
+    else if (!read_rules(d, &r))
+        goto done;
+    const uint8_t *zlib_bytes = ki_read_bytes(&r, n->zlib_packed);
+    const uint8_t *ac_bytes = ki_read_bytes(&r, n->ac_packed);
+    const uint8_t *dc_bytes = ki_read_bytes(&r, n->dc_packed);
+    const uint8_t *run_bytes = ki_read_bytes(&r, n->runs_packed);
+    if (r.failed)
+        goto done;
+
+    result = KILN_ERROR_MEMORY;
+    triples = ki_alloc_raw(context, (size_t)box->channel_count, sizeof *triples);
+    offset = ki_alloc_raw(context, 3 * (size_t)box->height, sizeof *offset);
+    if (!triples || !offset)
+        goto done;
+    int triple_count = make_plan(d, triples);
+    size_t zlib_size = plane_size(d, SCHEME_ZLIB), runs_size = plane_size(d, SCHEME_RUNS);
+    size_t blocks = block_count(d);
+    result = KILN_ERROR_FORMAT;
+    // Every count must be what the box needs; coefficients may be fewer than 64 a block.
+    if (n->zlib_size != zlib_size || n->runs_raw != runs_size || n->runs_size > 2 * runs_size ||
+        n->dc_count != blocks || n->ac_count > 64 * (uint64_t)blocks)
+        goto done;
+
+    result = KILN_ERROR_MEMORY;
+    plain = ki_alloc_raw(context, zlib_size + runs_size + 1, 1);
+    runs = ki_alloc_raw(context, n->runs_size + 1, 1);
+    ac = ki_alloc_raw(context, n->ac_count + 1, sizeof *ac);
+    dc = ki_alloc_raw(context, blocks + 1, sizeof *dc);
+    scratch = ki_alloc_raw(context, blocks + 1, sizeof *dc);
+    if (!plain || !runs || !ac || !dc || !scratch)
+        goto done;
+    result = KILN_ERROR_FORMAT;
+    if (zlib_size && !ki_exr_inflate(zlib_bytes, n->zlib_packed, plain, zlib_size))
+        goto done;
+    if (runs_size &&
+        (!ki_exr_inflate(run_bytes, n->runs_packed, runs, n->runs_size) ||
+         ki_exr_unpack_runs(runs, n->runs_size, plain + zlib_size, runs_size) != runs_size))
+        goto done;
+    if (blocks &&
+        !ki_exr_undo_zip(dc_bytes, n->dc_packed, (uint8_t *)dc, blocks * sizeof *dc, scratch))
+        goto done;
+    if (n->ac_count && n->ac_compression == AC_HUFFMAN)
+        result = ki_exr_undo_huffman(context, ac_bytes, n->ac_packed, ac, n->ac_count);
+    else if (!n->ac_count ||
+             (n->ac_compression == AC_DEFLATE &&
+              ki_exr_inflate(ac_bytes, n->ac_packed, (uint8_t *)ac, n->ac_count * sizeof *ac)))
+        result = KILN_OK;
+    if (result != KILN_OK)
+        goto done;
+
+    result = KILN_ERROR_FORMAT;
+    d->ac = ac;
+    d->ac_end = ac + n->ac_count;
+    d->dc = dc;
+    d->dc_end = dc + blocks;
+    size_t *lines[3] = {offset, offset + box->height, offset + 2 * box->height};
+    for (int t = 0; t < triple_count; t++) {
+        const int *member = triples[t].member;
+        if (!whole_triple(d, member))
+            continue;
+        for (int k = 0; k < 3; k++) {
+            if (d->plans[member[k]].scheme != SCHEME_DCT)
+                goto done;
+            find_lines(d, member[k], lines[k]);
+        }
+        if (!transform(d, member, 3, lines))
+            goto done;
+    }
+    const uint8_t *at[3] = {plain, NULL, plain + zlib_size};
+    for (int c = 0; c < box->channel_count; c++) {
+        dwa_plan *plan = &d->plans[c];
+        if (plan->done)
+            continue;
+        find_lines(d, c, lines[0]);
+        if (plan->scheme == SCHEME_DCT) {
+            if (!transform(d, &c, 1, lines))
+                goto done;
+            continue;
+        }
+        plan->from = at[plan->scheme];
+        at[plan->scheme] +=
+            (size_t)plan->width * (size_t)plan->height * (size_t)box->channels[c].bytes;
+        copy_plain(d, c, lines[0]);
+    }
+    result = KILN_OK;
+done:
+    ki_free(triples);
+    ki_free(offset);
+    ki_free(plain);
+    ki_free(runs);
+    ki_free(ac);
+    ki_free(dc);
+    ki_free(scratch);
+    ki_free(d);
+    return result;
+}

@@ -1,0 +1,192 @@
+// The Huffman coding of PIZ and DWA: canonical codes of up to 58 bits for 65536 symbols and one
+// more, which stands for a run. In canonical order longer codes come first, so that among the codes
+// filled up with zeros to 64 bits every shorter length begins above the longer ones.
+#include "base/bytes.h"
+#include "codec/exr.h"
+
+#include <string.h>
+
+enum {
+    SYMBOLS = 65537,
+    LONGEST = 56,     // the format knows 58, for which no chunk is long enough
+    SHORT_ZEROS = 59, // lengths 59 to 62: 2 to 5 symbols that do not occur
+    LONG_ZEROS = 63,  // 8 more bits: 6 to 261 of them
+    TABLE_BITS = 13,
+};
+
+typedef struct decoder {
+    uint8_t length[SYMBOLS];
+    uint32_t symbol[SYMBOLS];        // by length, then by value
+    uint32_t table[1 << TABLE_BITS]; // symbol << 6 | length for short codes, else 0
+    uint64_t first[LONGEST + 1];     // the lowest code of each length
+    uint32_t count[LONGEST + 1], start[LONGEST + 1];
+} decoder;
+
+// Bits, most significant first. Behind the end come zeros, which are counted.
+typedef struct bits {
+    const uint8_t *at, *end;
+    uint64_t held; // from the top
+    int held_count;
+    uint64_t spent;
+} bits;
+
+// Holds 57 bits at least.
+static inline void fill(bits *b)
+{
+    if (b->held_count > 56)
+        return;
+    if (b->end - b->at >= 8) {
+        uint64_t next;
+        memcpy(&next, b->at, sizeof next);
+        b->held |= __builtin_bswap64(next) >> b->held_count;
+        int bytes = (64 - b->held_count) / 8;
+        b->at += bytes;
+        b->held_count += 8 * bytes;
+        return;
+    }
+    while (b->held_count <= 56) {
+        uint64_t byte = b->at < b->end ? *b->at : 0;
+        b->at += b->at < b->end;
+        b->held |= byte << (56 - b->held_count);
+        b->held_count += 8;
+    }
+}
+
+static inline void drop(bits *b, int count)
+{
+    b->held <<= count;
+    b->held_count -= count;
+    b->spent += (uint64_t)count;
+}
+
+static inline uint32_t take(bits *b, int count)
+{
+    fill(b);
+    uint32_t value = (uint32_t)(b->held >> (64 - count));
+    drop(b, count);
+    return value;
+}
+
+// Code lengths of the symbols low to high.
+static bool read_lengths(bits *b, uint32_t low, uint32_t high, decoder *d)
+{
+    memset(d->length, 0, sizeof d->length);
+    for (uint32_t s = low; s <= high; s++) {
+        uint32_t value = take(b, 6);
+        if (value > LONGEST && value < SHORT_ZEROS)
+            return false;
+        if (value < SHORT_ZEROS) {
+            d->length[s] = (uint8_t)value;
+            continue;
+        }
+        uint32_t zeros = value == LONG_ZEROS ? take(b, 8) + 6 : value - SHORT_ZEROS + 2;
+        if (zeros > high + 1 - s)
+            return false;
+        s += zeros - 1;
+    }
+    return true;
+}
+
+// Gives every length its lowest code, sorts the symbols and fills the table of short codes.
+static bool build(decoder *d, uint32_t low, uint32_t high)
+{
+    memset(d->count, 0, sizeof d->count);
+    for (uint32_t s = low; s <= high; s++)
+        d->count[d->length[s]]++;
+    uint64_t code = 0;
+    uint32_t start = 0;
+    for (int l = LONGEST; l > 0; l--) {
+        uint64_t next = (code + d->count[l]) >> 1;
+        d->first[l] = code;
+        d->start[l] = start;
+        start += d->count[l];
+        if (d->first[l] + d->count[l] > (uint64_t)1 << l)
+            return false;
+        code = next;
+    }
+    uint32_t used[LONGEST + 1] = {0};
+    memset(d->table, 0, sizeof d->table);
+    for (uint32_t s = low; s <= high; s++) {
+        int l = d->length[s];
+        if (!l)
+            continue;
+        uint32_t index = used[l]++;
+        d->symbol[d->start[l] + index] = s;
+        if (l > TABLE_BITS)
+            continue;
+        uint64_t from = (d->first[l] + index) << (TABLE_BITS - l);
+        for (uint64_t i = 0; i < (uint64_t)1 << (TABLE_BITS - l); i++)
+            d->table[from + i] = s << 6 | (uint32_t)l;
+    }
+    return true;
+}
+
+static inline bool next_symbol(const decoder *d, bits *b, uint32_t *symbol)
+{
+    fill(b);
+    uint32_t entry = d->table[b->held >> (64 - TABLE_BITS)];
+    if (entry) {
+        *symbol = entry >> 6;
+        drop(b, (int)(entry & 63));
+        return true;
+    }
+    for (int l = TABLE_BITS + 1; l <= LONGEST; l++) {
+        uint64_t index = (b->held >> (64 - l)) - d->first[l];
+        if (index < d->count[l]) {
+            *symbol = d->symbol[d->start[l] + index];
+            drop(b, l);
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool decode(decoder *d, const uint8_t *packed, size_t packed_size, uint16_t *symbols,
+                   size_t count)
+{
+    ki_reader r = ki_reader_make(packed, packed_size);
+    uint32_t low = ki_read_u32(&r), high = ki_read_u32(&r);
+    ki_read_u32(&r); // size of the table, which ends by itself
+    uint64_t bit_count = ki_read_u32(&r);
+    ki_read_u32(&r);
+    if (r.failed || low >= SYMBOLS || high >= SYMBOLS || low > high)
+        return false;
+
+    bits b = {.at = r.at, .end = r.end};
+    if (!read_lengths(&b, low, high, d) || !build(d, low, high))
+        return false;
+    size_t table_size = (size_t)((b.spent + 7) / 8);
+    if (table_size > ki_reader_left(&r) || (bit_count + 7) / 8 > ki_reader_left(&r) - table_size)
+        return false;
+
+    const uint8_t *data = r.at + table_size;
+    b = (bits){.at = data, .end = data + (bit_count + 7) / 8};
+    size_t out = 0;
+    while (out < count) {
+        uint32_t symbol;
+        if (!next_symbol(d, &b, &symbol) || b.spent > bit_count)
+            return false;
+        if (symbol != high) {
+            symbols[out++] = (uint16_t)symbol;
+            continue;
+        }
+        uint32_t run = take(&b, 8);
+        if (out == 0 || run > count - out || b.spent > bit_count)
+            return false;
+        uint16_t last = symbols[out - 1];
+        for (uint32_t i = 0; i < run; i++)
+            symbols[out++] = last;
+    }
+    return true;
+}
+
+kiln_result ki_exr_undo_huffman(kiln_context *context, const uint8_t *packed, size_t packed_size,
+                                uint16_t *symbols, size_t count)
+{
+    decoder *d = ki_alloc_raw(context, 1, sizeof *d);
+    if (!d)
+        return KILN_ERROR_MEMORY;
+    bool good = decode(d, packed, packed_size, symbols, count);
+    ki_free(d);
+    return good ? KILN_OK : KILN_ERROR_FORMAT;
+}

@@ -1,0 +1,100 @@
+// EXR's byte-wise compressions: ZIP, ZIPS and RLE.
+#include "codec/exr.h"
+
+#include <libdeflate.h>
+#include <string.h>
+
+bool ki_exr_inflate(const uint8_t *packed, size_t packed_size, uint8_t *raw, size_t size)
+{
+    struct libdeflate_decompressor *d = libdeflate_alloc_decompressor();
+    if (!d)
+        return false;
+    enum libdeflate_result result =
+        libdeflate_zlib_decompress(d, packed, packed_size, raw, size, NULL);
+    libdeflate_free_decompressor(d);
+    return result == LIBDEFLATE_SUCCESS;
+}
+
+typedef uint8_t bytes16 __attribute__((vector_size(16)));
+
+#define SHIFTED(v, n)                                                                              \
+    __builtin_shufflevector((bytes16){0}, v, 16 - (n), 17 - (n), 18 - (n), 19 - (n), 20 - (n),     \
+                            21 - (n), 22 - (n), 23 - (n), 24 - (n), 25 - (n), 26 - (n), 27 - (n),  \
+                            28 - (n), 29 - (n), 30 - (n), 31 - (n))
+
+// Each byte was stored as its difference from the one before, plus 128. Sixteen running sums at a
+// time: every step adds the sums 1, 2, 4 and 8 bytes to the left.
+static void undo_differences(uint8_t *bytes, size_t size)
+{
+    size_t i = 0;
+    uint8_t last = 128; // the first byte was stored as it is
+    for (; i + 16 <= size; i += 16) {
+        bytes16 v;
+        memcpy(&v, bytes + i, sizeof v);
+        v -= 128;
+        v += SHIFTED(v, 1);
+        v += SHIFTED(v, 2);
+        v += SHIFTED(v, 4);
+        v += SHIFTED(v, 8);
+        v += last;
+        last = v[15];
+        memcpy(bytes + i, &v, sizeof v);
+    }
+    for (; i < size; i++)
+        bytes[i] = last = (uint8_t)(last + bytes[i] - 128);
+}
+
+// The even bytes come first, the odd ones after them.
+static void interleave(const uint8_t *halves, uint8_t *restrict raw, size_t size)
+{
+    const uint8_t *odd = halves + (size + 1) / 2;
+    for (size_t i = 0; i < size / 2; i++) {
+        raw[2 * i] = halves[i];
+        raw[2 * i + 1] = odd[i];
+    }
+    if (size % 2)
+        raw[size - 1] = halves[size / 2];
+}
+
+bool ki_exr_undo_zip(const uint8_t *packed, size_t packed_size, uint8_t *raw, size_t size,
+                     uint8_t *scratch)
+{
+    if (!ki_exr_inflate(packed, packed_size, scratch, size))
+        return false;
+    undo_differences(scratch, size);
+    interleave(scratch, raw, size);
+    return true;
+}
+
+size_t ki_exr_unpack_runs(const uint8_t *packed, size_t packed_size, uint8_t *raw, size_t size)
+{
+    size_t in = 0, out = 0;
+    while (in < packed_size) {
+        int code = (int8_t)packed[in++];
+        if (code < 0) {
+            size_t count = (size_t)-code;
+            if (packed_size - in < count || size - out < count)
+                return SIZE_MAX;
+            memcpy(raw + out, packed + in, count);
+            in += count;
+            out += count;
+        } else {
+            size_t count = (size_t)code + 1;
+            if (in == packed_size || size - out < count)
+                return SIZE_MAX;
+            memset(raw + out, packed[in++], count);
+            out += count;
+        }
+    }
+    return out;
+}
+
+bool ki_exr_undo_rle(const uint8_t *packed, size_t packed_size, uint8_t *raw, size_t size,
+                     uint8_t *scratch)
+{
+    if (ki_exr_unpack_runs(packed, packed_size, scratch, size) != size)
+        return false;
+    undo_differences(scratch, size);
+    interleave(scratch, raw, size);
+    return true;
+}

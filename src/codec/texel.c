@@ -1,0 +1,114 @@
+#include "codec/texel.h"
+#include "image/pack.h"
+
+#include <float.h>
+#include <string.h>
+
+_Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "files are written as memory is");
+
+const ki_texel ki_texels[4] = {
+    {KILN_FORMAT_RGBA16F, "rgba16f", 97, 10, 8, 2},
+    {KILN_FORMAT_RGBA32F, "rgba32f", 109, 2, 16, 4},
+    {KILN_FORMAT_RGB9E5, "rgb9e5", 123, 67, 4, 4},
+    {KILN_FORMAT_B10G11R11, "b10g11r11", 122, 26, 4, 4},
+};
+
+const ki_texel *ki_texel_of_format(kiln_format format)
+{
+    if (format == KILN_FORMAT_AUTO)
+        return &ki_texels[0];
+    for (size_t i = 0; i < sizeof ki_texels / sizeof *ki_texels; i++)
+        if (ki_texels[i].format == format)
+            return &ki_texels[i];
+    return NULL;
+}
+
+const ki_texel *ki_texel_of_vk(uint32_t vk)
+{
+    for (size_t i = 0; i < sizeof ki_texels / sizeof *ki_texels; i++)
+        if (ki_texels[i].vk == vk)
+            return &ki_texels[i];
+    return NULL;
+}
+
+const ki_texel *ki_texel_of_dxgi(uint32_t dxgi)
+{
+    for (size_t i = 0; i < sizeof ki_texels / sizeof *ki_texels; i++)
+        if (ki_texels[i].dxgi == dxgi)
+            return &ki_texels[i];
+    return NULL;
+}
+
+enum { STRETCH = 64 };
+
+static void pack_floats(const float *rgb, size_t count, uint8_t *bytes)
+{
+    for (size_t i = 0; i < count; i++) {
+        const float texel[4] = {rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2], 1};
+        memcpy(bytes + 16 * i, texel, sizeof texel);
+    }
+}
+
+void ki_texels_pack(const ki_texel *texel, const float *rgb, size_t count, uint8_t *bytes)
+{
+    if (texel->format == KILN_FORMAT_RGBA32F) {
+        pack_floats(rgb, count, bytes);
+        return;
+    }
+    for (size_t done = 0; done < count; done += STRETCH) {
+        size_t n = count - done < STRETCH ? count - done : STRETCH;
+        const float *from = rgb + 3 * done;
+        if (texel->format == KILN_FORMAT_RGBA16F) {
+            uint16_t halfs[4 * STRETCH];
+            ki_pack_rgba16f(from, n, halfs);
+            memcpy(bytes + 8 * done, halfs, 8 * n);
+            continue;
+        }
+        uint32_t words[STRETCH];
+        for (size_t i = 0; i < n; i++)
+            words[i] = texel->format == KILN_FORMAT_RGB9E5 ? ki_rgb9e5_from_float(from + 3 * i)
+                                                           : ki_b10g11r11_from_float(from + 3 * i);
+        memcpy(bytes + 4 * done, words, 4 * n);
+    }
+}
+
+static float sane(float value, float largest)
+{
+    value = value > 0 ? value : 0;
+    return value < largest ? value : largest;
+}
+
+void ki_texels_unpack(const ki_texel *texel, const uint8_t *bytes, size_t count, float *rgb)
+{
+    for (size_t i = 0; i < count; i++) {
+        const uint8_t *from = bytes + (size_t)texel->bytes * i;
+        float value[4] = {0}, largest[3] = {0};
+        uint32_t word;
+        uint16_t halfs[4];
+        switch (texel->format) {
+        case KILN_FORMAT_RGBA32F:
+            memcpy(value, from, sizeof value);
+            largest[0] = largest[1] = largest[2] = FLT_MAX;
+            break;
+        case KILN_FORMAT_RGB9E5:
+            memcpy(&word, from, sizeof word);
+            ki_float_from_rgb9e5(word, value);
+            largest[0] = largest[1] = largest[2] = 65408;
+            break;
+        case KILN_FORMAT_B10G11R11:
+            memcpy(&word, from, sizeof word);
+            ki_float_from_b10g11r11(word, value);
+            largest[0] = largest[1] = 65024;
+            largest[2] = 64512;
+            break;
+        case KILN_FORMAT_RGBA16F:
+        case KILN_FORMAT_AUTO:
+            memcpy(halfs, from, sizeof halfs);
+            ki_floats_from_halfs(halfs, 4, value);
+            largest[0] = largest[1] = largest[2] = 65504;
+            break;
+        }
+        for (int c = 0; c < 3; c++)
+            rgb[3 * i + (size_t)c] = sane(value[c], largest[c]);
+    }
+}

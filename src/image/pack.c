@@ -1,0 +1,163 @@
+// Small floats, by integers and exact float operations only: the same bits on every machine.
+#include "image/pack.h"
+#include "math/math.h"
+
+#include <stdbool.h>
+#include <string.h>
+
+// Signed, because vectors compare signed integers fastest.
+static inline int32_t bits_of(float value)
+{
+    int32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    return bits;
+}
+
+static inline float float_of(int32_t bits)
+{
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+// A float's bits, sign apart, as a float of 5 exponent bits, biased by 15, and `m` mantissa bits.
+// Branchless, so that loops over it are vectorised.
+//
+// Adding a power of two, 2^(23 - m) times the value's own, leaves m bits after the leading one and
+// rounds the rest, to nearest and ties to even; the difference of the bits is that mantissa. Below
+// 2^-14, where the small float's exponent ends, the power stays the same. A mantissa that rounds up
+// to 2 carries into the exponent.
+static inline int32_t small_float(int32_t bits, int m)
+{
+    const int32_t largest = 142 << 23 | ((1 << m) - 1) << (23 - m);
+    bits = bits > 0x7f800000 ? 0 : bits;
+    bits = bits < largest ? bits : largest;
+    int32_t exponent = (bits > 113 << 23 ? bits : 113 << 23) & 0x7f800000;
+    int32_t power = exponent + ((23 - m) << 23);
+    int32_t mantissa = bits_of(float_of(bits) + float_of(power)) - power;
+    return mantissa + (exponent >> (23 - m)) - (113 << m);
+}
+
+// The inverse; `bits` has no sign.
+static inline float large_float(int32_t bits, int m)
+{
+    int32_t unit = (127 + 9 - m) << 23; // whose last place is 2^(-14-m)
+    float low = float_of(bits + unit) - float_of(unit);
+    int32_t high = (bits << (23 - m)) + (bits >> m == 31 ? 224 << 23 : 112 << 23);
+    return bits >> m == 0 ? low : float_of(high);
+}
+
+static inline uint16_t half_of(float value)
+{
+    int32_t bits = bits_of(value), sign = value == value ? bits >> 16 & 0x8000 : 0;
+    return (uint16_t)(sign | small_float(bits & 0x7fffffff, 10));
+}
+
+static inline uint32_t unsigned_of(float value, int m)
+{
+    return value > 0 ? (uint32_t)small_float(bits_of(value), m) : 0;
+}
+
+uint16_t ki_half_from_float(float value)
+{
+    return half_of(value);
+}
+
+float ki_float_from_half(uint16_t half)
+{
+    float magnitude = large_float(half & 0x7fffU, 10);
+    return half & 0x8000U ? -magnitude : magnitude;
+}
+
+void ki_halfs_from_floats(const float *restrict values, size_t count, uint16_t *restrict halfs)
+{
+    for (size_t i = 0; i < count; i++)
+        halfs[i] = half_of(values[i]);
+}
+
+void ki_floats_from_halfs(const uint16_t *restrict halfs, size_t count, float *restrict values)
+{
+    for (size_t i = 0; i < count; i++) {
+        float magnitude = large_float(halfs[i] & 0x7fff, 10);
+        values[i] = float_of(bits_of(magnitude) | (int32_t)((uint32_t)(halfs[i] >> 15) << 31));
+    }
+}
+
+// EXT_texture_shared_exponent: value = mantissa 2^(exponent - 15 - 9). The exponent is the smallest
+// with which the largest mantissa, rounded, still fits into 9 bits.
+uint32_t ki_rgb9e5_from_float(const float rgb[3])
+{
+    const float largest = 65408; // 511 / 512 * 2^16
+    float c[3], most = 0;
+    for (int i = 0; i < 3; i++) {
+        c[i] = rgb[i] > 0 ? rgb[i] : 0;
+        c[i] = c[i] > largest ? largest : c[i];
+        most = c[i] > most ? c[i] : most;
+    }
+    int exponent = (bits_of(most) >> 23) - 127 + 16;
+    exponent = exponent < 0 ? 0 : exponent;
+    // 2^23 has a last place of 1: adding it rounds to an integer, ties to even.
+    const float round = 8388608;
+    float scale = float_of((127 + 24 - exponent) << 23);
+    if ((most * scale + round) - round >= 512) {
+        exponent++;
+        scale *= 0.5f;
+    }
+    uint32_t packed = (uint32_t)exponent << 27;
+    for (int i = 0; i < 3; i++)
+        packed |= (uint32_t)((c[i] * scale + round) - round) << (9 * i);
+    return packed;
+}
+
+void ki_float_from_rgb9e5(uint32_t packed, float rgb[3])
+{
+    float scale = float_of((int32_t)(127 - 24 + (packed >> 27)) << 23);
+    for (int i = 0; i < 3; i++)
+        rgb[i] = (float)(packed >> (9 * i) & 511U) * scale;
+}
+
+uint32_t ki_b10g11r11_from_float(const float rgb[3])
+{
+    return unsigned_of(rgb[0], 6) | unsigned_of(rgb[1], 6) << 11 | unsigned_of(rgb[2], 5) << 22;
+}
+
+void ki_float_from_b10g11r11(uint32_t packed, float rgb[3])
+{
+    rgb[0] = large_float((int32_t)(packed & 0x7ffU), 6);
+    rgb[1] = large_float((int32_t)(packed >> 11 & 0x7ffU), 6);
+    rgb[2] = large_float((int32_t)(packed >> 22), 5);
+}
+
+// Converts a stretch without its gaps, then spreads it: both loops are vectors or single words.
+void ki_pack_rgba16f(const float *rgb, size_t count, uint16_t *rgba)
+{
+    enum { STRETCH = 64 };
+    uint16_t half[STRETCH * 3 + 1];
+    half[STRETCH * 3] = 0;
+    while (count) {
+        size_t n = count < STRETCH ? count : STRETCH;
+        ki_halfs_from_floats(rgb, n * 3, half);
+        for (size_t i = 0; i < n; i++) {
+            uint16_t texel[4];
+            memcpy(texel, half + 3 * i, sizeof texel);
+            texel[3] = 0x3c00; // 1
+            memcpy(rgba + 4 * i, texel, sizeof texel);
+        }
+        rgb += 3 * n;
+        rgba += 4 * n;
+        count -= n;
+    }
+}
+
+// IEC 61966-2-1.
+float ki_linear_from_srgb(float value)
+{
+    double v = (double)value;
+    return (float)(v <= 0.04045 ? v / 12.92 : ki_pow((v + 0.055) / 1.055, 2.4));
+}
+
+float ki_srgb_from_linear(float value)
+{
+    double v = (double)value;
+    return (float)(v <= 0.0031308 ? v * 12.92 : 1.055 * ki_pow(v, 1 / 2.4) - 0.055);
+}
