@@ -1,0 +1,99 @@
+// The elementary functions against libm, and quadrature against what it must integrate exactly.
+#include "check.h"
+
+#include "math/math.h"
+
+#include <float.h>
+
+static uint64_t state = 88172645463325252u;
+
+static double uniform(double low, double high)
+{
+    state ^= state << 13;
+    state ^= state >> 7;
+    state ^= state << 17;
+    return low + (high - low) * ((double)(state >> 11) / 9007199254740992.0);
+}
+
+// The error in units of the last place of the wanted value.
+static double ulps(double value, long double wanted)
+{
+    int exponent;
+    (void)frexpl(wanted, &exponent);
+    double unit = ldexp(1, exponent - 53);
+    if (unit < DBL_TRUE_MIN)
+        unit = DBL_TRUE_MIN;
+    return (double)(fabsl((long double)value - wanted) / unit);
+}
+
+static void elementary_functions_agree_with_libm(void **unused)
+{
+    (void)unused;
+    double sine = 0, circle = 0, exponent = 0, logarithm = 0, power = 0, angle = 0, arc = 0;
+    for (int i = 0; i < 400000; i++) {
+        double x = uniform(-1e4, 1e4), s, c;
+        ki_sincos(x, &s, &c);
+        circle = fmax(circle, fabs(s * s + c * c - 1));
+        sine = fmax(sine, fmax(fabs(s - (double)sinl(x)), fabs(c - (double)cosl(x))));
+        x = uniform(-700, 700);
+        exponent = fmax(exponent, ulps(ki_exp(x), expl(x)));
+        x = i % 2 ? uniform(0.5, 2) : exp(uniform(-700, 700));
+        logarithm = fmax(logarithm, ulps(ki_log(x), logl(x)));
+        double a = uniform(1e-3, 2), b = uniform(-50, 50);
+        power = fmax(power, (double)(fabsl((long double)ki_pow(a, b) / powl(a, b) - 1) /
+                                     (1 + fabsl(b * logl(a)))));
+        double y = uniform(-1, 1), z = uniform(-1, 1);
+        angle = fmax(angle, ulps(ki_atan2(y, z), atan2l(y, z)));
+        arc = fmax(arc, fabs(ki_asin(y) - (double)asinl(y)));
+        arc = fmax(arc, fabs(ki_acos(y) - (double)acosl(y)));
+    }
+    CHECK_BELOW(sine, 2e-16);
+    CHECK_BELOW(circle, 5e-16);
+    CHECK_BELOW(exponent, 2);
+    CHECK_BELOW(logarithm, 2);
+    CHECK_BELOW(power, 4e-16);
+    CHECK_BELOW(angle, 3);
+    CHECK_BELOW(arc, 7e-16);
+}
+
+static void ends_of_the_ranges(void **unused)
+{
+    (void)unused;
+    CHECK_NEAR(ki_exp(0), 1, 0);
+    CHECK_NEAR(ki_exp(-800), 0, 0);
+    assert_true(ki_exp(1000) <= DBL_MAX && ki_exp(-740) > 0);
+    CHECK_NEAR(ki_log(1), 0, 0);
+    CHECK_BELOW(ulps(ki_log(DBL_TRUE_MIN), logl(DBL_TRUE_MIN)), 2);
+    CHECK_NEAR(ki_pow(0, 2), 0, 0);
+    CHECK_NEAR(ki_pow(5, 0), 1, 0);
+    CHECK_NEAR(ki_atan2(0, -1), KI_PI, 0);
+    CHECK_NEAR(ki_acos(1), 0, 0);
+    CHECK_NEAR(ki_sin(0), 0, 0);
+}
+
+static void gauss_legendre_is_exact_to_its_degree(void **unused)
+{
+    (void)unused;
+    static double nodes[512], weights[512];
+    for (int count = 1; count <= 512; count = count < 40 ? count + 1 : 2 * count) {
+        ki_gauss_legendre(count, nodes, weights);
+        for (int power = 0; power <= 2 * count - 1; power += count > 40 ? 37 : 1) {
+            double sum = 0;
+            for (int i = 0; i < count; i++) {
+                assert_true(i == 0 || nodes[i] > nodes[i - 1]);
+                sum += weights[i] * pow(nodes[i], power);
+            }
+            CHECK_NEAR(sum, power % 2 ? 0 : 2.0 / (power + 1), 3e-15);
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(elementary_functions_agree_with_libm),
+        cmocka_unit_test(ends_of_the_ranges),
+        cmocka_unit_test(gauss_legendre_is_exact_to_its_degree),
+    };
+    return cmocka_run_group_tests_name("math", tests, NULL, NULL);
+}
