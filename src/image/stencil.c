@@ -45,6 +45,13 @@ typedef struct trace {
     int first_column, end_column, first_row, end_row;
 } trace;
 
+// A great circle that is no meridian.
+typedef struct circle {
+    double a, b; // cot theta = a cos phi + b sin phi
+    double kappa2, inverse_k2;
+    double sign; // of what it adds
+} circle;
+
 // A point of an arc that is being traced.
 typedef struct node {
     double cosine, sine; // of phi
@@ -134,8 +141,9 @@ static inline double integral_between(const builder *b, const node *from, const 
                  (from->q * to->q + from->s * to->s) * inverse_k2, b->small);
 }
 
-static inline node node_at(double a, double b, double cosine, double sine)
+static inline node node_at(const circle *on, double cosine, double sine)
 {
+    double a = on->a, b = on->b;
     double c = a * cosine + b * sine, q = sqrt(1 + c * c);
     return (node){cosine, sine, a * sine - b * cosine, q, c / q};
 }
@@ -166,33 +174,42 @@ static inline void add_entry(trace *arc, int column, int row, double area, doubl
     arc->entries[arc->count++] = (entry){column, row, area, width};
 }
 
-// One column's part of an arc, along which z rises or falls only. Returns the row at `end`.
-static int trace_piece(const builder *b, trace *arc, const node *start, const node *end, int column,
-                       int row, double sign, double a_, double b_, double inverse_k2)
+// One column's part of an arc that goes through several rows, from `north` to `south`; `rest` is G
+// of the northern one's upper border and `low` the part's lower end.
+static void trace_rows(const builder *b, trace *arc, const circle *on, const node *low, double side,
+                       int column, int north, int south, double rest, double width)
 {
-    const double *height = b->height;
-    double width = angle_between(b, start, end);
-    double integral = integral_between(b, start, end, inverse_k2);
-    int last = find_row(b, end->z, row);
-    int north = ki_min(row, last), south = ki_max(row, last);
-    double rest = height[north] * width - integral; // G of the row's northern border
-    double kappa2 = a_ * a_ + b_ * b_;
-    const node *low = row < last ? end : start;
+    double a_ = on->a, b_ = on->b;
     for (int j = north; j <= south; j++) {
         double next = 0;
         if (j < south) {
             // Where the arc meets the row's southern border.
-            double c = b->cotangent[j + 1], s2 = kappa2 - c * c;
-            double s = copysign(s2 > 0 ? sqrt(s2) : 0, start->s + end->s);
-            node cut = {(a_ * c - b_ * s) / kappa2, (b_ * c + a_ * s) / kappa2, s, sqrt(1 + c * c),
-                        height[j + 1]};
+            double c = b->cotangent[j + 1], s2 = on->kappa2 - c * c;
+            double s = copysign(s2 > 0 ? sqrt(s2) : 0, side);
+            node cut = {(a_ * c - b_ * s) / on->kappa2, (b_ * c + a_ * s) / on->kappa2, s,
+                        sqrt(1 + c * c), b->height[j + 1]};
             double w = angle_between(b, &cut, low);
-            double i = integral_between(b, &cut, low, inverse_k2);
-            next = fabs(height[j + 1] * w - i);
+            double i = integral_between(b, &cut, low, on->inverse_k2);
+            next = fabs(b->height[j + 1] * w - i);
         }
-        add_entry(arc, column, j, sign * (rest - next), j == north ? sign * width : 0);
+        add_entry(arc, column, j, on->sign * (rest - next), j == north ? on->sign * width : 0);
         rest = next;
     }
+}
+
+// One column's part of an arc, along which z rises or falls only. Returns the row at `end`.
+static inline int trace_piece(const builder *b, trace *arc, const circle *on, const node *start,
+                              const node *end, int column, int row)
+{
+    double width = angle_between(b, start, end);
+    double integral = integral_between(b, start, end, on->inverse_k2);
+    int last = find_row(b, end->z, row), north = ki_min(row, last), south = ki_max(row, last);
+    double rest = b->height[north] * width - integral;
+    if (row == last)
+        add_entry(arc, column, row, on->sign * rest, on->sign * width);
+    else
+        trace_rows(b, arc, on, row < last ? end : start, start->s + end->s, column, north, south,
+                   rest, width);
     arc->first_row = ki_min(arc->first_row, north);
     arc->end_row = ki_max(arc->end_row, south + 1);
     return last;
@@ -215,10 +232,12 @@ static void trace_arc(const builder *b, const corner *from, const corner *to, tr
         sign = -1;
         cross = -cross;
     }
-    double a_ = (from->z * to->y - from->y * to->z) / cross;
-    double b_ = (from->x * to->z - from->z * to->x) / cross;
-    double kappa2 = a_ * a_ + b_ * b_, inverse_k2 = 1 / (1 + kappa2);
-    node at = node_at(a_, b_, from->cosine, from->sine);
+    circle on = {.a = (from->z * to->y - from->y * to->z) / cross,
+                 .b = (from->x * to->z - from->z * to->x) / cross,
+                 .sign = sign};
+    on.kappa2 = on.a * on.a + on.b * on.b;
+    on.inverse_k2 = 1 / (1 + on.kappa2);
+    node at = node_at(&on, from->cosine, from->sine);
     int column = from->column, row = from->row;
     arc->first_column = column;
     for (;;) {
@@ -228,22 +247,22 @@ static void trace_arc(const builder *b, const corner *from, const corner *to, tr
             break;
         }
         int border = column + 1 - b->first_border;
-        node next = last ? node_at(a_, b_, to->cosine, to->sine)
-                         : node_at(a_, b_, b->cosine[border], b->sine[border]);
+        node next = last ? node_at(&on, to->cosine, to->sine)
+                         : node_at(&on, b->cosine[border], b->sine[border]);
         if (at.s * next.s < 0) {
             // The arc's highest or lowest point lies between.
-            double kappa = sqrt(kappa2);
-            double c = a_ / kappa, s = b_ / kappa;
+            double kappa = sqrt(on.kappa2);
+            double c = on.a / kappa, s = on.b / kappa;
             if (c * at.cosine + s * at.sine < 0) {
                 c = -c;
                 s = -s;
             }
-            node top = node_at(a_, b_, c, s);
+            node top = node_at(&on, c, s);
             top.s = 0;
-            row = trace_piece(b, arc, &at, &top, column, row, sign, a_, b_, inverse_k2);
+            row = trace_piece(b, arc, &on, &at, &top, column, row);
             at = top;
         }
-        row = trace_piece(b, arc, &at, &next, column, row, sign, a_, b_, inverse_k2);
+        row = trace_piece(b, arc, &on, &at, &next, column, row);
         if (last)
             break;
         at = next;
