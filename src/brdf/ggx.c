@@ -16,7 +16,7 @@ double ki_ggx_d(double alpha, double noh)
 void ki_ggx_half_vector(double alpha, const double xi[2], double h[3])
 {
     // tan^2 theta = alpha^2 xi / (1 - xi).
-    double a2 = alpha * alpha, d = 1 + (a2 - 1) * xi[1];
+    double a2 = alpha * alpha, d = (1 - xi[1]) + a2 * xi[1];
     double cos_theta = sqrt((1 - xi[1]) / d), sin_theta = alpha * sqrt(xi[1] / d);
     double sin_phi, cos_phi;
     ki_sincos(2 * KI_PI * xi[0], &sin_phi, &cos_phi);
