@@ -79,7 +79,6 @@ static void header(ki_writer *w, int width, int height, int channels, const ki_e
     const char *version = kiln_version();
     attribute(w, "software", "string", (uint32_t)strlen(version) + 5);
     ki_write_text(w, "kiln %s", version);
-    ki_write_u8(w, 0);
 }
 
 // Lines as they lie in the file: of each line, channel after channel.
