@@ -465,7 +465,7 @@ static void start_ray(const reference *r, look *ray, const double direction[3], 
     ray->column = u * r->width - 0.5;
     memset(ray->sum, 0, sizeof ray->sum);
     for (int k = 0; k < 3; k++) {
-        const double *sine = r->columns[2 * k], *cosine = r->columns[2 * k + 1];
+        const double *sine = r->columns[(size_t)k * 2], *cosine = r->columns[(size_t)k * 2 + 1];
         ray->along[k] = along + (size_t)k * (size_t)r->width;
         for (int x = 0; x < r->width; x++)
             ray->along[k][x] = direction[0] * sine[x] - direction[2] * cosine[x];

@@ -231,7 +231,7 @@ kiln_result ki_textbook_prefilter(kiln_context *context, const kiln_map *panoram
         return ki_fail_memory(context, error, "the textbook's samples",
                               (size_t)sample_count * sizeof *r.light);
     // Progress by texels: each level has a quarter of the one before.
-    double from = 0, total = 0, texels[KILN_MAX_LEVELS];
+    double from = 0, total = 0, texels[KILN_MAX_LEVELS] = {0};
     for (int k = 0; k < map->level_count; k++)
         total += texels[k] = (double)kiln_map_texels(map, k);
     for (int k = 0; k < map->level_count && !result; k++) {

@@ -39,6 +39,12 @@ static inline kiln_map make_panorama(kiln_context *context, int size)
     return map;
 }
 
+/// The texel in column x, row y of a panorama.
+static inline float *texel_at(const kiln_map *map, int x, int y)
+{
+    return map->level[0] + 3 * ((size_t)y * 2 * (size_t)map->size + (size_t)x);
+}
+
 /// Where texel (x, y) of a panorama is: a unit direction, for fractions of texels too.
 static inline void panorama_direction(int size, double x, double y, double d[3])
 {

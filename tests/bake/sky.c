@@ -84,8 +84,8 @@ static void symmetric_about_the_sun(void **state)
         for (int y = 0; y < SIZE; y++)
             for (int x = 0; x < SIZE; x++)
                 for (int c = 0; c < 3; c++) {
-                    double a = (double)map.level[0][3 * (y * 2 * SIZE + x) + c];
-                    double b = (double)map.level[0][3 * (y * 2 * SIZE + 2 * SIZE - 1 - x) + c];
+                    double a = (double)texel_at(&map, x, y)[c];
+                    double b = (double)texel_at(&map, 2 * SIZE - 1 - x, y)[c];
                     CHECK_NEAR(a, b, 1e-6 * b);
                 }
         kiln_map_free(&map);
@@ -102,10 +102,10 @@ static void azimuth_moves_the_picture(void **state)
     for (int y = 0; y < SIZE; y++)
         for (int x = 0; x < 2 * SIZE; x++)
             for (int k = 0; k < 3; k++) {
-                double from = (double)a.level[0][3 * (y * 2 * SIZE + x) + k];
-                int moved = 3 * (y * 2 * SIZE + (x + STEP) % (2 * SIZE)) + k;
-                CHECK_NEAR((double)b.level[0][moved], from, 1e-6 * from);
-                CHECK_NEAR((double)c.level[0][moved], from, 1e-6 * from);
+                double from = (double)texel_at(&a, x, y)[k];
+                int moved = (x + STEP) % (2 * SIZE);
+                CHECK_NEAR((double)texel_at(&b, moved, y)[k], from, 1e-6 * from);
+                CHECK_NEAR((double)texel_at(&c, moved, y)[k], from, 1e-6 * from);
             }
     kiln_map_free(&c);
     kiln_map_free(&b);
@@ -116,10 +116,11 @@ static void brightest_at_the_sun(void **state)
 {
     (void)state;
     enum { SIZE = 64 };
-    for (double elevation = 2; elevation < 89; elevation += 12)
-        for (double azimuth = -170; azimuth < 180; azimuth += 77) {
+    for (int i = 0; i < 8; i++)
+        for (int k = 0; k < 5; k++) {
+            double elevation = 2 + 12 * i, azimuth = -170 + 77 * k;
             kiln_map map = sky_of(SIZE, elevation, azimuth, 3);
-            size_t best = 0;
+            size_t best = 0, width = 2 * (size_t)SIZE;
             for (size_t t = 1; t < kiln_map_texels(&map, 0); t++)
                 if (luminance(map.level[0] + 3 * t) > luminance(map.level[0] + 3 * best))
                     best = t;
@@ -127,8 +128,9 @@ static void brightest_at_the_sun(void **state)
             // The texel that holds the sun's centre, or most of the disc: the disc is a tenth of a
             // texel wide, more where texels are narrow.
             double radius = 0.2665 / 180 * SIZE;
-            assert_true(fabs((double)(best / (2 * SIZE)) + 0.5 - y) <= 0.5 + radius);
-            CHECK_BELOW(fabs((double)(best % (2 * SIZE)) + 0.5 - x),
+            size_t row = best / width;
+            assert_true(fabs((double)row + 0.5 - y) <= 0.5 + radius);
+            CHECK_BELOW(fabs((double)(best % width) + 0.5 - x),
                         0.5 + radius / cos(elevation * pi / 180));
             kiln_map_free(&map);
         }
@@ -146,10 +148,9 @@ static double disc_energy(const ki_sky *sky, int size, double cosine_power)
     double sum = 0;
     for (int y = 0; y < size; y++)
         for (int x = 0; x < 2 * size; x++) {
-            size_t at = 3 * ((size_t)y * 2 * (size_t)size + (size_t)x);
             double cosine = cos(pi * (y + 0.5) / size);
             sum += texel_area(size, y) * pow(fabs(cosine), cosine_power) *
-                   ((double)with.level[0][at] - (double)without.level[0][at]);
+                   ((double)texel_at(&with, x, y)[0] - (double)texel_at(&without, x, y)[0]);
         }
     kiln_map_free(&without);
     kiln_map_free(&with);
@@ -196,7 +197,7 @@ static void the_disc_is_a_disc(void **state)
             double d[3], rgb[3];
             panorama_direction(SIZE, x + 0.5, y + 0.5, d);
             double gamma = acos(fmin(1, d[0] * sky.sun[0] + d[1] * sky.sun[1] + d[2] * sky.sun[2]));
-            const float *texel = map.level[0] + 3 * ((size_t)y * 2 * SIZE + (size_t)x);
+            const float *texel = texel_at(&map, x, y);
             if (gamma < ki_sun_radius - half_texel) {
                 CHECK_NEAR((double)texel[1] / sky.sun_radiance[1], 1, 1e-3);
                 inside++;
@@ -221,18 +222,18 @@ static void ground_reflects_what_arrives(void **state)
         for (int y = 0; y < SIZE / 2; y++)
             for (int x = 0; x < 2 * SIZE; x++)
                 sum += texel_area(SIZE, y) * cos(pi * (y + 0.5) / SIZE) *
-                       (double)map.level[0][3 * (y * 2 * SIZE + x)];
-        double ground = (double)map.level[0][3 * (SIZE - 1) * 2 * SIZE];
+                       (double)texel_at(&map, x, y)[0];
+        double ground = (double)texel_at(&map, 0, SIZE - 1)[0];
         // The sun's cosine is that of its texel's centre: half a texel at 3 degrees is a tenth.
         CHECK_NEAR(ground / (0.2 / pi * sum), 1, high[i] == 3 ? 0.12 : 0.01);
         for (int y = SIZE / 2; y < SIZE; y++)
-            CHECK_NEAR((double)map.level[0][3 * (y * 2 * SIZE + 7)], ground, 1e-6 * ground);
+            CHECK_NEAR((double)texel_at(&map, 7, y)[0], ground, 1e-6 * ground);
         kiln_map_free(&map);
     }
     kiln_error error = {0};
     kiln_map black;
     CHECK_OK(kiln_sky(context, &(kiln_sky_def){.size = 16, .has_albedo = true}, &black, &error));
-    CHECK_NEAR((double)black.level[0][3 * 15 * 32], 0, 0);
+    CHECK_NEAR((double)texel_at(&black, 0, 15)[0], 0, 0);
     kiln_map_free(&black);
 }
 
@@ -249,7 +250,7 @@ static void sun_is_as_bright_as_it_should_be(void **state)
         before = klx;
     }
     double ratio = 0;
-    for (double elevation = 80; elevation >= 0; elevation -= 10) {
+    for (int elevation = 80; elevation >= 0; elevation -= 10) {
         ki_sky_prepare(&sky, elevation, 0, 3, 0.2);
         double redness = sky.sun_radiance[0] / sky.sun_radiance[1];
         assert_true(redness > ratio);
@@ -262,13 +263,13 @@ static void zenith_is_the_papers(void **state)
 {
     (void)state;
     static const double up[3] = {0, 1, 0};
-    for (double elevation = 5; elevation < 90; elevation += 20)
-        for (double t = 2; t <= 8; t += 2) {
+    for (int elevation = 5; elevation < 90; elevation += 20)
+        for (int t = 2; t <= 8; t += 2) {
             ki_sky sky;
             double rgb[3], theta = (90 - elevation) * pi / 180;
             ki_sky_prepare(&sky, elevation, 0, t, 0.2);
             ki_sky_radiance(&sky, up, rgb);
-            double chi = (4.0 / 9 - t / 120) * (pi - 2 * theta);
+            double chi = (4.0 / 9 - t / 120.0) * (pi - 2 * theta);
             double wanted = (4.0453 * t - 4.9710) * tan(chi) - 0.2155 * t + 2.4192;
             CHECK_NEAR(luminance_of(rgb), wanted, 1e-3 * wanted);
         }
@@ -280,7 +281,8 @@ static void night_falls_smoothly(void **state)
     (void)state;
     static const double d[3] = {0.6, 0.64, -0.48};
     double before = 0, first = 0;
-    for (double elevation = 3; elevation >= -5; elevation -= 0.05) {
+    for (int i = 60; i >= -100; i--) {
+        double elevation = i / 20.0;
         ki_sky sky;
         double rgb[3];
         ki_sky_prepare(&sky, elevation, 0, 3, 0.2);
