@@ -255,8 +255,8 @@ static kiln_result show_comparison(demo *d, comparison *c, const char *title, do
 static void show_figures(demo *d, const comparison *comparisons, int count)
 {
     FILE *f = d->page.file;
-    fputs("<div class=\"scroll\"><table><thead><tr><th></th><th>kiln, rms</th><th>largest</th>"
-          "<th>textbook, rms</th><th>largest</th></tr></thead><tbody>\n",
+    fputs("<div class=\"scroll\"><table><thead><tr><th></th><th>kiln rms</th><th>largest</th>"
+          "<th>textbook rms</th><th>largest</th></tr></thead><tbody>\n",
           f);
     for (int i = 0; i < count; i++) {
         const demo_figures *e = comparisons[i].figures;
@@ -587,7 +587,7 @@ static kiln_result show_environment(demo *d, const char *path)
         show_times(d, path ? "read the file" : "compute the sky");
     if (d->index == 0) {
         d->first_bake = d->bake.wall;
-        d->first_textbook_ratio = d->textbook.wall / d->exact.wall;
+        d->first_textbook_ratio = d->textbook.cpu / d->exact.cpu;
     }
     release(d);
     d->index++;
@@ -646,8 +646,8 @@ static kiln_result write_page(demo *d, const char *path, const char *sections, c
             "page</span></div>"
             "<div class=\"card\"><strong>%s</strong><span>that of the textbook&rsquo;s 1024 "
             "samples</span></div>"
-            "<div class=\"card\"><strong>%.0f&times;</strong><span>the time that the textbook "
-            "takes for the same small map</span></div></div>\n<nav>",
+            "<div class=\"card\"><strong>%.0f&times;</strong><span>the CPU time that the "
+            "textbook takes for the same small map</span></div></div>\n<nav>",
             time_text(d->first_bake, text[0]), error_text(d->worst_exact.rms, text[1]),
             error_text(d->worst_textbook.rms, text[2]), d->first_textbook_ratio);
     for (int i = 0; i <= count; i++) {

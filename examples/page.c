@@ -34,7 +34,8 @@ static const char style_of_text[] =
     "sup{line-height:0}\nimg{display:block;max-width:100%}\n"
     ".wide{width:100%;height:auto;border-radius:10px}\n"
     ".texels{width:100%;height:auto;image-rendering:pixelated}\n.ball{width:100%;height:auto}\n"
-    ".cards{display:grid;grid-template-columns:repeat(auto-fit,minmax(200px,1fr));gap:14px;"
+    ".cards{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(200px,44%),1fr));gap:"
+    "14px;"
     "margin:1.6rem 0}\n"
     ".card{background:var(--card);border:1px solid var(--line);border-radius:14px;"
     "padding:18px 20px;box-shadow:0 2px 10px var(--shade)}\n"
@@ -89,7 +90,9 @@ static const char style_of_parts[] =
     ".balls{grid-template-columns:repeat(3,1fr)}.crosses{grid-template-columns:1fr 1fr;gap:14px}"
     ".pair{grid-template-columns:1fr 1fr;padding:14px}.three{gap:10px}"
     ".bars{grid-template-columns:1fr;gap:2px}.bars div{margin-bottom:10px}"
-    ".turn .stack{margin:auto}th,td{padding:.45rem .6rem}}\n"
+    ".turn .stack{margin:auto}th,td{padding:.45rem .35rem}table{font-size:.84rem}thead "
+    "th{font-size:.8rem}"
+    ".card{padding:14px}.card strong{font-size:1.45rem}}\n"
     "</style>\n</head>\n<body>\n";
 
 // Layers a section's balls on each other and lets the slider fade from one to the next.
