@@ -181,6 +181,9 @@ static int check_output(const bake *b, const char *option, const char *path)
         return cli_wrong(&cli_bake,
                          "%s %s: .%s holds a cube; --shape %s goes to .exr, .hdr or .png", option,
                          path, ending, shapes[b->shape]);
+    if (b->shape != KILN_SHAPE_CUBE && (strstr(path, "%s") || strstr(path, "{face}")))
+        return cli_wrong(&cli_bake, "%s %s: names a face, --shape %s has none", option, path,
+                         shapes[b->shape]);
     bool packed = b->format == KILN_FORMAT_RGB9E5 || b->format == KILN_FORMAT_B10G11R11;
     if (packed && !texture)
         return cli_wrong(&cli_bake, "%s %s: --format %s is for .ktx2 and .dds", option, path,
@@ -313,12 +316,27 @@ static int check_paths(const bake *b)
     return CLI_GO;
 }
 
+// A folder that exists may be named without the slash at its end.
+static char *add_slash(char *path)
+{
+    size_t length = path ? strlen(path) : 0;
+    if (!length || strcmp(cli_ending(path), "/") != 0 || path[length - 1] == '/')
+        return path;
+    char *longer = realloc(path, length + 2);
+    if (!longer)
+        return path;
+    memcpy(longer + length, "/", 2);
+    return longer;
+}
+
 static int read_arguments(bake *b, int argc, const char **argv)
 {
     cli_arguments *a = &b->arguments;
     int code = cli_arguments_read(a, &cli_bake, argc, argv);
     if (code != CLI_GO)
         return code;
+    a->value[OUTPUT] = add_slash(a->value[OUTPUT]);
+    a->value[IRRADIANCE] = add_slash(a->value[IRRADIANCE]);
     b->output = a->value[OUTPUT];
     b->irradiance_path = a->value[IRRADIANCE];
     b->sh_path = a->value[SH];

@@ -67,8 +67,7 @@ int cli_number(const cli_arguments *arguments, int option, const char *name, dou
 int cli_choice(const cli_arguments *arguments, int option, const char *name,
                const char *const *words, int *value);
 
-/// The ending of a file's name in small letters without its dot, "" where it has none, "/" for a
-/// folder. Valid until the next call.
+/// The ending of a file's name without its dot, "" where it has none, "/" for a folder.
 const char *cli_ending(const char *path);
 /// Fails early, before the work, where the folder of an output file does not exist.
 int cli_check_folder(const char *path);
@@ -79,9 +78,11 @@ int cli_check_folder(const char *path);
 typedef struct cli_job {
     kiln_context *context;
     kiln_error error;
-    double began;     ///< in seconds, by cli_seconds
-    double drawn;     ///< when the progress line was drawn last, 0 for never
-    bool on_terminal; ///< standard error is one
+    double began;      ///< in seconds, by cli_seconds
+    double drawn;      ///< when the progress line was drawn last, 0 for never
+    bool on_terminal;  ///< standard error is one
+    const char *stage; ///< the stage reported last, which is constant text
+    double furthest;   ///< how far it was
 } cli_job;
 
 /// CLI_GO or CLI_FAILED. `threads` 0 for one a core; `quiet`: no progress.

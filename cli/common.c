@@ -1,7 +1,6 @@
 // Options with ranges, sentences, the job with its progress line and signals.
 #include "cli.h"
 
-#include <ctype.h>
 #include <errno.h>
 #include <math.h>
 #include <signal.h>
@@ -171,18 +170,14 @@ int cli_choice(const cli_arguments *a, int option, const char *name, const char 
 
 const char *cli_ending(const char *path)
 {
-    static char ending[8];
     size_t length = strlen(path);
     struct stat status;
     if ((length && path[length - 1] == '/') ||
         (stat(path, &status) == 0 && S_ISDIR(status.st_mode)))
         return "/";
     const char *slash = strrchr(path, '/'), *dot = strrchr(path, '.');
-    ending[0] = 0;
-    if (dot && dot > path && (!slash || dot > slash + 1) && strlen(dot + 1) < sizeof ending)
-        for (size_t i = 0; i <= strlen(dot + 1); i++)
-            ending[i] = (char)tolower((unsigned char)dot[1 + i]);
-    return ending;
+    bool has_ending = dot && dot > path && (!slash || dot > slash + 1);
+    return has_ending ? dot + 1 : "";
 }
 
 int cli_check_folder(const char *path)
@@ -261,9 +256,13 @@ static bool progress(void *user, const char *stage, double fraction)
 {
     cli_job *job = user;
     double now = cli_seconds();
+    // Within a stage the line only goes forward.
+    if (!job->stage || strcmp(stage, job->stage) != 0 || fraction > job->furthest)
+        job->furthest = fraction;
+    job->stage = stage;
     if (job->on_terminal && now - job->began > 0.5 && now - job->drawn > 0.1 && !caught) {
         char line[PROGRESS_WIDTH + 1];
-        snprintf(line, sizeof line, "kiln: %s %.0f %%", stage, 100 * fraction);
+        snprintf(line, sizeof line, "kiln: %s %.0f %%", stage, 100 * job->furthest);
         fprintf(stderr, "\r%-*s", PROGRESS_WIDTH, line);
         job->drawn = now;
     }

@@ -4,7 +4,7 @@
 . "$(dirname "$0")/lib.sh"
 
 expect 0 "" sky -o sky.exr --size 128 -q
-export long="--method textbook --samples 1000000 --size 256"
+export long="--method textbook --samples 5000 --size 256"
 
 # stop SIGNAL CODE AFTER kiln-arguments...: sends the signal when the command AFTER succeeds.
 stop() {
@@ -19,7 +19,7 @@ stop() {
     until $after; do
         kill -0 $pid 2>/dev/null || die "kiln $*: ended too soon"
     done
-    kill -s "$signal" $pid
+    kill -s "$signal" $pid || die "kiln $*: ended too soon"
     got=0
     wait $pid || got=$?
     [ $got = "$code" ] || die "kiln $*: exit $got after $signal, not $code"
@@ -34,8 +34,8 @@ temporary() { ls ./*.tmp >log/ls 2>&1; }
     stop INT 130 moment bake sky.exr -o out.ktx2 $long
     stop TERM 143 moment bake sky.exr -o out.ktx2 $long
     stop HUP 129 moment bake sky.exr -o out.ktx2 $long --threads 1
-    stop INT 130 moment bake sky.exr -o out.ktx2 --size 4096 --format rgba32f
-    stop INT 130 moment tables --method textbook -o out.exr --size 4096 --samples 100000
+    stop INT 130 moment bake sky.exr -o out.ktx2 --size 2048 --format rgba32f
+    stop INT 130 moment tables --method textbook -o out.exr --size 1024 --samples 2000
 }
 # While the file is being written.
 stop INT 130 temporary bake sky.exr -o out.ktx2 --size 1024 --levels 1 --format rgba32f
@@ -57,8 +57,10 @@ rm pipe
 only sky.exr
 
 # What nohup ignores stays ignored.
-(trap '' HUP && exec "$KILN" bake sky.exr -o out.ktx2 --size 64 -q --exposure -8) &
+(trap '' HUP && exec "$KILN" bake sky.exr -o out.ktx2 -q --exposure -8 --method textbook --size 64 \
+    --samples 5000) &
 pid=$!
+sleep 0.3
 kill -s HUP $pid
 wait $pid || die "SIGHUP was ignored on entry, but stopped the work"
 passed
