@@ -1,0 +1,338 @@
+// What can be measured inside one process.
+#include "bench.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { LONGEST = 16 }; // different bakes in a case
+
+// Plan, execute and free: what a first bake costs.
+static bool bake_once(bench *b, kiln_context *context, const kiln_map *source,
+                      const kiln_prefilter_def *def, kiln_map *map, int *degree)
+{
+    kiln_plan *plan = NULL;
+    *map = (kiln_map){0};
+    bool done = !kiln_plan_create(context, source->size, def, &plan, &b->error) &&
+                !kiln_plan_map(plan, map, &b->error) &&
+                !kiln_plan_execute(plan, source, map, &b->error);
+    if (done && degree) {
+        const kiln_spectrum *spectrum = kiln_plan_spectrum(plan);
+        *degree = spectrum ? kiln_spectrum_degree(spectrum) : 0;
+    }
+    kiln_plan_destroy(plan);
+    return done;
+}
+
+// -------------------------------------------------------------------------------------------- probe
+
+bool bench_probe(bench *b)
+{
+    kiln_context *context = NULL;
+    kiln_context_def one = {.thread_count = 1};
+    kiln_prefilter_def def = {.size = 64, .level_count = 7};
+    kiln_map source = {0}, map = {0};
+    kiln_plan *plan = NULL;
+    double create[BENCH_MAX_RUNS], execute[BENCH_MAX_RUNS];
+    bool done =
+        !kiln_context_create(&one, &context, &b->error) && bench_city(b, context, 128, &source);
+    for (int i = 0; i < b->runs && done; i++) {
+        kiln_plan_destroy(plan);
+        plan = NULL;
+        double start = bench_cpu();
+        done = !kiln_plan_create(context, source.size, &def, &plan, &b->error);
+        create[i] = bench_cpu() - start;
+    }
+    done = done && !kiln_plan_map(plan, &map, &b->error);
+    // An execution is short: each run is the best of many in a row.
+    for (int i = 0; i < b->runs && done; i++) {
+        execute[i] = INFINITY;
+        for (int k = 0; k < 20 && done; k++) {
+            double start = bench_cpu();
+            done = !kiln_plan_execute(plan, &source, &map, &b->error);
+            execute[i] = fmin(execute[i], bench_cpu() - start);
+        }
+    }
+    if (done) {
+        bench_times c = bench_sum_up(create, b->runs), e = bench_sum_up(execute, b->runs);
+        bench_row(b, "plan create", "s", c);
+        bench_row(b, "plan execute", "s", e);
+        printf("  %-46s %10.3f ms\n", "plan, once", 1e3 * c.median);
+        bench_bar(b, "execute, CPU", 1e3 * e.median, "ms", 2, false);
+    }
+    kiln_map_free(&map);
+    kiln_plan_destroy(plan);
+    kiln_map_free(&source);
+    kiln_context_destroy(context);
+    return done;
+}
+
+// ------------------------------------------------------------------------- threads, instruction sets
+
+static bool measure_context(bench *b, const kiln_context_def *def, const char *name,
+                            unsigned long long *hash, bool *same)
+{
+    kiln_context *context = NULL;
+    kiln_map source = {0}, map = {0};
+    double wall[BENCH_MAX_RUNS], cpu[BENCH_MAX_RUNS];
+    char row[64];
+    bool done =
+        !kiln_context_create(def, &context, &b->error) && bench_city(b, context, 512, &source);
+    for (int i = 0; i < b->runs && done; i++) {
+        kiln_map_free(&map);
+        double start = bench_wall(), start_cpu = bench_cpu();
+        done = bake_once(b, context, &source, NULL, &map, NULL);
+        wall[i] = bench_wall() - start;
+        cpu[i] = bench_cpu() - start_cpu;
+    }
+    if (done) {
+        unsigned long long own = bench_hash(&map);
+        *same &= !*hash || own == *hash;
+        *hash = own;
+        bench_times w = bench_sum_up(wall, b->runs), c = bench_sum_up(cpu, b->runs);
+        printf("  %-12s%9.1f ms%9.1f ms CPU   %016llx\n", name, 1e3 * w.median, 1e3 * c.median,
+               own);
+        snprintf(row, sizeof row, "%s wall", name);
+        bench_row(b, row, "s", w);
+        snprintf(row, sizeof row, "%s cpu", name);
+        bench_row(b, row, "s", c);
+    }
+    kiln_map_free(&map);
+    kiln_map_free(&source);
+    kiln_context_destroy(context);
+    return done;
+}
+
+bool bench_threads(bench *b)
+{
+    unsigned long long hash = 0;
+    bool done = true, same = true;
+    for (int n = 1; n <= 2 && done; n++) {
+        kiln_context_def def = {.thread_count = n};
+        done = measure_context(b, &def, n == 1 ? "1 thread" : "2 threads", &hash, &same);
+    }
+    if (done)
+        bench_bar(b, "the same bits (1: yes)", same, "", 1, true);
+    return done;
+}
+
+bool bench_instructions(bench *b)
+{
+    static const char *const names[] = {"scalar", "sse2", "avx2", "avx512"};
+    unsigned long long hash = 0;
+    bool done = true, same = true;
+    for (int k = 0; k < 4 && done; k++) {
+        kiln_context_def def = {.thread_count = 1, .cpu = (enum kiln_cpu)(KILN_CPU_SCALAR + k)};
+        kiln_context *context = NULL;
+        if (kiln_context_create(&def, &context, &b->error))
+            return false;
+        bool has = !strcmp(kiln_context_cpu(context), names[k]);
+        kiln_context_destroy(context);
+        if (has)
+            done = measure_context(b, &def, names[k], &hash, &same);
+        else
+            printf("  %-12s not on this machine\n", names[k]);
+    }
+    if (done)
+        bench_bar(b, "the same bits (1: yes)", same, "", 1, true);
+    return done;
+}
+
+// -------------------------------------------------------------------------------------------- files
+
+// Seconds that merely reading every texel takes: nothing that uses them all can be faster.
+static double read_all(const kiln_map *map)
+{
+    double best = INFINITY;
+    volatile float sink = 0;
+    size_t count = 3 * kiln_map_texels(map, 0);
+    for (int run = 0; run < 5; run++) {
+        float lanes[64] = {0};
+        double start = bench_cpu();
+        for (size_t i = 0; i + 64 <= count; i += 64)
+            for (size_t k = 0; k < 64; k++)
+                lanes[k] += map->level[0][i + k];
+        for (int k = 0; k < 64; k++)
+            sink += lanes[k];
+        best = fmin(best, bench_cpu() - start);
+    }
+    return best;
+}
+
+bool bench_files(bench *b)
+{
+    enum { READ, BAKE, WRITE, STAGES };
+    static const char *const names[STAGES] = {"read", "bake", "write"};
+    double times[STAGES][BENCH_MAX_RUNS], floor_time = 0;
+    char path[1024], output[1024];
+    kiln_context *context = NULL;
+    snprintf(path, sizeof path, "%s/city2k.exr", b->inputs);
+    snprintf(output, sizeof output, "%s/files.ktx2", b->inputs);
+    if (kiln_context_create(NULL, &context, &b->error))
+        return false;
+    bool done = true;
+    for (int i = 0; i < b->runs && done; i++) {
+        kiln_map source = {0}, map = {0}, irradiance = {0};
+        kiln_plan *plan = NULL;
+        kiln_sh sh;
+        kiln_lobe lambert = kiln_lobe_lambert();
+        double t[STAGES + 1];
+        t[0] = bench_cpu();
+        done = !kiln_map_load(context, path, NULL, &source, &b->error);
+        t[1] = bench_cpu();
+        done = done && !kiln_plan_create(context, source.size, NULL, &plan, &b->error) &&
+               !kiln_plan_map(plan, &map, &b->error) &&
+               !kiln_plan_execute(plan, &source, &map, &b->error) &&
+               !kiln_spectrum_sh(kiln_plan_spectrum(plan), 3, false, 0, 0, &sh, &b->error) &&
+               !kiln_map_create(context, KILN_SHAPE_CUBE, 64, 1, &irradiance, &b->error) &&
+               !kiln_spectrum_filter(context, kiln_plan_spectrum(plan), &lambert, 0, &irradiance, 0,
+                                     &b->error);
+        t[2] = bench_cpu();
+        kiln_save_def def = {.sh = &sh};
+        done = done && !kiln_map_save(context, &map, output, &def, NULL, &b->error);
+        t[3] = bench_cpu();
+        for (int k = 0; k < STAGES && done; k++)
+            times[k][i] = t[k + 1] - t[k];
+        if (done && i == 0)
+            floor_time = read_all(&source);
+        kiln_plan_destroy(plan);
+        kiln_map_free(&irradiance);
+        kiln_map_free(&map);
+        kiln_map_free(&source);
+    }
+    remove(output);
+    if (done) {
+        bench_times sums[STAGES];
+        for (int k = 0; k < STAGES; k++) {
+            sums[k] = bench_sum_up(times[k], b->runs);
+            printf("  %-46s %10.2f ms CPU\n", names[k], 1e3 * sums[k].median);
+            bench_row(b, names[k], "s", sums[k]);
+        }
+        double files = sums[READ].median + sums[WRITE].median;
+        printf("  %-46s %10.2f ms CPU, the bake takes %.0f times as long\n",
+               "reading every texel from memory once", 1e3 * floor_time,
+               sums[BAKE].median / floor_time);
+        bench_value(b, "floor", "s", floor_time);
+        double ratio = (files + sums[BAKE].median) / files;
+        bench_value(b, "whole over files", "ratio", ratio);
+        bench_bar(b, "(read + bake + write) / (read + write)", ratio, "", 1.5, false);
+    }
+    kiln_context_destroy(context);
+    return done;
+}
+
+// ------------------------------------------------------------------------------------------ scaling
+
+typedef struct sample {
+    double pixels, cube, seconds; // in and out, degree^3, CPU
+} sample;
+
+// seconds = a pixels + b degree^3 with a, b >= 0 and the relative errors least.
+static void fit(const sample *s, int count, double *a, double *b)
+{
+    double pp = 0, pc = 0, cc = 0, p = 0, c = 0;
+    for (int i = 0; i < count; i++) {
+        double x = s[i].pixels / s[i].seconds, y = s[i].cube / s[i].seconds;
+        pp += x * x, pc += x * y, cc += y * y, p += x, c += y;
+    }
+    double determinant = pp * cc - pc * pc;
+    *a = (p * cc - c * pc) / determinant;
+    *b = (c * pp - p * pc) / determinant;
+    if (*a < 0 || *b < 0) {
+        bool cube_only = *a < 0;
+        *a = cube_only ? 0 : p / pp;
+        *b = cube_only ? c / cc : 0;
+    }
+}
+
+// The slope of log seconds against the logarithm of the fitted cost: 1 when it grows alike.
+static double exponent(const sample *s, int count, double a, double b)
+{
+    double x = 0, y = 0, xx = 0, xy = 0;
+    for (int i = 0; i < count; i++) {
+        double u = log(a * s[i].pixels + b * s[i].cube), v = log(s[i].seconds);
+        x += u, y += v, xx += u * u, xy += u * v;
+    }
+    return (count * xy - x * y) / (count * xx - x * x);
+}
+
+bool bench_scaling(bench *b)
+{
+    static const int inputs[] = {512, 1024, 2048, 4096}, faces[] = {128, 256, 512, 1024};
+    sample samples[LONGEST];
+    int count = 0;
+    kiln_context *context = NULL;
+    if (kiln_context_create(NULL, &context, &b->error))
+        return false;
+    printf("  ms of CPU (degree), by the size of the faces\n  %-12s", "input");
+    for (int f = 0; f < 4; f++)
+        printf("%16d", faces[f]);
+    bool done = true;
+    for (int i = 0; i < 4 && done; i++) {
+        kiln_map source = {0};
+        done = bench_city(b, context, inputs[i], &source);
+        printf("\n  %4d x %-5d", 2 * inputs[i], inputs[i]);
+        for (int f = 0; f < 4 && done; f++) {
+            kiln_prefilter_def def = {.size = faces[f]};
+            double times[BENCH_MAX_RUNS];
+            int degree = 0;
+            for (int k = 0; k < b->runs && done; k++) {
+                kiln_map map = {0};
+                double start = bench_cpu();
+                done = bake_once(b, context, &source, &def, &map, &degree);
+                times[k] = bench_cpu() - start;
+                kiln_map_free(&map);
+            }
+            if (!done)
+                break;
+            bench_times t = bench_sum_up(times, b->runs);
+            printf("%9.1f (%4d)", 1e3 * t.median, degree);
+            fflush(stdout);
+            char row[64];
+            snprintf(row, sizeof row, "%dx%d to %d", 2 * inputs[i], inputs[i], faces[f]);
+            bench_row(b, row, "s", t);
+            samples[count++] = (sample){2.0 * inputs[i] * inputs[i] + 8.0 * faces[f] * faces[f],
+                                        pow(degree, 3), t.median};
+        }
+        kiln_map_free(&source);
+    }
+    puts("");
+    if (done) {
+        double pixel, cube;
+        fit(samples, count, &pixel, &cube);
+        printf("  fitted: %.2f ns a pixel in or out + %.3f ns x degree^3\n", 1e9 * pixel,
+               1e9 * cube);
+        bench_value(b, "a pixel", "s", pixel);
+        bench_value(b, "degree cubed", "s", cube);
+        double slope = exponent(samples, count, pixel, cube);
+        bench_value(b, "exponent", "", slope);
+        bench_bar(b, "exponent of the time against pixels + degree^3", slope, "", 1.05, false);
+    }
+    kiln_context_destroy(context);
+    return done;
+}
+
+// --------------------------------------------------------------------------------------------- fixed
+
+// The same work everywhere: no file, one thread, AVX2.
+bool bench_fixed(bench *b)
+{
+    kiln_context_def one = {.thread_count = 1, .cpu = KILN_CPU_AVX2};
+    kiln_prefilter_def def = {.size = 64, .level_count = 7};
+    kiln_context *context = NULL;
+    kiln_map source = {0}, map = {0};
+    bool done = !kiln_context_create(&one, &context, &b->error) &&
+                !kiln_map_create(context, KILN_SHAPE_PANORAMA, 256, 1, &source, &b->error);
+    unsigned seed = 1;
+    for (size_t i = 0; done && i < 3 * kiln_map_texels(&source, 0); i++) {
+        seed = seed * 1664525U + 1013904223U;
+        source.level[0][i] = (float)(seed >> 8) * 0x1p-24F;
+    }
+    done = done && bake_once(b, context, &source, &def, &map, NULL);
+    if (done)
+        printf("  %s, %016llx\n", kiln_context_cpu(context), bench_hash(&map));
+    kiln_map_free(&map);
+    kiln_map_free(&source);
+    kiln_context_destroy(context);
+    return done;
+}

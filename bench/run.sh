@@ -1,0 +1,79 @@
+#!/bin/sh
+# Makes the benches' inputs and runs them: bench/run.sh [--update] [CASE...]
+# Results go to bench/results/MACHINE/CASE.csv. Beside the cases of `bench --list` there is `count`,
+# the instructions of a fixed bake; --update makes today's count the reference.
+set -eu
+cd "$(dirname "$0")/.."
+bin=build/release/bin
+inputs=build/bench
+results=bench/results
+reference=$results/instructions.csv
+
+have() { command -v "$1" >/dev/null 2>&1; }
+fail() { printf 'bench: %s\n' "$*" >&2; exit 1; }
+
+update=no
+if [ "${1:-}" = --update ]; then
+    update=yes
+    shift
+fi
+[ $# -gt 0 ] || set -- accuracy probe threads instructions files scaling peer memory count
+for part in bench kiln; do
+    [ -x $bin/$part ] || fail "there is no $bin/$part: run ./do bench"
+done
+[ -s build/data/blender/city.exr ] || fail "there are no panoramas: run scripts/panoramas.sh"
+mkdir -p $inputs
+
+# picture NAME WIDTHxHEIGHT: the city, enlarged, as half floats in zip compression.
+picture() {
+    [ ! -s "$inputs/$1.exr" ] || return 0
+    have oiiotool || fail "oiiotool is missing: install Debian's openimageio-tools"
+    oiiotool build/data/blender/city.exr --resize "$2" -d half --compression zip \
+        -o "$inputs/part.exr"
+    mv "$inputs/part.exr" "$inputs/$1.exr"
+}
+
+# Instructions executed by `bench fixed`, which are the same in every run of the same build.
+count() {
+    have valgrind || fail "valgrind is missing: install Debian's valgrind"
+    printf '\ncount: instructions of one small bake (AVX2)\n'
+    valgrind --tool=callgrind --callgrind-out-file=/dev/null $bin/bench fixed \
+        >$inputs/count.log 2>&1 || { cat $inputs/count.log >&2; fail "valgrind failed"; }
+    now=$(sed -n 's/.*Collected : *\([0-9]*\).*/\1/p' $inputs/count.log)
+    [ -n "$now" ] || fail "valgrind printed no count: see $inputs/count.log"
+    compiler=$(sed -n 's/^CMAKE_C_COMPILER:[A-Z]*=//p' build/release/CMakeCache.txt)
+    version=$("$compiler" -dumpfullversion 2>/dev/null || echo unknown)
+    if [ $update = yes ] || [ ! -s $reference ]; then
+        mkdir -p $results
+        printf 'case,compiler,instructions\nfixed,%s,%s\n' "$version" "$now" >$reference
+    fi
+    compiled=$(sed -n 's/^fixed,\([^,]*\),.*/\1/p' $reference)
+    before=$(sed -n 's/^fixed,[^,]*,//p' $reference)
+    awk -v now="$now" -v before="$before" -v by="$compiled" -v version="$version" 'BEGIN {
+        ratio = now / before
+        printf "  %.1f million by gcc %s, reference %.1f million by gcc %s: %+.2f %%\n",
+            now / 1e6, version, before / 1e6, by, 100 * (ratio - 1)
+        if (ratio > 1.02 && version == by) {
+            print "  more than 2 % more: MISSED (bench/run.sh --update count makes it the reference)"
+            exit 1
+        }
+    }'
+}
+
+status=0
+for name; do
+    case $name in
+    count)
+        count || status=1
+        continue
+        ;;
+    peer)
+        have cmgen || fail "cmgen is missing: install Debian's libfilament-tools"
+        picture city2k 2048x1024
+        ;;
+    files) picture city2k 2048x1024 ;;
+    memory) picture city8k 8192x4096 ;;
+    esac
+    $bin/bench --results $results --inputs $inputs --kiln $bin/kiln "$name" || status=1
+done
+exit $status

@@ -1,0 +1,121 @@
+// What is measured from outside: whole processes, kiln's and others'.
+#include "bench.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+typedef struct usage {
+    double user, system, wall; ///< seconds
+    double peak;               ///< bytes
+} usage;
+
+static double timeval_seconds(struct timeval t)
+{
+    return (double)t.tv_sec + 1e-6 * (double)t.tv_usec;
+}
+
+// Runs a command without its output. The peak is the process's own, as the kernel counts it.
+static bool run_command(bench *b, const char *const *command, usage *u)
+{
+    double start = bench_wall();
+    pid_t child = fork();
+    if (child < 0)
+        return bench_fail(b, "cannot start %s: %s", command[0], strerror(errno));
+    if (child == 0) {
+        int nothing = open("/dev/null", O_WRONLY);
+        if (nothing >= 0) {
+            dup2(nothing, STDOUT_FILENO);
+            dup2(nothing, STDERR_FILENO);
+        }
+        execvp(command[0], (char *const *)command);
+        _exit(127);
+    }
+    int status = 0;
+    struct rusage r;
+    if (wait4(child, &status, 0, &r) != child || !WIFEXITED(status) || WEXITSTATUS(status) == 127)
+        return bench_fail(b, "%s could not be run: is it installed?", command[0]);
+    if (WEXITSTATUS(status))
+        return bench_fail(b, "%s ended with exit code %d", command[0], WEXITSTATUS(status));
+    *u = (usage){timeval_seconds(r.ru_utime), timeval_seconds(r.ru_stime), bench_wall() - start,
+                 1024.0 * (double)r.ru_maxrss};
+    return true;
+}
+
+// --------------------------------------------------------------------------------------------- peer
+
+enum { COMMANDS = 4 };
+
+bool bench_peer(bench *b)
+{
+    char input[1024], cube[1024], irradiance[1024], sh[1024], folder[1024];
+    snprintf(input, sizeof input, "%s/city2k.exr", b->inputs);
+    snprintf(cube, sizeof cube, "%s/peer.ktx2", b->inputs);
+    snprintf(irradiance, sizeof irradiance, "%s/peer_irradiance.ktx2", b->inputs);
+    snprintf(sh, sizeof sh, "%s/peer_sh.json", b->inputs);
+    snprintf(folder, sizeof folder, "%s/cmgen", b->inputs);
+    char levels[1100], diffuse[1100];
+    snprintf(levels, sizeof levels, "--ibl-ld=%s", folder);
+    snprintf(diffuse, sizeof diffuse, "--ibl-irradiance=%s", folder);
+    const char *const commands[COMMANDS][12] = {
+        {b->kiln, "bake", input, "-o", cube, "--irradiance", irradiance, "--sh", sh, "--quiet"},
+        {"cmgen", "-q", "-f", "exr", "--size=256", levels, input},
+        {"cmgen", "-q", "--sh=3", input},
+        {"cmgen", "-q", "-f", "exr", "--size=64", diffuse, input},
+    };
+    static const char *const names[COMMANDS] = {"kiln bake: levels, irradiance, harmonics",
+                                                "cmgen --ibl-ld --size=256: five levels",
+                                                "cmgen --sh=3", "cmgen --ibl-irradiance --size=64"};
+    double user[COMMANDS][BENCH_MAX_RUNS], all[COMMANDS][BENCH_MAX_RUNS];
+    double peak[COMMANDS] = {0};
+    // In turn, so that all meet the same weather.
+    for (int i = 0; i < b->runs; i++)
+        for (int k = 0; k < COMMANDS; k++) {
+            usage u;
+            if (!run_command(b, commands[k], &u))
+                return false;
+            user[k][i] = u.user;
+            all[k][i] = u.user + u.system;
+            peak[k] = u.peak > peak[k] ? u.peak : peak[k];
+        }
+    bench_times t[COMMANDS];
+    for (int k = 0; k < COMMANDS; k++) {
+        t[k] = bench_sum_up(user[k], b->runs);
+        bench_times with_system = bench_sum_up(all[k], b->runs);
+        printf("  %-42s %8.3f s user, %.3f s with system, %.0f MiB\n", names[k], t[k].median,
+               with_system.median, peak[k] / 1048576);
+        bench_row(b, names[k], "s user", t[k]);
+        bench_row(b, names[k], "s user + system", with_system);
+        bench_value(b, names[k], "bytes", peak[k]);
+    }
+    double sum = t[1].median + t[2].median + t[3].median;
+    bench_value(b, "cmgen levels over kiln", "ratio", t[1].median / t[0].median);
+    bench_value(b, "cmgen all over kiln", "ratio", sum / t[0].median);
+    bench_bar(b, "cmgen's levels alone / all of kiln", t[1].median / t[0].median, "", 50, true);
+    bench_bar(b, "all of cmgen / all of kiln (aim: 100)", sum / t[0].median, "", 50, true);
+    return true;
+}
+
+// ------------------------------------------------------------------------------------------- memory
+
+bool bench_memory(bench *b)
+{
+    char input[1024], output[1024];
+    snprintf(input, sizeof input, "%s/city8k.exr", b->inputs);
+    snprintf(output, sizeof output, "%s/memory.ktx2", b->inputs);
+    const char *const command[] = {b->kiln, "bake", input, "-o", output, "--quiet", NULL};
+    usage u;
+    if (!run_command(b, command, &u))
+        return false;
+    remove(output);
+    printf("  %-46s %10.2f s wall, %.2f s user\n", "kiln bake of 8192 x 4096, half EXR", u.wall,
+           u.user);
+    printf("  %-46s %10.0f MiB\n", "its texels alone, as floats", 8192.0 * 4096 * 12 / 1048576);
+    bench_value(b, "peak", "bytes", u.peak);
+    bench_value(b, "user", "s", u.user);
+    bench_bar(b, "peak resident memory", u.peak / 1048576, "MiB", 700, false);
+    return true;
+}
