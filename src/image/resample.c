@@ -4,7 +4,7 @@
 //   cube, octahedron -> panorama   exact: the same stencils the other way, scattered
 //   panorama -> panorama           exact: separable
 //   cube -> cube                   exact for quarter turns: rectangles on faces
-//   all else among these two       8 x 8 or more sub-samples a texel, each weighted by its solid
+//   all else among these two       16 x 16 or more sub-samples a texel, each weighted by its solid
 //                                  angle; permutations (same size, quarter turns) are exact
 //
 // Exact means up to rounding of weights and sums to float.
@@ -265,7 +265,7 @@ ALWAYS_INLINE void add_blocks(sums *sum, const float *texels, const float *weigh
                               bool mirror)
 {
     if (mirror)
-        weights += 4 * (blocks - 1);
+        weights += (ptrdiff_t)4 * (blocks - 1);
     for (int k = 0; k < blocks; k++, texels += 12) {
         lanes w = load(weights), wa, wb, wc;
         if (mirror) {
@@ -323,7 +323,7 @@ static void gather_slowly(const float *source, int width, ptrdiff_t stride,
             } else {
                 float texels[12 * FLUSH];
                 for (int i = 0; i < 4 * count; i++)
-                    memcpy(texels + 3 * i, source + 3 * (size_t)((at + i) % width),
+                    memcpy(texels + 3 * (size_t)i, source + 3 * (size_t)((at + i) % width),
                            3 * sizeof(float));
                 add_blocks(&sum, texels, part, count, mirror);
             }
@@ -344,7 +344,7 @@ ALWAYS_INLINE void prefetch(const ki_stencil_grid *grid, const ki_stencil_place 
     const float *texels = source + 3 * ((ptrdiff_t)row * width + first_column(s, place, width));
     for (int r = 0; r < rows; r++, texels += 3 * (ptrdiff_t)width)
         for (int k = 0; k < s->blocks; k += 2)
-            __builtin_prefetch(texels + 12 * k);
+            __builtin_prefetch(texels + (ptrdiff_t)12 * k);
 }
 
 ALWAYS_INLINE void gather_place(const ki_stencil_grid *grid, int chunk,
@@ -365,8 +365,9 @@ ALWAYS_INLINE void gather_place(const ki_stencil_grid *grid, int chunk,
         float *out = target + 3 * c.texel;
         if (rows * blocks <= FLUSH && column + 4 * blocks <= width) {
             const float *texels = line + 3 * (ptrdiff_t)column, *weights = c.weights;
+            ptrdiff_t step = (ptrdiff_t)4 * blocks;
             sums sum = {0};
-            for (int r = 0; r < rows; r++, texels += stride, weights += 4 * blocks)
+            for (int r = 0; r < rows; r++, texels += stride, weights += step)
                 add_blocks(&sum, texels, weights, blocks, mirror);
             lanes rgb = total(&sum);
             out[0] = rgb[0];
@@ -463,7 +464,9 @@ static void scatter_task(void *data, int index)
                     const ki_stencil *s = c.stencil;
                     int row = place->flip ? height - s->row - s->rows : s->row;
                     int from = ki_max(row, first), to = ki_min(row + s->rows, end);
-                    if (from >= to)
+                    // On the middle of a quarter, mirroring gives the same texel again.
+                    bool again = place->mirror && grid->kind != KI_STENCIL_SIDE && c.i == c.j;
+                    if (from >= to || again)
                         continue;
                     ptrdiff_t texel = c.texel;
                     if (factor > 1)
@@ -644,14 +647,16 @@ static size_t texel_towards(kiln_shape shape, int n, const double direction[3])
     return ((size_t)face * (size_t)n + (size_t)y) * (size_t)n + (size_t)x;
 }
 
-// One row by sub-samples. Against sums of 512 x 512 sub-samples on uncorrelated random texels the
-// root mean square error is below 1 % of the mean.
+// One row by sub-samples. On texels without likeness, some ten times brighter than the others, the
+// root mean square error is 3 % of the mean with 16 sub-samples a side; it falls with likeness.
 static void subsample_task(void *data, int index)
 {
     const resample_job *job = data;
     const ki_resample_plan *plan = job->plan;
     int n = plan->size, sub = plan->sub, face = index / n, y = index % n;
     bool cube = plan->shape == KILN_SHAPE_CUBE;
+    double turned[3]; // cosine and sine of the rotation, see ki_turn
+    ki_turn((const double[3]){1, 0, 0}, plan->rotation, turned);
     for (int x = 0; x < n; x++) {
         double rgb[3] = {0, 0, 0}, total = 0;
         float *out = job->target + 3 * ((size_t)index * (size_t)n + (size_t)x);
@@ -668,7 +673,9 @@ static void subsample_task(void *data, int index)
                     double sum = fabs(d[0]) + fabs(d[1]) + fabs(d[2]);
                     area = sum * sum * sum;
                 }
-                ki_turn(d, plan->rotation, d);
+                double right = d[0] * turned[0] - d[2] * turned[2];
+                d[2] = d[2] * turned[0] + d[0] * turned[2];
+                d[0] = right;
                 const float *texel =
                     job->source + 3 * texel_towards(plan->source_shape, plan->source_size, d);
                 if (sub == 1) {
@@ -776,7 +783,7 @@ kiln_result ki_resample_plan_create(kiln_context *context, kiln_shape source_sha
         p->kind = FACES;
     } else {
         p->kind = SUBSAMPLE;
-        p->sub = ki_max(8, ki_min(64, (int)ceil(4.0 * source_size / size)));
+        p->sub = ki_max(16, ki_min(64, (int)ceil(4.0 * source_size / size)));
         if (source_shape == shape && source_size == size && quarter)
             p->sub = 1;
     }
@@ -843,7 +850,7 @@ kiln_result ki_map_resample(kiln_context *context, const kiln_map *source, doubl
     kiln_result result =
         ki_resample_plan_create(context, source->shape, source->size, target->shape,
                                 ki_max(1, target->size >> level), rotation, &plan, error);
-    if (result)
+    if (result || !plan)
         return result;
     ki_resample_execute(plan, source->level[0], target->level[level]);
     ki_resample_plan_destroy(plan);

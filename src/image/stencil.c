@@ -161,6 +161,8 @@ static inline int find_row(const builder *b, double z, int row)
 // The column of a direction, searched from `column`.
 static inline int find_column(const builder *b, double cosine, double sine, int column)
 {
+    if (!b->small) // too wide to tell before from behind
+        return (int)floor(ki_atan2(sine, cosine) * (b->grid->height / KI_PI) + b->grid->offset);
     const double *bc = b->cosine - b->first_border, *bs = b->sine - b->first_border;
     while (column > b->first_border && sine * bc[column] - cosine * bs[column] < 0)
         column--;
@@ -273,21 +275,20 @@ static void trace_arc(const builder *b, const corner *from, const corner *to, tr
 
 // -------------------------------------------------------------------------------------------- texels
 
-static bool grow(kiln_context *context, void **memory, size_t *room, size_t used, size_t wanted,
-                 size_t size)
+// Room for `more` weights.
+static bool grow(kiln_context *context, ki_stencil_chunk *chunk, size_t more)
 {
-    if (wanted <= *room)
+    size_t wanted = chunk->weight_count + more, room = chunk->weight_room;
+    if (wanted <= room)
         return true;
-    size_t more = *room + *room / 2;
-    more = more < wanted ? wanted : more;
-    void *larger = ki_alloc_raw(context, more, size);
+    room = room + room / 2 < wanted ? wanted : room + room / 2;
+    float *larger = ki_alloc_raw(context, room, sizeof *larger);
     if (!larger)
         return false;
-    if (used)
-        memcpy(larger, *memory, used * size);
-    ki_free(*memory);
-    *memory = larger;
-    *room = more;
+    memcpy(larger, chunk->weights, chunk->weight_count * sizeof *larger);
+    ki_free(chunk->weights);
+    chunk->weights = larger;
+    chunk->weight_room = room;
     return true;
 }
 
@@ -332,8 +333,7 @@ static bool add_stencil(builder *b, const trace *const arcs[4], bool pole)
     for (int k = 0; k < 4; k++)
         add_arc(b, arcs[k], signs[k], column, row, columns);
 
-    if (!grow(b->context, (void **)&chunk->weights, &chunk->weight_room, chunk->weight_count,
-              chunk->weight_count + cells, sizeof(float)))
+    if (!grow(b->context, chunk, cells))
         return false;
     double total = 0;
     for (size_t r = rows; r-- > 0;) {
@@ -394,120 +394,117 @@ static corner below_horizon(const builder *b, const corner *above)
     return c;
 }
 
-typedef struct build_job {
-    kiln_context *context;
-    ki_stencil_grid *grid;
-    const double *height, *cotangent, *cosine, *sine;
-    int first_border, end_border;
-} build_job;
+// The texels that the horizon cuts: two sides above it, two below.
+static bool build_rim(builder *b, int begin, int stop, entry *entries, size_t line)
+{
+    for (int j = begin; j < stop; j++) {
+        int first, end;
+        ki_stencil_grid_range(b->grid, j, &first, &end);
+        corner low[2], high[2];
+        fill_corners(b, j, first, end, low);
+        fill_corners(b, j + 1, first, end, high);
+        corner under = below_horizon(b, &low[0]);
+        trace bottom = {.entries = entries}, right = {.entries = entries + line};
+        trace top = {.entries = entries + 2 * line}, left = {.entries = entries + 3 * line};
+        trace_arc(b, &low[0], &low[1], &bottom);
+        trace_arc(b, &low[1], &under, &right);
+        trace_arc(b, &high[0], &under, &top);
+        trace_arc(b, &low[0], &high[0], &left);
+        if (!add_stencil(b, (const trace *[4]){&bottom, &right, &top, &left}, false))
+            return false;
+    }
+    return true;
+}
+
+// A line of corners and the arcs between them.
+typedef struct grid_line {
+    corner *corners;
+    trace *arcs;
+    entry *entries;
+} grid_line;
+
+static void trace_line(const builder *b, int j, int first, int end, grid_line *line)
+{
+    fill_corners(b, j, first, end, line->corners);
+    entry *entries = line->entries;
+    for (int i = 0; i < end - first; i++) {
+        line->arcs[i].entries = entries;
+        trace_arc(b, &line->corners[i], &line->corners[i + 1], &line->arcs[i]);
+        entries += line->arcs[i].count;
+    }
+}
+
+// Each line of arcs is the top of one row and the bottom of the next, each arc between lines the
+// right side of one texel and the left of the next.
+static bool build_rows(builder *b, int begin, int stop, grid_line bottom, grid_line top,
+                       entry *entries, size_t line)
+{
+    int skip = 0; // texels at the start of the line below that have no texel above them
+    for (int j = begin; j < stop; j++) {
+        int first, end;
+        ki_stencil_grid_range(b->grid, j, &first, &end);
+        if (j == begin)
+            trace_line(b, j, first, end, &bottom);
+        trace_line(b, j + 1, first, end, &top);
+        const corner *low = bottom.corners + skip, *high = top.corners;
+        trace sides[2] = {{.entries = entries}, {.entries = entries + line}};
+        trace_arc(b, &low[0], &high[0], &sides[0]);
+        for (int i = 0; i < end - first; i++) {
+            trace *left = &sides[i & 1], *right = &sides[(i + 1) & 1];
+            trace_arc(b, &low[i + 1], &high[i + 1], right);
+            const trace *around[4] = {&bottom.arcs[skip + i], right, &top.arcs[i], left};
+            if (!add_stencil(b, around, low[i].radius == 0))
+                return false;
+        }
+        if (j + 1 < stop) {
+            int next_first;
+            ki_stencil_grid_range(b->grid, j + 1, &next_first, &end);
+            skip = next_first - first;
+        }
+        grid_line swap = bottom;
+        bottom = top;
+        top = swap;
+    }
+    return true;
+}
 
 static void build_chunk(void *data, int index)
 {
-    const build_job *job = data;
-    const ki_stencil_grid *grid = job->grid;
-    ki_stencil_chunk *chunk = &grid->chunks[index];
-    builder b = {.context = job->context,
-                 .grid = grid,
-                 .height = job->height,
-                 .cotangent = job->cotangent,
-                 .cosine = job->cosine,
-                 .sine = job->sine,
-                 .first_border = job->first_border,
-                 .end_border = job->end_border,
-                 .chunk = chunk,
-                 .small = grid->height >= 4};
+    builder b = *(const builder *)data;
+    const ki_stencil_grid *grid = b.grid;
+    ki_stencil_chunk *chunk = b.chunk = &grid->chunks[index];
     int begin = index * KI_STENCIL_ROWS;
     int stop = ki_min(begin + KI_STENCIL_ROWS, ki_stencil_grid_rows(grid));
-    int first, end;
-    ki_stencil_grid_range(grid, begin, &first, &end);
-    // A line of arcs crosses every column once and every row twice at most, and has a node a texel.
-    int count = (grid->kind == KI_STENCIL_RIM ? 2 : 2 * grid->half) + 2;
-    size_t line = (size_t)(job->end_border - job->first_border) + 2 * (size_t)grid->height +
-                  3 * (size_t)count + 16;
-    corner *corners = ki_alloc_raw(job->context, 2 * (size_t)count, sizeof *corners);
-    entry *entries = ki_alloc_raw(job->context, 4 * line, sizeof *entries);
-    trace *arcs = ki_alloc_raw(job->context, 2 * (size_t)count + 4, sizeof *arcs);
-    size_t guess = 0;
+    size_t texels = 0;
     for (int j = begin; j < stop; j++) {
+        int first, end;
         ki_stencil_grid_range(grid, j, &first, &end);
-        guess += (size_t)(end - first);
+        texels += (size_t)(end - first);
     }
+    // A line of arcs crosses every column once and every row twice at most, and has a node a texel.
+    size_t count = 2 * (size_t)grid->half + 2;
+    size_t line = (size_t)(b.end_border - b.first_border) + 2 * (size_t)grid->height + 3 * count;
+    chunk->failed = true;
     chunk->first_row = INT32_MAX;
-    chunk->end_row = 0;
-    chunk->stencils = ki_alloc_raw(job->context, guess + 1, sizeof *chunk->stencils);
-    chunk->stencil_room = guess + 1;
-    chunk->weight_room = 20 * guess;
-    chunk->weights = ki_alloc_raw(job->context, chunk->weight_room, sizeof *chunk->weights);
-    bool fine = corners && entries && arcs && chunk->stencils && chunk->weights;
-
-    corner *line_corners[2] = {corners, corners + count};
-    trace *line_arcs[2] = {arcs, arcs + count}, *sides = arcs + 2 * count;
-    entry *line_entries[2] = {entries, entries + line};
-    entry *side_entries[2] = {entries + 2 * line, entries + 3 * line};
-    bool started = false;
-    int shift = 0;
-    for (int j = begin; fine && j < stop; j++) {
-        ki_stencil_grid_range(grid, j, &first, &end);
-        if (grid->kind == KI_STENCIL_RIM) {
-            corner low[2], high[2];
-            fill_corners(&b, j, first, end, low);
-            fill_corners(&b, j + 1, first, end, high);
-            corner under = below_horizon(&b, &low[0]);
-            const corner *loop[5] = {&low[0], &low[1], &under, &high[0], &low[0]};
-            trace four[4];
-            for (int k = 0; k < 4; k++) {
-                four[k].entries = entries + (size_t)k * line;
-                // The last two run against the direction add_stencil expects.
-                if (k < 2)
-                    trace_arc(&b, loop[k], loop[k + 1], &four[k]);
-                else
-                    trace_arc(&b, loop[k + 1], loop[k], &four[k]);
-            }
-            fine =
-                add_stencil(&b, (const trace *[4]){&four[0], &four[1], &four[2], &four[3]}, false);
-            continue;
-        }
-        // Lines j and j + 1; the second becomes the first of the next row.
-        for (int k = started ? 1 : 0; k < 2; k++) {
-            fill_corners(&b, j + k, first, end, line_corners[k]);
-            entry *next = line_entries[k];
-            for (int i = 0; i < end - first; i++) {
-                trace *a = &line_arcs[k][i];
-                a->entries = next;
-                trace_arc(&b, &line_corners[k][i], &line_corners[k][i + 1], a);
-                next += a->count;
-            }
-        }
-        const corner *low = line_corners[0] + (started ? shift : 0), *high = line_corners[1];
-        const trace *bottom = line_arcs[0] + (started ? shift : 0), *top = line_arcs[1];
-        sides[0].entries = side_entries[0];
-        sides[1].entries = side_entries[1];
-        trace_arc(&b, &low[0], &high[0], &sides[0]);
-        for (int i = 0; fine && i < end - first; i++) {
-            trace *left = &sides[i & 1], *right = &sides[(i + 1) & 1];
-            trace_arc(&b, &low[i + 1], &high[i + 1], right);
-            bool pole = low[i].radius == 0;
-            fine = add_stencil(&b, (const trace *[4]){&bottom[i], right, &top[i], left}, pole);
-        }
-        int next_first = first, next_end = end;
-        if (j + 1 < stop)
-            ki_stencil_grid_range(grid, j + 1, &next_first, &next_end);
-        shift = next_first - first;
-        corner *swap_corners = line_corners[0];
-        line_corners[0] = line_corners[1];
-        line_corners[1] = swap_corners;
-        trace *swap_arcs = line_arcs[0];
-        line_arcs[0] = line_arcs[1];
-        line_arcs[1] = swap_arcs;
-        entry *swap_entries = line_entries[0];
-        line_entries[0] = line_entries[1];
-        line_entries[1] = swap_entries;
-        started = true;
+    chunk->weight_room = 20 * texels;
+    chunk->stencils = ki_alloc_raw(b.context, texels, sizeof *chunk->stencils);
+    chunk->weights = ki_alloc_raw(b.context, chunk->weight_room, sizeof *chunk->weights);
+    corner *corners = ki_alloc_raw(b.context, 2 * count, sizeof *corners);
+    trace *arcs = ki_alloc_raw(b.context, 2 * count, sizeof *arcs);
+    entry *entries = ki_alloc_raw(b.context, 4 * line, sizeof *entries);
+    if (!chunk->stencils || !chunk->weights || !corners || !arcs || !entries)
+        goto done;
+    if (grid->kind == KI_STENCIL_RIM) {
+        chunk->failed = !build_rim(&b, begin, stop, entries, line);
+    } else {
+        grid_line bottom = {corners, arcs, entries};
+        grid_line top = {corners + count, arcs + count, entries + line};
+        chunk->failed = !build_rows(&b, begin, stop, bottom, top, entries + 2 * line, line);
     }
-    chunk->failed = !fine;
+done:
     ki_free(b.area);
-    ki_free(arcs);
     ki_free(entries);
+    ki_free(arcs);
     ki_free(corners);
 }
 
@@ -519,7 +516,7 @@ kiln_result ki_stencil_grid_build(kiln_context *context, ki_stencil_grid *grid, 
     double step = 2 * KI_PI / width, eighth = width / 8.0;
     double low = grid->kind == KI_STENCIL_SIDE ? -eighth : 0;
     double high = grid->kind == KI_STENCIL_SIDE ? eighth : 2 * eighth;
-    build_job job = {.context = context, .grid = grid};
+    builder job = {.context = context, .grid = grid, .small = rows >= 4};
     job.first_border = (int)floor(low + grid->offset) - 1;
     job.end_border = (int)floor(high + grid->offset) + 3;
     size_t borders = (size_t)(job.end_border - job.first_border), edges = (size_t)rows + 1;
@@ -553,7 +550,7 @@ kiln_result ki_stencil_grid_build(kiln_context *context, ki_stencil_grid *grid, 
     for (int k = 0; k < grid->chunk_count; k++)
         if (grid->chunks[k].failed && !result)
             result = ki_fail_memory(context, error, "resampling",
-                                    grid->chunks[k].weight_count * sizeof(float));
+                                    grid->chunks[k].weight_room * sizeof(float));
 done:
     ki_free(table);
     if (result)

@@ -22,7 +22,7 @@ typedef struct ki_stencil_chunk {
     ki_stencil *stencils;
     float *weights;
     size_t stencil_count, weight_count; ///< in use
-    size_t stencil_room, weight_room;   ///< allocated
+    size_t weight_room;                 ///< allocated
     int first_row, end_row;             ///< of the panorama, of all stencils
     bool failed;                        ///< no memory
 } ki_stencil_chunk;
