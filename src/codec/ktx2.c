@@ -343,12 +343,15 @@ static kiln_result find_levels(ki_reader *r, const uint8_t *bytes, size_t size, 
         uint64_t edge = h->width >> k, wanted = 6 * edge * edge * (uint64_t)h->texel->bytes;
         if (r->failed || offset > size || length > size - offset)
             return ki_fail(error, KILN_ERROR_FORMAT,
-                           "%s: level %u lies at %llu to %llu, the file has %zu bytes", name, k,
-                           (unsigned long long)offset, (unsigned long long)(offset + length), size);
+                           "%s: level %u has %llu bytes at %llu, the file has %zu", name, k,
+                           (unsigned long long)length, (unsigned long long)offset, size);
         levels[k] = (ktx_level){bytes + offset, (size_t)length, (size_t)wanted};
         uint64_t stated = h->scheme == SCHEME_ZSTD
                               ? ZSTD_getFrameContentSize(levels[k].bytes, levels[k].size)
                               : length;
+        if (stated == ZSTD_CONTENTSIZE_UNKNOWN || stated == ZSTD_CONTENTSIZE_ERROR)
+            return ki_fail(error, KILN_ERROR_FORMAT,
+                           "%s: level %u is no zstd frame that states its size", name, k);
         if (plain != wanted || stated != wanted)
             return ki_fail(error, KILN_ERROR_FORMAT,
                            "%s: level %u holds %llu bytes, its six faces need %llu", name, k,

@@ -1,0 +1,406 @@
+// EXR: what OpenEXRCore writes is read, what kiln writes comes back, and what cannot be read is
+// said.
+#include "check.h"
+#include "codec/codec.h"
+#include "exr_make.h"
+#include "image/pack.h"
+
+#include <float.h>
+
+static kiln_context *context;
+static kiln_error error;
+
+static int set_up(void **state)
+{
+    (void)state;
+    return kiln_context_create(NULL, &context, &error) != KILN_OK;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    size_t held = 0;
+    kiln_context_memory(context, &held, NULL);
+    kiln_context_destroy(context);
+    context = NULL;
+    return held != 0;
+}
+
+// Smooth with some noise below, different for every channel, never negative.
+static float ramp(int x, int y, const char *channel)
+{
+    uint32_t noise = ((uint32_t)x * 7919U + (uint32_t)y * 104729U + (uint32_t)channel[0]) % 61U;
+    return (float)(channel[strlen(channel) - 1] - 'A') + 0.125f * (float)x + 0.25f * (float)y +
+           (float)noise / 256 + 64;
+}
+
+static const exr_make_channel half_rgb[3] = {
+    {"B", EXR_PIXEL_HALF, 0}, {"G", EXR_PIXEL_HALF, 0}, {"R", EXR_PIXEL_HALF, 0}};
+static const exr_make_channel float_rgb[3] = {
+    {"B", EXR_PIXEL_FLOAT, 0}, {"G", EXR_PIXEL_FLOAT, 0}, {"R", EXR_PIXEL_FLOAT, 0}};
+static const exr_make_channel mixed_rgb[4] = {{"A", EXR_PIXEL_UINT, 0},
+                                              {"B", EXR_PIXEL_HALF, 0},
+                                              {"G", EXR_PIXEL_FLOAT, 0},
+                                              {"R", EXR_PIXEL_UINT, 0}};
+
+static kiln_image decode(const exr_make *make, kiln_file_info *info)
+{
+    size_t size;
+    uint8_t *bytes = exr_make_file(make, &size);
+    ki_decoded decoded;
+    CHECK_OK(ki_decode(context, bytes, size, "made.exr", &decoded, info, &error));
+    assert_false(decoded.is_map);
+    free(bytes);
+    return decoded.image;
+}
+
+static float stored(float value, exr_pixel_type_t type)
+{
+    if (type == EXR_PIXEL_HALF)
+        return ki_float_from_half(ki_half_from_float(value));
+    return type == EXR_PIXEL_UINT ? (float)(uint32_t)value : value;
+}
+
+// Every texel against what was written, relative bounds.
+static void check_ramp(const kiln_image *image, const exr_make *make, double bound)
+{
+    static const char *const names[3] = {"R", "G", "B"};
+    assert_int_equal(image->channels, 3);
+    for (int y = 0; y < image->height; y++)
+        for (int x = 0; x < image->width; x++)
+            for (int c = 0; c < 3; c++) {
+                const exr_make_channel *from = NULL;
+                for (int i = 0; i < make->channel_count; i++)
+                    if (!strcmp(make->channels[i].name, names[c]))
+                        from = &make->channels[i];
+                float wanted =
+                    from ? stored(ramp(x + make->x, y + make->y, names[c]), from->type) : 0;
+                float got = image->pixels[3 * (y * image->width + x) + c];
+                if (!(fabs((double)got - (double)wanted) <= bound * (double)wanted))
+                    fail_msg("%s of (%d, %d) in %d x %d, compression %d, tiles %d: %g, not %g",
+                             names[c], x, y, image->width, image->height, (int)make->compression,
+                             make->tile_width, (double)got, (double)wanted);
+            }
+}
+
+static void check_compression(exr_compression_t compression, const exr_make_channel *channels,
+                              int count, double bound)
+{
+    static const int sizes[][2] = {{1, 1}, {37, 70}, {64, 3}, {300, 31}};
+    // A single texel grows by B44, which OpenEXRCore then writes but cannot read.
+    bool b44 = compression == EXR_COMPRESSION_B44 || compression == EXR_COMPRESSION_B44A;
+    for (size_t i = b44; i < sizeof sizes / sizeof *sizes; i++)
+        for (int tiled = 0; tiled < 2; tiled++) {
+            exr_make make = {.width = sizes[i][0],
+                             .height = sizes[i][1],
+                             .compression = compression,
+                             .tile_width = tiled ? 20 : 0,
+                             .tile_height = tiled ? 12 : 0,
+                             .channels = channels,
+                             .channel_count = count,
+                             .value = ramp};
+            kiln_file_info info;
+            kiln_image image = decode(&make, &info);
+            assert_int_equal(info.width, make.width);
+            assert_int_equal(info.height, make.height);
+            check_ramp(&image, &make, bound);
+            kiln_image_free(&image);
+        }
+}
+
+static void lossless_compressions_come_back(void **state)
+{
+    (void)state;
+    static const exr_compression_t lossless[] = {EXR_COMPRESSION_NONE, EXR_COMPRESSION_RLE,
+                                                 EXR_COMPRESSION_ZIPS, EXR_COMPRESSION_ZIP,
+                                                 EXR_COMPRESSION_PIZ};
+    for (size_t i = 0; i < sizeof lossless / sizeof *lossless; i++) {
+        check_compression(lossless[i], half_rgb, 3, 0);
+        check_compression(lossless[i], float_rgb, 3, 0);
+        check_compression(lossless[i], mixed_rgb, 4, 0);
+    }
+}
+
+// PXR24 keeps halfs and integers, and 15 bits of a float's mantissa. B44 keeps floats
+// and integers; of halfs, 6 bits of the differences within 4 x 4 texels.
+static void lossy_compressions_come_back_near(void **state)
+{
+    (void)state;
+    check_compression(EXR_COMPRESSION_PXR24, half_rgb, 3, 0);
+    check_compression(EXR_COMPRESSION_PXR24, float_rgb, 3, 1.0 / (1 << 15));
+    check_compression(EXR_COMPRESSION_PXR24, mixed_rgb, 4, 1.0 / (1 << 15));
+    check_compression(EXR_COMPRESSION_B44, mixed_rgb, 4, 1.0 / 64);
+    check_compression(EXR_COMPRESSION_B44, half_rgb, 3, 1.0 / 64);
+    check_compression(EXR_COMPRESSION_B44A, half_rgb, 3, 1.0 / 64);
+}
+
+static void load_pair(const char *name, kiln_image *image, kiln_image *wanted)
+{
+    char path[512];
+    snprintf(path, sizeof path, KILN_GOOD_FILES "/%s.exr", name);
+    CHECK_OK(kiln_image_load(context, path, image, &error));
+    snprintf(path, sizeof path, KILN_GOOD_FILES "/%s-plain.exr", name);
+    CHECK_OK(kiln_image_load(context, path, wanted, &error));
+    assert_int_equal(image->width, wanted->width);
+    assert_int_equal(image->height, wanted->height);
+}
+
+// OpenEXR's own decoder wrote the plain files. A transformed value is rounded to a half twice, so
+// that a last bit may turn on the order of a sum: 1/256 relative, for few samples.
+static void dwa_is_what_the_reference_decodes(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"dwaa-half", "dwab-float", "dwaa-layers"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        kiln_image image, wanted;
+        load_pair(names[i], &image, &wanted);
+        int count = 3 * image.width * image.height, differing = 0;
+        double sum = 0;
+        for (int k = 0; k < count; k++) {
+            double got = (double)image.pixels[k], want = (double)wanted.pixels[k];
+            CHECK_NEAR(got, want, want / 256 + 1e-6);
+            differing += got != want;
+            sum += want;
+        }
+        CHECK_BELOW((double)differing / count, 0.01);
+        CHECK_BELOW(1e-3, sum / count); // they are not all black
+        kiln_image_free(&image);
+        kiln_image_free(&wanted);
+    }
+}
+
+static void the_display_window_is_the_picture(void **state)
+{
+    (void)state;
+    // The data begins left of and above the display window and ends inside it.
+    exr_make make = {.width = 30,
+                     .height = 40,
+                     .x = -8,
+                     .y = -11,
+                     .display = {{{{-3, 2}}}, {{{40, 50}}}},
+                     .compression = EXR_COMPRESSION_ZIP,
+                     .channels = half_rgb,
+                     .channel_count = 3,
+                     .value = ramp};
+    for (int tiled = 0; tiled < 2; tiled++) {
+        make.tile_width = make.tile_height = 16 * tiled;
+        kiln_image image = decode(&make, NULL);
+        assert_int_equal(image.width, 44);
+        assert_int_equal(image.height, 49);
+        for (int y = 0; y < image.height; y++)
+            for (int x = 0; x < image.width; x++) {
+                int fx = x - 3, fy = y + 2;
+                bool inside = fx < make.x + make.width && fy < make.y + make.height;
+                float wanted = inside ? stored(ramp(fx, fy, "G"), EXR_PIXEL_HALF) : 0;
+                assert_true(image.pixels[3 * (y * image.width + x) + 1] == wanted);
+            }
+        kiln_image_free(&image);
+    }
+    // No overlap at all: black.
+    make.display = (exr_attr_box2i_t){{{{100, 100}}}, {{{103, 101}}}};
+    make.tile_width = make.tile_height = 0;
+    kiln_image image = decode(&make, NULL);
+    for (int i = 0; i < 3 * 4 * 2; i++)
+        assert_true(image.pixels[i] == 0);
+    kiln_image_free(&image);
+}
+
+static void missing_and_extra_channels(void **state)
+{
+    (void)state;
+    static const exr_make_channel red_only[] = {{"R", EXR_PIXEL_HALF, 0},
+                                                {"Z", EXR_PIXEL_FLOAT, 0}};
+    static const exr_make_channel grey[] = {{"Y", EXR_PIXEL_FLOAT, 0}};
+    static const exr_make_channel layer[] = {{"A", EXR_PIXEL_HALF, 0},
+                                             {"beauty.B", EXR_PIXEL_HALF, 0},
+                                             {"beauty.G", EXR_PIXEL_HALF, 0},
+                                             {"beauty.R", EXR_PIXEL_HALF, 0}};
+    // A channel of a quarter of the samples lies between the others.
+    static const exr_make_channel sampled[] = {{"A", EXR_PIXEL_HALF, 2},
+                                               {"B", EXR_PIXEL_HALF, 0},
+                                               {"G", EXR_PIXEL_HALF, 0},
+                                               {"R", EXR_PIXEL_HALF, 0}};
+    exr_make make = {.width = 24,
+                     .height = 20,
+                     .compression = EXR_COMPRESSION_ZIP,
+                     .channels = red_only,
+                     .channel_count = 2,
+                     .value = ramp};
+    kiln_image image = decode(&make, NULL);
+    check_ramp(&image, &make, 0);
+    kiln_image_free(&image);
+
+    make.channels = grey;
+    make.channel_count = 1;
+    kiln_file_info info;
+    image = decode(&make, &info);
+    for (int i = 0; i < 24 * 20; i++)
+        for (int c = 0; c < 3; c++)
+            assert_true(image.pixels[3 * i + c] == ramp(i % 24, i / 24, "Y"));
+    assert_string_equal(info.encoding, "float grey, zip");
+    kiln_image_free(&image);
+
+    make.channels = layer;
+    make.channel_count = 4;
+    image = decode(&make, NULL);
+    for (int i = 0; i < 24 * 20; i++)
+        assert_true(image.pixels[3 * i] ==
+                    stored(ramp(i % 24, i / 24, "beauty.R"), EXR_PIXEL_HALF));
+    kiln_image_free(&image);
+
+    static const exr_compression_t both[] = {EXR_COMPRESSION_NONE, EXR_COMPRESSION_ZIP};
+    for (int i = 0; i < 2; i++) {
+        make.compression = both[i];
+        make.channels = sampled;
+        image = decode(&make, NULL);
+        check_ramp(&image, &make, 0);
+        kiln_image_free(&image);
+    }
+
+    // The second part is the first with colour.
+    make.channels = half_rgb;
+    make.channel_count = 3;
+    make.part_count = 2;
+    image = decode(&make, NULL);
+    check_ramp(&image, &make, 0);
+    kiln_image_free(&image);
+}
+
+static float strange(int x, int y, const char *channel)
+{
+    (void)y;
+    (void)channel;
+    const float values[4] = {NAN, -1, INFINITY, -INFINITY};
+    return values[x];
+}
+
+static void strange_values_become_sane(void **state)
+{
+    (void)state;
+    exr_make make = {.width = 4,
+                     .height = 1,
+                     .compression = EXR_COMPRESSION_NONE,
+                     .channels = half_rgb,
+                     .channel_count = 3,
+                     .value = strange};
+    kiln_image image = decode(&make, NULL);
+    const float halfs[4] = {0, 0, 65504, 0}, floats[4] = {0, 0, FLT_MAX, 0};
+    for (int i = 0; i < 12; i++)
+        assert_true(image.pixels[i] == halfs[i / 3]);
+    kiln_image_free(&image);
+    make.channels = float_rgb;
+    image = decode(&make, NULL);
+    for (int i = 0; i < 12; i++)
+        assert_true(image.pixels[i] == floats[i / 3]);
+    kiln_image_free(&image);
+}
+
+static void check_refused(const exr_make *make, kiln_result wanted, const char *sentence)
+{
+    size_t size;
+    uint8_t *bytes = exr_make_file(make, &size);
+    ki_decoded decoded;
+    assert_int_equal(ki_decode(context, bytes, size, "made.exr", &decoded, NULL, &error), wanted);
+    assert_null(decoded.image.pixels);
+    assert_string_equal(error.message, sentence);
+    free(bytes);
+}
+
+static void what_is_not_read_is_said(void **state)
+{
+    (void)state;
+    static const exr_make_channel depth[] = {{"Z", EXR_PIXEL_FLOAT, 0}};
+    static const exr_make_channel chroma[] = {
+        {"BY", EXR_PIXEL_HALF, 2}, {"RY", EXR_PIXEL_HALF, 2}, {"Y", EXR_PIXEL_HALF, 0}};
+    static const exr_make_channel sampled[] = {{"R", EXR_PIXEL_HALF, 2}, {"Z", EXR_PIXEL_HALF, 0}};
+    exr_make make = {.width = 8,
+                     .height = 4,
+                     .compression = EXR_COMPRESSION_NONE,
+                     .channels = depth,
+                     .channel_count = 1,
+                     .value = ramp};
+    check_refused(&make, KILN_ERROR_UNSUPPORTED,
+                  "made.exr: has no channel R, G, B or Y, its channels are Z");
+    make.channels = chroma;
+    make.channel_count = 3;
+    check_refused(&make, KILN_ERROR_UNSUPPORTED,
+                  "made.exr: stores luminance and chroma (Y, RY, BY), channels R, G and B are "
+                  "read");
+    make.channels = sampled;
+    make.channel_count = 2;
+    check_refused(&make, KILN_ERROR_UNSUPPORTED,
+                  "made.exr: channel R has one sample for 2 x 2 pixels, only full resolution is "
+                  "read");
+    make.channels = half_rgb;
+    make.channel_count = 3;
+    make.display = (exr_attr_box2i_t){{{{0, 0}}}, {{{69999, 34999}}}};
+    check_refused(&make, KILN_ERROR_UNSUPPORTED,
+                  "made.exr: displayWindow is 70000 x 35000, the limit is 32768");
+}
+
+// What is written is read, by OpenEXRCore's header and by our reader.
+static void what_is_written_comes_back(void **state)
+{
+    (void)state;
+    enum { W = 45, H = 37 };
+    float pixels[W * H * 4];
+    for (int i = 0; i < W * H * 4; i++)
+        pixels[i] = (float)(((uint32_t)i * 2654435761U >> 8) % 4096) / 1024;
+    for (int channels = 1; channels <= 4; channels++)
+        for (int half = 0; half < 2; half++) {
+            ki_writer w = {.context = context};
+            ki_exr_options options = {.half = half, .panorama = true, .roughness = 0.25f};
+            CHECK_OK(ki_exr_encode(pixels, W, H, channels, &options, &w, &error));
+            ki_decoded decoded;
+            kiln_file_info info;
+            CHECK_OK(ki_decode(context, w.bytes, w.size, "back.exr", &decoded, &info, &error));
+            assert_string_equal(info.writer, "kiln 0.1.0");
+            CHECK_NEAR((double)info.roughness[0], 0.25, 0);
+            exr_pixel_type_t type = half ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT;
+            for (int i = 0; i < W * H; i++)
+                for (int c = 0; c < 3; c++) {
+                    // One channel is grey, of two there is no blue.
+                    int from = channels == 1 ? 0 : c;
+                    float wanted = from < channels ? stored(pixels[i * channels + from], type) : 0;
+                    assert_true(decoded.image.pixels[3 * i + c] == wanted);
+                }
+            ki_decoded_free(&decoded);
+            ki_writer_free(&w);
+        }
+}
+
+static void threads_do_not_matter(void **state)
+{
+    (void)state;
+    kiln_image images[2];
+    for (int i = 0; i < 2; i++) {
+        kiln_context *other;
+        CHECK_OK(
+            kiln_context_create(&(kiln_context_def){.thread_count = i ? 7 : 1}, &other, &error));
+        CHECK_OK(kiln_image_load(other, KILN_GOOD_FILES "/dwab-float.exr", &images[i], &error));
+        if (i)
+            assert_memory_equal(images[0].pixels, images[1].pixels,
+                                sizeof(float) * 3 * (size_t)images[0].width *
+                                    (size_t)images[0].height);
+        for (int k = 0; i && k < 2; k++)
+            kiln_image_free(&images[k]);
+        if (i)
+            kiln_context_destroy(other);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(lossless_compressions_come_back, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(lossy_compressions_come_back_near, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(dwa_is_what_the_reference_decodes, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(the_display_window_is_the_picture, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(missing_and_extra_channels, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(strange_values_become_sane, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(what_is_not_read_is_said, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(what_is_written_comes_back, set_up, tear_down),
+        cmocka_unit_test(threads_do_not_matter),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

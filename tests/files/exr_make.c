@@ -1,0 +1,140 @@
+#include "exr_make.h"
+
+#include "check.h"
+#include "image/pack.h"
+
+typedef struct stream {
+    uint8_t *bytes;
+    size_t size;
+} stream;
+
+static int64_t write_stream(exr_const_context_t context, void *data, const void *bytes,
+                            uint64_t size, uint64_t offset, exr_stream_error_func_ptr_t error)
+{
+    (void)context;
+    (void)error;
+    stream *s = data;
+    if (offset + size > s->size) {
+        s->bytes = realloc(s->bytes, offset + size);
+        assert_non_null(s->bytes);
+        s->size = offset + size;
+    }
+    memcpy(s->bytes + offset, bytes, size);
+    return (int64_t)size;
+}
+
+static void must(exr_result_t result)
+{
+    if (result != EXR_ERR_SUCCESS)
+        fail_msg("OpenEXRCore: %s", exr_get_default_error_message(result));
+}
+
+// One chunk from the samples of each channel, planar, as the type they are stored in.
+static void write_chunk(exr_context_t file, int part, const exr_make *make,
+                        const exr_chunk_info_t *info, int x0, int y0)
+{
+    exr_encode_pipeline_t pipeline = EXR_ENCODE_PIPELINE_INITIALIZER;
+    must(exr_encoding_initialize(file, part, info, &pipeline));
+    uint8_t *planes[8] = {NULL};
+    for (int c = 0; c < pipeline.channel_count; c++) {
+        exr_coding_channel_info_t *channel = &pipeline.channels[c];
+        size_t bytes = (size_t)channel->bytes_per_element;
+        planes[c] = calloc((size_t)info->width * (size_t)info->height, bytes);
+        assert_non_null(planes[c]);
+        size_t at = 0;
+        for (int y = y0; y < y0 + info->height; y++) {
+            if (y % channel->y_samples)
+                continue;
+            for (int x = x0; x < x0 + info->width; x++) {
+                if (x % channel->x_samples)
+                    continue;
+                float value = make->value(x, y, channel->channel_name);
+                uint16_t half = ki_half_from_float(value);
+                if (isinf(value)) // which ki_half_from_float clamps
+                    half = value > 0 ? 0x7c00 : 0xfc00;
+                if (isnan(value))
+                    half = 0x7e00;
+                uint32_t integer = value > 0 ? (uint32_t)value : 0;
+                const void *from = channel->data_type == EXR_PIXEL_HALF    ? (const void *)&half
+                                   : channel->data_type == EXR_PIXEL_FLOAT ? (const void *)&value
+                                                                           : (const void *)&integer;
+                memcpy(planes[c] + at, from, bytes);
+                at += bytes;
+            }
+        }
+        channel->encode_from_ptr = planes[c];
+        channel->user_bytes_per_element = (int16_t)bytes;
+        channel->user_data_type = channel->data_type;
+        channel->user_pixel_stride = (int32_t)bytes;
+        channel->user_line_stride = (int32_t)bytes * channel->width;
+    }
+    must(exr_encoding_choose_default_routines(file, part, &pipeline));
+    must(exr_encoding_run(file, part, &pipeline));
+    must(exr_encoding_destroy(file, &pipeline));
+    for (int c = 0; c < 8; c++)
+        free(planes[c]);
+}
+
+static void add_part(exr_context_t file, int part, int count, const exr_make *make)
+{
+    static const exr_make_channel depth = {"Z", EXR_PIXEL_FLOAT, 0};
+    bool last = part == count - 1;
+    char name[16];
+    snprintf(name, sizeof name, "part%d", part);
+    int index;
+    must(exr_add_part(file, name, make->tile_width ? EXR_STORAGE_TILED : EXR_STORAGE_SCANLINE,
+                      &index));
+    exr_attr_box2i_t data = {{{{make->x, make->y}}},
+                             {{{make->x + make->width - 1, make->y + make->height - 1}}}};
+    exr_attr_box2i_t display = make->display;
+    if (!display.max.x && !display.max.y)
+        display = data;
+    exr_attr_v2f_t center = {{{0, 0}}};
+    must(exr_initialize_required_attr(file, part, &display, &data, 1, &center, 1,
+                                      EXR_LINEORDER_INCREASING_Y, make->compression));
+    for (int c = 0; c < (last ? make->channel_count : 1); c++) {
+        const exr_make_channel *channel = last ? &make->channels[c] : &depth;
+        int sampling = channel->sampling ? channel->sampling : 1;
+        must(exr_add_channel(file, part, channel->name, channel->type, EXR_PERCEPTUALLY_LOGARITHMIC,
+                             sampling, sampling));
+    }
+    if (make->tile_width)
+        must(exr_set_tile_descriptor(file, part, (uint32_t)make->tile_width,
+                                     (uint32_t)make->tile_height, EXR_TILE_ONE_LEVEL,
+                                     EXR_TILE_ROUND_DOWN));
+}
+
+uint8_t *exr_make_file(const exr_make *make, size_t *size)
+{
+    stream s = {0};
+    exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    init.user_data = &s;
+    init.write_fn = write_stream;
+    exr_context_t file;
+    must(exr_start_write(&file, "memory", EXR_WRITE_FILE_DIRECTLY, &init));
+    int parts = make->part_count ? make->part_count : 1;
+    for (int part = 0; part < parts; part++)
+        add_part(file, part, parts, make);
+    must(exr_write_header(file));
+    for (int part = 0; part < parts; part++) {
+        exr_chunk_info_t info;
+        int lines = 1;
+        if (make->tile_width) {
+            for (int y = 0; y < make->height; y += make->tile_height)
+                for (int x = 0; x < make->width; x += make->tile_width) {
+                    must(exr_write_tile_chunk_info(file, part, x / make->tile_width,
+                                                   y / make->tile_height, 0, 0, &info));
+                    write_chunk(file, part, make, &info, make->x + x, make->y + y);
+                }
+            continue;
+        }
+        must(exr_get_scanlines_per_chunk(file, part, &lines));
+        for (int y = make->y; y < make->y + make->height; y += lines) {
+            must(exr_write_scanline_chunk_info(file, part, y, &info));
+            write_chunk(file, part, make, &info, make->x, y);
+        }
+    }
+    must(exr_finish(&file));
+    *size = s.size;
+    return s.bytes;
+}

@@ -1,0 +1,32 @@
+// EXR files for tests, written by OpenEXRCore, which is not what reads them.
+#ifndef KILN_EXR_MAKE_H
+#define KILN_EXR_MAKE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include <openexr.h>
+
+typedef struct exr_make_channel {
+    const char *name;
+    exr_pixel_type_t type;
+    int sampling; // along x and y; 0 for 1
+} exr_make_channel;
+
+typedef struct exr_make {
+    int width, height;        // of the data window
+    int x, y;                 // where it begins
+    exr_attr_box2i_t display; // all 0: the data window
+    exr_compression_t compression;
+    int tile_width, tile_height; // 0 for scan lines
+    const exr_make_channel *channels;
+    int channel_count;
+    int part_count; // 0 for 1; the parts before the last have a channel "Z" only
+    /// The value of a sample.
+    float (*value)(int x, int y, const char *channel);
+} exr_make;
+
+/// Bytes to be released by free().
+uint8_t *exr_make_file(const exr_make *make, size_t *size);
+
+#endif

@@ -1,0 +1,350 @@
+// Hostile bytes and missing memory: every decoder returns, says which file, and leaks nothing.
+#include "check.h"
+#include "codec/codec.h"
+
+#include <dirent.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static kiln_error error;
+
+// An allocator whose n-th call fails; it counts what is held.
+typedef struct failing {
+    long calls, fail_at; // 0 for never
+    long held;
+} failing;
+
+static void *failing_allocate(void *user, size_t size)
+{
+    failing *f = user;
+    if (++f->calls == f->fail_at)
+        return NULL;
+    f->held++;
+    return aligned_alloc(64, (size + 63) / 64 * 64);
+}
+
+static void failing_release(void *user, void *memory, size_t size)
+{
+    (void)size;
+    ((failing *)user)->held--;
+    free(memory);
+}
+
+static kiln_context *make_context(failing *f)
+{
+    *f = (failing){0};
+    kiln_context *context;
+    kiln_context_def def = {.allocate = failing_allocate,
+                            .release = failing_release,
+                            .allocator_user = f,
+                            .memory_limit = (size_t)512 << 20,
+                            .thread_count = 1};
+    CHECK_OK(kiln_context_create(&def, &context, &error));
+    return context;
+}
+
+typedef struct sample {
+    char name[64];
+    uint8_t *bytes;
+    size_t size;
+} sample;
+
+enum { MAX_SAMPLES = 128 };
+static sample good[MAX_SAMPLES];
+static int good_count;
+
+static void read_folder(const char *path, sample *samples, int *count)
+{
+    DIR *folder = opendir(path);
+    assert_non_null(folder);
+    for (struct dirent *entry; (entry = readdir(folder));) {
+        if (entry->d_name[0] == '.')
+            continue;
+        char full[512];
+        snprintf(full, sizeof full, "%s/%s", path, entry->d_name);
+        FILE *file = fopen(full, "rb");
+        struct stat status;
+        assert_true(file && stat(full, &status) == 0 && *count < MAX_SAMPLES);
+        sample *s = &samples[(*count)++];
+        snprintf(s->name, sizeof s->name, "%.63s", entry->d_name);
+        s->size = (size_t)status.st_size;
+        s->bytes = malloc(s->size + 1);
+        assert_int_equal(fread(s->bytes, 1, s->size, file), s->size);
+        fclose(file);
+    }
+    closedir(folder);
+}
+
+static void add_good(const char *name, const ki_writer *w)
+{
+    sample *s = &good[good_count++];
+    snprintf(s->name, sizeof s->name, "%s", name);
+    s->size = w->size;
+    s->bytes = malloc(w->size);
+    memcpy(s->bytes, w->bytes, w->size);
+}
+
+// The files in good/ and one of each kind that kiln writes.
+static int make_samples(void **state)
+{
+    (void)state;
+    kiln_context *context;
+    CHECK_OK(kiln_context_create(&(kiln_context_def){.thread_count = 1}, &context, &error));
+    read_folder(KILN_GOOD_FILES, good, &good_count);
+    kiln_map map;
+    CHECK_OK(kiln_map_create(context, KILN_SHAPE_CUBE, 16, 0, &map, &error));
+    for (size_t i = 0; i < kiln_map_texels(&map, 0) * 3; i++)
+        map.level[0][i] = (float)(i * i % 1001) / 64;
+    ki_writer w = {.context = context};
+    ki_exr_options options = {.half = true, .roughness = 1};
+    kiln_sh sh = {.bands = 5};
+    for (int i = 0; i < 7; i++) {
+        w.size = 0;
+        kiln_save_def def = {.format = (kiln_format)(1 + i % 4), .sh = &sh, .lobe = "ggx"};
+        def.zstd = i == 1 ? 3 : 0;
+        static const char *const names[] = {"dds",      "ktx2 zstd", "ktx2", "hdr",
+                                            "png grey", "png rgb",   "exr"};
+        if (i == 0)
+            CHECK_OK(ki_dds_encode(&map, &def, &w, &error));
+        else if (i < 3)
+            CHECK_OK(ki_ktx2_encode(&map, &def, &w, &error));
+        else if (i == 3)
+            CHECK_OK(ki_hdr_encode(map.level[0], 32, 16, &w, &error));
+        else if (i < 6)
+            CHECK_OK(ki_png_encode(map.level[0], 32, 16, i == 4 ? 1 : 3, true, &w, &error));
+        else
+            CHECK_OK(ki_exr_encode(map.level[0], 32, 16, 3, &options, &w, &error));
+        add_good(names[i], &w);
+    }
+    ki_writer_free(&w);
+    kiln_map_free(&map);
+    kiln_context_destroy(context);
+    return 0;
+}
+
+static int free_samples(void **state)
+{
+    (void)state;
+    for (int i = 0; i < good_count; i++)
+        free(good[i].bytes);
+    return 0;
+}
+
+// Whatever comes of it, nothing is held afterwards, and a failure has a sentence and no output.
+static kiln_result decode(kiln_context *context, failing *f, const uint8_t *bytes, size_t size,
+                          const char *name)
+{
+    // In memory that ends where the bytes end, so that checkers see a read behind it.
+    uint8_t *exact = malloc(size ? size : 1);
+    memcpy(exact, bytes, size);
+    ki_decoded decoded;
+    error.message[0] = 0;
+    kiln_result result = ki_decode(context, exact, size, name, &decoded, NULL, &error);
+    if (result != KILN_OK) {
+        if (!strstr(error.message, name))
+            fail_msg("the sentence does not name the file %s: %s", name, error.message);
+        assert_null(decoded.image.owner);
+        assert_null(decoded.map.owner);
+    }
+    ki_decoded_free(&decoded);
+    assert_int_equal(f->held, 1); // the context itself
+    free(exact);
+    return result;
+}
+
+static void bad_files_are_refused(void **state)
+{
+    (void)state;
+    static sample bad[MAX_SAMPLES];
+    int count = 0;
+    read_folder(KILN_BAD_FILES, bad, &count);
+    assert_true(count > 60);
+    failing f;
+    kiln_context *context = make_context(&f);
+    for (int i = 0; i < count; i++) {
+        kiln_result result = decode(context, &f, bad[i].bytes, bad[i].size, bad[i].name);
+        if (result != KILN_ERROR_FORMAT)
+            fail_msg("%s gives %d: %s", bad[i].name, (int)result, error.message);
+        free(bad[i].bytes);
+    }
+    kiln_context_destroy(context);
+}
+
+static void cut_files_are_refused(void **state)
+{
+    (void)state;
+    failing f;
+    kiln_context *context = make_context(&f);
+    for (int i = 0; i < good_count; i++) {
+        const sample *s = &good[i];
+        assert_int_equal(decode(context, &f, s->bytes, s->size, s->name), KILN_OK);
+        size_t step = s->size / 400 + 1;
+        for (size_t size = 0; size < s->size; size += step) {
+            // Only a PNG's last 12 bytes say nothing about the picture, and its check sums before.
+            bool end = !strncmp(s->name, "png", 3) && size + 20 > s->size;
+            if (decode(context, &f, s->bytes, size, s->name) == KILN_OK && !end)
+                fail_msg("%s is read when cut to %zu of %zu bytes", s->name, size, s->size);
+        }
+    }
+    kiln_context_destroy(context);
+}
+
+static void damaged_files_do_no_harm(void **state)
+{
+    (void)state;
+    failing f;
+    kiln_context *context = make_context(&f);
+    uint32_t seed = 1;
+    for (int i = 0; i < good_count; i++) {
+        sample *s = &good[i];
+        uint8_t *bytes = malloc(s->size);
+        for (int round = 0; round < 300; round++) {
+            memcpy(bytes, s->bytes, s->size);
+            for (int k = 0; k < 1 + round % 4; k++) {
+                seed = seed * 1664525U + 1013904223U;
+                // Half of them in the first 400 bytes, where headers are.
+                size_t range = round % 2 && s->size > 400 ? 400 : s->size;
+                size_t at = (size_t)(seed >> 8) % range;
+                bytes[at] = (uint8_t)(round % 3 ? bytes[at] ^ (1U << (seed >> 29)) : seed >> 24);
+            }
+            (void)decode(context, &f, bytes, s->size, s->name);
+        }
+        free(bytes);
+    }
+    kiln_context_destroy(context);
+}
+
+// A call, repeated with its first, second, third ... allocation failing until none does.
+typedef kiln_result attempt(kiln_context *context, const char *path);
+
+static void check_allocations(const char *what, attempt *call, const char *path)
+{
+    long most = 0;
+    for (long n = 1;; n++) {
+        failing f;
+        kiln_context *context = make_context(&f);
+        f.calls = 0;
+        f.fail_at = n;
+        kiln_result result = call(context, path);
+        if (f.held != 1)
+            fail_msg("%s leaks %ld blocks when allocation %ld fails", what, f.held - 1, n);
+        bool reached = f.calls >= n;
+        kiln_context_destroy(context);
+        if (!reached) {
+            if (result != KILN_OK)
+                fail_msg("%s: %s", what, error.message);
+            break;
+        }
+        if (result != KILN_ERROR_MEMORY)
+            fail_msg("%s gives %d when allocation %ld fails: %s", what, (int)result, n,
+                     error.message);
+        most = n;
+    }
+    assert_true(most >= 1);
+}
+
+static const sample *decoded_sample;
+
+static kiln_result decode_sample(kiln_context *context, const char *path)
+{
+    (void)path;
+    kiln_map map;
+    kiln_load_def def = {.layout = KILN_LAYOUT_AUTO};
+    kiln_result result = kiln_map_decode(context, decoded_sample->bytes, decoded_sample->size,
+                                         decoded_sample->name, &def, &map, &error);
+    kiln_map_free(&map);
+    // That it is no panorama is known after it was read.
+    return result == KILN_ERROR_FORMAT && strstr(error.message, "sides must be") ? KILN_OK : result;
+}
+
+static void decoding_survives_missing_memory(void **state)
+{
+    (void)state;
+    for (int i = 0; i < good_count; i++) {
+        decoded_sample = &good[i];
+        check_allocations(good[i].name, decode_sample, NULL);
+    }
+}
+
+static char folder[64];
+
+static kiln_result save(kiln_context *context, const char *path)
+{
+    // The map is made by another context, whose memory does not fail.
+    kiln_context *other;
+    CHECK_OK(kiln_context_create(&(kiln_context_def){.thread_count = 1}, &other, &error));
+    kiln_map map;
+    CHECK_OK(kiln_map_create(other, KILN_SHAPE_CUBE, 4, 1, &map, &error));
+    kiln_sh sh = {.bands = 3};
+    kiln_save_def def = {.zstd = strstr(path, "zstd") ? 3 : 0, .sh = &sh, .lobe = "ggx"};
+    kiln_result result = kiln_map_save(context, &map, path, &def, NULL, &error);
+    kiln_map_free(&map);
+    kiln_context_destroy(other);
+    return result;
+}
+
+static kiln_result save_sh(kiln_context *context, const char *path)
+{
+    kiln_sh sh = {.bands = 3};
+    return kiln_sh_save(context, &sh, path, &error);
+}
+
+static kiln_result save_image(kiln_context *context, const char *path)
+{
+    float pixels[12] = {0};
+    kiln_image image = {2, 2, 3, pixels, NULL};
+    return kiln_image_save(context, &image, path, &error);
+}
+
+static kiln_result load(kiln_context *context, const char *path)
+{
+    kiln_map map;
+    kiln_result result = kiln_map_load(context, path, NULL, &map, &error);
+    kiln_map_free(&map);
+    return result;
+}
+
+static kiln_result describe(kiln_context *context, const char *path)
+{
+    kiln_file_info info;
+    return kiln_file_describe(context, path, &info, &error);
+}
+
+static void files_survive_missing_memory(void **state)
+{
+    (void)state;
+    strcpy(folder, "/tmp/kiln-hostile-XXXXXX");
+    assert_non_null(mkdtemp(folder));
+    static const struct {
+        const char *name;
+        attempt *call;
+    } calls[] = {{"a.ktx2", save},         {"zstd.ktx2", save},
+                 {"a.dds", save},          {"f/", save},
+                 {"b.hdr", save},          {"c.png", save},
+                 {"a.json", save_sh},      {"a.txt", save_sh},
+                 {"a.h", save_sh},         {"i.exr", save_image},
+                 {"i.hdr", save_image},    {"i.png", save_image},
+                 {"a.ktx2", load},         {"f", load},
+                 {"f/{face}.exr", load}, {"f/px.exr", describe},
+                 {"a.ktx2", describe}};
+    for (size_t i = 0; i < sizeof calls / sizeof *calls; i++) {
+        char path[128];
+        snprintf(path, sizeof path, "%s/%s", folder, calls[i].name);
+        check_allocations(calls[i].name, calls[i].call, path);
+    }
+    char command[128];
+    snprintf(command, sizeof command, "rm -r %s", folder);
+    assert_int_equal(system(command), 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(bad_files_are_refused),
+        cmocka_unit_test(cut_files_are_refused),
+        cmocka_unit_test(damaged_files_do_no_harm),
+        cmocka_unit_test(decoding_survives_missing_memory),
+        cmocka_unit_test(files_survive_missing_memory),
+    };
+    return cmocka_run_group_tests(tests, make_samples, free_samples);
+}

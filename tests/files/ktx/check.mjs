@@ -1,0 +1,99 @@
+// Reads KTX2 cubes written by write.c with ktx-parse and compares every field with what the
+// specification asks of such a file: node check.mjs FOLDER
+import assert from "node:assert/strict";
+import { readFileSync, readdirSync } from "node:fs";
+import { join } from "node:path";
+import * as ktx from "ktx-parse";
+
+const { KHR_DF_SAMPLE_DATATYPE_EXPONENT: EXPONENT, KHR_DF_SAMPLE_DATATYPE_FLOAT: FLOAT,
+        KHR_DF_SAMPLE_DATATYPE_SIGNED: SIGNED } = ktx;
+const RED = ktx.KHR_DF_CHANNEL_RGBSDA_RED, GREEN = ktx.KHR_DF_CHANNEL_RGBSDA_GREEN,
+      BLUE = ktx.KHR_DF_CHANNEL_RGBSDA_BLUE, ALPHA = ktx.KHR_DF_CHANNEL_RGBSDA_ALPHA;
+
+const one = 0x3f800000, minusOne = 0xbf800000;
+const signed = (bits) => [RED, GREEN, BLUE, ALPHA].map(
+    (channel, i) => [i * bits, bits, channel | FLOAT | SIGNED, minusOne, one]);
+const shared = [RED, GREEN, BLUE].flatMap((channel, i) => [
+    [9 * i, 9, channel, 0, 8448], [27, 5, channel | EXPONENT, 15, 31]]);
+const formats = {
+    rgba16f: { vk: ktx.VK_FORMAT_R16G16B16A16_SFLOAT, bytes: 8, type: 2, samples: signed(16) },
+    rgba32f: { vk: ktx.VK_FORMAT_R32G32B32A32_SFLOAT, bytes: 16, type: 4, samples: signed(32) },
+    rgb9e5: { vk: ktx.VK_FORMAT_E5B9G9R9_UFLOAT_PACK32, bytes: 4, type: 4, samples: shared },
+    b10g11r11: { vk: ktx.VK_FORMAT_B10G11R11_UFLOAT_PACK32, bytes: 4, type: 4, samples: [
+        [0, 11, RED | FLOAT, 0, one], [11, 11, GREEN | FLOAT, 0, one], [22, 10, BLUE | FLOAT, 0, one]] },
+};
+
+const text = (value) => typeof value === "string" ? value : Buffer.from(value).toString().replace(/\0$/, "");
+
+function check(path, format, zstd, size, levels) {
+    const file = ktx.read(readFileSync(path));
+    assert.equal(file.vkFormat, format.vk);
+    assert.equal(file.typeSize, format.type);
+    assert.deepEqual([file.pixelWidth, file.pixelHeight, file.pixelDepth], [size, size, 0]);
+    assert.deepEqual([file.layerCount, file.faceCount], [0, 6]);
+    assert.equal(file.supercompressionScheme,
+                 zstd ? ktx.KHR_SUPERCOMPRESSION_ZSTD : ktx.KHR_SUPERCOMPRESSION_NONE);
+    assert.equal(file.globalData, null);
+
+    assert.equal(file.dataFormatDescriptor.length, 1);
+    const block = file.dataFormatDescriptor[0];
+    assert.equal(block.vendorId, ktx.KHR_DF_VENDORID_KHRONOS);
+    assert.equal(block.descriptorType, ktx.KHR_DF_KHR_DESCRIPTORTYPE_BASICFORMAT);
+    assert.equal(block.colorModel, ktx.KHR_DF_MODEL_RGBSDA);
+    assert.equal(block.colorPrimaries, ktx.KHR_DF_PRIMARIES_BT709);
+    assert.equal(block.transferFunction, ktx.KHR_DF_TRANSFER_LINEAR);
+    assert.equal(block.flags, ktx.KHR_DF_FLAG_ALPHA_STRAIGHT);
+    assert.deepEqual([...block.texelBlockDimension], [0, 0, 0, 0]);
+    assert.deepEqual([...block.bytesPlane], [format.bytes, 0, 0, 0, 0, 0, 0, 0]);
+    assert.deepEqual(block.samples.map((s) => [s.bitOffset, s.bitLength + 1, s.channelType,
+                                               Number(s.sampleLower) >>> 0, Number(s.sampleUpper) >>> 0]),
+                     format.samples);
+    for (const sample of block.samples)
+        assert.deepEqual([...sample.samplePosition], [0, 0, 0, 0]);
+
+    assert.equal(file.levels.length, levels);
+    file.levels.forEach((level, k) => {
+        const edge = Math.max(1, size >> k), bytes = 6 * edge * edge * format.bytes;
+        assert.equal(level.uncompressedByteLength, bytes);
+        if (zstd)
+            assert.deepEqual([...level.levelData.subarray(0, 4)], [0x28, 0xb5, 0x2f, 0xfd]);
+        else
+            assert.equal(level.levelData.byteLength, bytes);
+        if (zstd || format !== formats.rgba32f)
+            return;
+        // write.c: texel i of level k is (i + k / 4, 2 i, 0.5).
+        const values = new Float32Array(level.levelData.slice().buffer);
+        for (let i = 0; i < values.length / 4; i++)
+            assert.deepEqual([...values.subarray(4 * i, 4 * i + 4)], [i + k / 4, 2 * i, 0.5, 1]);
+    });
+
+    const keys = Object.keys(file.keyValue);
+    assert.deepEqual(keys, ["KTXorientation", "KTXwriter", "kiln:lobe", "kiln:roughness", "kiln:sh"]);
+    assert.deepEqual(keys, [...keys].sort());
+    assert.equal(text(file.keyValue.KTXorientation), "rd");
+    assert.match(text(file.keyValue.KTXwriter), /^kiln \d+\.\d+\.\d+$/);
+    assert.equal(text(file.keyValue["kiln:lobe"]), "ggx");
+    assert.deepEqual(text(file.keyValue["kiln:roughness"]).split(" ").map(Number),
+                     Array.from({ length: levels }, (_, k) => Math.fround(k / 8)));
+    assert.match(text(file.keyValue["kiln:sh"]), /^bands 2\nirradiance 0\nwindow 0\n(\S+ \S+ \S+\n?){4}$/);
+
+    // Written again by ktx-parse and read: the same.
+    const again = ktx.read(ktx.write(file, { keepWriter: true }));
+    assert.deepEqual(again.levels.map((l) => l.uncompressedByteLength),
+                     file.levels.map((l) => l.uncompressedByteLength));
+    assert.deepEqual(Object.keys(again.keyValue), keys);
+}
+
+const folder = process.argv[2];
+const names = readdirSync(folder).filter((name) => name.endsWith(".ktx2"));
+assert.equal(names.length, 16);
+for (const name of names) {
+    const [format, coding, size, levels] = name.replace(".ktx2", "").split("-");
+    try {
+        check(join(folder, name), formats[format], coding === "zstd", Number(size), Number(levels));
+    } catch (error) {
+        console.error(`${name}: ${error.message}`);
+        process.exit(1);
+    }
+}
+console.log(`${names.length} files read`);
