@@ -74,6 +74,14 @@ KILN_API const char *kiln_version(void);
 
 typedef struct kiln_context kiln_context;
 
+typedef enum kiln_cpu {
+    KILN_CPU_BEST = 0,
+    KILN_CPU_SCALAR,
+    KILN_CPU_SSE2,
+    KILN_CPU_AVX2,
+    KILN_CPU_AVX512
+} kiln_cpu;
+
 /// {0} is a good default: malloc, no limit, one thread a core, no progress, every instruction set.
 typedef struct kiln_context_def {
     /// Returns `size` bytes aligned to 64, or NULL. May be NULL; then `release` must be too.
@@ -90,13 +98,7 @@ typedef struct kiln_context_def {
     bool (*progress)(void *user, const char *stage, double fraction);
     void *progress_user;
     /// Highest instruction set to use. Results are the same bits for each; for tests and benches.
-    enum kiln_cpu {
-        KILN_CPU_BEST = 0,
-        KILN_CPU_SCALAR,
-        KILN_CPU_SSE2,
-        KILN_CPU_AVX2,
-        KILN_CPU_AVX512
-    } cpu;
+    kiln_cpu cpu;
 } kiln_context_def;
 
 /// `def` may be NULL for the defaults.
@@ -126,11 +128,11 @@ typedef enum kiln_shape {
 /// kiln_map_free; the numbers may be read and written freely.
 typedef struct kiln_map {
     kiln_shape shape;
-    int size;                           ///< of level 0: 1 to KILN_MAX_SIZE
-    int level_count;                    ///< 1 to KILN_MAX_LEVELS
-    float *level[KILN_MAX_LEVELS];      ///< kiln_map_texels(map, k) * 3 floats each
-    float roughness[KILN_MAX_LEVELS];   ///< what each level was filtered for, 0 to 1
-    void *owner;                        ///< kiln's own
+    int size;                         ///< of level 0: 1 to KILN_MAX_SIZE
+    int level_count;                  ///< 1 to KILN_MAX_LEVELS
+    float *level[KILN_MAX_LEVELS];    ///< kiln_map_texels(map, k) * 3 floats each
+    float roughness[KILN_MAX_LEVELS]; ///< what each level was filtered for, 0 to 1
+    void *owner;                      ///< kiln's own
 } kiln_map;
 
 /// A flat picture: tables, and files before their shape is known. 1 to 4 channels, row-major.
@@ -171,17 +173,19 @@ KILN_API KILN_CHECKED kiln_result kiln_map_convert(kiln_context *context, const 
 
 // ---------------------------------------------------------------------------------- files, reading
 
+/// How a flat picture lies on the sphere. Auto: 2:1 is a panorama, 4:3 and 3:4 are crosses,
+/// 6:1 and 1:6 are strips.
+typedef enum kiln_layout {
+    KILN_LAYOUT_AUTO = 0,
+    KILN_LAYOUT_PANORAMA,
+    KILN_LAYOUT_CROSS,
+    KILN_LAYOUT_STRIP,
+    KILN_LAYOUT_OCTAHEDRON
+} kiln_layout;
+
 /// {0} is a good default.
 typedef struct kiln_load_def {
-    /// How a flat picture lies on the sphere. Auto: 2:1 is a panorama, 4:3 and 3:4 are crosses,
-    /// 6:1 and 1:6 are strips.
-    enum kiln_layout {
-        KILN_LAYOUT_AUTO = 0,
-        KILN_LAYOUT_PANORAMA,
-        KILN_LAYOUT_CROSS,
-        KILN_LAYOUT_STRIP,
-        KILN_LAYOUT_OCTAHEDRON
-    } layout;
+    kiln_layout layout;
 } kiln_load_def;
 
 /// Loads EXR, Radiance HDR or PNG (sRGB, decoded to linear), KTX2 or DDS cubes that kiln wrote, or
@@ -202,17 +206,17 @@ KILN_API KILN_CHECKED kiln_result kiln_image_load(kiln_context *context, const c
 
 /// What a file is, without reading all of its texels. Strings end in NUL.
 typedef struct kiln_file_info {
-    char format[16];        ///< "exr", "hdr", "png", "ktx2", "dds"
-    char encoding[48];      ///< texel type and compression, "half rgb, piz"
-    char layout[24];        ///< "panorama", "cross", "strip", "cube", "octahedron", "image"
-    int width, height;      ///< of one face or of the picture
+    char format[16];   ///< "exr", "hdr", "png", "ktx2", "dds"
+    char encoding[48]; ///< texel type and compression, "half rgb, piz"
+    char layout[24];   ///< "panorama", "cross", "strip", "cube", "octahedron", "image"
+    int width, height; ///< of one face or of the picture
     int face_count, level_count;
     int channel_count;
     uint64_t byte_count;
     float roughness[KILN_MAX_LEVELS]; ///< of each level, where the file says; else -1
-    char writer[64];        ///< "kiln 0.1.0", or empty
-    char orientation[16];   ///< as the file states it, or empty
-    int sh_bands;           ///< 0 where the file holds no spherical harmonics
+    char writer[64];                  ///< "kiln 0.1.0", or empty
+    char orientation[16];             ///< as the file states it, or empty
+    int sh_bands;                     ///< 0 where the file holds no spherical harmonics
     float sh[KILN_MAX_BANDS * KILN_MAX_BANDS][3];
 } kiln_file_info;
 
@@ -223,13 +227,13 @@ KILN_API KILN_CHECKED kiln_result kiln_file_describe(kiln_context *context, cons
 
 /// {0} stands for each default.
 typedef struct kiln_sky_def {
-    int size;         ///< rows of the panorama, 16 to 8192; 0 for 512
-    double elevation; ///< of the sun above the horizon in degrees, -5 to 90; see has_elevation
+    int size;           ///< rows of the panorama, 16 to 8192; 0 for 512
+    double elevation;   ///< of the sun above the horizon in degrees, -5 to 90; see has_elevation
     bool has_elevation; ///< false: 30 degrees
-    double azimuth;   ///< degrees from -Z toward +X
-    double turbidity; ///< 1.7 (clear) to 10 (hazy); 0 for 3
-    double albedo;    ///< of the ground below, 0 to 1; see has_albedo
-    bool has_albedo;  ///< false: 0.2
+    double azimuth;     ///< degrees from -Z toward +X
+    double turbidity;   ///< 1.7 (clear) to 10 (hazy); 0 for 3
+    double albedo;      ///< of the ground below, 0 to 1; see has_albedo
+    bool has_albedo;    ///< false: 0.2
 } kiln_sky_def;
 
 /// An analytic daylight sky with a sun disc of 0.533 degrees whose irradiance is right whatever
@@ -239,16 +243,18 @@ KILN_API KILN_CHECKED kiln_result kiln_sky(kiln_context *context, const kiln_sky
 
 // ------------------------------------------------------------------------------------------- lobes
 
+typedef enum kiln_lobe_kind {
+    KILN_LOBE_GGX,
+    KILN_LOBE_LAMBERT,
+    KILN_LOBE_CHARLIE,
+    KILN_LOBE_PHONG,
+    KILN_LOBE_CUSTOM
+} kiln_lobe_kind;
+
 /// A zonal kernel: the weight of light that arrives at an angle to the output direction. Its
 /// scale does not matter, results are weighted means. Use the constructors below.
 typedef struct kiln_lobe {
-    enum kiln_lobe_kind {
-        KILN_LOBE_GGX,
-        KILN_LOBE_LAMBERT,
-        KILN_LOBE_CHARLIE,
-        KILN_LOBE_PHONG,
-        KILN_LOBE_CUSTOM
-    } kind;
+    kiln_lobe_kind kind;
     double parameter; ///< alpha, exponent, or angular width
     double (*evaluate)(void *user, double cos_theta);
     void *user;
@@ -308,21 +314,20 @@ KILN_API KILN_CHECKED kiln_result kiln_spectrum_power(const kiln_spectrum *spect
 KILN_API KILN_CHECKED kiln_result kiln_spectrum_filter(kiln_context *context,
                                                        const kiln_spectrum *spectrum,
                                                        const kiln_lobe *lobe, double rotation,
-                                                       kiln_map *map, int level,
-                                                       kiln_error *error);
+                                                       kiln_map *map, int level, kiln_error *error);
 
 // --------------------------------------------------------------------------------------- prefilter
 
 /// {0} is a good default: a cube of 256, full chain, GGX, roughness from 0 to 1 in equal steps.
 typedef struct kiln_prefilter_def {
-    kiln_shape shape;   ///< KILN_SHAPE_PANORAMA is 0; see has_shape
-    bool has_shape;     ///< false: a cube
-    int size;           ///< 1 to KILN_MAX_SIZE; 0 for 256
-    int level_count;    ///< 1 to KILN_MAX_LEVELS; 0 for all down to 1
+    kiln_shape shape;       ///< KILN_SHAPE_PANORAMA is 0; see has_shape
+    bool has_shape;         ///< false: a cube
+    int size;               ///< 1 to KILN_MAX_SIZE; 0 for 256
+    int level_count;        ///< 1 to KILN_MAX_LEVELS; 0 for all down to 1
     const float *roughness; ///< level_count numbers in [0, 1]; NULL for level / (level_count - 1)
-    enum kiln_lobe_kind lobe; ///< GGX (alpha = roughness^2), Lambert, Charlie (the same alpha,
-                              ///< 0.01 at least) or Phong (exponent 2 / alpha^2 - 2, 1 at least)
-    double rotation;    ///< degrees about +Y
+    kiln_lobe_kind lobe;    ///< GGX (alpha = roughness^2), Lambert, Charlie (the same alpha,
+                            ///< 0.01 at least) or Phong (exponent 2 / alpha^2 - 2, 1 at least)
+    double rotation;        ///< degrees about +Y
 } kiln_prefilter_def;
 
 /// Every level from one analysis. Roughness 0 with GGX is the mirror: true area weights. `def` may
@@ -354,7 +359,7 @@ KILN_API void kiln_plan_destroy(kiln_plan *plan);
 /// are the world's (y up): 1, y, z, x, xy, yz, 3z^2-1, xz, x^2-y^2, ... in order l(l+1)+m.
 typedef struct kiln_sh {
     int bands;       ///< 1 to KILN_MAX_BANDS
-    bool irradiance; ///< coefficients are multiplied by the cosine lobe's pi, 2pi/3, pi/4, 0, -pi/24
+    bool irradiance; ///< times the cosine lobe's pi, 2 pi/3, pi/4, 0, -pi/24 by band
     double window;   ///< width of the deringing window, 0 for none
     double c[KILN_MAX_BANDS * KILN_MAX_BANDS][3];
 } kiln_sh;
@@ -372,12 +377,12 @@ KILN_API void kiln_sh_evaluate(const kiln_sh *sh, const double direction[3], dou
 /// The methods that courses teach, with their defaults and their errors, to learn from and to
 /// compare with. See docs/theory/textbook.md.
 typedef struct kiln_textbook_def {
-    kiln_shape shape;      ///< of the result; KILN_SHAPE_PANORAMA as in the textbook
-    int size;              ///< rows or edge; 0 for 64
-    int level_count;       ///< prefilter only; 0 for all
-    int phi_count;         ///< irradiance: steps of phi, to 65536; 0 for 100
-    int theta_count;       ///< irradiance: steps of theta, to 65536; 0 for 100
-    int sample_count;      ///< prefilter: Hammersley points, to 1048576; 0 for 1024
+    kiln_shape shape; ///< of the result; KILN_SHAPE_PANORAMA as in the textbook
+    int size;         ///< rows or edge; 0 for 64
+    int level_count;  ///< prefilter only; 0 for all
+    int phi_count;    ///< irradiance: steps of phi, to 65536; 0 for 100
+    int theta_count;  ///< irradiance: steps of theta, to 65536; 0 for 100
+    int sample_count; ///< prefilter: Hammersley points, to 1048576; 0 for 1024
 } kiln_textbook_def;
 
 /// Irradiance / pi as the textbook's uniform sum over (phi, theta) gives it: white stays near 1
@@ -425,9 +430,9 @@ typedef enum kiln_format {
 /// {0} is a good default.
 typedef struct kiln_save_def {
     kiln_format format;
-    int zstd;             ///< KTX2: compression level 1 to 22, 0 for none
-    const kiln_sh *sh;    ///< stored in the file's metadata where it has any; may be NULL
-    const char *lobe;     ///< name stored in the metadata; may be NULL
+    int zstd;          ///< KTX2: compression level 1 to 22, 0 for none
+    const kiln_sh *sh; ///< stored in the file's metadata where it has any; may be NULL
+    const char *lobe;  ///< name stored in the metadata; may be NULL
 } kiln_save_def;
 
 /// Writes a map whole or not at all: a temporary file beside `path`, fsync, rename. By ending:
