@@ -125,7 +125,7 @@ typedef struct bake {
     kiln_map source, map, irradiance;
     kiln_sh stored_sh, sh; // for the file's metadata, and for --sh
     bool stores_sh;
-    int source_width, source_height, degree, file_count;
+    int source_width, source_height, degree, file_count, main_count;
     kiln_shape source_shape;
     enum { LOAD, FILTER, BESIDE, SAVE, STAGES } stage;
     double seconds[STAGES], since;
@@ -552,7 +552,7 @@ static int save(bake *b)
     kiln_map_free(&b->source);
     if (kiln_map_save(job->context, &b->map, b->output, &def, &count, &job->error))
         return CLI_FAILED;
-    b->file_count = count;
+    b->file_count = b->main_count = count;
     if (b->irradiance_path) {
         def.lobe = "lambert";
         def.sh = NULL;
@@ -645,10 +645,14 @@ static int report(bake *b)
         return report_json(b);
     if (b->quiet)
         return CLI_DONE;
-    printf("%s: %s of %d, %d level%s, %s %s, from a %s of %d x %d, in %.2f s\n", b->output,
+    char files[32] = "";
+    if (b->main_count > 1)
+        snprintf(files, sizeof files, " in %d files", b->main_count);
+    printf("%s: %s of %d, %d level%s%s, %s %s, from %s %s of %d x %d, %.2f s\n", b->output,
            shapes[b->map.shape], b->map.size, b->map.level_count, b->map.level_count > 1 ? "s" : "",
-           methods[b->textbook], lobes[b->lobe], shapes[b->source_shape], b->source_width,
-           b->source_height, total_seconds(b));
+           files, methods[b->textbook], lobes[b->lobe],
+           b->source_shape == KILN_SHAPE_OCTAHEDRON ? "an" : "a", shapes[b->source_shape],
+           b->source_width, b->source_height, total_seconds(b));
     if (!b->verbose)
         return CLI_DONE;
     for (int k = 0; k < b->map.level_count; k++)
