@@ -51,17 +51,19 @@ static double check_mirror(const kiln_map *source, const kiln_map *map)
     double mean[2] = {0}, weights[2] = {0};
     int n = source->size;
     for (size_t i = 0; i < kiln_map_texels(source, 0); i++) {
-        double weight = sin(((double)(i / (2 * (size_t)n)) + 0.5) * 3.14159265358979323846 / n);
+        size_t row = i / (2 * (size_t)n);
+        double weight = sin(((double)row + 0.5) * 3.14159265358979323846 / n);
         mean[0] += weight * (double)source->level[0][3 * i + 1];
         weights[0] += weight;
     }
     int edge = map->size;
     for (size_t i = 0; i < kiln_map_texels(map, 0); i++) {
         // The solid angle of a face's texel, by its corners.
+        size_t column = i % (size_t)edge, row = i / (size_t)edge % (size_t)edge;
         double angle = 0;
         for (int c = 0; c < 4; c++) {
-            double x = 2 * ((double)(i % (size_t)edge) + (c & 1)) / edge - 1;
-            double y = 2 * ((double)(i / (size_t)edge % (size_t)edge) + (c >> 1)) / edge - 1;
+            double x = 2 * ((double)column + (c & 1)) / edge - 1;
+            double y = 2 * ((double)row + (c >> 1)) / edge - 1;
             angle += (c == 0 || c == 3 ? 1 : -1) * atan2(x * y, sqrt(x * x + y * y + 1));
         }
         mean[1] += angle * (double)map->level[0][3 * i + 1];

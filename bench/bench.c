@@ -218,29 +218,29 @@ int main(int argc, char **argv)
     char machine[64];
     name_machine(machine, sizeof machine);
     int i = 1;
-    for (; i < argc && argv[i][0] == '-'; i++) {
-        const char *value = i + 1 < argc ? argv[i + 1] : NULL;
-        if (!strcmp(argv[i], "--list"))
+    while (i < argc && argv[i][0] == '-') {
+        const char *option = argv[i++];
+        if (!strcmp(option, "--list"))
             return list();
-        if (!strcmp(argv[i], "--help"))
+        if (!strcmp(option, "--help"))
             return usage(stdout);
-        if (!strcmp(argv[i], "--machine"))
+        if (!strcmp(option, "--machine"))
             return puts(machine) < 0;
-        if (!value)
+        if (i == argc)
             return usage(stderr);
-        if (!strcmp(argv[i], "--data"))
+        const char *value = argv[i++];
+        if (!strcmp(option, "--data"))
             b.data = value;
-        else if (!strcmp(argv[i], "--inputs"))
+        else if (!strcmp(option, "--inputs"))
             b.inputs = value;
-        else if (!strcmp(argv[i], "--results"))
+        else if (!strcmp(option, "--results"))
             b.results = value;
-        else if (!strcmp(argv[i], "--kiln"))
+        else if (!strcmp(option, "--kiln"))
             b.kiln = value;
-        else if (!strcmp(argv[i], "--runs"))
+        else if (!strcmp(option, "--runs"))
             b.runs = (int)strtol(value, NULL, 10);
         else
             return usage(stderr);
-        i++;
     }
     if (b.runs < 1 || b.runs > BENCH_MAX_RUNS)
         return usage(stderr);

@@ -144,7 +144,7 @@ bool bench_instructions(bench *b)
 static double read_all(const kiln_map *map)
 {
     double best = INFINITY;
-    volatile float sink = 0;
+    volatile float sink;
     size_t count = 3 * kiln_map_texels(map, 0);
     for (int run = 0; run < 5; run++) {
         float lanes[64] = {0};
@@ -152,10 +152,13 @@ static double read_all(const kiln_map *map)
         for (size_t i = 0; i + 64 <= count; i += 64)
             for (size_t k = 0; k < 64; k++)
                 lanes[k] += map->level[0][i + k];
+        float sum = 0;
         for (int k = 0; k < 64; k++)
-            sink += lanes[k];
+            sum += lanes[k];
+        sink = sum;
         best = fmin(best, bench_cpu() - start);
     }
+    (void)sink; // written so that the loop stays
     return best;
 }
 
@@ -223,34 +226,44 @@ bool bench_files(bench *b)
 
 // ------------------------------------------------------------------------------------------ scaling
 
+// What a bake's time may grow with: texels read, texels written, degree^3.
+enum { TERMS = 3 };
 typedef struct sample {
-    double pixels, cube, seconds; // in and out, degree^3, CPU
+    double terms[TERMS], seconds;
 } sample;
 
-// seconds = a pixels + b degree^3 with a, b >= 0 and the relative errors least.
-static void fit(const sample *s, int count, double *a, double *b)
+// Costs a term, none negative, such that the relative errors of their sums are least: the normal
+// equations, solved one unknown at a time.
+static void fit(const sample *s, int count, double cost[TERMS])
 {
-    double pp = 0, pc = 0, cc = 0, p = 0, c = 0;
-    for (int i = 0; i < count; i++) {
-        double x = s[i].pixels / s[i].seconds, y = s[i].cube / s[i].seconds;
-        pp += x * x, pc += x * y, cc += y * y, p += x, c += y;
-    }
-    double determinant = pp * cc - pc * pc;
-    *a = (p * cc - c * pc) / determinant;
-    *b = (c * pp - p * pc) / determinant;
-    if (*a < 0 || *b < 0) {
-        bool cube_only = *a < 0;
-        *a = cube_only ? 0 : p / pp;
-        *b = cube_only ? c / cc : 0;
-    }
+    double matrix[TERMS][TERMS] = {{0}}, right[TERMS] = {0};
+    for (int i = 0; i < count; i++)
+        for (int j = 0; j < TERMS; j++) {
+            double x = s[i].terms[j] / s[i].seconds;
+            right[j] += x;
+            for (int k = 0; k < TERMS; k++)
+                matrix[j][k] += x * s[i].terms[k] / s[i].seconds;
+        }
+    for (int j = 0; j < TERMS; j++)
+        cost[j] = 0;
+    for (int round = 0; round < 10000; round++)
+        for (int j = 0; j < TERMS; j++) {
+            double rest = right[j];
+            for (int k = 0; k < TERMS; k++)
+                rest -= k == j ? 0 : matrix[j][k] * cost[k];
+            cost[j] = fmax(0, rest / matrix[j][j]);
+        }
 }
 
 // The slope of log seconds against the logarithm of the fitted cost: 1 when it grows alike.
-static double exponent(const sample *s, int count, double a, double b)
+static double exponent(const sample *s, int count, const double cost[TERMS])
 {
     double x = 0, y = 0, xx = 0, xy = 0;
     for (int i = 0; i < count; i++) {
-        double u = log(a * s[i].pixels + b * s[i].cube), v = log(s[i].seconds);
+        double sum = 0;
+        for (int k = 0; k < TERMS; k++)
+            sum += cost[k] * s[i].terms[k];
+        double u = log(sum), v = log(s[i].seconds);
         x += u, y += v, xx += u * u, xy += u * v;
     }
     return (count * xy - x * y) / (count * xx - x * x);
@@ -291,20 +304,21 @@ bool bench_scaling(bench *b)
             char row[64];
             snprintf(row, sizeof row, "%dx%d to %d", 2 * inputs[i], inputs[i], faces[f]);
             bench_row(b, row, "s", t);
-            samples[count++] = (sample){2.0 * inputs[i] * inputs[i] + 8.0 * faces[f] * faces[f],
-                                        pow(degree, 3), t.median};
+            samples[count++] = (sample){
+                {2.0 * inputs[i] * inputs[i], 8.0 * faces[f] * faces[f], pow(degree, 3)}, t.median};
         }
         kiln_map_free(&source);
     }
     puts("");
     if (done) {
-        double pixel, cube;
-        fit(samples, count, &pixel, &cube);
-        printf("  fitted: %.2f ns a pixel in or out + %.3f ns x degree^3\n", 1e9 * pixel,
-               1e9 * cube);
-        bench_value(b, "a pixel", "s", pixel);
-        bench_value(b, "degree cubed", "s", cube);
-        double slope = exponent(samples, count, pixel, cube);
+        double cost[TERMS];
+        fit(samples, count, cost);
+        printf("  fitted: %.2f ns a texel read + %.2f ns a texel written + %.3f ns x degree^3\n",
+               1e9 * cost[0], 1e9 * cost[1], 1e9 * cost[2]);
+        bench_value(b, "texel read", "s", cost[0]);
+        bench_value(b, "texel written", "s", cost[1]);
+        bench_value(b, "degree cubed", "s", cost[2]);
+        double slope = exponent(samples, count, cost);
         bench_value(b, "exponent", "", slope);
         bench_bar(b, "exponent of the time against pixels + degree^3", slope, "", 1.05, false);
     }

@@ -21,6 +21,7 @@ static double timeval_seconds(struct timeval t)
 // Runs a command without its output. The peak is the process's own, as the kernel counts it.
 static bool run_command(bench *b, const char *const *command, usage *u)
 {
+    *u = (usage){0};
     double start = bench_wall();
     pid_t child = fork();
     if (child < 0)
