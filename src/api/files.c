@@ -23,7 +23,7 @@ static void cut_face(const kiln_image *image, int x, int y, int size, bool turne
         }
         float *to = face + 3 * ((size_t)(size - 1 - row) * (size_t)size + (size_t)size - 1);
         for (int i = 0; i < size; i++, to -= 3)
-            memcpy(to, from + 3 * i, 3 * sizeof *to);
+            memcpy(to, from + 3 * (size_t)i, 3 * sizeof *to);
     }
 }
 
@@ -231,9 +231,9 @@ static kiln_result search_folder(kiln_context *context, const char *path, face_p
             continue;
         if (!best[0] || goes_before(entry->d_name, best)) {
             memcpy(other, best, sizeof best);
-            strcpy(best, entry->d_name);
+            snprintf(best, sizeof best, "%s", entry->d_name);
         } else if (!other[0] || goes_before(entry->d_name, other)) {
-            strcpy(other, entry->d_name);
+            snprintf(other, sizeof other, "%s", entry->d_name);
         }
     }
     closedir(folder);
@@ -313,7 +313,7 @@ kiln_result kiln_map_load(kiln_context *context, const char *path, const kiln_lo
         result = folder ? search_folder(context, path, &paths, error)
                         : split_path(context, path, braces ? braces : percent, braces ? 6 : 2,
                                      &paths, error);
-        if (result == KILN_OK)
+        if (result == KILN_OK && paths.before && paths.after)
             result = load_faces(context, &paths, map, error);
         free_paths(&paths);
         return result;

@@ -57,7 +57,7 @@ static bool expand(const char *template, int face, int level, text_writer *w)
 {
     w->size = 0;
     for (const char *at = template; *at;) {
-        if (!strncmp(at, "{face}", 6) || (!strncmp(at, "%s", 2) && face >= 0)) {
+        if (face >= 0 && (!strncmp(at, "{face}", 6) || !strncmp(at, "%s", 2))) {
             ki_write_text(w, "%s", ki_face_names[face]);
             at += *at == '{' ? 6 : 2;
         } else if (!strncmp(at, "{level}", 7) || !strncmp(at, "%d", 2)) {
@@ -143,7 +143,7 @@ static kiln_result save_pictures(kiln_context *context, const kiln_map *map, con
             result = ki_fail(error, KILN_ERROR_IO, "%s: the folder cannot be made: %s", path,
                              strerror(errno));
     }
-    if (result == KILN_OK)
+    if (result == KILN_OK && template.bytes)
         result = write_set(context, map, (const char *)template.bytes, def, file_count, error);
     if (result != KILN_OK && made)
         rmdir(path);

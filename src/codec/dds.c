@@ -146,7 +146,7 @@ kiln_result ki_dds_decode(kiln_context *context, const uint8_t *bytes, size_t si
     dds_header h = {0};
     ki_reader r = ki_reader_make(bytes, size);
     kiln_result result = read_header(&r, name, &h, error);
-    if (result != KILN_OK)
+    if (result != KILN_OK || !h.texel)
         return result;
     uint64_t wanted = 0;
     for (uint32_t k = 0; k < h.levels; k++)

@@ -87,7 +87,7 @@ static void to_floats(const uint8_t *restrict samples, int type, int count, floa
         uint16_t halfs[STRETCH];
         for (int i = 0; i < count; i++) {
             uint16_t half;
-            memcpy(&half, samples + 2 * i, 2);
+            memcpy(&half, samples + 2 * (size_t)i, 2);
             int32_t h = half > 0x7c00 ? 0 : half;
             halfs[i] = (uint16_t)(h < 0x7bff ? h : 0x7bff);
         }
@@ -95,7 +95,7 @@ static void to_floats(const uint8_t *restrict samples, int type, int count, floa
     } else if (type == EXR_PIXEL_FLOAT) {
         for (int i = 0; i < count; i++) {
             int32_t bits;
-            memcpy(&bits, samples + 4 * i, 4);
+            memcpy(&bits, samples + 4 * (size_t)i, 4);
             bits = bits > 0x7f800000 ? 0 : bits;
             bits = bits > 0 ? bits : 0;
             bits = bits < 0x7f7fffff ? bits : 0x7f7fffff;
@@ -104,7 +104,7 @@ static void to_floats(const uint8_t *restrict samples, int type, int count, floa
     } else {
         for (int i = 0; i < count; i++) {
             uint32_t integer;
-            memcpy(&integer, samples + 4 * i, 4);
+            memcpy(&integer, samples + 4 * (size_t)i, 4);
             values[i] = (float)integer;
         }
     }
@@ -128,12 +128,13 @@ static void interleave(const float *restrict r, const float *restrict g, const f
         out[0] = __builtin_shufflevector(low, blue, 0, 1, 4, 2);
         out[1] = __builtin_shufflevector(one, high, 1, 2, 4, 5);
         out[2] = __builtin_shufflevector(blue, high, 2, 6, 7, 3);
-        memcpy(rgb + 3 * i, out, sizeof out);
+        memcpy(rgb + 3 * (size_t)i, out, sizeof out);
     }
     for (; i < count; i++) {
-        rgb[3 * i] = r[i];
-        rgb[3 * i + 1] = g[i];
-        rgb[3 * i + 2] = b[i];
+        float *texel = rgb + 3 * (size_t)i;
+        texel[0] = r[i];
+        texel[1] = g[i];
+        texel[2] = b[i];
     }
 }
 
@@ -495,7 +496,7 @@ static kiln_result choose_part(exr_file *f, kiln_error *error)
     if (f->part == count && deep && !first)
         return ki_fail(error, KILN_ERROR_UNSUPPORTED,
                        "%s: holds deep samples, flat pictures are read", f->name);
-    if (f->part == count) {
+    if (f->part == count || !list) {
         char names[256] = "none";
         if (first)
             list_channels(first, names, sizeof names);

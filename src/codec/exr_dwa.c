@@ -6,7 +6,7 @@
 #include "image/pack.h"
 #include "math/math.h"
 
-#include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 enum { SCHEME_ZLIB = 0, SCHEME_DCT = 1, SCHEME_RUNS = 2 };
@@ -85,7 +85,7 @@ static void read_counts(ki_reader *r, counts *c)
 static void add_rule(dwa *d, const char *suffix, int scheme, int place, int type, bool any_case)
 {
     dwa_rule *added = &d->rules[d->rule_count++];
-    strcpy(added->suffix, suffix);
+    snprintf(added->suffix, sizeof added->suffix, "%.8s", suffix);
     added->scheme = scheme;
     added->place = place;
     added->type = type;
@@ -498,7 +498,7 @@ kiln_result ki_exr_undo_dwa(kiln_context *context, const ki_exr_box *box, const 
     d->ac_end = ac + n->ac_count;
     d->dc = dc;
     d->dc_end = dc + blocks;
-    size_t *lines[3] = {offset, offset + box->height, offset + 2 * box->height};
+    size_t *lines[3] = {offset, offset + box->height, offset + 2 * (size_t)box->height};
     for (int t = 0; t < triple_count; t++) {
         const int *member = triples[t].member;
         if (!whole_triple(d, member))

@@ -70,16 +70,16 @@ size_t ki_exr_unpack_runs(const uint8_t *packed, size_t packed_size, uint8_t *ra
 {
     size_t in = 0, out = 0;
     while (in < packed_size) {
-        int code = (int8_t)packed[in++];
-        if (code < 0) {
-            size_t count = (size_t)-code;
+        size_t code = packed[in++];
+        if (code > 127) { // that many as they are, its two's complement
+            size_t count = 256 - code;
             if (packed_size - in < count || size - out < count)
                 return SIZE_MAX;
             memcpy(raw + out, packed + in, count);
             in += count;
             out += count;
         } else {
-            size_t count = (size_t)code + 1;
+            size_t count = code + 1;
             if (in == packed_size || size - out < count)
                 return SIZE_MAX;
             memset(raw + out, packed[in++], count);

@@ -178,8 +178,8 @@ static size_t read_line(const hdr_file *f, size_t start, uint8_t *texels)
 static void decode_line(void *data, int index)
 {
     const hdr_file *f = data;
-    enum { STEP = 4 };
     uint8_t texels[4 * (NEW_RUNS_MOST + 1)];
+    memset(texels, 0, 4 * (size_t)f->line_length);
     read_line(f, f->line_start[index], texels);
     int order = f->flip_order ? f->line_count - 1 - index : index;
     ptrdiff_t step = f->columns ? 3 * (ptrdiff_t)f->width : 3;
@@ -190,7 +190,7 @@ static void decode_line(void *data, int index)
         step = -step;
     }
     for (int x = 0; x < f->line_length; x++, to += step) {
-        const uint8_t *t = texels + STEP * x;
+        const uint8_t *t = texels + 4 * (size_t)x;
         float scale = f->scale[t[3]];
         for (int c = 0; c < 3; c++) {
             float value = (float)t[c] * scale;
@@ -335,7 +335,7 @@ kiln_result ki_hdr_encode(const float *pixels, int width, int height, ki_writer 
         const uint8_t start[4] = {2, 2, (uint8_t)(width >> 8), (uint8_t)width};
         ki_write(writer, start, 4);
         for (int c = 0; c < 4; c++)
-            write_runs(writer, planes + c * width, width);
+            write_runs(writer, planes + (size_t)c * (size_t)width, width);
     }
     bool good = planes && !writer->failed;
     ki_free(planes);

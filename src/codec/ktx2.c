@@ -39,8 +39,8 @@ static int find_samples(const ki_texel *texel, sample samples[6])
     case KILN_FORMAT_RGB9E5:
         // Upper and lower as the specification's table of this format states them.
         for (int c = 0; c < 3; c++) {
-            samples[2 * c] = (sample){9 * c, 9, c, 0, 8448};
-            samples[2 * c + 1] = (sample){27, 5, c | EXPONENT, 15, 31};
+            samples[2 * (size_t)c] = (sample){9 * c, 9, c, 0, 8448};
+            samples[2 * (size_t)c + 1] = (sample){27, 5, c | EXPONENT, 15, 31};
         }
         return 6;
     case KILN_FORMAT_B10G11R11:
@@ -406,7 +406,7 @@ kiln_result ki_ktx2_decode(kiln_context *context, const uint8_t *bytes, size_t s
     ktx_level levels[KILN_MAX_LEVELS];
     ki_reader r = ki_reader_make(bytes, size);
     kiln_result result = read_header(&r, name, &h, error);
-    if (result != KILN_OK)
+    if (result != KILN_OK || !h.texel)
         return result;
     describe(&h, info);
     if (h.metadata_offset <= size && h.metadata_size <= size - h.metadata_offset)

@@ -127,7 +127,7 @@ static bool make_table(png_state *s, bool wide)
 
 static void put_row(const png_state *s, const uint8_t *row, int width, bool wide, float *rgb)
 {
-    for (int i = 0; i < 3 * width; i++)
+    for (size_t i = 0; i < 3 * (size_t)width; i++)
         rgb[i] = s->table[wide ? row[2 * i] << 8 | row[2 * i + 1] : row[i]];
 }
 
@@ -135,7 +135,7 @@ static void put_row(const png_state *s, const uint8_t *row, int width, bool wide
 static kiln_result read_all(png_state *s, kiln_image *image, kiln_file_info *info,
                             kiln_error *error)
 {
-    png_shape shape;
+    png_shape shape = {0};
     kiln_result result = read_shape(s, &shape, error);
     if (result != KILN_OK)
         return result;

@@ -64,7 +64,7 @@ void ki_texels_pack(const ki_texel *texel, const float *rgb, size_t count, uint8
             memcpy(bytes + 8 * done, halfs, 8 * n);
             continue;
         }
-        uint32_t words[STRETCH];
+        uint32_t words[STRETCH] = {0};
         for (size_t i = 0; i < n; i++)
             words[i] = texel->format == KILN_FORMAT_RGB9E5 ? ki_rgb9e5_from_float(from + 3 * i)
                                                            : ki_b10g11r11_from_float(from + 3 * i);

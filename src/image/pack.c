@@ -132,8 +132,7 @@ void ki_float_from_b10g11r11(uint32_t packed, float rgb[3])
 void ki_pack_rgba16f(const float *rgb, size_t count, uint16_t *rgba)
 {
     enum { STRETCH = 64 };
-    uint16_t half[STRETCH * 3 + 1];
-    half[STRETCH * 3] = 0;
+    uint16_t half[STRETCH * 3 + 1] = {0}; // one more, which the last texel's word reaches
     while (count) {
         size_t n = count < STRETCH ? count : STRETCH;
         ki_halfs_from_floats(rgb, n * 3, half);

@@ -373,19 +373,20 @@ static void threads_do_not_matter(void **state)
 {
     (void)state;
     kiln_image images[2];
+    kiln_context *contexts[2];
     for (int i = 0; i < 2; i++) {
-        kiln_context *other;
+        CHECK_OK(kiln_context_create(&(kiln_context_def){.thread_count = i ? 7 : 1}, &contexts[i],
+                                     &error));
         CHECK_OK(
-            kiln_context_create(&(kiln_context_def){.thread_count = i ? 7 : 1}, &other, &error));
-        CHECK_OK(kiln_image_load(other, KILN_GOOD_FILES "/dwab-float.exr", &images[i], &error));
-        if (i)
-            assert_memory_equal(images[0].pixels, images[1].pixels,
-                                sizeof(float) * 3 * (size_t)images[0].width *
-                                    (size_t)images[0].height);
-        for (int k = 0; i && k < 2; k++)
-            kiln_image_free(&images[k]);
-        if (i)
-            kiln_context_destroy(other);
+            kiln_image_load(contexts[i], KILN_GOOD_FILES "/dwab-float.exr", &images[i], &error));
+    }
+    assert_int_equal(images[0].width, images[1].width);
+    assert_int_equal(images[0].height, images[1].height);
+    assert_memory_equal(images[0].pixels, images[1].pixels,
+                        sizeof(float) * 3 * (size_t)images[0].width * (size_t)images[0].height);
+    for (int i = 0; i < 2; i++) {
+        kiln_image_free(&images[i]);
+        kiln_context_destroy(contexts[i]);
     }
 }
 
