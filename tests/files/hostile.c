@@ -318,15 +318,12 @@ static void files_survive_missing_memory(void **state)
     static const struct {
         const char *name;
         attempt *call;
-    } calls[] = {{"a.ktx2", save},         {"zstd.ktx2", save},
-                 {"a.dds", save},          {"f/", save},
-                 {"b.hdr", save},          {"c.png", save},
-                 {"a.json", save_sh},      {"a.txt", save_sh},
-                 {"a.h", save_sh},         {"i.exr", save_image},
-                 {"i.hdr", save_image},    {"i.png", save_image},
-                 {"a.ktx2", load},         {"f", load},
-                 {"f/{face}.exr", load}, {"f/px.exr", describe},
-                 {"a.ktx2", describe}};
+    } calls[] = {{"a.ktx2", save},       {"zstd.ktx2", save},   {"a.dds", save},
+                 {"f/", save},           {"b.hdr", save},       {"c.png", save},
+                 {"a.json", save_sh},    {"a.txt", save_sh},    {"a.h", save_sh},
+                 {"i.exr", save_image},  {"i.hdr", save_image}, {"i.png", save_image},
+                 {"a.ktx2", load},       {"f", load},           {"f/{face}.exr", load},
+                 {"f/px.exr", describe}, {"a.ktx2", describe}};
     for (size_t i = 0; i < sizeof calls / sizeof *calls; i++) {
         char path[128];
         snprintf(path, sizeof path, "%s/%s", folder, calls[i].name);
