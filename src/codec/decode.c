@@ -110,7 +110,7 @@ kiln_result ki_decode(kiln_context *context, const uint8_t *bytes, size_t size, 
                     "%s: its %zu bytes do not begin as EXR, HDR, PNG, KTX2 or DDS do", name, size);
     }
     if (result != KILN_OK) {
-        clear_info(info, 0);
+        memset(info, 0, sizeof *info);
         if (decoded)
             *decoded = (ki_decoded){0};
         return result;

@@ -278,10 +278,12 @@ static void decode_chunks(void *data, int index)
     for (int i = begin; i < end; i++)
         most = f->chunks[i].size > most ? f->chunks[i].size : most;
     bool plain = f->compression == EXR_COMPRESSION_NONE;
-    uint8_t *raw = plain ? NULL : ki_alloc_raw(f->context, most, 2);
+    bool twice = f->compression == EXR_COMPRESSION_RLE || f->compression == EXR_COMPRESSION_ZIPS ||
+                 f->compression == EXR_COMPRESSION_ZIP;
+    uint8_t *raw = plain ? NULL : ki_alloc_raw(f->context, most, twice ? 2 : 1);
     kiln_result result = plain || raw ? KILN_OK : KILN_ERROR_MEMORY;
     for (int i = begin; i < end && result == KILN_OK; i++) {
-        result = decode_chunk(f, &f->chunks[i], raw, raw ? raw + most : NULL);
+        result = decode_chunk(f, &f->chunks[i], raw, twice ? raw + most : NULL);
         f->damaged[task] = i;
     }
     ki_free(raw);
