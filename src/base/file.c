@@ -27,19 +27,22 @@ kiln_result ki_file_read(kiln_context *context, const char *path, uint8_t **byte
     }
     // One byte more than the file holds, so that a regular file ends without growing the buffer.
     capacity = S_ISREG(status.st_mode) && status.st_size > 0 ? (size_t)status.st_size + 1 : 65536;
+    buffer = ki_alloc_raw(context, capacity, 1);
+    if (!buffer) {
+        result = ki_fail_memory(context, error, path, capacity);
+        goto done;
+    }
     for (;;) {
-        if (!buffer || filled == capacity) {
-            size_t wanted = buffer ? capacity * 2 : capacity;
-            uint8_t *larger = ki_alloc_raw(context, wanted, 1);
+        if (filled == capacity) {
+            uint8_t *larger = ki_alloc_raw(context, capacity, 2);
             if (!larger) {
-                result = ki_fail_memory(context, error, path, wanted);
+                result = ki_fail_memory(context, error, path, capacity * 2);
                 goto done;
             }
-            if (buffer)
-                memcpy(larger, buffer, filled);
+            memcpy(larger, buffer, filled);
             ki_free(buffer);
             buffer = larger;
-            capacity = wanted;
+            capacity *= 2;
         }
         ssize_t got = read(fd, buffer + filled, capacity - filled);
         if (got < 0 && errno == EINTR) {
