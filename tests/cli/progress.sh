@@ -17,8 +17,9 @@ on_terminal "$long"
 grep -q ' [0-9]* %' log/out || die "no progress on a terminal"
 # The last thing before the summary is an empty line and a return.
 grep -q " $return""out.ktx2: " log/out || die "the line is not cleaned away"
+# Unless the machine is so busy that short work is long.
 on_terminal "$short"
-grep -q '%' log/out && die "progress for short work"
+grep -q ' 0\.[0-4][0-9] s' log/out && grep -q '%' log/out && die "progress for short work"
 
 # shellcheck disable=SC2086 # several words
 expect 0 "" $long
