@@ -120,7 +120,7 @@ test)
     build release
     run_tests release
     build asan -DKILN_BENCH=OFF -DKILN_EXAMPLES=OFF
-    run_tests asan -L unit
+    run_tests asan -L unit -LE slow
     printf '\n%d passed, %d failed\n' "$passed" "$failed"
     [ "$failed" = 0 ]
     ;;
