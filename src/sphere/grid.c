@@ -76,11 +76,14 @@ void ki_taps_design(double step, const double *density, int degree, double *taps
             b[i] /= total;
         b[KI_TAPS] = 1;
         solve(a, b);
+        double sum = 0;
+        for (int i = 0; i < KI_TAPS; i++)
+            sum += b[i];
         // From the other side the taps are the same in reverse.
-        for (int i = 0; i < KI_TAPS; i++) {
-            taps[n * KI_TAPS + i] = b[i];
-            taps[(KI_TAP_STEPS - n) * KI_TAPS + KI_TAPS - 1 - i] = b[i];
-        }
+        for (int i = 0; i < KI_TAPS; i++)
+            taps[(KI_TAP_STEPS - n) * KI_TAPS + KI_TAPS - 1 - i] = b[i] / sum;
+        for (int i = 0; i < KI_TAPS; i++)
+            taps[n * KI_TAPS + i] = b[i] / sum;
     }
 }
 
@@ -88,7 +91,7 @@ void ki_taps_design(double step, const double *density, int degree, double *taps
 void ki_model_density(int degree, double *density)
 {
     for (int l = 0; l <= degree; l++)
-        density[l] = (2 * l + 1) * ki_exp(-2 * 10.4 * l / degree);
+        density[l] = ki_exp(-2 * 10.4 * l / degree) / (l + 1);
 }
 
 void ki_taps_at(const double *taps, double fraction, double weights[KI_TAPS])

@@ -10,7 +10,8 @@
 /// stays one. Writes (KI_TAP_STEPS + 1) * KI_TAPS doubles.
 void ki_taps_design(double step, const double *density, int degree, double *taps);
 
-/// A density for spectra about to be filtered by a lobe that just fits into the degree.
+/// A density for environments whose power falls like 1 / l^2, as real ones do, about to be filtered
+/// by a lobe that just fits into the degree.
 void ki_model_density(int degree, double *density);
 
 /// The taps at a fraction in [0, 1], from the table.

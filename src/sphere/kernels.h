@@ -65,6 +65,12 @@ typedef struct ki_kernels {
     void (*synthesize)(const double *f, int count, const double *twice_cos, const double *start,
                        const double *coefficients, double *out0, double *out1);
 
+    /// Sums orders 0 .. count-1 at one point of each ring of a vector: orders [m][pitch] as `synthesize`
+    /// writes them; cosine, sine of each point's phi; sign 1 on northern rings, -1 on southern.
+    /// rgb[channel][lane].
+    void (*sum_orders)(const double *orders, size_t pitch, int count, const double *cosine,
+                       const double *sine, const double *sign, double *rgb);
+
     /// Interpolates `count` texels: position[i] = {ring, column} in units of the grid's spacing, not
     /// negative. `grid` is [3][rows][pitch]; taps start at the integer part. Adds to rgb[i][3].
     void (*interpolate)(const float *grid, size_t plane, size_t pitch, const float *ring_taps,

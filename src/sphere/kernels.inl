@@ -356,6 +356,30 @@ static void synthesize(const double *f, int count, const double *twice_cos, cons
 }
 #endif
 
+static void sum_orders(const double *orders, size_t pitch, int count, const double *cosine,
+                       const double *sine, const double *sign, double *rgb)
+{
+    for (int h = 0; h < KI_LANES; h += KI_WIDTH) {
+        vec c = load(cosine + h), s = load(sine + h), side = load(sign + h);
+        vec re = splat(1), im = splat(0), sums[3];
+        for (int k = 0; k < 3; k++)
+            sums[k] = (load(orders + 16 * k + h) + side * load(orders + 48 + 16 * k + h)) * 0.5;
+        for (int m = 1; m < count; m++) {
+            const double *even = orders + pitch * (size_t)m + h, *odd = even + 48;
+            vec turned = re * c - im * s;
+            im = re * s + im * c;
+            re = turned;
+            for (int k = 0; k < 3; k++) {
+                vec a = load(even + 16 * k) + side * load(odd + 16 * k);
+                vec b = load(even + 16 * k + 8) + side * load(odd + 16 * k + 8);
+                sums[k] += a * re - b * im;
+            }
+        }
+        for (int k = 0; k < 3; k++)
+            store(rgb + 8 * k + h, sums[k] * 2.0);
+    }
+}
+
 // ----------------------------------------------------------------------------------------- texels
 
 // Taps at a fraction, between the two nearest that are tabulated.
@@ -444,4 +468,5 @@ static void suns_ggx(const ki_sun_points *suns, double alpha, const double *dire
     }
 }
 
-const ki_kernels KI_TABLE = {fft, spread, sum_row, analyze, synthesize, interpolate, suns_ggx};
+const ki_kernels KI_TABLE = {fft,        spread,     sum_row,     analyze,
+                             synthesize, sum_orders, interpolate, suns_ggx};

@@ -57,11 +57,11 @@ static double order_margin(double l_sin)
     return 12 + 9 * ki_pow(l_sin, 1.0 / 3);
 }
 
-bool ki_rings_create(kiln_context *context, int count, int degree, ki_rings *rings)
+bool ki_rings_create(kiln_context *context, const double *theta, int pair_count, int degree,
+                     ki_rings *rings)
 {
-    count = (count + 31) / 32 * 32;
-    int vectors = count / (2 * KI_LANES), lanes = count / 2;
-    *rings = (ki_rings){.count = count, .vector_count = vectors, .degree = degree};
+    int vectors = (pair_count + 2 * KI_LANES - 1) / (2 * KI_LANES) * 2, lanes = vectors * KI_LANES;
+    *rings = (ki_rings){.pair_count = pair_count, .vector_count = vectors, .degree = degree};
     rings->twice_cos = ki_alloc_raw(context, (size_t)lanes, sizeof(double));
     rings->start = ki_alloc_raw(context, (size_t)lanes * (size_t)(degree + 1), sizeof(double));
     rings->first = ki_alloc(context, (size_t)degree + 1, sizeof(int));
@@ -71,7 +71,7 @@ bool ki_rings_create(kiln_context *context, int count, int degree, ki_rings *rin
     }
     for (int k = 0; k < lanes; k++) {
         double sine, cosine, power = 1;
-        ki_sincos((k + 0.5) * KI_PI / count, &sine, &cosine);
+        ki_sincos(theta[k < pair_count ? k : pair_count - 1], &sine, &cosine);
         rings->twice_cos[k] = 2 * cosine;
         double reach = degree * sine + order_margin(degree * sine);
         for (int m = 0; m <= degree; m++) {
@@ -83,6 +83,20 @@ bool ki_rings_create(kiln_context *context, int count, int degree, ki_rings *rin
         }
     }
     return true;
+}
+
+bool ki_rings_create_grid(kiln_context *context, int degree, ki_rings *rings)
+{
+    *rings = (ki_rings){0};
+    int pairs = (degree + degree / 2 + 8 + 31) / 32 * 16;
+    double *theta = ki_alloc_raw(context, (size_t)pairs, sizeof *theta);
+    if (!theta)
+        return false;
+    for (int k = 0; k < pairs; k++)
+        theta[k] = (k + 0.5) * KI_PI / (2 * pairs);
+    bool good = ki_rings_create(context, theta, pairs, degree, rings);
+    ki_free(theta);
+    return good;
 }
 
 void ki_rings_destroy(ki_rings *rings)

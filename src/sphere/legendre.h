@@ -17,17 +17,21 @@ void ki_legendre_destroy(ki_legendre *legendre);
 /// Where order m's row starts in `f` and `scale`; it holds l = m .. degree and some more.
 size_t ki_legendre_row(const ki_legendre *legendre, int m);
 
-/// `count` rings at theta = (k + 1/2) pi / count. Ring k and its mirror image share a lane: vector
-/// g, lane j is the pair k = 8 g + j, count - 1 - k.
+/// Rings in pairs, mirror images of each other at the equator. Vector g, lane j is pair 8 g + j.
 typedef struct ki_rings {
-    int count, vector_count, degree;
-    double *twice_cos; // [vector][8]
+    int pair_count, vector_count, degree;
+    double *twice_cos; // of the northern ring, [vector][8]
     double *start;     // sin^m theta, [degree + 1][vector][8]
     int *first;        // [degree + 1], vectors before it hold nothing of that order
 } ki_rings;
 
-/// `count` is rounded up to a multiple of 32.
-bool ki_rings_create(kiln_context *context, int count, int degree, ki_rings *rings);
+/// Pairs of rings at the given theta, increasing, at most pi / 2. The last is repeated to make the
+/// number of vectors even.
+bool ki_rings_create(kiln_context *context, const double *theta, int pair_count, int degree,
+                     ki_rings *rings);
+/// Rings at equal steps, theta = (k + 1/2) pi / (2 pair_count): half as many again as the degree, so
+/// that interpolation between them errs less than the degree does, rounded up to fill the vectors.
+bool ki_rings_create_grid(kiln_context *context, int degree, ki_rings *rings);
 void ki_rings_destroy(ki_rings *rings);
 
 /// Rows of spherical-harmonic coefficients a_lm by order: row m holds l = m .. degree, six doubles

@@ -6,10 +6,17 @@
 #include "sphere/points.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 // Rows and columns around the grid that repeat its other side, for the taps.
 enum { PAD = 4, TAP_OFFSET = KI_TAPS / 2 - 1 };
+
+// A small level is evaluated at its texels: each is a point on one of a few rings.
+typedef struct place {
+    double theta, cosine, sine, sign; // theta of the northern ring of its pair; of phi; 1 or -1
+    int texel, ring;
+} place;
 
 struct ki_level {
     kiln_context *context;
@@ -20,13 +27,20 @@ struct ki_level {
     kiln_shape shape;
     int size, degree;
     ki_rings rings;
-    ki_fft fft;
-    float *ring_taps, *column_taps;
     double *coefficients;
-    size_t pitch, plane;
-    float *grid; // [3][PAD + rings + PAD][pitch]
     double *scratch;
     size_t scratch_size;
+
+    // Small levels.
+    place *places; // by ring
+    int place_count;
+    int *ring_start; // [lanes + 1], into places
+
+    // Others: a grid to interpolate on.
+    ki_fft fft;
+    float *ring_taps, *column_taps;
+    size_t pitch, plane;
+    float *grid;       // [3][PAD + rings + PAD][pitch]
     double *positions; // of faces +X and +Y, or of all texels: ring, column
 
     // During an execution.
@@ -47,10 +61,10 @@ static bool design_taps(ki_level *level)
     level->column_taps = ki_alloc(level->context, count, sizeof(float));
     bool good = density && taps && level->ring_taps && level->column_taps;
     for (int axis = 0; good && axis < 2; axis++) {
-        double step = axis ? 2 * KI_PI / level->fft.length : KI_PI / level->rings.count;
+        double step = axis ? 2 * KI_PI / level->fft.length : KI_PI / (2 * level->rings.pair_count);
         float *out = axis ? level->column_taps : level->ring_taps;
         for (int l = 0; l <= level->degree; l++)
-            density[l] = (2 * l + 1) * level->lobe.k[l] * level->lobe.k[l];
+            density[l] = level->lobe.k[l] * level->lobe.k[l] / (l + 1);
         ki_taps_design(step, density, level->degree, taps);
         for (int i = 0; i < KI_TAPS * (KI_TAP_STEPS + 1); i++)
             out[i] = (float)taps[i];
@@ -72,9 +86,77 @@ static void place_texels(ki_level *level)
         bool top = level->shape == KILN_SHAPE_CUBE && i >= face;
         kiln_map_direction(&map, 0, top ? i + face : i, direction);
         ki_direction_panorama(direction, &u, &v);
-        level->positions[2 * i] = v * level->rings.count - 0.5 + (PAD - TAP_OFFSET);
+        level->positions[2 * i] = v * 2 * level->rings.pair_count - 0.5 + (PAD - TAP_OFFSET);
         level->positions[2 * i + 1] = u * level->fft.length;
     }
+}
+
+// Levels of up to this many texels are evaluated at them.
+enum { SMALL = 6 * 16 * 16 };
+
+static int by_theta(const void *a, const void *b)
+{
+    const place *x = a, *y = b;
+    if (x->theta != y->theta)
+        return x->theta < y->theta ? -1 : 1;
+    return x->texel - y->texel;
+}
+
+// Sorts the texels onto rings. Those that symmetry puts on one ring differ by rounding only.
+static bool plan_places(ki_level *v, const kiln_map *map)
+{
+    int count = v->place_count = (int)kiln_map_texels(map, 0), ring = -1;
+    v->places = ki_alloc(v->context, (size_t)count, sizeof *v->places);
+    double *theta = ki_alloc(v->context, (size_t)count, sizeof *theta);
+    bool good = v->places && theta;
+    for (int i = 0; good && i < count; i++) {
+        double d[3], sine;
+        place *p = &v->places[i];
+        kiln_map_direction(map, 0, (size_t)i, d);
+        sine = sqrt(d[0] * d[0] + d[2] * d[2]);
+        p->theta = ki_atan2(sine, fabs(d[1]));
+        p->sign = d[1] < 0 ? -1 : 1;
+        p->cosine = sine > 0 ? d[2] / sine : 1; // phi as in ki_panorama_direction
+        p->sine = sine > 0 ? -d[0] / sine : 0;
+        p->texel = i;
+    }
+    if (good)
+        qsort(v->places, (size_t)count, sizeof *v->places, by_theta);
+    for (int i = 0; good && i < count; i++) {
+        if (ring < 0 || v->places[i].theta > theta[ring] + 1e-12)
+            theta[++ring] = v->places[i].theta;
+        v->places[i].ring = ring;
+    }
+    good = good && ki_rings_create(v->context, theta, ring + 1, v->degree, &v->rings);
+    if (good) {
+        int lanes = KI_LANES * v->rings.vector_count;
+        v->ring_start = ki_alloc(v->context, (size_t)lanes + 1, sizeof *v->ring_start);
+        good = v->ring_start != NULL;
+        for (int i = 0, k = 0; good && k <= lanes; k++) {
+            while (i < count && v->places[i].ring < k)
+                i++;
+            v->ring_start[k] = i;
+        }
+    }
+    ki_free(theta);
+    return good;
+}
+
+static bool plan_grid(ki_level *v, const kiln_map *map)
+{
+    size_t texels = kiln_map_texels(map, 0) / (v->shape == KILN_SHAPE_CUBE ? 3 : 1);
+    if (!ki_rings_create_grid(v->context, v->degree, &v->rings) ||
+        !ki_fft_create(v->context, ki_fft_good_length(4 * v->rings.pair_count), &v->fft))
+        return false;
+    v->pitch = ((size_t)v->fft.length + 2 * PAD + 15) / 16 * 16;
+    v->plane = v->pitch * (size_t)(2 * v->rings.pair_count + 2 * PAD);
+    v->scratch_size += 2 * 16 * (size_t)v->fft.length;
+    v->grid = ki_alloc_raw(v->context, 3 * v->plane, sizeof(float));
+    v->positions = ki_alloc_raw(v->context, texels, 2 * sizeof(double));
+    if (!v->grid || !v->positions || !design_taps(v))
+        return false;
+    place_texels(v);
+    return true;
 }
 
 kiln_result ki_level_create(kiln_context *context, const ki_legendre *legendre,
@@ -93,32 +175,22 @@ kiln_result ki_level_create(kiln_context *context, const ki_legendre *legendre,
                     .lobe = *spectrum,
                     .shape = shape,
                     .size = size,
-                    .degree = spectrum->degree > 8 ? spectrum->degree : 8};
+                    .degree = ki_min(ki_max(spectrum->degree, 8), legendre->degree)};
     *spectrum = (ki_zonal_spectrum){0};
-    if (v->degree > legendre->degree)
-        v->degree = legendre->degree;
-    int oversampled = v->degree + v->degree / 2 + 8;
-    size_t threads = (size_t)ki_context_threads(context);
     kiln_map map = {.shape = shape, .size = size, .level_count = 1};
-    size_t texels = kiln_map_texels(&map, 0) / (shape == KILN_SHAPE_CUBE ? 3 : 1);
-    if (!ki_rings_create(context, oversampled, v->degree, &v->rings) ||
-        !ki_fft_create(context, ki_fft_good_length(2 * oversampled), &v->fft))
-        goto failed;
-    v->pitch = ((size_t)v->fft.length + 2 * PAD + 15) / 16 * 16;
-    v->plane = v->pitch * (size_t)(v->rings.count + 2 * PAD);
-    v->scratch_size = (size_t)(v->degree + 1) * 2 * 96 + 2 * 16 * (size_t)v->fft.length;
-    v->coefficients = ki_alloc(context, ki_coefficient_count(v->degree), sizeof(double));
-    v->grid = ki_alloc_raw(context, 3 * v->plane, sizeof(float));
-    v->scratch = ki_alloc_raw(context, threads * v->scratch_size, sizeof(double));
-    v->positions = ki_alloc_raw(context, texels, 2 * sizeof(double));
-    if (!v->coefficients || !v->grid || !v->scratch || !v->positions || !design_taps(v))
-        goto failed;
-    place_texels(v);
-    return KILN_OK;
-failed:
+    bool small = kiln_map_texels(&map, 0) <= SMALL;
+    v->scratch_size = (size_t)(v->degree + 1) * 2 * 96;
+    if (small ? plan_places(v, &map) : plan_grid(v, &map)) {
+        size_t threads = (size_t)ki_context_threads(context);
+        v->coefficients = ki_alloc(context, ki_coefficient_count(v->degree), sizeof(double));
+        v->scratch = ki_alloc_raw(context, threads * v->scratch_size, sizeof(double));
+    }
+    if (v->coefficients && v->scratch)
+        return KILN_OK;
     ki_level_destroy(v);
     *level = NULL;
-    return ki_fail_memory(context, error, "a level's plan", texels * 2 * sizeof(double));
+    return ki_fail_memory(context, error, "a level's plan",
+                          kiln_map_texels(&map, 0) * 2 * sizeof(double));
 }
 
 void ki_level_destroy(ki_level *level)
@@ -134,6 +206,8 @@ void ki_level_destroy(ki_level *level)
     ki_free(level->grid);
     ki_free(level->scratch);
     ki_free(level->positions);
+    ki_free(level->places);
+    ki_free(level->ring_start);
     ki_free(level);
 }
 
@@ -183,23 +257,33 @@ static void place_orders(const ki_level *v, const double *orders, int vector, in
     }
 }
 
-// Task: the rings of two vectors.
-static void synthesize_rings(void *data, int worker, int index)
+// All orders of vectors 2 index and 2 index + 1: [m][2][12][8].
+static const double *synthesize_orders(const ki_level *v, int worker, int index)
 {
-    ki_level *v = data;
     double *orders = v->scratch + (size_t)worker * v->scratch_size;
-    double *buffer = orders + 192 * (size_t)(v->degree + 1);
-    int length = v->fft.length, vectors = v->rings.vector_count;
+    int vectors = v->rings.vector_count;
     for (int m = 0; m <= v->degree; m++) {
-        if (2 * index + 1 < v->rings.first[m])
-            continue;
         size_t row = ki_legendre_row(v->legendre, m);
         double *out = orders + 192 * (size_t)m;
+        if (2 * index + 1 < v->rings.first[m]) {
+            memset(out, 0, 192 * sizeof *out);
+            continue;
+        }
         v->kernels->synthesize(
             v->legendre->f + row, v->degree - m + 1, v->rings.twice_cos + 16 * index,
             v->rings.start + 8 * ((size_t)m * (size_t)vectors + 2 * (size_t)index),
             v->coefficients + ki_coefficient_row(v->degree, m), out, out + 96);
     }
+    return orders;
+}
+
+// Task: the rings of two vectors, onto the grid.
+static void fill_grid(void *data, int worker, int index)
+{
+    ki_level *v = data;
+    const double *orders = synthesize_orders(v, worker, index);
+    double *buffer = v->scratch + (size_t)worker * v->scratch_size + 192 * (size_t)(v->degree + 1);
+    int length = v->fft.length, rings = 2 * v->rings.pair_count;
     for (int half = 0; half < 2; half++)
         for (int c = 0; c < 3; c++) {
             int vector = 2 * index + half;
@@ -209,7 +293,7 @@ static void synthesize_rings(void *data, int worker, int index)
                 int k = KI_LANES * vector + j;
                 float *plane = v->grid + (size_t)c * v->plane + TAP_OFFSET;
                 float *north = plane + (size_t)(PAD + k) * v->pitch;
-                float *south = plane + (size_t)(PAD + v->rings.count - 1 - k) * v->pitch;
+                float *south = plane + (size_t)(PAD + rings - 1 - k) * v->pitch;
                 for (int x = 0; x < length; x++) {
                     north[x] = (float)z[16 * x + 8 + j];
                     south[x] = (float)z[16 * x + j];
@@ -218,10 +302,38 @@ static void synthesize_rings(void *data, int worker, int index)
         }
 }
 
+// Task: the texels on the rings of two vectors.
+static void fill_places(void *data, int worker, int index)
+{
+    ki_level *v = data;
+    const double *orders = synthesize_orders(v, worker, index);
+    for (int half = 0; half < 2; half++) {
+        const int *start = v->ring_start + KI_LANES * (2 * index + half);
+        int most = 0;
+        for (int j = 0; j < KI_LANES; j++)
+            most = ki_max(most, start[j + 1] - start[j]);
+        for (int n = 0; n < most; n++) {
+            double cosine[KI_LANES], sine[KI_LANES], sign[KI_LANES], rgb[3 * KI_LANES];
+            for (int j = 0; j < KI_LANES; j++) {
+                // A ring with fewer texels repeats some texel, to no effect.
+                const place *p = &v->places[start[j] + n < start[j + 1] ? start[j] + n : 0];
+                cosine[j] = p->cosine;
+                sine[j] = p->sine;
+                sign[j] = p->sign;
+            }
+            v->kernels->sum_orders(orders + 96 * half, 192, v->degree + 1, cosine, sine, sign, rgb);
+            for (int j = 0; j < KI_LANES; j++)
+                for (int c = 0; start[j] + n < start[j + 1] && c < 3; c++)
+                    v->map->level[v->index][3 * v->places[start[j] + n].texel + c] =
+                        (float)rgb[KI_LANES * c + j];
+        }
+    }
+}
+
 // Continues the grid across the poles, where the other side is half a turn away, and around.
 static void pad_grid(ki_level *v)
 {
-    int length = v->fft.length, rings = v->rings.count;
+    int length = v->fft.length, rings = 2 * v->rings.pair_count;
     for (int c = 0; c < 3; c++) {
         float *plane = v->grid + (size_t)c * v->plane + TAP_OFFSET;
         for (int k = 0; k < PAD; k++) {
@@ -264,7 +376,8 @@ static void find_positions(const ki_level *v, size_t first, int count, double *p
     for (int i = 0; i < count; i++) {
         double ring = v->positions[2 * (from + (size_t)i)];
         double column = v->positions[2 * (from + (size_t)i) + 1] + turn;
-        positions[2 * i] = bottom ? v->rings.count - 1 + 2 * (PAD - TAP_OFFSET) - ring : ring;
+        positions[2 * i] =
+            bottom ? 2 * v->rings.pair_count - 1 + 2 * (PAD - TAP_OFFSET) - ring : ring;
         positions[2 * i + 1] = column >= length ? column - length : column;
     }
 }
@@ -313,7 +426,7 @@ static void add_surroundings(const ki_level *v, size_t first, int count, float *
     }
 }
 
-// Task: a row of texels.
+// Task: a row of texels, from the grid or as it is, and what is not in the spectrum.
 static void fill_row(void *data, int index)
 {
     ki_level *v = data;
@@ -322,16 +435,19 @@ static void fill_row(void *data, int index)
     for (int x = 0; x < width; x += CHUNK) {
         int count = width - x < CHUNK ? width - x : CHUNK;
         size_t first = (size_t)index * (size_t)width + (size_t)x;
-        float rgb[3 * CHUNK] = {0};
-        double positions[2 * CHUNK];
-        find_positions(v, first, count, positions);
-        v->kernels->interpolate(v->grid, v->plane, v->pitch, v->ring_taps, v->column_taps,
-                                positions, count, rgb);
+        float rgb[3 * CHUNK] = {0}, *out = v->map->level[v->index] + 3 * first;
+        if (v->places) {
+            memcpy(rgb, out, 3 * (size_t)count * sizeof *rgb);
+        } else {
+            double positions[2 * CHUNK];
+            find_positions(v, first, count, positions);
+            v->kernels->interpolate(v->grid, v->plane, v->pitch, v->ring_taps, v->column_taps,
+                                    positions, count, rgb);
+        }
         if (v->points->suns.count)
             add_suns(v, first, count, rgb);
         if (v->zonal.outer > 0)
             add_surroundings(v, first, count, rgb);
-        float *out = v->map->level[v->index] + 3 * first;
         for (int i = 0; i < 3 * count; i++)
             out[i] = rgb[i] < 0 ? 0 : rgb[i];
     }
@@ -354,8 +470,10 @@ kiln_result ki_level_execute(ki_level *v, const kiln_spectrum *spectrum, const k
     int width, height;
     ki_level_extent(map, index, &width, &height);
     ki_parallel_for(v->context, v->degree + 1, weigh_order, v);
-    ki_parallel_workers(v->context, v->rings.vector_count / 2, synthesize_rings, v);
-    pad_grid(v);
+    ki_parallel_workers(v->context, v->rings.vector_count / 2, v->places ? fill_places : fill_grid,
+                        v);
+    if (!v->places)
+        pad_grid(v);
     ki_parallel_for(v->context, height, fill_row, v);
     ki_points_destroy(&points);
     return KILN_OK;

@@ -19,16 +19,19 @@ static double versine(const double *a, const double *b)
     return 0.5 * (x * x + y * y + z * z);
 }
 
-// Writes n^2 points that share a texel's solid angle, at the given offsets across it in [0, 1].
+// Writes n^2 points that share a texel's solid angle, at the given offsets across it in [0, 1], with
+// weights in the proportion of sin theta.
 static void divide(const ki_sun *sun, int size, int n, const double *offsets, double rotation,
                    double integral, double (*points)[6])
 {
-    double step = KI_PI / size, top = ki_cos(sun->row * step),
-           bottom = ki_cos((sun->row + 1) * step);
-    double area = step * (top - bottom) / ((double)n * n * integral);
+    double step = KI_PI / size, sines = 0;
+    for (int j = 0; j < n; j++)
+        sines += ki_sin((sun->row + offsets[j]) * step);
+    double solid = step * 2 * ki_sin((sun->row + 0.5) * step) * ki_sin(step / 2);
     for (int j = 0; j < n; j++) {
-        double cosine = top + (bottom - top) * offsets[j];
-        double sine = sqrt(fmax(0, (1 - cosine) * (1 + cosine)));
+        double sine, cosine;
+        ki_sincos((sun->row + offsets[j]) * step, &sine, &cosine);
+        double area = solid * sine / sines / (n * integral);
         for (int i = 0; i < n; i++, points++) {
             double s, c, turned[3];
             ki_sincos((sun->column + offsets[i]) * step, &s, &c);
@@ -57,9 +60,9 @@ kiln_result ki_points_create(const kiln_spectrum *spectrum, const ki_zonal *zona
     double texel = KI_PI / spectrum->size, width = ki_lobe_width(&zonal->lobe);
     // Two by two at least, for texels that the horizon cuts; Charlie is steep there.
     int least = zonal->lobe.kind == KILN_LOBE_CHARLIE ? 8 : 2;
-    int cells = (int)ki_clamp(ceil(texel / width / 0.3), least, MOST_CELLS);
+    int cells = (int)ki_clamp(ceil(texel / width / 0.1), least, MOST_CELLS);
     suns->near_count = 4 * cells * cells;
-    suns->near_versine = texel > 0.3 * width ? 1 - ki_cos(fmin(KI_PI, 12 * texel)) : -1;
+    suns->near_versine = texel > 0.05 * width ? 1 - ki_cos(fmin(KI_PI, 16 * texel)) : -1;
     suns->far_versine = width > 128 * texel ? -1 : 1 - ki_cos(fmin(KI_PI, 128 * texel));
     suns->horizon = texel;
     size_t count = (size_t)suns->count, near_count = (size_t)suns->near_count;
@@ -123,37 +126,46 @@ void ki_points_add(const ki_points *points, const double *directions, double *su
 
 // -------------------------------------------------------------------------------- narrow lobes
 
-// The integral over a cell of a texel of lobe * (1 - step), the cell divided in four until it is
-// small against its distance and the lobe's width.
+// The integral over a cell of a texel of lobe * (1 - step): cut in four until the cell is small
+// against its distance and the lobe's width, then by four by four Gauss nodes, or two by two where
+// it is very small.
 typedef struct cell_sum {
     const ki_zonal *zonal;
     double direction[3], width;
 } cell_sum;
 
-static double integrate_cell(const cell_sum *sum, double phi, double dphi, double z, double dz,
-                             int depth)
+static double integrate_cell(const cell_sum *sum, double phi, double theta, double size, int depth)
 {
-    double sine, cosine, ring = sqrt(fmax(0, (1 - z) * (1 + z)));
-    ki_sincos(phi, &sine, &cosine);
-    const double centre[3] = {-ring * sine, z, ring * cosine};
+    static const double two[2][2] = {{-0.28867513459481288225, 0.28867513459481288225}, {0.5, 0.5}};
+    static const double four[2][4] = {{-0.43056815579702628761, -0.16999052179242813170,
+                                       0.16999052179242813170, 0.43056815579702628761},
+                                      {0.17392742256872692869, 0.32607257743127307131,
+                                       0.32607257743127307131, 0.17392742256872692869}};
+    double sine, cosine, s, c, total = 0;
+    ki_sincos(theta, &sine, &cosine);
+    ki_sincos(phi, &s, &c);
+    const double centre[3] = {-sine * s, cosine, sine * c};
     double distance = sqrt(2 * versine(centre, sum->direction));
-    double extent = fmax(dphi * ring, dz / fmax(ring, dz));
-    if (depth < 40 && extent > 0.5 * fmax(distance - 0.5 * extent, 0.3 * sum->width)) {
-        double total = 0;
+    double scale = fmax(distance - 0.75 * size, 0.3 * sum->width);
+    if (depth < 40 && size > 0.5 * scale) {
         for (int k = 0; k < 4; k++)
-            total += integrate_cell(sum, phi + (k % 2 ? 0.25 : -0.25) * dphi, dphi / 2,
-                                    z + (k / 2 ? 0.25 : -0.25) * dz, dz / 2, depth + 1);
+            total += integrate_cell(sum, phi + (k % 2 ? 0.25 : -0.25) * size,
+                                    theta + (k / 2 ? 0.25 : -0.25) * size, size / 2, depth + 1);
         return total;
     }
-    double total = 0;
-    for (int k = 0; k < 4; k++) {
-        double zk = z + (k / 2 ? 0.5 : -0.5) * node * dz, r = sqrt(fmax(0, (1 - zk) * (1 + zk)));
-        ki_sincos(phi + (k % 2 ? 0.5 : -0.5) * node * dphi, &sine, &cosine);
-        const double at[3] = {-r * sine, zk, r * cosine};
-        double away = versine(at, sum->direction);
-        total += ki_lobe_weight(&sum->zonal->lobe, away) * (1 - ki_zonal_step(sum->zonal, away));
+    int n = size > 0.1 * scale ? 4 : 2;
+    const double *offsets = n == 4 ? four[0] : two[0], *weights = n == 4 ? four[1] : two[1];
+    for (int j = 0; j < n; j++) {
+        ki_sincos(theta + offsets[j] * size, &sine, &cosine);
+        for (int i = 0; i < n; i++) {
+            ki_sincos(phi + offsets[i] * size, &s, &c);
+            const double at[3] = {-sine * s, cosine, sine * c};
+            double away = versine(at, sum->direction);
+            total += weights[i] * weights[j] * sine * ki_lobe_weight(&sum->zonal->lobe, away) *
+                     (1 - ki_zonal_step(sum->zonal, away));
+        }
     }
-    return total * 0.25 * dphi * dz;
+    return total * size * size;
 }
 
 void ki_surroundings_add(const kiln_map *panorama, const ki_zonal *zonal, double integral,
@@ -177,13 +189,11 @@ void ki_surroundings_add(const kiln_map *panorama, const ki_zonal *zonal, double
         to = columns - 1;
     }
     for (int j = first; j <= last; j++) {
-        double top = ki_cos(j * step), bottom = ki_cos((j + 1) * step);
         const float *row = panorama->level[0] + 3 * (size_t)columns * (size_t)j;
         for (int i = from; i <= to; i++) {
             int column = ((i % columns) + columns) % columns;
-            double weight = integrate_cell(&sum, (i + 0.5) * step, step, 0.5 * (top + bottom),
-                                           top - bottom, 0) /
-                            integral;
+            double weight =
+                integrate_cell(&sum, (i + 0.5) * step, (j + 0.5) * step, step, 0) / integral;
             for (int c = 0; c < 3; c++)
                 rgb[c] += weight * (double)row[3 * column + c];
         }

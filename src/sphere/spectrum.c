@@ -43,7 +43,7 @@ static int spread_row(double theta0, double theta1, int ring_count, const double
 
 static bool plan_rows(ki_analysis *analysis, const double *taps)
 {
-    int size = analysis->size, rings = analysis->rings.count;
+    int size = analysis->size, rings = 2 * analysis->rings.pair_count;
     analysis->row_first = ki_alloc_raw(analysis->context, (size_t)size, sizeof(int));
     analysis->row_start = ki_alloc_raw(analysis->context, (size_t)size + 1, sizeof(int));
     if (!analysis->row_first || !analysis->row_start)
@@ -80,9 +80,8 @@ kiln_result ki_analysis_create(kiln_context *context, int size, int degree, cons
     a->size = size;
     a->degree = degree;
     a->column = ki_alloc_raw(context, (size_t)degree + 1, 2 * sizeof(double));
-    // Half as many rings again as the degree: the taps' error is below the degree's own.
     if (!a->column || !ki_legendre_create(context, degree, &a->legendre) ||
-        !ki_rings_create(context, degree + degree / 2 + 8, degree, &a->rings) ||
+        !ki_rings_create_grid(context, degree, &a->rings) ||
         !ki_fft_create(context, 2 * size, &a->fft))
         goto failed;
 
@@ -95,7 +94,7 @@ kiln_result ki_analysis_create(kiln_context *context, int size, int degree, cons
         a->column[2 * m] = cosine * width;
         a->column[2 * m + 1] = sine * width;
     }
-    ki_taps_design(KI_PI / a->rings.count, density, degree, taps);
+    ki_taps_design(KI_PI / (2 * a->rings.pair_count), density, degree, taps);
     if (!plan_rows(a, taps))
         goto failed;
     ki_free(taps);
@@ -175,7 +174,7 @@ enum { COLUMN_TASKS = 16 }; // of each half of a row
 kiln_result ki_intake_create(const ki_analysis *analysis, ki_intake **intake, kiln_error *error)
 {
     kiln_context *context = analysis->context;
-    size_t width = 2 * (size_t)analysis->size, rings = (size_t)analysis->rings.count;
+    size_t width = 2 * (size_t)analysis->size, rings = 2 * (size_t)analysis->rings.pair_count;
     size_t threads = (size_t)ki_context_threads(context), row, ring_bytes;
     size_t vectors = (size_t)analysis->rings.vector_count;
     ki_intake *in = *intake = ki_alloc(context, 1, sizeof *in);
@@ -219,7 +218,7 @@ void ki_intake_restart(ki_intake *intake)
     intake->row_count = intake->candidate_count = 0;
     memset(intake->total, 0, sizeof intake->total);
     memset(intake->rings, 0,
-           (size_t)analysis->rings.count * (size_t)analysis->size * 6 * sizeof(double));
+           (size_t)analysis->rings.pair_count * (size_t)analysis->size * 12 * sizeof(double));
 }
 
 int ki_intake_count(const ki_intake *intake)
@@ -249,8 +248,8 @@ static void spread_columns(void *data, int index)
         int start = a->row_start[in->row_count + j], end = a->row_start[in->row_count + j + 1];
         for (int i = start; i < end; i++) {
             bool turned;
-            int ring =
-                real_ring(a->row_first[in->row_count + j] + i - start, a->rings.count, &turned);
+            int ring = real_ring(a->row_first[in->row_count + j] + i - start,
+                                 2 * a->rings.pair_count, &turned);
             a->kernels->spread(in->rings + (size_t)ring * (size_t)size * 6 + here,
                                row + (turned ? there : here), a->row_weights[i], 3 * count);
         }
@@ -356,7 +355,8 @@ static bool settle_suns(ki_intake *in, kiln_spectrum *spectrum)
         int start = a->row_start[sun->row], end = a->row_start[sun->row + 1];
         for (int k = start; k < end; k++) {
             bool turned;
-            int ring = real_ring(a->row_first[sun->row] + k - start, a->rings.count, &turned);
+            int ring =
+                real_ring(a->row_first[sun->row] + k - start, 2 * a->rings.pair_count, &turned);
             int column = (sun->column + (turned ? size : 0)) % (2 * size);
             double *at = in->rings + 3 * ((size_t)ring * 2 * (size_t)size + (size_t)column);
             for (int c = 0; c < 3; c++)
@@ -374,7 +374,8 @@ static void transform_rings(void *data, int worker, int index)
 {
     ki_intake *in = data;
     const ki_analysis *a = in->analysis;
-    int vector = index / 3, channel = index % 3, width = 2 * a->size, rings = a->rings.count;
+    int vector = index / 3, channel = index % 3, width = 2 * a->size;
+    int rings = 2 * a->rings.pair_count;
     size_t pitch = 3 * (size_t)width, vectors = (size_t)a->rings.vector_count;
     double *buffer = in->scratch + (size_t)worker * in->scratch_size;
     const double *north[KI_LANES], *south[KI_LANES];
@@ -443,18 +444,21 @@ kiln_result ki_intake_finish(ki_intake *in, kiln_spectrum *spectrum, kiln_error 
 kiln_result ki_spectrum_add_suns(const kiln_spectrum *spectrum, int degree, double *a,
                                  kiln_error *error)
 {
-    // Two Gauss nodes across a texel's height and the exact integral over its width.
+    // Gauss nodes across a texel's height and the exact integral over its width.
     kiln_context *context = spectrum->context;
     ki_legendre legendre;
     if (!ki_legendre_create(context, degree, &legendre))
         return ki_fail_memory(context, error, "the suns' coefficients",
                               ki_coefficient_count(degree) * 2 * sizeof(double));
     double step = KI_PI / spectrum->size;
-    for (int i = 0; i < 2 * spectrum->sun_count; i++) {
-        const ki_sun *sun = &spectrum->suns[i / 2];
-        double theta = step * (sun->row + 0.5 + (i % 2 ? 0.5 : -0.5) / sqrt(3.0)), sine, cosine;
+    enum { NODES = 4 };
+    double nodes[NODES], weights[NODES];
+    ki_gauss_legendre(NODES, nodes, weights);
+    for (int i = 0; i < NODES * spectrum->sun_count; i++) {
+        const ki_sun *sun = &spectrum->suns[i / NODES];
+        double theta = step * (sun->row + 0.5 + 0.5 * nodes[i % NODES]), sine, cosine, power = 1;
         ki_sincos(theta, &sine, &cosine);
-        double area = row_solid_angle(sun->row, spectrum->size) / 2, power = 1;
+        double area = step * step * 0.5 * weights[i % NODES] * sine;
         for (int m = 0; m <= degree; m++, power *= sine) {
             double re, im, half = m * step / 2, width = m ? ki_sin(half) / half : 1;
             ki_sincos(-(sun->column + 0.5) * m * step, &im, &re);

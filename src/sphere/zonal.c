@@ -115,11 +115,16 @@ kiln_result ki_zonal_analyze(kiln_context *context, const ki_zonal *zonal, doubl
     spectrum->integral = whole;
     spectrum->k[0] = sum / whole;
 
-    // Parseval: integral of weight^2 = sum (2l + 1) / 4 pi k_l^2.
-    double left = squares * 4 * KI_PI - sum * sum,
-           stop = tolerance * tolerance * squares * 4 * KI_PI;
-    int l = 1;
-    for (; l <= limit && left > stop; l++) {
+    // Parseval: integral of weight^2 = sum (2l + 1) / 4 pi k_l^2. Once the tolerance is met, a quarter
+    // more degrees may bring it to a quarter: so it goes with lobes that fall exponentially.
+    double left = squares * 4 * KI_PI - sum * sum;
+    double stop = tolerance * tolerance * squares * 4 * KI_PI;
+    int l = 1, last = limit;
+    for (; l <= last; l++) {
+        if (left <= stop && last == limit)
+            last = ki_min(limit, ki_max(l + l / 4, KI_LEAST_DEGREE));
+        if (left <= stop / 16 && l > ki_min(limit, KI_LEAST_DEGREE))
+            break;
         double part[4] = {0};
         double a = (2 * l + 1.0) / (l + 1), b = (double)l / (l + 1);
         for (size_t i = 0; i < count; i += 4)

@@ -23,9 +23,13 @@ typedef struct ki_zonal_spectrum {
     double *k;       // [limit + 1], k_l / integral of the whole lobe; 0 beyond `degree`
 } ki_zonal_spectrum;
 
+/// Degrees that cost next to nothing: all of them are used.
+enum { KI_LEAST_DEGREE = 80 };
+
 /// k_l = 2 pi integral of weight(theta) P_l(cos theta) d cos theta up to the degree beyond which
 /// less than `tolerance` of the L2 norm is left (the error, relative to the result, for a single
-/// bright point), at most `limit`.
+/// bright point), at most `limit`, at least
+/// KI_LEAST_DEGREE where `limit` allows.
 kiln_result ki_zonal_analyze(kiln_context *context, const ki_zonal *zonal, double tolerance,
                              int limit, ki_zonal_spectrum *spectrum, kiln_error *error);
 void ki_zonal_free(ki_zonal_spectrum *spectrum);

@@ -1,0 +1,431 @@
+// What must hold for every environment.
+#include "scenes.h"
+
+#include "math/math.h"
+#include "sphere/sh.h"
+
+static kiln_context *context;
+
+static int setup(void **state)
+{
+    (void)state;
+    context = scene_context(2, KILN_CPU_BEST);
+    return 0;
+}
+
+static int teardown(void **state)
+{
+    (void)state;
+    size_t held;
+    kiln_context_memory(context, &held, NULL);
+    kiln_context_destroy(context);
+    return held != 0;
+}
+
+// A uniform environment has no features to blur.
+static void white_furnace_stays_white(void **state)
+{
+    (void)state;
+    static const int sizes[] = {1, 2, 3, 16, 33, 50, 128};
+    static const int faces[] = {1, 5, 64, 100};
+    for (int s = 0; s < 7; s++)
+        for (int f = 0; f < 4; f++)
+            for (int lobe = 0; lobe < 4; lobe++) {
+                kiln_error error;
+                kiln_map in, out;
+                CHECK_OK(kiln_map_create(context, KILN_SHAPE_PANORAMA, sizes[s], 1, &in, &error));
+                for (size_t i = 0; i < 3 * kiln_map_texels(&in, 0); i++)
+                    in.level[0][i] = 0.75f;
+                kiln_prefilter_def def = {.size = faces[f], .lobe = (enum kiln_lobe_kind)lobe};
+                // Phong and Charlie at roughness 0 are as narrow as they get: costly, and no news.
+                float rough[] = {0.3f, 0.4f, 0.5f, 0.6f, 0.7f, 0.8f, 1};
+                if (lobe > 1)
+                    def.roughness = rough;
+                CHECK_OK(kiln_prefilter(context, &in, &def, &out, &error));
+                double most = 0;
+                for (int l = 0; l < out.level_count; l++)
+                    for (size_t i = 0; i < 3 * kiln_map_texels(&out, l); i++)
+                        most = fmax(most, fabs((double)out.level[l][i] / 0.75 - 1));
+                CHECK_BELOW(most, 1e-6);
+                kiln_map_free(&in);
+                kiln_map_free(&out);
+            }
+}
+
+// The mean over all directions does not change: a lobe only moves light. Panorama rows are
+// integrated by Fejer's rule, exact for these smooth results.
+static void every_level_keeps_the_mean(void **state)
+{
+    (void)state;
+    kiln_error error;
+    kiln_map in = scene_panorama(context, 96, 3), out;
+    double wanted[3] = {0};
+    for (int y = 0; y < 96; y++)
+        for (int x = 0; x < 192; x++)
+            for (int c = 0; c < 3; c++)
+                wanted[c] += (double)in.level[0][3 * (192 * y + x) + c] *
+                             (cos(y * KI_PI / 96) - cos((y + 1) * KI_PI / 96)) / 384;
+    static const float roughness[] = {0.3f, 0.6f, 1};
+    for (int r = 0; r < 3; r++) {
+        enum { ROWS = 512 };
+        kiln_prefilter_def def = {.shape = KILN_SHAPE_PANORAMA,
+                                  .has_shape = true,
+                                  .size = ROWS,
+                                  .level_count = 1,
+                                  .roughness = &roughness[r]};
+        CHECK_OK(kiln_prefilter(context, &in, &def, &out, &error));
+        double mean[3] = {0};
+        for (int y = 0; y < ROWS; y++) {
+            double theta = (y + 0.5) * KI_PI / ROWS, weight = 1;
+            for (int k = 1; k < ROWS / 2; k++)
+                weight -= 2 * cos(2 * k * theta) / (4.0 * k * k - 1);
+            for (int x = 0; x < 2 * ROWS; x++)
+                for (int c = 0; c < 3; c++)
+                    mean[c] +=
+                        weight / ROWS / (2 * ROWS) *
+                        (double)out.level[0][3 * ((size_t)y * 2 * ROWS + (size_t)x) + (size_t)c];
+        }
+        for (int c = 0; c < 3; c++)
+            CHECK_NEAR(mean[c] / wanted[c], 1, 2e-6);
+        kiln_map_free(&out);
+    }
+    kiln_map_free(&in);
+}
+
+// Rolling the panorama by columns is the same as turning the result.
+static void rotation_rotates(void **state)
+{
+    (void)state;
+    kiln_error error;
+    kiln_map in = scene_panorama(context, 64, 5), rolled = scene_panorama(context, 64, 5), a, b;
+    for (int shift = 1; shift < 128; shift += 38) {
+        for (int y = 0; y < 64; y++)
+            for (int x = 0; x < 128; x++)
+                memcpy(rolled.level[0] + 3 * (128 * y + x),
+                       in.level[0] + 3 * (128 * y + (x + shift) % 128), 12);
+        kiln_prefilter_def def = {.size = 32, .rotation = shift * 360.0 / 128};
+        CHECK_OK(kiln_prefilter(context, &in, &def, &a, &error));
+        def.rotation = 0;
+        CHECK_OK(kiln_prefilter(context, &rolled, &def, &b, &error));
+        for (int l = 0; l < a.level_count; l++)
+            CHECK_BELOW(scene_distance(&a, &b, l, 1e-3), 3e-6);
+        kiln_map_free(&a);
+        kiln_map_free(&b);
+    }
+    kiln_map_free(&in);
+    kiln_map_free(&rolled);
+}
+
+// A quarter turn permutes the side faces.
+static void quarter_turn_permutes_faces(void **state)
+{
+    (void)state;
+    kiln_error error;
+    kiln_map in = scene_panorama(context, 64, 9), a, b;
+    kiln_prefilter_def def = {.size = 16};
+    CHECK_OK(kiln_prefilter(context, &in, &def, &a, &error));
+    def.rotation = 90;
+    CHECK_OK(kiln_prefilter(context, &in, &def, &b, &error));
+    // u grows by a quarter: what -Z (u = 1/2) shows is what +X (u = 3/4) showed, and so on.
+    static const int shown[6] = {4, 5, -1, -1, 1, 0};
+    for (int l = 0; l < a.level_count; l++) {
+        int n = kiln_map_level_size(&a, l);
+        for (int face = 0; face < 6; face++)
+            for (int i = 0; shown[face] >= 0 && i < 3 * n * n; i++) {
+                double was = (double)a.level[l][3 * n * n * shown[face] + i];
+                CHECK_NEAR((double)b.level[l][3 * n * n * face + i], was, 3e-6 * was + 1e-6);
+            }
+    }
+    kiln_map_free(&a);
+    kiln_map_free(&b);
+    kiln_map_free(&in);
+}
+
+static void mirrored_in_is_mirrored_out(void **state)
+{
+    (void)state;
+    kiln_error error;
+    kiln_map in = scene_panorama(context, 40, 11), a, b;
+    kiln_prefilter_def def = {.size = 16};
+    CHECK_OK(kiln_prefilter(context, &in, &def, &a, &error));
+    kiln_map_mirror(&in);
+    CHECK_OK(kiln_prefilter(context, &in, &def, &b, &error));
+    kiln_map_mirror(&b);
+    for (int l = 0; l < a.level_count; l++)
+        CHECK_BELOW(scene_distance(&a, &b, l, 1e-3), 3e-6);
+    kiln_map_free(&a);
+    kiln_map_free(&b);
+    kiln_map_free(&in);
+}
+
+static void alpha_one_is_lambert(void **state)
+{
+    (void)state;
+    kiln_error error;
+    static const float one = 1;
+    kiln_map in = scene_panorama(context, 64, 1), a, b;
+    kiln_prefilter_def def = {.size = 24, .level_count = 1, .roughness = &one};
+    CHECK_OK(kiln_prefilter(context, &in, &def, &a, &error));
+    def.lobe = KILN_LOBE_LAMBERT;
+    CHECK_OK(kiln_prefilter(context, &in, &def, &b, &error));
+    CHECK_BELOW(scene_distance(&a, &b, 0, 0), 2e-7);
+    kiln_map_free(&a);
+    kiln_map_free(&b);
+    kiln_map_free(&in);
+}
+
+// A single bright texel gives the kernel itself: no ringing, nothing negative.
+static void a_delta_sun_gives_the_kernel(void **state)
+{
+    (void)state;
+    kiln_error error;
+    static const int places[][2] = {{0, 3}, {63, 100}, {20, 41}, {32, 0}, {31, 127}};
+    for (int p = 0; p < 5; p++) {
+        kiln_map in, out;
+        CHECK_OK(kiln_map_create(context, KILN_SHAPE_PANORAMA, 64, 1, &in, &error));
+        for (int c = 0; c < 3; c++)
+            in.level[0][3 * (128 * places[p][0] + places[p][1]) + c] = 1e6f;
+        kiln_prefilter_def def = {.size = 64};
+        CHECK_OK(kiln_prefilter(context, &in, &def, &out, &error));
+        for (int l = 1; l < out.level_count; l++) {
+            double alpha = (double)out.roughness[l] * (double)out.roughness[l], peak = 0, most = 0;
+            size_t texels = kiln_map_texels(&out, l), count = texels < 800 ? texels : 800;
+            kiln_lobe lobe = kiln_lobe_ggx(alpha);
+            static double directions[800][3], values[800][3];
+            for (size_t i = 0; i < count; i++)
+                kiln_map_direction(&out, l, i * texels / count, directions[i]);
+            CHECK_OK(kiln_reference_filter(context, &in, &lobe, 0, (const double(*)[3])directions,
+                                           (int)count, values, &error));
+            for (size_t i = 0; i < 3 * texels; i++) {
+                assert_true(out.level[l][i] >= 0);
+                peak = fmax(peak, (double)out.level[l][i]);
+            }
+            for (size_t i = 0; i < count; i++)
+                most =
+                    fmax(most, fabs((double)out.level[l][3 * (i * texels / count)] - values[i][0]));
+            // One texel is 3 degrees wide here: near its lobe's peak and where the horizon cuts it, its own
+            // quadrature is the limit.
+            CHECK_BELOW(most / peak, l < 2 ? 1e-6 : 3e-6);
+        }
+        kiln_map_free(&in);
+        kiln_map_free(&out);
+    }
+}
+
+// The spectrum alone, without the help of the list of suns: points too faint for it, on black.
+static void faint_points_ring_below_the_tolerance(void **state)
+{
+    (void)state;
+    kiln_error error;
+    kiln_map in, out;
+    enum { SIZE = 128, POINTS = 3000 };
+    CHECK_OK(kiln_map_create(context, KILN_SHAPE_PANORAMA, SIZE, 1, &in, &error));
+    uint32_t seed = 77;
+    for (int i = 0; i < POINTS; i++) {
+        double z = 2 * scene_random(&seed) - 1, u = scene_random(&seed);
+        int y = (int)(acos(z) / KI_PI * SIZE), x = (int)(u * 2 * SIZE);
+        for (int c = 0; c < 3; c++)
+            in.level[0][3 * (2 * SIZE * y + x) + c] = 100;
+    }
+    kiln_prefilter_def def = {.size = 64};
+    CHECK_OK(kiln_prefilter(context, &in, &def, &out, &error));
+    for (int l = 1; l < out.level_count; l++) {
+        kiln_lobe lobe = kiln_lobe_ggx((double)out.roughness[l] * (double)out.roughness[l]);
+        scene_errors e = scene_compare(context, &in, &out, l, &lobe, 0, 256);
+        CHECK_BELOW(e.rms, 1e-4);
+        CHECK_BELOW(e.most, 2e-3);
+    }
+    kiln_map_free(&in);
+    kiln_map_free(&out);
+}
+
+static double gauss_lobe(void *user, double cos_theta)
+{
+    double width = *(double *)user;
+    return exp((cos_theta - 1) / (width * width));
+}
+
+static void other_lobes_and_shapes_match_brute_force(void **state)
+{
+    (void)state;
+    kiln_error error;
+    kiln_map in = scene_panorama(context, 128, 21);
+    for (int kind = 1; kind < 4; kind++)
+        for (int shape = 0; shape < 3; shape++) {
+            static const float roughness[] = {0.35f, 0.5f, 0.8f};
+            kiln_map out;
+            kiln_prefilter_def def = {.shape = (kiln_shape)shape,
+                                      .has_shape = true,
+                                      .size = 24,
+                                      .level_count = 3,
+                                      .roughness = roughness,
+                                      .lobe = (enum kiln_lobe_kind)kind,
+                                      .rotation = 33.3};
+            CHECK_OK(kiln_prefilter(context, &in, &def, &out, &error));
+            for (int l = 0; l < 3; l++) {
+                double alpha = (double)roughness[l] * (double)roughness[l];
+                kiln_lobe lobe = kind == 1   ? kiln_lobe_lambert()
+                                 : kind == 2 ? kiln_lobe_charlie(alpha)
+                                             : kiln_lobe_phong(2 / (alpha * alpha) - 2);
+                if (kind == 3 && lobe.parameter < 1)
+                    lobe.parameter = 1;
+                scene_errors e = scene_compare(context, &in, &out, l, &lobe, 33.3, 40);
+                CHECK_BELOW(e.rms, 1e-4);
+                CHECK_BELOW(e.most, 2e-3);
+            }
+            kiln_map_free(&out);
+        }
+    // The caller's own lobe.
+    double width = 0.3;
+    kiln_lobe lobe = kiln_lobe_custom(gauss_lobe, &width, width);
+    kiln_spectrum *spectrum;
+    kiln_map out;
+    CHECK_OK(kiln_spectrum_analyze(context, &in, 0, &spectrum, &error));
+    CHECK_OK(kiln_map_create(context, KILN_SHAPE_CUBE, 32, 2, &out, &error));
+    CHECK_OK(kiln_spectrum_filter(context, spectrum, &lobe, 33.3, &out, 1, &error));
+    scene_errors e = scene_compare(context, &in, &out, 1, &lobe, 33.3, 64);
+    CHECK_BELOW(e.rms, 1e-4);
+    CHECK_BELOW(e.most, 2e-3);
+    // Narrower than a spectrum of degree 256 can tell: said, not approximated.
+    lobe = kiln_lobe_ggx(0.004);
+    assert_int_equal(kiln_spectrum_filter(context, spectrum, &lobe, 0, &out, 0, &error),
+                     KILN_ERROR_ARGUMENT);
+    assert_non_null(strstr(error.message, "256"));
+    kiln_spectrum_destroy(spectrum);
+    kiln_map_free(&out);
+    kiln_map_free(&in);
+}
+
+static void tiny_alphas_match_brute_force(void **state)
+{
+    (void)state;
+    kiln_error error;
+    kiln_map in = scene_panorama(context, 64, 4);
+    static const float roughness[] = {0.001f, 0.02f, 0.05f};
+    for (int i = 0; i < 3; i++) {
+        kiln_map out;
+        kiln_prefilter_def def = {.size = 12, .level_count = 1, .roughness = &roughness[i]};
+        CHECK_OK(kiln_prefilter(context, &in, &def, &out, &error));
+        kiln_lobe lobe = kiln_lobe_ggx((double)roughness[i] * (double)roughness[i]);
+        scene_errors e = scene_compare(context, &in, &out, 0, &lobe, 0, 200);
+        CHECK_BELOW(e.rms, 1e-4);
+        CHECK_BELOW(e.most, 2e-3);
+        kiln_map_free(&out);
+    }
+    kiln_map_free(&in);
+}
+
+// Coefficients against the sum over texels, each cut in 48 x 48.
+static void sh_matches_brute_force(void **state)
+{
+    (void)state;
+    enum { SIZE = 24, CUT = 48 };
+    kiln_error error;
+    kiln_map in = scene_panorama(context, SIZE, 6);
+    kiln_spectrum *spectrum;
+    kiln_sh sh;
+    CHECK_OK(kiln_spectrum_analyze(context, &in, 0, &spectrum, &error));
+    CHECK_OK(kiln_spectrum_sh(spectrum, 5, false, 0, 0, &sh, &error));
+    double wanted[25][3] = {{0}};
+    for (int y = 0; y < SIZE * CUT; y++)
+        for (int x = 0; x < 2 * SIZE * CUT; x++) {
+            const float *rgb = in.level[0] + 3 * (2 * SIZE * (y / CUT) + x / CUT);
+            double step = KI_PI / (SIZE * CUT), theta = (y + 0.5) * step, phi = (x + 0.5) * step;
+            double area = step * (cos(y * step) - cos((y + 1) * step));
+            double d[3] = {-sin(theta) * sin(phi), cos(theta), sin(theta) * cos(phi)};
+            double basis[25];
+            ki_sh_basis(d, basis);
+            for (int k = 0; k < 25; k++)
+                for (int c = 0; c < 3; c++)
+                    wanted[k][c] += basis[k] * area * (double)rgb[c];
+        }
+    for (int k = 0; k < 25; k++)
+        for (int c = 0; c < 3; c++)
+            CHECK_NEAR(sh.c[k][c], wanted[k][c], 2e-5 * wanted[0][c]);
+
+    // Radiance to irradiance, and Hanning's window, band by band.
+    static const double lobe[] = {3.14159265358979, 2.0943951023932, 0.785398163397448, 0,
+                                  -0.130899693899575};
+    kiln_sh irradiance, windowed;
+    CHECK_OK(kiln_spectrum_sh(spectrum, 5, true, 0, 0, &irradiance, &error));
+    CHECK_OK(kiln_spectrum_sh(spectrum, 5, false, 3, 0, &windowed, &error));
+    for (int l = 0, k = 0; l < 5; l++)
+        for (; k < (l + 1) * (l + 1); k++)
+            for (int c = 0; c < 3; c++) {
+                CHECK_NEAR(irradiance.c[k][c], sh.c[k][c] * lobe[l], 1e-11 * fabs(sh.c[k][c]));
+                CHECK_NEAR(windowed.c[k][c], l < 3 ? sh.c[k][c] * (1 + cos(KI_PI * l / 3)) / 2 : 0,
+                           1e-11 * fabs(sh.c[k][c]));
+            }
+    // Turned: the series in d is the unturned one in the turned direction.
+    kiln_sh turned;
+    CHECK_OK(kiln_spectrum_sh(spectrum, 5, false, 0, 90, &turned, &error));
+    double a[3], b[3];
+    kiln_sh_evaluate(&turned, (double[3]){0.48, 0.6, -0.64}, a);
+    kiln_sh_evaluate(&sh, (double[3]){0.64, 0.6, 0.48}, b); // -Z shows what +X did
+    for (int c = 0; c < 3; c++)
+        CHECK_NEAR(a[c], b[c], 1e-9 * fabs(b[c]));
+    kiln_spectrum_destroy(spectrum);
+    kiln_map_free(&in);
+}
+
+static void power_is_that_of_the_environment(void **state)
+{
+    (void)state;
+    kiln_error error;
+    kiln_map in = scene_panorama(context, 48, 8);
+    kiln_spectrum *spectrum;
+    kiln_sh sh;
+    CHECK_OK(kiln_spectrum_analyze(context, &in, 64, &spectrum, &error));
+    assert_int_equal(kiln_spectrum_degree(spectrum), 64);
+    static double power[65][3];
+    CHECK_OK(kiln_spectrum_power(spectrum, power, &error));
+    CHECK_OK(kiln_spectrum_sh(spectrum, 5, false, 0, 0, &sh, &error));
+    for (int l = 0, k = 0; l < 5; l++) {
+        double sum = 0;
+        for (; k < (l + 1) * (l + 1); k++)
+            sum += sh.c[k][1] * sh.c[k][1];
+        CHECK_NEAR(sum / power[l][1], 1, 1e-6);
+    }
+    kiln_spectrum_destroy(spectrum);
+    kiln_map_free(&in);
+}
+
+static void bad_arguments_give_sentences(void **state)
+{
+    (void)state;
+    kiln_map in = scene_panorama(context, 8, 1), out;
+    static const float wild = 1.5f;
+    kiln_prefilter_def defs[] = {{.size = -1},
+                                 {.size = 40000},
+                                 {.size = 16, .level_count = 9},
+                                 {.size = 16, .level_count = 1, .roughness = &wild},
+                                 {.size = 16, .lobe = KILN_LOBE_CUSTOM},
+                                 {.size = 16, .rotation = INFINITY}};
+    for (size_t i = 0; i < sizeof defs / sizeof *defs; i++) {
+        kiln_error error = {0};
+        assert_int_equal(kiln_prefilter(context, &in, &defs[i], &out, &error), KILN_ERROR_ARGUMENT);
+        assert_true(strlen(error.message) > 10);
+        assert_null(out.level[0]);
+    }
+    kiln_map_free(&in);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(white_furnace_stays_white),
+        cmocka_unit_test(every_level_keeps_the_mean),
+        cmocka_unit_test(rotation_rotates),
+        cmocka_unit_test(quarter_turn_permutes_faces),
+        cmocka_unit_test(mirrored_in_is_mirrored_out),
+        cmocka_unit_test(alpha_one_is_lambert),
+        cmocka_unit_test(a_delta_sun_gives_the_kernel),
+        cmocka_unit_test(faint_points_ring_below_the_tolerance),
+        cmocka_unit_test(other_lobes_and_shapes_match_brute_force),
+        cmocka_unit_test(tiny_alphas_match_brute_force),
+        cmocka_unit_test(sh_matches_brute_force),
+        cmocka_unit_test(power_is_that_of_the_environment),
+        cmocka_unit_test(bad_arguments_give_sentences),
+    };
+    return cmocka_run_group_tests_name("sphere laws", tests, setup, teardown);
+}
