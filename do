@@ -165,11 +165,9 @@ fuzz)
         name=${target##*/fuzz_}
         say "fuzzing $name"
         mkdir -p "build/corpus/$name" "build/finds"
-        seeds=
-        [ ! -d "fuzz/corpus/$name" ] || seeds=fuzz/corpus/$name
-        # shellcheck disable=SC2086 # no word when there are no seeds
         "$target" -max_total_time="${1:-60}" -rss_limit_mb=2048 -timeout=10 \
-            -artifact_prefix="build/finds/$name-" "build/corpus/$name" $seeds
+            -artifact_prefix="build/finds/$name-" "build/corpus/$name" tests/files/good \
+            tests/files/bad
     done
     ;;
 clean)
