@@ -7,7 +7,7 @@ cd "$(dirname "$0")"
 build_needs="cmake:cmake ninja:ninja-build cc:gcc pkg-config:pkg-config libc6-dev libopenexr-dev
     libdeflate-dev libpng-dev libzstd-dev libpopt-dev libcjson-dev libcmocka-dev"
 test_needs="node:nodejs npm:npm mandoc:mandoc clang-format:clang-format script:bsdutils"
-bench_needs="cmgen:libfilament-tools oiiotool:openimageio-tools"
+bench_needs="cmgen:libfilament-tools oiiotool:openimageio-tools valgrind:valgrind"
 lint_needs="clang-tidy:clang-tidy clang-format:clang-format cppcheck:cppcheck shellcheck:shellcheck"
 fuzz_needs="clang:clang libclang-rt-14-dev"
 
