@@ -51,7 +51,7 @@ kiln_result kiln_stream_begin(kiln_context *context, int size, int degree, kiln_
     ki_model_density(degree, density);
     kiln_result result = ki_analysis_create(context, size, degree, density, &s->analysis, error);
     if (result == KILN_OK)
-        result = ki_intake_create(s->analysis, &s->intake, error);
+        result = ki_intake_create(s->analysis, false, &s->intake, error);
     ki_free(density);
     if (result == KILN_OK)
         *stream = s;

@@ -132,7 +132,7 @@ kiln_result ki_plan_create(kiln_context *context, int source_size, const kiln_pr
     ki_model_density(degree, density);
     result = ki_analysis_create(context, source_size, degree, density, &p->analysis, error);
     if (result == KILN_OK)
-        result = ki_intake_create(p->analysis, &p->intake, error);
+        result = ki_intake_create(p->analysis, true, &p->intake, error);
     if (result == KILN_OK)
         result = ki_spectrum_create(p->analysis, &p->spectrum, error);
     for (int i = 0; i < p->def.level_count && result == KILN_OK; i++) {
@@ -163,10 +163,7 @@ kiln_result ki_plan_execute(kiln_plan *p, const kiln_map *panorama, kiln_map *ma
     kiln_result result;
     if (!ki_progress(p->context, stage, 0))
         return ki_fail_cancelled(error, stage);
-    ki_intake_restart(p->intake);
-    result = ki_intake_rows(p->intake, panorama->level[0], panorama->size, error);
-    if (result == KILN_OK)
-        result = ki_intake_finish(p->intake, p->spectrum, error);
+    result = ki_intake_whole(p->intake, panorama->level[0], p->spectrum, error);
     // The first level has four times the texels of the next and so on: progress goes by that.
     double done = 0.25;
     for (int i = 0; i < p->def.level_count && result == KILN_OK; i++) {

@@ -47,8 +47,9 @@ typedef struct ki_kernels {
     /// Transforms `data` with `work` as the second buffer; returns whichever holds the result.
     double *(*fft)(const ki_fft *fft, double *data, double *work);
 
-    /// accumulator[i] += weight * row[i].
-    void (*spread)(double *accumulator, const float *row, double weight, int count);
+    /// accumulator[i] += weights[k] * (rows + offsets[k])[i], k = 0 .. row_count-1 in this order.
+    void (*spread)(double *accumulator, const float *rows, const ptrdiff_t *offsets,
+                   const double *weights, int row_count, int count);
 
     /// Sums a row of `count` RGB texels by channel; returns its largest value.
     float (*sum_row)(const float *row, int count, double sum[3]);

@@ -50,6 +50,19 @@ typedef float floats __attribute__((vector_size(4 * (KI_WIDTH < 4 ? 4 : 8)), may
 #endif
 enum { FLOATS = sizeof(floats) / sizeof(float) };
 
+// The next KI_WIDTH floats as doubles.
+static inline vec widen(const float *p)
+{
+#if KI_WIDTH == 1
+    return (double)*p;
+#else
+    typedef float narrow __attribute__((vector_size(4 * KI_WIDTH)));
+    narrow v;
+    memcpy(&v, p, sizeof v);
+    return __builtin_convertvector(v, vec);
+#endif
+}
+
 static inline floats load_floats(const float *p)
 {
     floats v;
@@ -201,10 +214,24 @@ static double *fft(const ki_fft *plan, double *data, double *work)
 
 // ------------------------------------------------------------------------------------------ rings
 
-static void spread(double *accumulator, const float *row, double weight, int count)
+static void spread(double *accumulator, const float *rows, const ptrdiff_t *offsets,
+                   const double *weights, int row_count, int count)
 {
-    for (int i = 0; i < count; i++)
-        accumulator[i] += weight * (double)row[i];
+    enum { AT_ONCE = 4 }; // vectors, to hide the latency of the sums
+    int i = 0;
+    for (; i + AT_ONCE * KI_WIDTH <= count; i += AT_ONCE * KI_WIDTH) {
+        vec sum[AT_ONCE];
+        for (int n = 0; n < AT_ONCE; n++)
+            sum[n] = load(accumulator + i + n * KI_WIDTH);
+        for (int k = 0; k < row_count; k++)
+            for (int n = 0; n < AT_ONCE; n++)
+                sum[n] += weights[k] * widen(rows + offsets[k] + i + n * KI_WIDTH);
+        for (int n = 0; n < AT_ONCE; n++)
+            store(accumulator + i + n * KI_WIDTH, sum[n]);
+    }
+    for (; i < count; i++)
+        for (int k = 0; k < row_count; k++)
+            accumulator[i] += weights[k] * (double)rows[offsets[k] + i];
 }
 
 static float sum_row(const float *row, int count, double sum[3])

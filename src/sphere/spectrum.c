@@ -41,31 +41,48 @@ static int spread_row(double theta0, double theta1, int ring_count, const double
     return count;
 }
 
-static bool plan_rows(ki_analysis *analysis, const double *taps)
+// Where a ring that may lie beyond a pole really is, and whether half a turn away.
+static int real_ring(int ring, int count, bool *turned)
 {
-    int size = analysis->size, rings = 2 * analysis->rings.pair_count;
-    analysis->row_first = ki_alloc_raw(analysis->context, (size_t)size, sizeof(int));
-    analysis->row_start = ki_alloc_raw(analysis->context, (size_t)size + 1, sizeof(int));
-    if (!analysis->row_first || !analysis->row_start)
-        return false;
+    *turned = ring < 0 || ring >= count;
+    return ring < 0 ? -1 - ring : ring >= count ? 2 * count - 1 - ring : ring;
+}
+
+static bool plan_shares(ki_analysis *a, const double *taps)
+{
+    int size = a->size, rings = 2 * a->rings.pair_count, first;
     double rule[2][ROW_NODES];
     ki_gauss_legendre(ROW_NODES, rule[0], rule[1]);
-    int total = 0;
-    for (int pass = 0; pass < 2; pass++) {
-        total = 0;
+    const double(*nodes)[ROW_NODES] = (const double(*)[ROW_NODES])rule;
+    // No row reaches more rings than its height and the taps.
+    double *weights =
+        ki_alloc_raw(a->context, (size_t)(rings / size + KI_TAPS + 2), sizeof *weights);
+    int *filled = ki_alloc(a->context, (size_t)rings, sizeof *filled);
+    a->ring_start = ki_alloc(a->context, (size_t)rings + 1, sizeof *a->ring_start);
+    bool good = weights && filled && a->ring_start;
+    for (int pass = 0; good && pass < 2; pass++) {
         for (int j = 0; j < size; j++) {
-            double *weights = pass ? analysis->row_weights + total : NULL;
-            analysis->row_start[j] = total;
-            total += spread_row(j * KI_PI / size, (j + 1) * KI_PI / size, rings, taps,
-                                (const double(*)[ROW_NODES])rule, &analysis->row_first[j], weights);
+            int count = spread_row(j * KI_PI / size, (j + 1) * KI_PI / size, rings, taps, nodes,
+                                   &first, pass ? weights : NULL);
+            for (int i = 0; i < count; i++) {
+                bool turned;
+                int ring = real_ring(first + i, rings, &turned);
+                if (pass)
+                    a->shares[a->ring_start[ring] + filled[ring]++] =
+                        (ki_share){j, turned, weights[i]};
+                else
+                    a->ring_start[ring + 1]++;
+            }
         }
-        analysis->row_start[size] = total;
+        for (int k = 0; !pass && k < rings; k++)
+            a->ring_start[k + 1] += a->ring_start[k];
         if (!pass)
-            analysis->row_weights = ki_alloc_raw(analysis->context, (size_t)total, sizeof(double));
-        if (!analysis->row_weights)
-            return false;
+            a->shares = ki_alloc_raw(a->context, (size_t)a->ring_start[rings], sizeof *a->shares);
+        good = a->shares != NULL;
     }
-    return true;
+    ki_free(weights);
+    ki_free(filled);
+    return good;
 }
 
 kiln_result ki_analysis_create(kiln_context *context, int size, int degree, const double *density,
@@ -95,7 +112,7 @@ kiln_result ki_analysis_create(kiln_context *context, int size, int degree, cons
         a->column[2 * m + 1] = sine * width;
     }
     ki_taps_design(KI_PI / (2 * a->rings.pair_count), density, degree, taps);
-    if (!plan_rows(a, taps))
+    if (!plan_shares(a, taps))
         goto failed;
     ki_free(taps);
     return KILN_OK;
@@ -115,9 +132,8 @@ void ki_analysis_destroy(ki_analysis *analysis)
     ki_rings_destroy(&analysis->rings);
     ki_fft_destroy(&analysis->fft);
     ki_free(analysis->column);
-    ki_free(analysis->row_first);
-    ki_free(analysis->row_start);
-    ki_free(analysis->row_weights);
+    ki_free(analysis->ring_start);
+    ki_free(analysis->shares);
     ki_free(analysis);
 }
 
@@ -153,7 +169,7 @@ void kiln_spectrum_destroy(kiln_spectrum *spectrum)
 struct ki_intake {
     const ki_analysis *analysis;
     int row_count;      // taken so far
-    double *rings;      // [ring][2 size][3]
+    double *rings;      // [ring][2 size][3]; only where rows come one after the other
     double *row_sums;   // [size][3], radiance summed over each row
     float *row_peaks;   // [size]
     double total[3];    // radiance times solid angle so far
@@ -161,7 +177,7 @@ struct ki_intake {
     int candidate_count, candidate_room;
 
     double *orders;  // [degree + 1][vector][12][8], a ring vector's Fourier coefficients
-    double *scratch; // a worker's: two FFT buffers, or a state for the recurrence
+    double *scratch; // a worker's: two FFT buffers and 16 rings, or a state for the recurrence
     size_t scratch_size;
 
     const float *rows; // being taken in
@@ -169,9 +185,13 @@ struct ki_intake {
     kiln_spectrum *spectrum; // being written
 };
 
-enum { COLUMN_TASKS = 16 }; // of each half of a row
+enum {
+    PIECES = 16,             // each half of a row is cut into
+    RING_SET = 2 * KI_LANES, // rings of a vector
+};
 
-kiln_result ki_intake_create(const ki_analysis *analysis, ki_intake **intake, kiln_error *error)
+kiln_result ki_intake_create(const ki_analysis *analysis, bool whole, ki_intake **intake,
+                             kiln_error *error)
 {
     kiln_context *context = analysis->context;
     size_t width = 2 * (size_t)analysis->size, rings = 2 * (size_t)analysis->rings.pair_count;
@@ -181,10 +201,12 @@ kiln_result ki_intake_create(const ki_analysis *analysis, ki_intake **intake, ki
     if (!in)
         return ki_fail_memory(context, error, "an analysis", sizeof *in);
     in->analysis = analysis;
-    in->scratch_size = 2 * 16 * width > 16 * vectors ? 2 * 16 * width : 16 * vectors;
+    in->scratch_size = 2 * 16 * width + (whole ? RING_SET * 3 * width : 0);
+    if (in->scratch_size < 16 * vectors)
+        in->scratch_size = 16 * vectors;
     if (!ki_mul_size(width, 3 * sizeof(double), &row) || !ki_mul_size(row, rings, &ring_bytes))
         ring_bytes = SIZE_MAX;
-    in->rings = ki_alloc(context, ring_bytes, 1);
+    in->rings = whole ? NULL : ki_alloc_raw(context, ring_bytes, 1);
     in->row_sums = ki_alloc_raw(context, (size_t)analysis->size, 3 * sizeof(double));
     in->row_peaks = ki_alloc_raw(context, (size_t)analysis->size, sizeof(float));
     in->candidate_room = 4096;
@@ -192,11 +214,15 @@ kiln_result ki_intake_create(const ki_analysis *analysis, ki_intake **intake, ki
     in->orders =
         ki_alloc_raw(context, ((size_t)analysis->degree + 1) * vectors, 96 * sizeof(double));
     in->scratch = ki_alloc_raw(context, threads * in->scratch_size, sizeof(double));
-    if (in->rings && in->row_sums && in->row_peaks && in->candidates && in->orders && in->scratch)
+    if ((in->rings || whole) && in->row_sums && in->row_peaks && in->candidates && in->orders &&
+        in->scratch) {
+        if (!whole)
+            memset(in->rings, 0, ring_bytes);
         return KILN_OK;
+    }
     ki_intake_destroy(in);
     *intake = NULL;
-    return ki_fail_memory(context, error, "the rings of an analysis", ring_bytes);
+    return ki_fail_memory(context, error, "the rings of an analysis", whole ? row : ring_bytes);
 }
 
 void ki_intake_destroy(ki_intake *intake)
@@ -212,48 +238,41 @@ void ki_intake_destroy(ki_intake *intake)
     ki_free(intake);
 }
 
-void ki_intake_restart(ki_intake *intake)
+// Adds what the rows at hand give to one piece of a ring. Both halves of a row are cut alike, so that
+// a ring half a turn away receives the same piece of the other half. Sums go in the order of the
+// rows, however many come at a time.
+static void spread_piece(const ki_intake *in, int ring, int half, int piece, double *accumulator)
 {
-    const ki_analysis *analysis = intake->analysis;
-    intake->row_count = intake->candidate_count = 0;
-    memset(intake->total, 0, sizeof intake->total);
-    memset(intake->rings, 0,
-           (size_t)analysis->rings.pair_count * (size_t)analysis->size * 12 * sizeof(double));
-}
-
-int ki_intake_count(const ki_intake *intake)
-{
-    return intake->row_count;
-}
-
-// Where a ring that may lie beyond a pole really is, and whether half a turn away.
-static int real_ring(int ring, int count, bool *turned)
-{
-    *turned = ring < 0 || ring >= count;
-    return ring < 0 ? -1 - ring : ring >= count ? 2 * count - 1 - ring : ring;
-}
-
-// Task: some columns of all rings. Both halves of a row are cut alike, so that a ring half a turn
-// away receives the same piece of the other half.
-static void spread_columns(void *data, int index)
-{
-    ki_intake *in = data;
+    enum { MOST = 32 };
     const ki_analysis *a = in->analysis;
-    int half = index / COLUMN_TASKS, piece = index % COLUMN_TASKS, size = a->size;
-    int from = piece * size / COLUMN_TASKS, count = (piece + 1) * size / COLUMN_TASKS - from;
-    size_t here = 3 * ((size_t)half * (size_t)size + (size_t)from);
-    size_t there = 3 * ((size_t)(1 - half) * (size_t)size + (size_t)from);
-    for (int j = 0; j < in->rows_here; j++) {
-        const float *row = in->rows + (size_t)j * (size_t)size * 6;
-        int start = a->row_start[in->row_count + j], end = a->row_start[in->row_count + j + 1];
-        for (int i = start; i < end; i++) {
-            bool turned;
-            int ring = real_ring(a->row_first[in->row_count + j] + i - start,
-                                 2 * a->rings.pair_count, &turned);
-            a->kernels->spread(in->rings + (size_t)ring * (size_t)size * 6 + here,
-                               row + (turned ? there : here), a->row_weights[i], 3 * count);
+    int size = a->size, from = piece * size / PIECES, count = (piece + 1) * size / PIECES - from;
+    ptrdiff_t here = 3 * ((ptrdiff_t)half * size + from);
+    ptrdiff_t there = 3 * ((ptrdiff_t)(1 - half) * size + from), offsets[MOST];
+    double weights[MOST];
+    int n = 0;
+    for (int i = a->ring_start[ring]; i < a->ring_start[ring + 1]; i++) {
+        const ki_share *share = &a->shares[i];
+        int row = share->row - in->row_count;
+        if (row < 0 || row >= in->rows_here)
+            continue;
+        offsets[n] = (ptrdiff_t)row * size * 6 + (share->turned ? there : here);
+        weights[n++] = share->weight;
+        if (n == MOST) {
+            a->kernels->spread(accumulator + here, in->rows, offsets, weights, n, 3 * count);
+            n = 0;
         }
     }
+    if (n)
+        a->kernels->spread(accumulator + here, in->rows, offsets, weights, n, 3 * count);
+}
+
+// Task: a piece of all rings.
+static void spread_rows(void *data, int index)
+{
+    ki_intake *in = data;
+    for (int ring = 0; ring < 2 * in->analysis->rings.pair_count; ring++)
+        spread_piece(in, ring, index / PIECES, index % PIECES,
+                     in->rings + (ptrdiff_t)ring * in->analysis->size * 6);
 }
 
 static void sum_one_row(void *data, int index)
@@ -323,16 +342,16 @@ kiln_result ki_intake_rows(ki_intake *in, const float *rows, int count, kiln_err
     in->rows_here = count;
     ki_parallel_for(in->analysis->context, count, sum_one_row, in);
     gather_candidates(in);
-    ki_parallel_for(in->analysis->context, 2 * COLUMN_TASKS, spread_columns, in);
+    ki_parallel_for(in->analysis->context, 2 * PIECES, spread_rows, in);
     in->row_count += count;
     return KILN_OK;
 }
 
-// Takes the suns out of the rings and into the spectrum.
+// Decides which candidates are suns.
 static bool settle_suns(ki_intake *in, kiln_spectrum *spectrum)
 {
     const ki_analysis *a = in->analysis;
-    int size = a->size, count = 0;
+    int count = 0;
     prune(in);
     for (int i = 0; i < in->candidate_count; i++) {
         const ki_sun *sun = &in->candidates[i];
@@ -350,44 +369,38 @@ static bool settle_suns(ki_intake *in, kiln_spectrum *spectrum)
         return false;
     memcpy(spectrum->suns, in->candidates, (size_t)count * sizeof *spectrum->suns);
     spectrum->sun_count = count;
-    for (int i = 0; i < count; i++) {
-        const ki_sun *sun = &spectrum->suns[i];
-        int start = a->row_start[sun->row], end = a->row_start[sun->row + 1];
-        for (int k = start; k < end; k++) {
-            bool turned;
-            int ring =
-                real_ring(a->row_first[sun->row] + k - start, 2 * a->rings.pair_count, &turned);
-            int column = (sun->column + (turned ? size : 0)) % (2 * size);
-            double *at = in->rings + 3 * ((size_t)ring * 2 * (size_t)size + (size_t)column);
-            for (int c = 0; c < 3; c++)
-                at[c] -= a->row_weights[k] * (double)sun->radiance[c];
-        }
-    }
     return true;
 }
 
 // ---------------------------------------------------------------------------------------- analysis
 
-// Task: the Fourier transforms of eight pairs of rings, one channel. Real and imaginary part carry
-// the northern and the southern ring; their sum and difference meet the even and odd functions.
-static void transform_rings(void *data, int worker, int index)
+// Takes the suns out of a ring.
+static void dim_ring(const ki_intake *in, int ring, double *accumulator)
 {
-    ki_intake *in = data;
     const ki_analysis *a = in->analysis;
-    int vector = index / 3, channel = index % 3, width = 2 * a->size;
-    int rings = 2 * a->rings.pair_count;
-    size_t pitch = 3 * (size_t)width, vectors = (size_t)a->rings.vector_count;
-    double *buffer = in->scratch + (size_t)worker * in->scratch_size;
-    const double *north[KI_LANES], *south[KI_LANES];
-    for (int j = 0; j < KI_LANES; j++) {
-        north[j] = in->rings + (size_t)(KI_LANES * vector + j) * pitch + channel;
-        south[j] = in->rings + (size_t)(rings - 1 - KI_LANES * vector - j) * pitch + channel;
-    }
-    for (int x = 0; x < width; x++)
-        for (int j = 0; j < KI_LANES; j++) {
-            buffer[16 * x + j] = north[j][3 * x];
-            buffer[16 * x + 8 + j] = south[j][3 * x];
+    for (int k = a->ring_start[ring]; k < a->ring_start[ring + 1]; k++)
+        for (int i = 0; i < in->spectrum->sun_count; i++) {
+            const ki_share *share = &a->shares[k];
+            const ki_sun *sun = &in->spectrum->suns[i];
+            if (sun->row != share->row)
+                continue;
+            int column = (sun->column + (share->turned ? a->size : 0)) % (2 * a->size);
+            for (int c = 0; c < 3; c++)
+                accumulator[3 * column + c] -= share->weight * (double)sun->radiance[c];
         }
+}
+
+// The Fourier transforms of eight pairs of rings, one channel. Real and imaginary part carry the
+// northern and the southern ring; their sum and difference meet the even and odd functions.
+static void transform_channel(const ki_intake *in, int vector, int channel, double *const *rings,
+                              double *buffer)
+{
+    const ki_analysis *a = in->analysis;
+    int width = 2 * a->size;
+    size_t vectors = (size_t)a->rings.vector_count;
+    for (int x = 0; x < width; x++)
+        for (int j = 0; j < RING_SET; j++)
+            buffer[RING_SET * x + j] = rings[j][3 * x + channel];
     const double *z = a->kernels->fft(&a->fft, buffer, buffer + 16 * (size_t)width);
     for (int m = 0, i = 0; m <= a->degree; m++, i = i + 1 == width ? 0 : i + 1) {
         if (vector < a->rings.first[m])
@@ -407,6 +420,33 @@ static void transform_rings(void *data, int worker, int index)
     }
 }
 
+// Task: eight pairs of rings, gathered from the rows where those are at hand.
+static void transform_rings(void *data, int worker, int vector)
+{
+    ki_intake *in = data;
+    const ki_analysis *a = in->analysis;
+    size_t pitch = 6 * (size_t)a->size, buffers = 2 * RING_SET * 2 * (size_t)a->size;
+    double *buffer = in->scratch + (size_t)worker * in->scratch_size, *rings[RING_SET];
+    int number[RING_SET];
+    for (int j = 0; j < KI_LANES; j++) {
+        number[j] = KI_LANES * vector + j;
+        number[KI_LANES + j] = 2 * a->rings.pair_count - 1 - number[j];
+    }
+    for (int j = 0; j < RING_SET; j++)
+        rings[j] = in->rings ? in->rings + (size_t)number[j] * pitch
+                             : buffer + buffers + (size_t)j * pitch;
+    if (!in->rings) {
+        memset(rings[0], 0, RING_SET * pitch * sizeof(double));
+        for (int piece = 0; piece < 2 * PIECES; piece++)
+            for (int j = 0; j < RING_SET; j++)
+                spread_piece(in, number[j], piece / PIECES, piece % PIECES, rings[j]);
+    }
+    for (int j = 0; j < RING_SET; j++)
+        dim_ring(in, number[j], rings[j]);
+    for (int channel = 0; channel < 3; channel++)
+        transform_channel(in, vector, channel, rings, buffer);
+}
+
 // Task: one order.
 static void analyze_order(void *data, int worker, int m)
 {
@@ -424,19 +464,36 @@ static void analyze_order(void *data, int worker, int m)
             out[KI_COMPONENTS * i + c] *= a->legendre.scale[row + (size_t)i];
 }
 
-kiln_result ki_intake_finish(ki_intake *in, kiln_spectrum *spectrum, kiln_error *error)
+static kiln_result analyze_rings(ki_intake *in, kiln_spectrum *spectrum, kiln_error *error)
 {
     const ki_analysis *a = in->analysis;
-    if (in->row_count != a->size)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "the panorama has %d rows, only %d came",
-                       a->size, in->row_count);
     if (!settle_suns(in, spectrum))
         return ki_fail_memory(a->context, error, "the list of suns",
                               (size_t)in->candidate_count * sizeof(ki_sun));
     in->spectrum = spectrum;
-    ki_parallel_workers(a->context, 3 * a->rings.vector_count, transform_rings, in);
+    ki_parallel_workers(a->context, a->rings.vector_count, transform_rings, in);
     ki_parallel_workers(a->context, a->degree + 1, analyze_order, in);
     return KILN_OK;
+}
+
+kiln_result ki_intake_finish(ki_intake *in, kiln_spectrum *spectrum, kiln_error *error)
+{
+    if (in->row_count != in->analysis->size)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "the panorama has %d rows, only %d came",
+                       in->analysis->size, in->row_count);
+    return analyze_rings(in, spectrum, error);
+}
+
+kiln_result ki_intake_whole(ki_intake *in, const float *rows, kiln_spectrum *spectrum,
+                            kiln_error *error)
+{
+    in->row_count = in->candidate_count = 0;
+    memset(in->total, 0, sizeof in->total);
+    in->rows = rows;
+    in->rows_here = in->analysis->size;
+    ki_parallel_for(in->analysis->context, in->rows_here, sum_one_row, in);
+    gather_candidates(in);
+    return analyze_rings(in, spectrum, error);
 }
 
 // -------------------------------------------------------------------------------------------- suns

@@ -25,6 +25,13 @@ struct kiln_spectrum {
     int sun_count;
 };
 
+/// What a ring receives from a row.
+typedef struct ki_share {
+    int row;
+    bool turned; // across a pole: from the texels half a turn away
+    double weight;
+} ki_share;
+
 /// All that depends on sizes only.
 typedef struct ki_analysis {
     kiln_context *context;
@@ -32,11 +39,10 @@ typedef struct ki_analysis {
     int size, degree;
     ki_legendre legendre;
     ki_rings rings;
-    ki_fft fft;     // of a row
-    double *column; // [degree + 1][2], a column's width and place: the integral of exp(-i m phi)
-    int *row_first; // [size], first ring a row is spread to; may lie beyond a pole
-    int *row_start; // [size + 1], into row_weights
-    double *row_weights;
+    ki_fft fft;       // of a row
+    double *column;   // [degree + 1][2], a column's width and place: the integral of exp(-i m phi)
+    int *ring_start;  // [rings + 1], into shares
+    ki_share *shares; // by ring, then by row
 } ki_analysis;
 
 /// For panoramas of `size` rows; `density` guides the interpolation, see ki_taps_design.
@@ -48,16 +54,18 @@ void ki_analysis_destroy(ki_analysis *analysis);
 kiln_result ki_spectrum_create(const ki_analysis *analysis, kiln_spectrum **spectrum,
                                kiln_error *error);
 
-/// A panorama on its way in. Rows north to south, any number at a time.
+/// A panorama on its way in: `whole`, any number of times, or once in rows from north to south. Rows
+/// want all rings in memory, a whole one no more than the rings of a vector a thread.
 typedef struct ki_intake ki_intake;
-kiln_result ki_intake_create(const ki_analysis *analysis, ki_intake **intake, kiln_error *error);
+kiln_result ki_intake_create(const ki_analysis *analysis, bool whole, ki_intake **intake,
+                             kiln_error *error);
 void ki_intake_destroy(ki_intake *intake);
-/// Forgets all rows.
-void ki_intake_restart(ki_intake *intake);
+/// Writes the spectrum of a whole panorama, `size` rows.
+kiln_result ki_intake_whole(ki_intake *intake, const float *rows, kiln_spectrum *spectrum,
+                            kiln_error *error);
+/// Takes the next rows.
 kiln_result ki_intake_rows(ki_intake *intake, const float *rows, int count, kiln_error *error);
-/// Rows taken so far.
-int ki_intake_count(const ki_intake *intake);
-/// Writes the spectrum. The panorama must be complete. The intake can be restarted.
+/// Writes the spectrum once all rows have come.
 kiln_result ki_intake_finish(ki_intake *intake, kiln_spectrum *spectrum, kiln_error *error);
 
 /// Adds the suns' own coefficients up to `degree` to `a`, rows as for that degree.
