@@ -21,7 +21,7 @@ static void release(void *user, void *memory, size_t size)
 
 static kiln_result bake(kiln_context *context, const kiln_map *in, kiln_error *error)
 {
-    static const float roughness[] = {0, 0.05f, 0.5f};
+    static const float roughness[] = {0, 0.4f, 0.8f};
     kiln_map out, cube;
     kiln_spectrum *spectrum = NULL;
     kiln_sh sh;
@@ -31,7 +31,7 @@ static kiln_result bake(kiln_context *context, const kiln_map *in, kiln_error *e
         assert_null(out.level[0]);
         return result;
     }
-    result = kiln_prefilter(context, &out, NULL, &cube, error); // through a panorama
+    result = kiln_prefilter(context, &out, &def, &cube, error); // through a panorama
     if (result == KILN_OK)
         result = kiln_spectrum_analyze(context, in, 20, &spectrum, error);
     if (result == KILN_OK)

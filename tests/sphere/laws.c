@@ -31,6 +31,9 @@ static void white_furnace_stays_white(void **state)
     for (int s = 0; s < 7; s++)
         for (int f = 0; f < 4; f++)
             for (int lobe = 0; lobe < 4; lobe++) {
+                // Size by size for GGX; Lambert, Charlie and Phong where the sizes differ most.
+                if (lobe && s != 0 && s != 4)
+                    continue;
                 kiln_error error;
                 kiln_map in, out;
                 CHECK_OK(kiln_map_create(context, KILN_SHAPE_PANORAMA, sizes[s], 1, &in, &error));
