@@ -57,6 +57,10 @@ kiln_result ki_prefilter_resolve(const kiln_prefilter_def *def, kiln_prefilter_d
     if (!(fabs(d.rotation) <= 1e6))
         return ki_fail(error, KILN_ERROR_ARGUMENT, "rotation is %g degrees, it must be within 1e6",
                        d.rotation);
+    d.tolerance = d.tolerance != 0 ? d.tolerance : ki_prefilter_tolerance;
+    if (!(d.tolerance >= 1e-6 && d.tolerance <= 0.01))
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "tolerance is %g, it must be 1e-6 to 0.01",
+                       d.tolerance);
     for (int i = 0; i < d.level_count; i++) {
         roughness[i] = d.level_count > 1 ? (float)i / (float)(d.level_count - 1) : 0;
         if (d.roughness)
@@ -72,11 +76,12 @@ kiln_result ki_prefilter_resolve(const kiln_prefilter_def *def, kiln_prefilter_d
     return KILN_OK;
 }
 
-kiln_result ki_lobe_spectrum(kiln_context *context, const kiln_lobe *lobe, bool split,
-                             ki_zonal *zonal, ki_zonal_spectrum *spectrum, kiln_error *error)
+kiln_result ki_lobe_spectrum(kiln_context *context, const kiln_lobe *lobe, double tolerance,
+                             bool split, ki_zonal *zonal, ki_zonal_spectrum *spectrum,
+                             kiln_error *error)
 {
     *zonal = (ki_zonal){.lobe = *lobe};
-    double tolerance = ki_prefilter_tolerance, guess = 160 + 14 / ki_lobe_width(lobe);
+    double guess = 160 + 14 / ki_lobe_width(lobe);
     // Charlie is narrow at the horizon, not around its centre.
     split = split && lobe->kind != KILN_LOBE_CHARLIE;
     int limit = guess < KILN_MAX_DEGREE ? (int)guess : KILN_MAX_DEGREE;
@@ -119,7 +124,8 @@ kiln_result ki_plan_create(kiln_context *context, int source_size, const kiln_pr
     for (int i = 0; i < p->def.level_count; i++) {
         if (ki_is_mirror(&lobes[i]))
             continue;
-        result = ki_lobe_spectrum(context, &lobes[i], true, &zonals[i], &spectra[i], error);
+        result = ki_lobe_spectrum(context, &lobes[i], p->def.tolerance, true, &zonals[i],
+                                  &spectra[i], error);
         if (result != KILN_OK)
             goto done;
         degree = ki_max(degree, spectra[i].degree);

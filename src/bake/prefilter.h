@@ -20,8 +20,9 @@ bool ki_is_mirror(const kiln_lobe *lobe);
 
 /// A lobe's spectrum, up to a degree that its width suggests; the whole lobe's. Where KILN_MAX_DEGREE
 /// does not suffice and `split` is true, the part of the lobe around its centre is left out.
-kiln_result ki_lobe_spectrum(kiln_context *context, const kiln_lobe *lobe, bool split,
-                             ki_zonal *zonal, ki_zonal_spectrum *spectrum, kiln_error *error);
+kiln_result ki_lobe_spectrum(kiln_context *context, const kiln_lobe *lobe, double tolerance,
+                             bool split, ki_zonal *zonal, ki_zonal_spectrum *spectrum,
+                             kiln_error *error);
 
 kiln_result ki_plan_create(kiln_context *context, int source_size, const kiln_prefilter_def *def,
                            kiln_plan **plan, kiln_error *error);

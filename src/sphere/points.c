@@ -9,8 +9,13 @@
 
 enum { MOST_CELLS = 24 };
 
-// Two Gauss nodes on [-1, 1].
-static const double node = 0.57735026918962576451;
+// Gauss nodes on [-1/2, 1/2] and their weights.
+static const double gauss_two[2][2] = {{-0.28867513459481288225, 0.28867513459481288225},
+                                       {0.5, 0.5}};
+static const double gauss_four[2][4] = {{-0.43056815579702628761, -0.16999052179242813170,
+                                         0.16999052179242813170, 0.43056815579702628761},
+                                        {0.17392742256872692869, 0.32607257743127307131,
+                                         0.32607257743127307131, 0.17392742256872692869}};
 
 // 1 - cos of the angle between two unit directions, precise for small ones.
 static double versine(const double *a, const double *b)
@@ -19,37 +24,40 @@ static double versine(const double *a, const double *b)
     return 0.5 * (x * x + y * y + z * z);
 }
 
-// Writes n^2 points that share a texel's solid angle, at the given offsets across it in [0, 1], with
-// weights in the proportion of sin theta.
-static void divide(const ki_sun *sun, int size, int n, const double *offsets, double rotation,
-                   double integral, double (*points)[6])
+// Writes n^2 points that share a texel's solid angle: nodes across it in [0, 1], with their weights and
+// in the proportion of sin theta.
+static void divide(const ki_sun *sun, int size, int n, const double *nodes, const double *weights,
+                   double rotation, double integral, double (*points)[6])
 {
     double step = KI_PI / size, sines = 0;
     for (int j = 0; j < n; j++)
-        sines += ki_sin((sun->row + offsets[j]) * step);
+        sines += weights[j] * ki_sin((sun->row + nodes[j]) * step);
     double solid = step * 2 * ki_sin((sun->row + 0.5) * step) * ki_sin(step / 2);
     for (int j = 0; j < n; j++) {
         double sine, cosine;
-        ki_sincos((sun->row + offsets[j]) * step, &sine, &cosine);
-        double area = solid * sine / sines / (n * integral);
+        ki_sincos((sun->row + nodes[j]) * step, &sine, &cosine);
+        double row = solid * weights[j] * sine / (sines * integral);
         for (int i = 0; i < n; i++, points++) {
             double s, c, turned[3];
-            ki_sincos((sun->column + offsets[i]) * step, &s, &c);
+            ki_sincos((sun->column + nodes[i]) * step, &s, &c);
             // See ki_panorama_direction.
             ki_turn((double[3]){-sine * s, cosine, sine * c}, -rotation, turned);
             for (int k = 0; k < 3; k++) {
                 (*points)[k] = turned[k];
-                (*points)[3 + k] = area * (double)sun->radiance[k];
+                (*points)[3 + k] = row * weights[i] * (double)sun->radiance[k];
             }
         }
     }
 }
 
 // A texel of size h seen at a distance or through a lobe of width s errs by about (h/s)^2 / 24 times
-// k'' s^2 / k (20 in GGX's tail) as one point, by (h/s)^4 / 4320 times 840 as two by two Gauss nodes.
+// k'' s^2 / k (20 in GGX's tail) as one point, by (h/s)^4 / 4320 times 840 as two by two Gauss nodes,
+// by 1e-4 (h/s)^8 as four by four.
 kiln_result ki_points_create(const kiln_spectrum *spectrum, const ki_zonal *zonal, double integral,
                              double rotation, ki_points *points, kiln_error *error)
 {
+    static const double middle[1] = {0.5}, whole[1] = {1}, half[2] = {0.5, 0.5};
+    static const double pair[2] = {0.21132486540518711775, 0.78867513459481288225};
     kiln_context *context = spectrum->context;
     *points = (ki_points){.kernels = ki_sphere_kernels(context),
                           .zonal = *zonal,
@@ -58,10 +66,10 @@ kiln_result ki_points_create(const kiln_spectrum *spectrum, const ki_zonal *zona
     if (!suns->count)
         return KILN_OK;
     double texel = KI_PI / spectrum->size, width = ki_lobe_width(&zonal->lobe);
-    // Two by two at least, for texels that the horizon cuts; Charlie is steep there.
-    int least = zonal->lobe.kind == KILN_LOBE_CHARLIE ? 8 : 2;
-    int cells = (int)ki_clamp(ceil(texel / width / 0.1), least, MOST_CELLS);
-    suns->near_count = 4 * cells * cells;
+    // Charlie is steep where the horizon cuts a texel.
+    int least = zonal->lobe.kind == KILN_LOBE_CHARLIE ? 4 : 1;
+    int cells = (int)ki_clamp(ceil(texel / width / 0.5), least, MOST_CELLS), n = 4 * cells;
+    suns->near_count = n * n;
     suns->near_versine = texel > 0.05 * width ? 1 - ki_cos(fmin(KI_PI, 16 * texel)) : -1;
     suns->far_versine = width > 128 * texel ? -1 : 1 - ki_cos(fmin(KI_PI, 128 * texel));
     suns->horizon = texel;
@@ -73,17 +81,17 @@ kiln_result ki_points_create(const kiln_spectrum *spectrum, const ki_zonal *zona
         ki_points_destroy(points);
         return ki_fail_memory(context, error, "the suns", count * near_count * sizeof *suns->near);
     }
-    double middle = 0.5, pair[2] = {0.5 - node / 2, 0.5 + node / 2}, fine[2 * MOST_CELLS];
-    for (int i = 0; i < cells; i++) {
-        fine[2 * i] = (i + pair[0]) / cells;
-        fine[2 * i + 1] = (i + pair[1]) / cells;
+    double nodes[4 * MOST_CELLS], weights[4 * MOST_CELLS];
+    for (int i = 0; i < n; i++) {
+        nodes[i] = (i / 4 + 0.5 + gauss_four[0][i % 4]) / cells;
+        weights[i] = gauss_four[1][i % 4] / cells;
     }
     for (size_t i = 0; i < count; i++) {
         const ki_sun *sun = &spectrum->suns[i];
         int size = spectrum->size;
-        divide(sun, size, 1, &middle, rotation, integral, suns->centre + i);
-        divide(sun, size, 2, pair, rotation, integral, suns->pairs + 4 * i);
-        divide(sun, size, 2 * cells, fine, rotation, integral, suns->near + near_count * i);
+        divide(sun, size, 1, middle, whole, rotation, integral, suns->centre + i);
+        divide(sun, size, 2, pair, half, rotation, integral, suns->pairs + 4 * i);
+        divide(sun, size, n, nodes, weights, rotation, integral, suns->near + near_count * i);
     }
     return KILN_OK;
 }
@@ -136,11 +144,6 @@ typedef struct cell_sum {
 
 static double integrate_cell(const cell_sum *sum, double phi, double theta, double size, int depth)
 {
-    static const double two[2][2] = {{-0.28867513459481288225, 0.28867513459481288225}, {0.5, 0.5}};
-    static const double four[2][4] = {{-0.43056815579702628761, -0.16999052179242813170,
-                                       0.16999052179242813170, 0.43056815579702628761},
-                                      {0.17392742256872692869, 0.32607257743127307131,
-                                       0.32607257743127307131, 0.17392742256872692869}};
     double sine, cosine, s, c, total = 0;
     ki_sincos(theta, &sine, &cosine);
     ki_sincos(phi, &s, &c);
@@ -154,7 +157,8 @@ static double integrate_cell(const cell_sum *sum, double phi, double theta, doub
         return total;
     }
     int n = size > 0.1 * scale ? 4 : 2;
-    const double *offsets = n == 4 ? four[0] : two[0], *weights = n == 4 ? four[1] : two[1];
+    const double *offsets = n == 4 ? gauss_four[0] : gauss_two[0];
+    const double *weights = n == 4 ? gauss_four[1] : gauss_two[1];
     for (int j = 0; j < n; j++) {
         ki_sincos(theta + offsets[j] * size, &sine, &cosine);
         for (int i = 0; i < n; i++) {

@@ -9,7 +9,7 @@
 // A sun holds at least this much of the panorama's light in one channel ...
 static const double sun_share = 1e-3;
 // ... and is at least this much brighter than the mean.
-static const double sun_contrast = 16;
+static const double sun_contrast = 200;
 
 // ---------------------------------------------------------------------------------------- the plan
 
