@@ -9,13 +9,9 @@ static const char *const names[] = {"sky",   "city",   "courtyard", "forest", "i
 enum { NAME_COUNT = sizeof names / sizeof *names, TEXELS = 256 };
 static const double rms_bar = 1e-4, largest_bar = 2e-3;
 
-typedef struct figures {
-    double rms, largest;
-} figures;
-
 // All texels of a small level, else TEXELS of them at random.
-static bool check_level(bench *b, kiln_context *context, const kiln_map *source,
-                        const kiln_map *map, int level, figures *f)
+bool bench_check_level(bench *b, kiln_context *context, const kiln_map *source, const kiln_map *map,
+                       int level, bench_figures *f)
 {
     static double directions[TEXELS][3], truth[TEXELS][3];
     size_t chosen[TEXELS], texels = kiln_map_texels(map, level);
@@ -72,7 +68,8 @@ static double check_mirror(const kiln_map *source, const kiln_map *map)
     return fabs(mean[1] / weights[1] / (mean[0] / weights[0]) - 1);
 }
 
-static bool check_environment(bench *b, kiln_context *context, const char *name, figures *worst)
+static bool check_environment(bench *b, kiln_context *context, const char *name,
+                              bench_figures *worst)
 {
     kiln_map source = {0}, map = {0};
     kiln_result result;
@@ -93,10 +90,10 @@ static bool check_environment(bench *b, kiln_context *context, const char *name,
         bench_value(b, row, "relative", mirror);
         worst->rms = fmax(worst->rms, mirror);
     }
-    figures own = {0};
+    bench_figures own = {0};
     for (int k = 1; k < map.level_count && done; k++) {
-        figures f = {0};
-        done = check_level(b, context, &source, &map, k, &f);
+        bench_figures f = {0};
+        done = bench_check_level(b, context, &source, &map, k, &f);
         own.rms = fmax(own.rms, f.rms);
         own.largest = fmax(own.largest, f.largest);
         printf("%9.1e", f.rms);
@@ -118,7 +115,7 @@ static bool check_environment(bench *b, kiln_context *context, const char *name,
 bool bench_accuracy(bench *b)
 {
     kiln_context *context = NULL;
-    figures worst = {0};
+    bench_figures worst = {0};
     if (kiln_context_create(NULL, &context, &b->error))
         return false;
     printf("  relative rms by roughness (0: the mean), 256 texels a level; last, the largest "

@@ -77,6 +77,11 @@ void bench_bar(bench *b, const char *what, double value, const char *unit, doubl
     b->missed |= !reached;
 }
 
+void bench_aim(const char *what, double value, const char *unit, double aim)
+{
+    printf("  %-46s %10.4g %-4s aim %.4g: %.2f times that\n", what, value, unit, aim, value / aim);
+}
+
 bool bench_fail(bench *b, const char *format, ...)
 {
     va_list arguments;

@@ -51,6 +51,8 @@ void bench_value(bench *b, const char *name, const char *unit, double value);
 /// Prints what was reached beside the bar and remembers a miss.
 void bench_bar(bench *b, const char *what, double value, const char *unit, double bar,
                bool at_least);
+/// Prints how far a value is from an aim: at most `aim` is wanted, nothing fails.
+void bench_aim(const char *what, double value, const char *unit, double aim);
 
 /// Sets b->error to a formatted sentence and returns false.
 bool bench_fail(bench *b, const char *format, ...) __attribute__((format(printf, 2, 3)));
@@ -58,6 +60,15 @@ bool bench_fail(bench *b, const char *format, ...) __attribute__((format(printf,
 /// Loads DATA/city.exr, each texel repeated to `size` rows (512 and its multiples), or averaged to
 /// fewer.
 bool bench_city(bench *b, kiln_context *context, int size, kiln_map *map);
+
+/// Relative errors of a level: rms, and the largest of a value.
+typedef struct bench_figures {
+    double rms, largest;
+} bench_figures;
+
+/// Compares a GGX level with brute force.
+bool bench_check_level(bench *b, kiln_context *context, const kiln_map *source, const kiln_map *map,
+                       int level, bench_figures *f);
 
 /// Of every bit of every level.
 unsigned long long bench_hash(const kiln_map *map);

@@ -26,21 +26,19 @@ static bool bake_once(bench *b, kiln_context *context, const kiln_map *source,
 
 // -------------------------------------------------------------------------------------------- probe
 
-bool bench_probe(bench *b)
+static bool probe_at(bench *b, kiln_context *context, const kiln_map *source, double tolerance)
 {
-    kiln_context *context = NULL;
-    kiln_context_def one = {.thread_count = 1};
-    kiln_prefilter_def def = {.size = 64, .level_count = 7};
-    kiln_map source = {0}, map = {0};
+    kiln_prefilter_def def = {.size = 64, .level_count = 7, .tolerance = tolerance};
+    kiln_map map = {0};
     kiln_plan *plan = NULL;
     double create[BENCH_MAX_RUNS], execute[BENCH_MAX_RUNS];
-    bool done =
-        !kiln_context_create(&one, &context, &b->error) && bench_city(b, context, 128, &source);
+    bench_figures worst = {0};
+    bool done = true;
     for (int i = 0; i < b->runs && done; i++) {
         kiln_plan_destroy(plan);
         plan = NULL;
         double start = bench_cpu();
-        done = !kiln_plan_create(context, source.size, &def, &plan, &b->error);
+        done = !kiln_plan_create(context, source->size, &def, &plan, &b->error);
         create[i] = bench_cpu() - start;
     }
     done = done && !kiln_plan_map(plan, &map, &b->error);
@@ -49,19 +47,43 @@ bool bench_probe(bench *b)
         execute[i] = INFINITY;
         for (int k = 0; k < 20 && done; k++) {
             double start = bench_cpu();
-            done = !kiln_plan_execute(plan, &source, &map, &b->error);
+            done = !kiln_plan_execute(plan, source, &map, &b->error);
             execute[i] = fmin(execute[i], bench_cpu() - start);
         }
     }
+    for (int l = 1; l < map.level_count && done; l++) {
+        bench_figures f;
+        done = bench_check_level(b, context, source, &map, l, &f);
+        worst.rms = fmax(worst.rms, f.rms);
+        worst.largest = fmax(worst.largest, f.largest);
+    }
     if (done) {
+        char name[64];
         bench_times c = bench_sum_up(create, b->runs), e = bench_sum_up(execute, b->runs);
-        bench_row(b, "plan create", "s", c);
-        bench_row(b, "plan execute", "s", e);
+        printf("  tolerance %g: degree %d, rms error %.1e, largest %.1e\n", tolerance,
+               kiln_spectrum_degree(kiln_plan_spectrum(plan)), worst.rms, worst.largest);
+        snprintf(name, sizeof name, "plan create, %g", tolerance);
+        bench_row(b, name, "s", c);
         printf("  %-46s %10.3f ms\n", "plan, once", 1e3 * c.median);
-        bench_bar(b, "execute, CPU", 1e3 * e.median, "ms", 2, false);
+        snprintf(name, sizeof name, "plan execute, %g", tolerance);
+        bench_row(b, name, "s", e);
+        bench_aim("execute, CPU", 1e3 * e.median, "ms", 2);
     }
     kiln_map_free(&map);
     kiln_plan_destroy(plan);
+    return done;
+}
+
+bool bench_probe(bench *b)
+{
+    static const double tolerances[] = {1.5e-4, 1e-3, 1e-2};
+    kiln_context *context = NULL;
+    kiln_context_def one = {.thread_count = 1};
+    kiln_map source = {0};
+    bool done =
+        !kiln_context_create(&one, &context, &b->error) && bench_city(b, context, 128, &source);
+    for (int i = 0; i < 3 && done; i++)
+        done = probe_at(b, context, &source, tolerances[i]);
     kiln_map_free(&source);
     kiln_context_destroy(context);
     return done;
@@ -218,7 +240,7 @@ bool bench_files(bench *b)
         bench_value(b, "floor", "s", floor_time);
         double ratio = (files + sums[BAKE].median) / files;
         bench_value(b, "whole over files", "ratio", ratio);
-        bench_bar(b, "(read + bake + write) / (read + write)", ratio, "", 1.5, false);
+        bench_aim("(read + bake + write) / (read + write)", ratio, "", 1.5);
     }
     kiln_context_destroy(context);
     return done;
