@@ -120,7 +120,8 @@ kiln_result ki_plan_create(kiln_context *context, int source_size, const kiln_pr
     if (result != KILN_OK)
         goto done;
 
-    int degree = 192;
+    // Short spectra cost little, and with more rings a constant is kept to the last float.
+    int degree = p->def.tolerance < 1e-3 ? 192 : 64;
     for (int i = 0; i < p->def.level_count; i++) {
         if (ki_is_mirror(&lobes[i]))
             continue;
