@@ -10,9 +10,12 @@
 
 // ------------------------------------------------------------------------------------------ errors
 
-/// Writes the sentence (printf's format) to `error` unless that is NULL, and returns `result`.
-kiln_result ki_fail(kiln_error *error, kiln_result result, const char *format, ...)
+/// Writes the result and its sentence (printf's format) to `error` unless that is NULL.
+void ki_describe(kiln_error *error, kiln_result result, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+
+/// The same, and is `result`: a macro, so that compilers see that it is not KILN_OK.
+#define ki_fail(error, result, ...) (ki_describe((error), (result), __VA_ARGS__), (result))
 
 // ------------------------------------------------------------------------------------------ memory
 
@@ -23,9 +26,16 @@ void *ki_alloc(kiln_context *context, size_t count, size_t size);
 void *ki_alloc_raw(kiln_context *context, size_t count, size_t size);
 /// `memory` may be NULL. It knows its context.
 void ki_free(void *memory);
-/// Fails with the sentence "out of memory: WHAT needs N bytes, ...".
-kiln_result ki_fail_memory(kiln_context *context, kiln_error *error, const char *what,
-                           size_t byte_count);
+/// Writes the sentence "out of memory: WHAT needs N bytes, ...".
+void ki_describe_memory(kiln_context *context, kiln_error *error, const char *what,
+                        size_t byte_count);
+/// Fails with that sentence.
+static inline kiln_result ki_fail_memory(kiln_context *context, kiln_error *error, const char *what,
+                                         size_t byte_count)
+{
+    ki_describe_memory(context, error, what, byte_count);
+    return KILN_ERROR_MEMORY;
+}
 /// Multiplies, or returns false on overflow.
 bool ki_mul_size(size_t a, size_t b, size_t *product);
 

@@ -15,7 +15,7 @@ const char *kiln_version(void)
     return KI_STR(KILN_VERSION_MAJOR) "." KI_STR(KILN_VERSION_MINOR) "." KI_STR(KILN_VERSION_PATCH);
 }
 
-kiln_result ki_fail(kiln_error *error, kiln_result result, const char *format, ...)
+void ki_describe(kiln_error *error, kiln_result result, const char *format, ...)
 {
     if (error) {
         error->result = result;
@@ -24,7 +24,6 @@ kiln_result ki_fail(kiln_error *error, kiln_result result, const char *format, .
         vsnprintf(error->message, sizeof error->message, format, list);
         va_end(list);
     }
-    return result;
 }
 
 // Every block is preceded by 64 bytes that name its owner and size.
@@ -95,14 +94,16 @@ void ki_free(void *memory)
     context->def.release(context->def.allocator_user, head, size);
 }
 
-kiln_result ki_fail_memory(kiln_context *context, kiln_error *error, const char *what,
-                           size_t byte_count)
+void ki_describe_memory(kiln_context *context, kiln_error *error, const char *what,
+                        size_t byte_count)
 {
     if (context->def.memory_limit)
-        return ki_fail(error, KILN_ERROR_MEMORY,
-                       "out of memory: %s needs %zu bytes, %zu are held, the limit is %zu", what,
-                       byte_count, atomic_load(&context->memory_held), context->def.memory_limit);
-    return ki_fail(error, KILN_ERROR_MEMORY, "out of memory: %s needs %zu bytes", what, byte_count);
+        ki_describe(error, KILN_ERROR_MEMORY,
+                    "out of memory: %s needs %zu bytes, %zu are held, the limit is %zu", what,
+                    byte_count, atomic_load(&context->memory_held), context->def.memory_limit);
+    else
+        ki_describe(error, KILN_ERROR_MEMORY, "out of memory: %s needs %zu bytes", what,
+                    byte_count);
 }
 
 kiln_result kiln_context_create(const kiln_context_def *def, kiln_context **context,
