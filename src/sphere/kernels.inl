@@ -38,6 +38,7 @@ static inline vec positive(vec x)
 {
     return x > 0 ? x : 0;
 }
+enum { FLOATS = 1 };
 typedef float floats;
 #else
 typedef int64_t mask __attribute__((vector_size(8 * KI_WIDTH)));
@@ -46,9 +47,9 @@ static inline vec positive(vec x)
 {
     return (vec)((mask)x & (mask)(x > 0));
 }
-typedef float floats __attribute__((vector_size(4 * (KI_WIDTH < 4 ? 4 : 8)), may_alias));
+enum { FLOATS = KI_WIDTH < 4 ? 4 : 8 };
+typedef float floats __attribute__((vector_size(4 * FLOATS), may_alias));
 #endif
-enum { FLOATS = sizeof(floats) / sizeof(float) };
 
 // The next KI_WIDTH floats as doubles.
 static inline vec widen(const float *p)
@@ -87,12 +88,12 @@ static inline void store_twisted(double *to, vec re, vec im, const double *w)
 
 static void pass2(const ki_fft_pass *pass, const double *x, double *y)
 {
-    int m = pass->length / 2, s = pass->stride;
-    for (int p = 0; p < m; p++) {
+    ptrdiff_t m = pass->length / 2, s = pass->stride;
+    for (ptrdiff_t p = 0; p < m; p++) {
         const double *w = pass->twiddles + 2 * p;
-        for (int q = 0; q < s; q++) {
-            const double *a = x + 16 * (size_t)(q + s * p), *b = a + 16 * (size_t)(s * m);
-            double *to = y + 16 * (size_t)(q + s * 2 * p);
+        for (ptrdiff_t q = 0; q < s; q++) {
+            const double *a = x + 16 * (q + s * p), *b = a + 16 * s * m;
+            double *to = y + 16 * (q + s * 2 * p);
             for (int h = 0; h < KI_LANES; h += KI_WIDTH) {
                 vec ar = load(a + h), ai = load(a + 8 + h), br = load(b + h), bi = load(b + 8 + h);
                 store(to + h, ar + br);
@@ -106,13 +107,12 @@ static void pass2(const ki_fft_pass *pass, const double *x, double *y)
 static void pass3(const ki_fft_pass *pass, const double *x, double *y)
 {
     const double half_root3 = 0.86602540378443864676;
-    int m = pass->length / 3, s = pass->stride;
-    for (int p = 0; p < m; p++) {
+    ptrdiff_t m = pass->length / 3, s = pass->stride;
+    for (ptrdiff_t p = 0; p < m; p++) {
         const double *w = pass->twiddles + 4 * p;
-        for (int q = 0; q < s; q++) {
-            const double *a = x + 16 * (size_t)(q + s * p), *b = a + 16 * (size_t)(s * m),
-                         *c = b + 16 * (size_t)(s * m);
-            double *to = y + 16 * (size_t)(q + s * 3 * p);
+        for (ptrdiff_t q = 0; q < s; q++) {
+            const double *a = x + 16 * (q + s * p), *b = a + 16 * s * m, *c = b + 16 * s * m;
+            double *to = y + 16 * (q + s * 3 * p);
             for (int h = 0; h < KI_LANES; h += KI_WIDTH) {
                 vec ar = load(a + h), ai = load(a + 8 + h);
                 vec br = load(b + h), bi = load(b + 8 + h);
@@ -131,13 +131,12 @@ static void pass3(const ki_fft_pass *pass, const double *x, double *y)
 
 static void pass4(const ki_fft_pass *pass, const double *x, double *y)
 {
-    int m = pass->length / 4, s = pass->stride;
-    size_t apart = 16 * (size_t)(s * m);
-    for (int p = 0; p < m; p++) {
+    ptrdiff_t m = pass->length / 4, s = pass->stride, apart = 16 * s * m;
+    for (ptrdiff_t p = 0; p < m; p++) {
         const double *w = pass->twiddles + 6 * p;
-        for (int q = 0; q < s; q++) {
-            const double *a = x + 16 * (size_t)(q + s * p);
-            double *to = y + 16 * (size_t)(q + s * 4 * p);
+        for (ptrdiff_t q = 0; q < s; q++) {
+            const double *a = x + 16 * (q + s * p);
+            double *to = y + 16 * (q + s * 4 * p);
             for (int h = 0; h < KI_LANES; h += KI_WIDTH) {
                 vec ar = load(a + h), ai = load(a + 8 + h);
                 vec br = load(a + apart + h), bi = load(a + apart + 8 + h);
@@ -158,25 +157,24 @@ static void pass4(const ki_fft_pass *pass, const double *x, double *y)
 // Any other radix, by its definition.
 static void pass_any(const ki_fft_pass *pass, const double *x, double *y)
 {
-    int r = pass->radix, m = pass->length / r, s = pass->stride;
-    size_t apart = 16 * (size_t)(s * m);
-    for (int p = 0; p < m; p++) {
-        for (int q = 0; q < s; q++) {
-            const double *a = x + 16 * (size_t)(q + s * p);
-            for (int j = 0; j < r; j++) {
+    ptrdiff_t r = pass->radix, m = pass->length / r, s = pass->stride, apart = 16 * s * m;
+    for (ptrdiff_t p = 0; p < m; p++) {
+        for (ptrdiff_t q = 0; q < s; q++) {
+            const double *a = x + 16 * (q + s * p);
+            for (ptrdiff_t j = 0; j < r; j++) {
                 static const double one[2] = {1, 0};
-                double *to = y + 16 * (size_t)(q + s * (r * p + j));
+                double *to = y + 16 * (q + s * (r * p + j));
                 const double *w = j ? pass->twiddles + 2 * (p * (r - 1) + j - 1) : one;
                 for (int h = 0; h < KI_LANES; h += KI_WIDTH) {
                     vec re = load(a + h), im = load(a + 8 + h);
-                    int turn = 0;
-                    for (int k = 1; k < r; k++) {
+                    ptrdiff_t turn = 0;
+                    for (ptrdiff_t k = 1; k < r; k++) {
                         turn += j;
                         turn -= turn >= r ? r : 0;
                         vec wr = splat(pass->roots[2 * turn]),
                             wi = splat(pass->roots[2 * turn + 1]);
-                        vec br = load(a + apart * (size_t)k + h);
-                        vec bi = load(a + apart * (size_t)k + 8 + h);
+                        vec br = load(a + apart * k + h);
+                        vec bi = load(a + apart * k + 8 + h);
                         re += br * wr - bi * wi;
                         im += br * wi + bi * wr;
                     }
@@ -221,12 +219,12 @@ static void spread(double *accumulator, const float *rows, const ptrdiff_t *offs
     int i = 0;
     for (; i + AT_ONCE * KI_WIDTH <= count; i += AT_ONCE * KI_WIDTH) {
         vec sum[AT_ONCE];
-        for (int n = 0; n < AT_ONCE; n++)
+        for (ptrdiff_t n = 0; n < AT_ONCE; n++)
             sum[n] = load(accumulator + i + n * KI_WIDTH);
         for (int k = 0; k < row_count; k++)
-            for (int n = 0; n < AT_ONCE; n++)
+            for (ptrdiff_t n = 0; n < AT_ONCE; n++)
                 sum[n] += weights[k] * widen(rows + offsets[k] + i + n * KI_WIDTH);
-        for (int n = 0; n < AT_ONCE; n++)
+        for (ptrdiff_t n = 0; n < AT_ONCE; n++)
             store(accumulator + i + n * KI_WIDTH, sum[n]);
     }
     for (; i < count; i++)
@@ -236,11 +234,12 @@ static void spread(double *accumulator, const float *rows, const ptrdiff_t *offs
 
 static float sum_row(const float *row, int count, double sum[3])
 {
-    double sums[3 * KI_LANES] = {0};
-    float peaks[3 * KI_LANES] = {0};
+    enum { AT_ONCE = 3 * KI_LANES };
+    double sums[AT_ONCE] = {0};
+    float peaks[AT_ONCE] = {0};
     int i = 0;
-    for (; i + KI_LANES <= count; i += KI_LANES, row += 3 * KI_LANES)
-        for (int j = 0; j < 3 * KI_LANES; j++) {
+    for (; i + KI_LANES <= count; i += KI_LANES, row += AT_ONCE)
+        for (int j = 0; j < AT_ONCE; j++) {
             sums[j] += (double)row[j];
             peaks[j] = row[j] > peaks[j] ? row[j] : peaks[j];
         }
@@ -251,7 +250,7 @@ static float sum_row(const float *row, int count, double sum[3])
     float peak = 0;
     for (int c = 0; c < 3; c++)
         sum[c] = 0;
-    for (int j = 0; j < 3 * KI_LANES; j++) {
+    for (int j = 0; j < AT_ONCE; j++) {
         sum[j % 3] += sums[j];
         peak = peaks[j] > peak ? peaks[j] : peak;
     }
@@ -265,7 +264,7 @@ static float sum_row(const float *row, int count, double sum[3])
 static void analyze(const double *f, int count, const double *twice_cos, const double *start,
                     const double *data, int first, int last, double *state, double *out)
 {
-    for (int g = first; g < last; g++) {
+    for (ptrdiff_t g = first; g < last; g++) {
         memcpy(state + 16 * g, start + 8 * g, 8 * sizeof *state);
         memset(state + 16 * g + 8, 0, 8 * sizeof *state);
     }
@@ -280,9 +279,9 @@ static void analyze(const double *f, int count, const double *twice_cos, const d
 #if KI_BLOCK == 4
             vec f3 = splat(f[l + 3]), f4 = splat(f[l + 4]);
 #endif
-            for (int g = first; g < last; g++) {
+            for (ptrdiff_t g = first; g < last; g++) {
                 double *st = state + 16 * g + h;
-                const double *even = data + 96 * (size_t)g + h, *odd = even + 48;
+                const double *even = data + 96 * g + h, *odd = even + 48;
                 vec x = load(twice_cos + 8 * g + h);
                 vec q0 = load(st), before = load(st + 8);
                 vec q1 = x * q0 - f1 * before;
@@ -296,7 +295,7 @@ static void analyze(const double *f, int count, const double *twice_cos, const d
                 store(st, q2);
                 store(st + 8, q1);
 #endif
-                for (int c = 0; c < KI_COMPONENTS; c++) {
+                for (ptrdiff_t c = 0; c < KI_COMPONENTS; c++) {
                     vec e = load(even + 8 * c), o = load(odd + 8 * c);
                     acc[0][c] += q0 * e;
                     acc[1][c] += q1 * o;
@@ -333,7 +332,7 @@ static inline void synthesize_one(const double *f, int count, vec x, vec q0, con
         before = q1;
         q0 = q2;
     }
-    for (int c = 0; c < KI_COMPONENTS; c++) {
+    for (ptrdiff_t c = 0; c < KI_COMPONENTS; c++) {
         store(out + 8 * c, e[c]);
         store(out + 48 + 8 * c, o[c]);
     }
@@ -365,7 +364,7 @@ static void synthesize(const double *f, int count, const double *twice_cos, cons
         p0 = p2;
         q0 = q2;
     }
-    for (int c = 0; c < KI_COMPONENTS; c++) {
+    for (ptrdiff_t c = 0; c < KI_COMPONENTS; c++) {
         store(out0 + 8 * c, pe[c]);
         store(out0 + 48 + 8 * c, po[c]);
         store(out1 + 8 * c, qe[c]);
@@ -389,20 +388,20 @@ static void sum_orders(const double *orders, size_t pitch, int count, const doub
     for (int h = 0; h < KI_LANES; h += KI_WIDTH) {
         vec c = load(cosine + h), s = load(sine + h), side = load(sign + h);
         vec re = splat(1), im = splat(0), sums[3];
-        for (int k = 0; k < 3; k++)
+        for (ptrdiff_t k = 0; k < 3; k++)
             sums[k] = (load(orders + 16 * k + h) + side * load(orders + 48 + 16 * k + h)) * 0.5;
         for (int m = 1; m < count; m++) {
             const double *even = orders + pitch * (size_t)m + h, *odd = even + 48;
             vec turned = re * c - im * s;
             im = re * s + im * c;
             re = turned;
-            for (int k = 0; k < 3; k++) {
+            for (ptrdiff_t k = 0; k < 3; k++) {
                 vec a = load(even + 16 * k) + side * load(odd + 16 * k);
                 vec b = load(even + 16 * k + 8) + side * load(odd + 16 * k + 8);
                 sums[k] += a * re - b * im;
             }
         }
-        for (int k = 0; k < 3; k++)
+        for (ptrdiff_t k = 0; k < 3; k++)
             store(rgb + 8 * k + h, sums[k] * 2.0);
     }
 }
@@ -415,7 +414,7 @@ static inline void taps_at(const float *table, double fraction, float taps[KI_TA
     double at = fraction * KI_TAP_STEPS;
     int step = (int)at;
     float t = (float)(at - step);
-    const float *a = table + KI_TAPS * step, *b = a + KI_TAPS;
+    const float *a = table + KI_TAPS * (ptrdiff_t)step, *b = a + KI_TAPS;
     for (int i = 0; i < KI_TAPS; i++)
         taps[i] = a[i] + t * (b[i] - a[i]);
 }
@@ -423,11 +422,11 @@ static inline void taps_at(const float *table, double fraction, float taps[KI_TA
 static void interpolate(const float *grid, size_t plane, size_t pitch, const float *ring_taps,
                         const float *column_taps, const double *position, int count, float *rgb)
 {
-    for (int i = 0; i < count; i++) {
-        size_t ring = (size_t)position[2 * i], column = (size_t)position[2 * i + 1];
+    for (int i = 0; i < count; i++, position += 2) {
+        size_t ring = (size_t)position[0], column = (size_t)position[1];
         float a[KI_TAPS], b[KI_TAPS];
-        taps_at(ring_taps, position[2 * i] - (double)ring, a);
-        taps_at(column_taps, position[2 * i + 1] - (double)column, b);
+        taps_at(ring_taps, position[0] - (double)ring, a);
+        taps_at(column_taps, position[1] - (double)column, b);
         const float *corner = grid + ring * pitch + column;
         for (int c = 0; c < 3; c++, corner += plane) {
             float sums[KI_TAPS];
