@@ -122,7 +122,7 @@ kiln_result kiln_spectrum_power(const kiln_spectrum *spectrum, double (*power)[3
     for (int m = 0; m <= degree && result == KILN_OK; m++) {
         const double *row = a + ki_coefficient_row(degree, m);
         for (int l = m; l <= degree; l++, row += KI_COMPONENTS)
-            for (int c = 0; c < 3; c++)
+            for (size_t c = 0; c < 3; c++)
                 power[l][c] +=
                     (m ? 2 : 1) * (row[2 * c] * row[2 * c] + row[2 * c + 1] * row[2 * c + 1]);
     }

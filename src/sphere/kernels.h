@@ -12,9 +12,10 @@
 
 enum {
     KI_LANES = 8,
-    KI_COMPONENTS = 6, // real and imaginary parts of three channels
-    KI_TAPS = 8,       // of the interpolation between rings, and between a ring's points
-    KI_TAP_STEPS = 256 // fractions the taps are tabulated for
+    KI_COMPONENTS = 6,  // real and imaginary parts of three channels
+    KI_TAPS = 8,        // of the interpolation between rings, and between a ring's points
+    KI_TAP_STEPS = 256, // fractions the taps are tabulated for
+    KI_TAP_TABLE = KI_TAPS * (KI_TAP_STEPS + 1) // taps in a table, with both ends
 };
 
 /// One pass of a Stockham FFT.

@@ -47,7 +47,7 @@ struct ki_level {
     const kiln_spectrum *spectrum;
     const kiln_map *panorama;
     double rotation;
-    const ki_points *points;
+    ki_points points;
     kiln_map *map;
     int index;
 };
@@ -55,8 +55,8 @@ struct ki_level {
 static bool design_taps(ki_level *level)
 {
     double *density = ki_alloc_raw(level->context, (size_t)level->degree + 1, sizeof *density);
-    double *taps = ki_alloc_raw(level->context, KI_TAPS * (KI_TAP_STEPS + 1), sizeof *taps);
-    size_t count = (KI_TAP_STEPS + 2) * KI_TAPS; // one row more: a fraction may round up to 1
+    double *taps = ki_alloc_raw(level->context, KI_TAP_TABLE, sizeof *taps);
+    size_t count = KI_TAP_TABLE + KI_TAPS; // one row more: a fraction may round up to 1
     level->ring_taps = ki_alloc(level->context, count, sizeof(float));
     level->column_taps = ki_alloc(level->context, count, sizeof(float));
     bool good = density && taps && level->ring_taps && level->column_taps;
@@ -66,7 +66,7 @@ static bool design_taps(ki_level *level)
         for (int l = 0; l <= level->degree; l++)
             density[l] = level->lobe.k[l] * level->lobe.k[l] / (l + 1);
         ki_taps_design(step, density, level->degree, taps);
-        for (int i = 0; i < KI_TAPS * (KI_TAP_STEPS + 1); i++)
+        for (int i = 0; i < KI_TAP_TABLE; i++)
             out[i] = (float)taps[i];
     }
     ki_free(density);
@@ -148,9 +148,10 @@ static bool plan_grid(ki_level *v, const kiln_map *map)
     if (!ki_rings_create_grid(v->context, v->degree, &v->rings) ||
         !ki_fft_create(v->context, ki_fft_good_length(4 * v->rings.pair_count), &v->fft))
         return false;
-    v->pitch = ((size_t)v->fft.length + 2 * PAD + 15) / 16 * 16;
-    v->plane = v->pitch * (size_t)(2 * v->rings.pair_count + 2 * PAD);
-    v->scratch_size += 2 * 16 * (size_t)v->fft.length;
+    int width = v->fft.length + 2 * PAD, rows = 2 * v->rings.pair_count + 2 * PAD;
+    v->pitch = ((size_t)width + 15) / 16 * 16;
+    v->plane = v->pitch * (size_t)rows;
+    v->scratch_size += (size_t)v->fft.length * 16 * 2;
     v->grid = ki_alloc_raw(v->context, 3 * v->plane, sizeof(float));
     v->positions = ki_alloc_raw(v->context, texels, 2 * sizeof(double));
     if (!v->grid || !v->positions || !design_taps(v))
@@ -239,7 +240,7 @@ static void place_orders(const ki_level *v, const double *orders, int vector, in
     for (int m = 0; m <= v->degree; m++) {
         if (vector < v->rings.first[m])
             continue;
-        const double *even = orders + 192 * (size_t)m + 16 * channel, *odd = even + 48;
+        const double *even = orders + 192 * (size_t)m + 16 * (size_t)channel, *odd = even + 48;
         double *plus = buffer + 16 * (size_t)m, *minus = buffer + 16 * (size_t)(m ? length - m : 0);
         for (int j = 0; j < KI_LANES; j++) {
             double nr = even[j] + odd[j], ni = even[8 + j] + odd[8 + j];
@@ -270,7 +271,7 @@ static const double *synthesize_orders(const ki_level *v, int worker, int index)
             continue;
         }
         v->kernels->synthesize(
-            v->legendre->f + row, v->degree - m + 1, v->rings.twice_cos + 16 * index,
+            v->legendre->f + row, v->degree - m + 1, v->rings.twice_cos + 16 * (size_t)index,
             v->rings.start + 8 * ((size_t)m * (size_t)vectors + 2 * (size_t)index),
             v->coefficients + ki_coefficient_row(v->degree, m), out, out + 96);
     }
@@ -287,7 +288,7 @@ static void fill_grid(void *data, int worker, int index)
     for (int half = 0; half < 2; half++)
         for (int c = 0; c < 3; c++) {
             int vector = 2 * index + half;
-            place_orders(v, orders + 96 * half, vector, c, buffer);
+            place_orders(v, orders + 96 * (size_t)half, vector, c, buffer);
             const double *z = v->kernels->fft(&v->fft, buffer, buffer + 16 * (size_t)length);
             // Transposed in blocks that stay in the first cache.
             float *plane = v->grid + (size_t)c * v->plane + TAP_OFFSET;
@@ -310,7 +311,9 @@ static void fill_places(void *data, int worker, int index)
     ki_level *v = data;
     const double *orders = synthesize_orders(v, worker, index);
     for (int half = 0; half < 2; half++) {
-        const int *start = v->ring_start + KI_LANES * (2 * index + half);
+        size_t vector = 2 * (size_t)index + (size_t)half;
+        const int *start = v->ring_start + KI_LANES * vector;
+        const double *here = orders + 96 * (size_t)half;
         int most = 0;
         for (int j = 0; j < KI_LANES; j++)
             most = ki_max(most, start[j + 1] - start[j]);
@@ -323,7 +326,7 @@ static void fill_places(void *data, int worker, int index)
                 sine[j] = p->sine;
                 sign[j] = p->sign;
             }
-            v->kernels->sum_orders(orders + 96 * half, 192, v->degree + 1, cosine, sine, sign, rgb);
+            v->kernels->sum_orders(here, 192, v->degree + 1, cosine, sine, sign, rgb);
             for (int j = 0; j < KI_LANES; j++)
                 for (int c = 0; start[j] + n < start[j + 1] && c < 3; c++)
                     v->map->level[v->index][3 * v->places[start[j] + n].texel + c] =
@@ -375,9 +378,9 @@ static void find_positions(const ki_level *v, size_t first, int count, double *p
     bool side = face < 2 || face > 3, bottom = face == 3;
     size_t y = at / n, x = at % n, from = (bottom ? n - 1 - y : y) * n + x + (side ? 0 : n * n);
     double turn = quarters[face] * 0.25 * length;
-    for (int i = 0; i < count; i++) {
-        double ring = v->positions[2 * (from + (size_t)i)];
-        double column = v->positions[2 * (from + (size_t)i) + 1] + turn;
+    for (size_t i = 0; i < (size_t)count; i++) {
+        double ring = v->positions[2 * (from + i)];
+        double column = v->positions[2 * (from + i) + 1] + turn;
         positions[2 * i] =
             bottom ? 2 * v->rings.pair_count - 1 + 2 * (PAD - TAP_OFFSET) - ring : ring;
         positions[2 * i + 1] = column >= length ? column - length : column;
@@ -409,7 +412,7 @@ static void add_suns(const ki_level *v, size_t first, int count, float *rgb)
             for (int k = 0; k < 3; k++)
                 directions[KI_LANES * k + j] = d[k];
         }
-        ki_points_add(v->points, directions, sum);
+        ki_points_add(&v->points, directions, sum);
         for (int j = 0; j < KI_LANES && i + j < count; j++)
             for (int c = 0; c < 3; c++)
                 rgb[3 * (i + j) + c] += (float)sum[KI_LANES * c + j];
@@ -446,7 +449,7 @@ static void fill_row(void *data, int index)
             v->kernels->interpolate(v->grid, v->plane, v->pitch, v->ring_taps, v->column_taps,
                                     positions, count, rgb);
         }
-        if (v->points->suns.count)
+        if (v->points.suns.count)
             add_suns(v, first, count, rgb);
         if (v->zonal.outer > 0)
             add_surroundings(v, first, count, rgb);
@@ -458,15 +461,13 @@ static void fill_row(void *data, int index)
 kiln_result ki_level_execute(ki_level *v, const kiln_spectrum *spectrum, const kiln_map *panorama,
                              double rotation, kiln_map *map, int index, kiln_error *error)
 {
-    ki_points points;
     kiln_result result =
-        ki_points_create(spectrum, &v->zonal, v->lobe.integral, rotation, &points, error);
+        ki_points_create(spectrum, &v->zonal, v->lobe.integral, rotation, &v->points, error);
     if (result != KILN_OK)
         return result;
     v->spectrum = spectrum;
     v->panorama = panorama;
     v->rotation = rotation;
-    v->points = &points;
     v->map = map;
     v->index = index;
     int width, height;
@@ -477,6 +478,6 @@ kiln_result ki_level_execute(ki_level *v, const kiln_spectrum *spectrum, const k
     if (!v->places)
         pad_grid(v);
     ki_parallel_for(v->context, height, fill_row, v);
-    ki_points_destroy(&points);
+    ki_points_destroy(&v->points);
     return KILN_OK;
 }

@@ -61,8 +61,8 @@ kiln_result ki_sh_project(const kiln_spectrum *spectrum, int bands, bool irradia
     }
     for (int m = 0; m <= DEGREE; m++)
         for (int l = m; l <= DEGREE && l <= spectrum->degree; l++)
-            memcpy(a + ki_coefficient_row(DEGREE, m) + 6 * (l - m),
-                   spectrum->a + ki_coefficient_row(spectrum->degree, m) + 6 * (l - m),
+            memcpy(a + ki_coefficient_row(DEGREE, m) + 6 * (size_t)(l - m),
+                   spectrum->a + ki_coefficient_row(spectrum->degree, m) + 6 * (size_t)(l - m),
                    6 * sizeof *a);
     kiln_result result = ki_spectrum_add_suns(spectrum, DEGREE, a, error);
     if (result != KILN_OK)
@@ -82,7 +82,7 @@ kiln_result ki_sh_project(const kiln_spectrum *spectrum, int bands, bool irradia
                 ki_sincos(2 * KI_PI * m * (u + rotation / 360), &im, &re);
                 for (int l = 0; l <= DEGREE - m; l++, row += 6) {
                     double p = q * scale[l] * (m ? 2 : 1);
-                    for (int c = 0; c < 3; c++)
+                    for (size_t c = 0; c < 3; c++)
                         value[c] += p * (row[2 * c] * re - row[2 * c + 1] * im);
                     double next = 2 * nodes[j] * q - f[l + 1] * before;
                     before = q;

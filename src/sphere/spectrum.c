@@ -55,8 +55,8 @@ static bool plan_shares(ki_analysis *a, const double *taps)
     ki_gauss_legendre(ROW_NODES, rule[0], rule[1]);
     const double(*nodes)[ROW_NODES] = (const double(*)[ROW_NODES])rule;
     // No row reaches more rings than its height and the taps.
-    double *weights =
-        ki_alloc_raw(a->context, (size_t)(rings / size + KI_TAPS + 2), sizeof *weights);
+    int most = rings / size + KI_TAPS + 2;
+    double *weights = ki_alloc_raw(a->context, (size_t)most, sizeof *weights);
     int *filled = ki_alloc(a->context, (size_t)rings, sizeof *filled);
     a->ring_start = ki_alloc(a->context, (size_t)rings + 1, sizeof *a->ring_start);
     bool good = weights && filled && a->ring_start;
@@ -89,7 +89,7 @@ kiln_result ki_analysis_create(kiln_context *context, int size, int degree, cons
                                ki_analysis **analysis, kiln_error *error)
 {
     ki_analysis *a = *analysis = ki_alloc(context, 1, sizeof *a);
-    double *taps = ki_alloc_raw(context, KI_TAPS * (KI_TAP_STEPS + 1), sizeof *taps);
+    double *taps = ki_alloc_raw(context, KI_TAP_TABLE, sizeof *taps);
     if (!a || !taps)
         goto failed;
     a->context = context;
@@ -107,9 +107,10 @@ kiln_result ki_analysis_create(kiln_context *context, int size, int degree, cons
     double d = KI_PI / size;
     for (int m = 0; m <= degree; m++) {
         double sine, cosine, width = m ? ki_sin(m * d / 2) * 2 / m : d;
+        double *column = a->column + 2 * (size_t)m;
         ki_sincos(-m * d / 2, &sine, &cosine);
-        a->column[2 * m] = cosine * width;
-        a->column[2 * m + 1] = sine * width;
+        column[0] = cosine * width;
+        column[1] = sine * width;
     }
     ki_taps_design(KI_PI / (2 * a->rings.pair_count), density, degree, taps);
     if (!plan_shares(a, taps))
@@ -201,7 +202,7 @@ kiln_result ki_intake_create(const ki_analysis *analysis, bool whole, ki_intake 
     if (!in)
         return ki_fail_memory(context, error, "an analysis", sizeof *in);
     in->analysis = analysis;
-    in->scratch_size = 2 * 16 * width + (whole ? RING_SET * 3 * width : 0);
+    in->scratch_size = width * 16 * 2 + (whole ? width * 3 * RING_SET : 0);
     if (in->scratch_size < 16 * vectors)
         in->scratch_size = 16 * vectors;
     if (!ki_mul_size(width, 3 * sizeof(double), &row) || !ki_mul_size(row, rings, &ring_bytes))
@@ -406,8 +407,10 @@ static void transform_channel(const ki_intake *in, int vector, int channel, doub
         if (vector < a->rings.first[m])
             continue;
         const double *p = z + 16 * (size_t)i, *q = z + 16 * (size_t)(i ? width - i : 0);
-        double *even = in->orders + 96 * ((size_t)m * vectors + (size_t)vector) + 16 * channel;
-        double *odd = even + 48, fr = a->column[2 * m] * 0.5, fi = a->column[2 * m + 1] * 0.5;
+        double *orders = in->orders + 96 * ((size_t)m * vectors + (size_t)vector);
+        double *even = orders + 16 * (size_t)channel, *odd = even + 48;
+        const double *column = a->column + 2 * (size_t)m;
+        double fr = column[0] * 0.5, fi = column[1] * 0.5;
         for (int j = 0; j < KI_LANES; j++) {
             double nr = p[j] + q[j], ni = p[8 + j] - q[8 + j];
             double sr = p[8 + j] + q[8 + j], si = q[j] - p[j];
@@ -425,7 +428,7 @@ static void transform_rings(void *data, int worker, int vector)
 {
     ki_intake *in = data;
     const ki_analysis *a = in->analysis;
-    size_t pitch = 6 * (size_t)a->size, buffers = 2 * RING_SET * 2 * (size_t)a->size;
+    size_t width = 2 * (size_t)a->size, pitch = 3 * width, buffers = width * 16 * 2;
     double *buffer = in->scratch + (size_t)worker * in->scratch_size, *rings[RING_SET];
     int number[RING_SET];
     for (int j = 0; j < KI_LANES; j++) {
