@@ -148,11 +148,13 @@ lint)
     shellcheck -S warning ./do .ci/run
     find scripts tests bench -name "*.sh" -not -path "*/node_modules/*" -exec shellcheck -x -P SCRIPTDIR -S warning {} +
     build release
+    sources=$(find src cli bench examples tests -name '*.c' -not -path '*/node_modules/*')
     say "cppcheck"
+    # shellcheck disable=SC2086 # a list is split on purpose
     cppcheck --quiet --error-exitcode=1 --inline-suppr --std=c11 -I include -I src \
-        --enable=warning,performance,portability --suppress=missingInclude src cli
+        --enable=warning,performance,portability --suppress=missingInclude $sources
     say "clang-tidy"
-    find src cli -name '*.c' -print0 | xargs -0 -n 1 -P 2 clang-tidy --quiet -p build/release 2>build/tidy.log
+    printf '%s\n' "$sources" | xargs -n 1 -P 2 clang-tidy --quiet -p build/release 2>build/tidy.log
     ;;
 format)
     need clang-format:clang-format

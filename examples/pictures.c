@@ -235,8 +235,9 @@ static void draw_ball(kiln_image *image, double center_x, double center_y, doubl
             double sum[3] = {0};
             int hits = 0;
             for (int i = 0; i < SUBPIXELS * SUBPIXELS; i++) {
-                double nx = (x + (i % SUBPIXELS + 0.5) / SUBPIXELS - center_x) / radius;
-                double ny = (center_y - y - ((double)(i / SUBPIXELS) + 0.5) / SUBPIXELS) / radius;
+                int column = i % SUBPIXELS, row = i / SUBPIXELS;
+                double nx = (x + (column + 0.5) / SUBPIXELS - center_x) / radius;
+                double ny = (center_y - y - (row + 0.5) / SUBPIXELS) / radius;
                 double rest = 1 - nx * nx - ny * ny;
                 if (rest <= 0)
                     continue;

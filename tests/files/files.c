@@ -103,11 +103,12 @@ static void save_picture(const kiln_map *cube, const int places[6][2], int colum
 {
     kiln_image image;
     CHECK_OK(kiln_image_create(context, columns * N, rows * N, 3, &image, &error));
+    const float *texel = cube->level[0];
     for (int face = 0; face < 6; face++)
-        for (int i = 0; i < N * N; i++) {
+        for (int i = 0; i < N * N; i++, texel += 3) {
             int x = places[face][0] * N + i % N, y = places[face][1] * N + i / N;
-            memcpy(image.pixels + 3 * (y * image.width + x),
-                   cube->level[0] + 3 * (face * N * N + i), 3 * sizeof(float));
+            int place = y * image.width + x;
+            memcpy(image.pixels + 3 * (size_t)place, texel, 3 * sizeof(float));
         }
     CHECK_OK(kiln_image_save(context, &image, path, &error));
     kiln_image_free(&image);
@@ -127,13 +128,11 @@ static void crosses_and_strips(void **state)
     save_picture(&cube, column, 1, 6, in_folder("column.exr"));
     static const char *const names[] = {"wide.exr", "row.exr", "column.exr", "tall.exr"};
     // In the upright cross, -Z is upside down.
-    float *last = cube.level[0] + 3 * 5 * N * N;
-    float turned[3 * N * N];
-    for (int i = 0; i < N * N; i++)
-        memcpy(turned + 3 * (N * N - 1 - i), last + 3 * i, 3 * sizeof(float));
+    enum { FACE = 3 * N * N, LAST = 5 * FACE };
     kiln_map hung;
     make_cube(1, &hung);
-    memcpy(hung.level[0] + 3 * 5 * N * N, turned, sizeof turned);
+    for (int i = 0; i < FACE; i += 3)
+        memcpy(hung.level[0] + LAST + FACE - 3 - i, cube.level[0] + LAST + i, 3 * sizeof(float));
     save_picture(&hung, tall, 3, 4, in_folder("tall.exr"));
     kiln_map_free(&hung);
     for (int i = 0; i < 4; i++) {
@@ -156,8 +155,9 @@ static void crosses_have_no_seams(void **state)
         int columns = tall ? 3 : 4, rows = tall ? 4 : 3, n = cube.size;
         kiln_image image;
         CHECK_OK(kiln_image_create(context, columns * n, rows * n, 3, &image, &error));
-        for (int i = 0; i < image.width * image.height; i++)
-            image.pixels[3 * i] = (float)(i + 1);
+        float *pixel = image.pixels;
+        for (int i = 0; i < image.width * image.height; i++, pixel += 3)
+            *pixel = (float)(i + 1);
         ki_writer w = {.context = context};
         ki_exr_options options = {.roughness = -1};
         CHECK_OK(ki_exr_encode(image.pixels, image.width, image.height, 3, &options, &w, &error));

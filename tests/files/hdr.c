@@ -141,9 +141,10 @@ static void old_runs_may_be_long(void **state)
     ki_write(&w, (const uint8_t[16]){9, 8, 7, 130, 1, 1, 1, 3, 1, 1, 1, 2, 5, 6, 7, 131}, 16);
     ki_decoded decoded;
     CHECK_OK(ki_decode(context, w.bytes, w.size, "made.hdr", &decoded, NULL, &error));
-    for (int x = 0; x < LONG; x++)
-        CHECK_NEAR((double)decoded.image.pixels[3 * x], 9 * ldexp(1, -6), 0);
-    CHECK_NEAR((double)decoded.image.pixels[3 * (int)LONG], 5 * ldexp(1, -5), 0);
+    const float *pixel = decoded.image.pixels;
+    for (int x = 0; x < LONG; x++, pixel += 3)
+        CHECK_NEAR((double)*pixel, 9 * ldexp(1, -6), 0);
+    CHECK_NEAR((double)*pixel, 5 * ldexp(1, -5), 0);
     ki_decoded_free(&decoded);
     ki_writer_free(&w);
 }

@@ -63,7 +63,7 @@ static void read_folder(const char *path, sample *samples, int *count)
         char full[512];
         snprintf(full, sizeof full, "%s/%s", path, entry->d_name);
         FILE *file = fopen(full, "rb");
-        struct stat status;
+        struct stat status = {0};
         assert_true(file && stat(full, &status) == 0 && *count < MAX_SAMPLES);
         sample *s = &samples[(*count)++];
         snprintf(s->name, sizeof s->name, "%.63s", entry->d_name);

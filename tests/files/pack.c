@@ -159,11 +159,11 @@ static void shared_exponents_are_nearest(void **state)
 static void texels_pack_as_single_values_do(void **state)
 {
     (void)state;
-    enum { COUNT = 1000 };
-    static float rgb[COUNT * 3], values[COUNT * 3];
-    static uint16_t rgba[COUNT * 4], halfs[COUNT * 3];
+    enum { COUNT = 1000, RGB = COUNT * 3, RGBA = COUNT * 4 };
+    static float rgb[RGB], values[RGB];
+    static uint16_t rgba[RGBA], halfs[RGB];
     uint32_t seed = 99;
-    for (int i = 0; i < COUNT * 3; i++)
+    for (int i = 0; i < RGB; i++)
         rgb[i] = from_bits(next_random(&seed));
     static const size_t counts[] = {0, 1, 3, 63, 64, 65, COUNT};
     for (size_t k = 0; k < sizeof counts / sizeof *counts; k++) {
@@ -172,12 +172,12 @@ static void texels_pack_as_single_values_do(void **state)
         for (size_t i = 0; i < counts[k] * 4; i++)
             assert_int_equal(rgba[i],
                              i % 4 == 3 ? 0x3c00 : ki_half_from_float(rgb[i / 4 * 3 + i % 4]));
-        for (size_t i = counts[k] * 4; i < COUNT * 4; i++)
+        for (size_t i = counts[k] * 4; i < RGBA; i++)
             assert_int_equal(rgba[i], 0xabab);
     }
-    ki_halfs_from_floats(rgb, COUNT * 3, halfs);
-    ki_floats_from_halfs(halfs, COUNT * 3, values);
-    for (int i = 0; i < COUNT * 3; i++) {
+    ki_halfs_from_floats(rgb, RGB, halfs);
+    ki_floats_from_halfs(halfs, RGB, values);
+    for (int i = 0; i < RGB; i++) {
         assert_int_equal(halfs[i], ki_half_from_float(rgb[i]));
         float wanted = ki_float_from_half(halfs[i]);
         assert_memory_equal(&values[i], &wanted, 4);

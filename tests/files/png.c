@@ -59,15 +59,12 @@ static void make(ki_writer *w, int color, int depth, bool interlaced)
     static png_byte rows[H][W * 8];
     png_bytep row[H];
     for (int y = 0; y < H; y++) {
-        row[y] = rows[y];
+        png_bytep to = row[y] = rows[y];
         for (int i = 0; i < W * channels; i++) {
             int value = sample(i / channels, y, i % channels, depth);
-            if (depth == 16) {
-                rows[y][2 * i] = (png_byte)(value >> 8);
-                rows[y][2 * i + 1] = (png_byte)value;
-            } else {
-                rows[y][i] = (png_byte)value;
-            }
+            if (depth == 16)
+                *to++ = (png_byte)(value >> 8);
+            *to++ = (png_byte)value;
         }
     }
     png_write_image(png, row);
@@ -120,8 +117,9 @@ static void what_is_written_comes_back(void **state)
 {
     (void)state;
     float pixels[256 * 4];
-    for (int i = 0; i < 256 * 4; i++)
-        pixels[i] = ki_linear_from_srgb((float)(i / 4) / 255);
+    for (int i = 0; i < 256; i++)
+        for (int k = 0; k < 4; k++)
+            pixels[4 * i + k] = ki_linear_from_srgb((float)i / 255);
     for (int srgb = 0; srgb < 2; srgb++)
         for (int channels = 3; channels <= 4; channels++) {
             ki_writer w = {.context = context};
@@ -152,9 +150,9 @@ static void srgb_bytes_are_nearest(void **state)
     ki_decoded decoded;
     CHECK_OK(ki_decode(context, w.bytes, w.size, "back.png", &decoded, NULL, &error));
     const int wanted[6] = {100, 101, 0, 255, 0, 255};
-    for (int i = 0; i < 6; i++)
-        CHECK_NEAR((double)decoded.image.pixels[3 * i],
-                   (double)ki_linear_from_srgb((float)wanted[i] / 255), 0);
+    const float *pixel = decoded.image.pixels;
+    for (int i = 0; i < 6; i++, pixel += 3)
+        CHECK_NEAR((double)*pixel, (double)ki_linear_from_srgb((float)wanted[i] / 255), 0);
     ki_decoded_free(&decoded);
     ki_writer_free(&w);
 }

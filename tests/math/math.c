@@ -20,9 +20,7 @@ static double ulps(double value, long double wanted)
 {
     int exponent;
     (void)frexpl(wanted, &exponent);
-    double unit = ldexp(1, exponent - 53);
-    if (unit < DBL_TRUE_MIN)
-        unit = DBL_TRUE_MIN;
+    long double unit = fmaxl(ldexpl(1, exponent - 53), (long double)DBL_TRUE_MIN);
     return (double)(fabsl((long double)value - wanted) / unit);
 }
 
@@ -34,18 +32,21 @@ static void elementary_functions_agree_with_libm(void **unused)
         double x = uniform(-1e4, 1e4), s, c;
         ki_sincos(x, &s, &c);
         circle = fmax(circle, fabs(s * s + c * c - 1));
-        sine = fmax(sine, fmax(fabs(s - (double)sinl(x)), fabs(c - (double)cosl(x))));
+        long double wide = (long double)x;
+        sine = fmax(sine, fmax(fabs(s - (double)sinl(wide)), fabs(c - (double)cosl(wide))));
         x = uniform(-700, 700);
-        exponent = fmax(exponent, ulps(ki_exp(x), expl(x)));
+        exponent = fmax(exponent, ulps(ki_exp(x), expl((long double)x)));
         x = i % 2 ? uniform(0.5, 2) : exp(uniform(-700, 700));
-        logarithm = fmax(logarithm, ulps(ki_log(x), logl(x)));
-        double a = uniform(1e-3, 2), b = uniform(-50, 50);
-        power = fmax(power, (double)(fabsl((long double)ki_pow(a, b) / powl(a, b) - 1) /
+        logarithm = fmax(logarithm, ulps(ki_log(x), logl((long double)x)));
+        double base = uniform(1e-3, 2), to = uniform(-50, 50);
+        long double a = (long double)base, b = (long double)to;
+        power = fmax(power, (double)(fabsl((long double)ki_pow(base, to) / powl(a, b) - 1) /
                                      (1 + fabsl(b * logl(a)))));
         double y = uniform(-1, 1), z = uniform(-1, 1);
-        angle = fmax(angle, ulps(ki_atan2(y, z), atan2l(y, z)));
-        arc = fmax(arc, fabs(ki_asin(y) - (double)asinl(y)));
-        arc = fmax(arc, fabs(ki_acos(y) - (double)acosl(y)));
+        wide = (long double)y;
+        angle = fmax(angle, ulps(ki_atan2(y, z), atan2l(wide, (long double)z)));
+        arc = fmax(arc, fabs(ki_asin(y) - (double)asinl(wide)));
+        arc = fmax(arc, fabs(ki_acos(y) - (double)acosl(wide)));
     }
     CHECK_BELOW(sine, 2e-16);
     CHECK_BELOW(circle, 5e-16);

@@ -34,19 +34,18 @@ static void check_levels(const kiln_map *panorama, const char *name)
     }
     // The mirror: each texel is the mean of the panorama over its solid angle. Summed here over
     // 96 x 96 points of equal steps across the face, weighed by the cube map's Jacobian.
-    enum { CUT = 96 };
+    enum { CUT = 96, EDGE = 256 * CUT };
     double square = 0, whole = 0;
     uint32_t seed = 99;
     for (int n = 0; n < 256; n++) {
         size_t index = (size_t)(scene_random(&seed) * (double)kiln_map_texels(&out, 0));
         double sum[3] = {0}, weight = 0;
-        kiln_map fine = {.shape = KILN_SHAPE_CUBE, .size = 256 * CUT, .level_count = 1};
+        kiln_map fine = {.shape = KILN_SHAPE_CUBE, .size = EDGE, .level_count = 1};
         size_t face = index / 65536, y = index % 65536 / 256, x = index % 256;
         for (size_t j = 0; j < CUT; j++)
             for (size_t i = 0; i < CUT; i++) {
                 double d[3], most = 0;
-                size_t edge = 256 * CUT;
-                kiln_map_direction(&fine, 0, (face * edge + y * CUT + j) * edge + x * CUT + i, d);
+                kiln_map_direction(&fine, 0, (face * EDGE + y * CUT + j) * EDGE + x * CUT + i, d);
                 for (int k = 0; k < 3; k++)
                     most = fmax(most, fabs(d[k]));
                 double solid = most * most * most;

@@ -196,8 +196,8 @@ static void zonal_series_gives_the_lobe_back(void **state)
         kiln_error error;
         CHECK_OK(ki_zonal_analyze(context, &zonal, 1e-7, 1600, &spectrum, &error));
         CHECK_BELOW(spectrum.rest, 1e-5);
-        for (double theta = 0; theta < 1; theta += 0.013) {
-            double x = cos(theta), p0 = 1, p1 = x, sum = 1 / (4 * KI_PI);
+        for (int step = 0; step < 77; step++) {
+            double theta = 0.013 * step, x = cos(theta), p0 = 1, p1 = x, sum = 1 / (4 * KI_PI);
             for (int l = 1; l <= spectrum.degree; l++) {
                 sum += (2 * l + 1) / (4 * KI_PI) * spectrum.k[l] * p1;
                 double p2 = ((2 * l + 1) * x * p1 - l * p0) / (l + 1);
