@@ -147,7 +147,8 @@ kiln_result kiln_spectrum_filter(kiln_context *context, const kiln_spectrum *spe
     ki_zonal_spectrum zonal_spectrum;
     ki_legendre legendre = {0};
     ki_level *plan = NULL;
-    result = ki_lobe_spectrum(context, lobe, ki_prefilter_tolerance, false, &zonal, &zonal_spectrum, error);
+    result = ki_lobe_spectrum(context, lobe, ki_prefilter_tolerance, false, &zonal, &zonal_spectrum,
+                              error);
     if (result != KILN_OK)
         return result;
     double rest = zonal_spectrum.rest;

@@ -83,8 +83,9 @@ kiln_result ki_points_create(const kiln_spectrum *spectrum, const ki_zonal *zona
     }
     double nodes[4 * MOST_CELLS], weights[4 * MOST_CELLS];
     for (int i = 0; i < n; i++) {
-        nodes[i] = (i / 4 + 0.5 + gauss_four[0][i % 4]) / cells;
-        weights[i] = gauss_four[1][i % 4] / cells;
+        int cell = i / 4, k = i % 4;
+        nodes[i] = (cell + 0.5 + gauss_four[0][k]) / cells;
+        weights[i] = gauss_four[1][k] / cells;
     }
     for (size_t i = 0; i < count; i++) {
         const ki_sun *sun = &spectrum->suns[i];
