@@ -102,10 +102,10 @@ static void rotation_rotates(void **state)
     kiln_error error;
     kiln_map in = scene_panorama(context, 64, 5), rolled = scene_panorama(context, 64, 5), a, b;
     for (int shift = 1; shift < 128; shift += 38) {
-        for (int y = 0; y < 64; y++)
-            for (int x = 0; x < 128; x++)
+        for (size_t y = 0; y < 64; y++)
+            for (size_t x = 0; x < 128; x++)
                 memcpy(rolled.level[0] + 3 * (128 * y + x),
-                       in.level[0] + 3 * (128 * y + (x + shift) % 128), 12);
+                       in.level[0] + 3 * (128 * y + (x + (size_t)shift) % 128), 12);
         kiln_prefilter_def def = {.size = 32, .rotation = shift * 360.0 / 128};
         CHECK_OK(kiln_prefilter(context, &in, &def, &a, &error));
         def.rotation = 0;
@@ -332,7 +332,8 @@ static void sh_matches_brute_force(void **state)
     double wanted[25][3] = {{0}};
     for (int y = 0; y < SIZE * CUT; y++)
         for (int x = 0; x < 2 * SIZE * CUT; x++) {
-            const float *rgb = in.level[0] + 3 * (2 * SIZE * (y / CUT) + x / CUT);
+            int texel = 2 * SIZE * (y / CUT) + x / CUT;
+            const float *rgb = in.level[0] + 3 * (size_t)texel;
             double step = KI_PI / (SIZE * CUT), theta = (y + 0.5) * step, phi = (x + 0.5) * step;
             double area = step * (cos(y * step) - cos((y + 1) * step));
             double d[3] = {-sin(theta) * sin(phi), cos(theta), sin(theta) * cos(phi)};
