@@ -160,7 +160,7 @@ kiln_result kiln_spectrum_filter(kiln_context *context, const kiln_spectrum *spe
         ki_zonal_free(&zonal_spectrum);
         return result;
     }
-    if (!ki_legendre_create(context, spectrum->degree, &legendre)) {
+    if (!ki_legendre_create(context, ki_max(zonal_spectrum.degree, 8), &legendre)) {
         ki_zonal_free(&zonal_spectrum);
         return ki_fail_memory(context, error, "a level's plan",
                               ki_coefficient_count(spectrum->degree) * sizeof(double));

@@ -81,7 +81,8 @@ kiln_result ki_lobe_spectrum(kiln_context *context, const kiln_lobe *lobe, doubl
                              kiln_error *error)
 {
     *zonal = (ki_zonal){.lobe = *lobe};
-    double guess = 160 + 14 / ki_lobe_width(lobe);
+    // The widest lobes have the longest tails, from their kink at the horizon.
+    double width = ki_lobe_width(lobe), guess = (width < 1 ? 160 : 320) + 14 / width;
     // Charlie is narrow at the horizon, not around its centre.
     split = split && lobe->kind != KILN_LOBE_CHARLIE;
     int limit = guess < KILN_MAX_DEGREE ? (int)guess : KILN_MAX_DEGREE;
