@@ -155,6 +155,8 @@ static kiln_result save_cube(kiln_context *context, const kiln_map *map, const c
                              const kiln_save_def *def, kiln_error *error)
 {
     ki_writer bytes = {.context = context};
+    if (!ki_progress(context, "writing", 0))
+        return ki_fail_cancelled(error, "writing");
     kiln_result result = ends_with(path, ".ktx2") ? ki_ktx2_encode(map, def, &bytes, error)
                                                   : ki_dds_encode(map, def, &bytes, error);
     if (result == KILN_OK)

@@ -52,8 +52,19 @@ void ki_parallel_for(kiln_context *context, int count, ki_task *task, void *data
 void ki_parallel_workers(kiln_context *context, int count,
                          void (*task)(void *data, int worker, int index), void *data);
 
-/// Reports progress; false when the caller wants to stop. From the calling thread only.
+/// Reports progress; false when the caller wants to stop. From the calling thread only. `stage` is a
+/// literal.
 bool ki_progress(kiln_context *context, const char *stage, double fraction);
+/// Says again what was said last: for long work in small steps.
+bool ki_go_on(kiln_context *context);
+/// Part of a stage's progress, from one fraction to another.
+typedef struct ki_stage {
+    const char *name;
+    double from, to;
+} ki_stage;
+/// ki_parallel_for that reports progress on its way, or without a stage (NULL) as ki_go_on. False when stopped: some tasks have not run then.
+bool ki_parallel_steps(kiln_context *context, const ki_stage *stage, int count, ki_task *task,
+                       void *data);
 /// KILN_ERROR_CANCELLED with its sentence.
 kiln_result ki_fail_cancelled(kiln_error *error, const char *stage);
 

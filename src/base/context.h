@@ -2,7 +2,7 @@
 #ifndef KI_CONTEXT_H
 #define KI_CONTEXT_H
 
-#include <kiln/kiln.h>
+#include "base/base.h"
 
 #include <pthread.h>
 #include <stdatomic.h>
@@ -26,6 +26,7 @@ typedef struct ki_pool {
 struct kiln_context {
     kiln_context_def def;
     atomic_size_t memory_held, memory_peak;
+    ki_stage said; // the last report of progress
     ki_pool pool;
 };
 

@@ -124,3 +124,50 @@ void ki_parallel_workers(kiln_context *context, int count,
     workers w = {.task = task, .data = data, .count = count};
     ki_parallel_for(context, ki_min(context->def.thread_count, count), work, &w);
 }
+
+typedef struct steps {
+    kiln_context *context;
+    ki_task *task;
+    void *data;
+    const ki_stage *stage;
+    pthread_t caller;
+    int count, told;
+    atomic_int done;
+    atomic_bool stopped;
+} steps;
+
+enum { REPORTS = 64 };
+
+static void step(void *data, int index)
+{
+    steps *s = data;
+    if (atomic_load_explicit(&s->stopped, memory_order_relaxed))
+        return;
+    s->task(s->data, index);
+    double part = (double)(atomic_fetch_add(&s->done, 1) + 1) / s->count;
+    if (!pthread_equal(pthread_self(), s->caller) || part * REPORTS < s->told + 1)
+        return;
+    s->told = (int)(part * REPORTS);
+    const ki_stage *at = s->stage;
+    bool go_on = at ? ki_progress(s->context, at->name, at->from + part * (at->to - at->from))
+                    : ki_go_on(s->context);
+    if (!go_on)
+        atomic_store(&s->stopped, true);
+}
+
+bool ki_parallel_steps(kiln_context *context, const ki_stage *stage, int count, ki_task *task,
+                       void *data)
+{
+    if (!context->def.progress || count < 2) {
+        ki_parallel_for(context, count, task, data);
+        return true;
+    }
+    steps s = {.context = context,
+               .task = task,
+               .data = data,
+               .stage = stage,
+               .caller = pthread_self(),
+               .count = count};
+    ki_parallel_for(context, count, step, &s);
+    return !atomic_load(&s.stopped);
+}

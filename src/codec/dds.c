@@ -70,7 +70,9 @@ kiln_result ki_dds_encode(const kiln_map *map, const kiln_save_def *def, ki_writ
             uint8_t *room = ki_write_room(w, texels * (size_t)texel->bytes);
             if (!room)
                 return ki_fail_memory(w->context, error, "a DDS file", w->size);
-            ki_texels_pack(texel, map->level[k] + 3 * texels * (size_t)face, texels, room);
+            if (!ki_texels_pack_many(w->context, texel, map->level[k] + 3 * texels * (size_t)face,
+                                     texels, room))
+                return ki_fail_cancelled(error, "writing");
         }
     }
     return KILN_OK;

@@ -133,6 +133,10 @@ kiln_result ki_exr_encode(const float *pixels, int width, int height, int channe
     if (ki_write_room(writer, 8 * chunks))
         memset(writer->bytes + table, 0, 8 * chunks);
     for (size_t i = 0; i < chunks && !writer->failed; i++) {
+        if (!ki_go_on(writer->context)) {
+            result = ki_fail_cancelled(error, "writing");
+            break;
+        }
         int y = (int)(i * LINES), lines = ki_min(LINES, height - y);
         size_t size = line * (size_t)lines;
         gather(pixels + (size_t)y * (size_t)width * (size_t)channels, width, lines, channels,

@@ -320,7 +320,12 @@ kiln_result ki_hdr_encode(const float *pixels, int width, int height, ki_writer 
                   kiln_version(), height, width);
     bool runs = width >= NEW_RUNS_LEAST && width <= NEW_RUNS_MOST;
     uint8_t *planes = ki_alloc_raw(writer->context, (size_t)width, 4);
+    kiln_result result = KILN_OK;
     for (int y = 0; planes && y < height; y++) {
+        if (y % 16 == 0 && !ki_go_on(writer->context)) {
+            result = ki_fail_cancelled(error, "writing");
+            break;
+        }
         const float *line = pixels + 3 * (size_t)y * (size_t)width;
         for (int x = 0; x < width; x++) {
             uint8_t texel[4];
@@ -339,7 +344,7 @@ kiln_result ki_hdr_encode(const float *pixels, int width, int height, ki_writer 
     }
     bool good = planes && !writer->failed;
     ki_free(planes);
-    return good ? KILN_OK
+    return good ? result
                 : ki_fail_memory(writer->context, error, "an HDR file",
                                  writer->size + 4 * (size_t)width);
 }

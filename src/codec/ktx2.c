@@ -196,6 +196,39 @@ static void read_metadata(const uint8_t *bytes, size_t size, kiln_file_info *inf
 
 // ----------------------------------------------------------------------------------------- writing
 
+enum { ZSTD_STEP = 1 << 17 };
+
+// One frame that states its size. Returns its own size, or 0 with `result` telling why.
+static size_t compress(kiln_context *context, const uint8_t *plain, size_t size, int level,
+                       uint8_t *room, size_t bound, kiln_result *result)
+{
+    ZSTD_CCtx *zstd = ZSTD_createCCtx();
+    ZSTD_inBuffer in = {plain, 0, 0};
+    ZSTD_outBuffer out = {room, bound, 0};
+    size_t left = 1;
+    *result = KILN_ERROR_MEMORY;
+    if (!zstd || ZSTD_isError(ZSTD_CCtx_setParameter(zstd, ZSTD_c_compressionLevel, level)) ||
+        ZSTD_isError(ZSTD_CCtx_setPledgedSrcSize(zstd, size)))
+        goto done;
+    while (left > 0) {
+        if (in.pos == in.size)
+            in.size += size - in.size < ZSTD_STEP ? size - in.size : ZSTD_STEP;
+        bool last = in.size == size;
+        left = ZSTD_compressStream2(zstd, &out, &in, last ? ZSTD_e_end : ZSTD_e_continue);
+        if (ZSTD_isError(left) || out.pos == out.size)
+            goto done;
+        left = last ? left : 1;
+        if (!ki_go_on(context)) {
+            *result = KILN_ERROR_CANCELLED;
+            goto done;
+        }
+    }
+    *result = KILN_OK;
+done:
+    ZSTD_freeCCtx(zstd);
+    return *result == KILN_OK ? out.pos : 0;
+}
+
 static kiln_result write_level(ki_writer *w, const kiln_map *map, int level, const ki_texel *texel,
                                int zstd, size_t entry, uint64_t file_start, kiln_error *error)
 {
@@ -204,28 +237,26 @@ static kiln_result write_level(ki_writer *w, const kiln_map *map, int level, con
     if (!zstd)
         ki_write_align(w, (size_t)ki_max(4, texel->bytes));
     uint64_t start = w->size;
-    if (!zstd) {
-        uint8_t *room = ki_write_room(w, size);
-        if (room)
-            ki_texels_pack(texel, map->level[level], texels, room);
-    } else {
-        uint8_t *plain = ki_alloc_raw(w->context, size, 1);
-        size_t bound = ZSTD_compressBound(size);
-        uint8_t *room = plain ? ki_write_room(w, bound) : NULL;
-        size_t packed = 0;
-        if (room) {
-            ki_texels_pack(texel, map->level[level], texels, plain);
-            packed = ZSTD_compress(room, bound, plain, size, zstd);
-        }
+    // What zstd makes has room for one byte more than it may need.
+    size_t bound = zstd ? ZSTD_compressBound(size) + 1 : size, packed = size;
+    uint8_t *room = ki_write_room(w, bound);
+    uint8_t *plain = zstd && room ? ki_alloc_raw(w->context, size, 1) : room;
+    kiln_result result = plain ? KILN_OK : KILN_ERROR_MEMORY;
+    if (plain && !ki_texels_pack_many(w->context, texel, map->level[level], texels, plain))
+        result = KILN_ERROR_CANCELLED;
+    if (zstd && result == KILN_OK)
+        packed = compress(w->context, plain, size, zstd, room, bound, &result);
+    if (zstd)
         ki_free(plain);
-        if (!room || ZSTD_isError(packed))
-            return ki_fail_memory(w->context, error, "a level of a KTX2 file", size + bound);
-        w->size -= bound - packed;
-    }
+    if (result == KILN_ERROR_CANCELLED)
+        return ki_fail_cancelled(error, "writing");
+    if (result != KILN_OK)
+        return ki_fail_memory(w->context, error, "a level of a KTX2 file", size + bound);
+    w->size -= bound - packed;
     ki_patch_u64(w, entry, start - file_start);
     ki_patch_u64(w, entry + 8, w->size - start);
     ki_patch_u64(w, entry + 16, size);
-    return w->failed ? ki_fail_memory(w->context, error, "a KTX2 file", w->size + size) : KILN_OK;
+    return KILN_OK;
 }
 
 kiln_result ki_ktx2_encode(const kiln_map *map, const kiln_save_def *def, ki_writer *writer,

@@ -18,7 +18,7 @@ typedef struct png_state {
     png_infop info;
     uint8_t *rows;
     float *table, *pixels;
-    bool out_of_memory;
+    bool out_of_memory, cancelled;
     char message[128];
 } png_state;
 
@@ -180,6 +180,8 @@ static kiln_result read_all(png_state *s, kiln_image *image, kiln_file_info *inf
 
 static kiln_result say(const png_state *s, kiln_error *error)
 {
+    if (s->cancelled)
+        return ki_fail_cancelled(error, "writing");
     if (s->out_of_memory)
         return ki_fail(error, KILN_ERROR_MEMORY, "out of memory: %s: %s", s->name,
                        s->message[0] ? s->message : "no room for a PNG");
@@ -266,6 +268,10 @@ static void write_all(png_state *s, const float *pixels, int width, int height, 
         png_error(s->png, "out of memory");
     }
     for (int y = 0; y < height; y++) {
+        if (y % 16 == 0 && !ki_go_on(s->context)) {
+            s->cancelled = true;
+            png_error(s->png, "cancelled");
+        }
         for (size_t i = 0; i < row_size; i++)
             s->rows[i] = to_byte(pixels[(size_t)y * row_size + i], srgb ? thresholds : NULL);
         png_write_row(s->png, s->rows);

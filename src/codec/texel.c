@@ -72,6 +72,30 @@ void ki_texels_pack(const ki_texel *texel, const float *rgb, size_t count, uint8
     }
 }
 
+enum { PIECE = 1 << 16 };
+
+typedef struct pack_job {
+    const ki_texel *texel;
+    const float *rgb;
+    size_t count;
+    uint8_t *bytes;
+} pack_job;
+
+static void pack_piece(void *data, int index)
+{
+    const pack_job *job = data;
+    size_t first = (size_t)index * PIECE, left = job->count - first;
+    ki_texels_pack(job->texel, job->rgb + 3 * first, left < PIECE ? left : PIECE,
+                   job->bytes + (size_t)job->texel->bytes * first);
+}
+
+bool ki_texels_pack_many(kiln_context *context, const ki_texel *texel, const float *rgb,
+                         size_t count, uint8_t *bytes)
+{
+    pack_job job = {texel, rgb, count, bytes};
+    return ki_parallel_steps(context, NULL, (int)((count + PIECE - 1) / PIECE), pack_piece, &job);
+}
+
 static float sane(float value, float largest)
 {
     value = value > 0 ? value : 0;

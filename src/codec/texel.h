@@ -22,6 +22,9 @@ const ki_texel *ki_texel_of_dxgi(uint32_t dxgi);
 /// RGB floats to texels and back. Reading makes not-a-number and negatives 0 and infinities the
 /// largest finite value. Bytes need no alignment.
 void ki_texels_pack(const ki_texel *texel, const float *rgb, size_t count, uint8_t *bytes);
+/// The same on all threads. False where a report of progress asks to stop.
+bool ki_texels_pack_many(kiln_context *context, const ki_texel *texel, const float *rgb,
+                         size_t count, uint8_t *bytes);
 void ki_texels_unpack(const ki_texel *texel, const uint8_t *bytes, size_t count, float *rgb);
 
 #endif

@@ -175,6 +175,20 @@ static bool level_floats(const kiln_map *map, int level, size_t *count)
     return true;
 }
 
+enum { PIECE = 1 << 20 }; // floats
+
+typedef struct clear_job {
+    float *memory;
+    size_t count;
+} clear_job;
+
+static void clear_piece(void *data, int index)
+{
+    const clear_job *job = data;
+    size_t first = (size_t)index * PIECE, left = job->count - first;
+    memset(job->memory + first, 0, (left < PIECE ? left : PIECE) * sizeof(float));
+}
+
 kiln_result ki_map_allocate(kiln_context *context, kiln_map *map, kiln_error *error)
 {
     memset(map->level, 0, sizeof map->level);
@@ -191,10 +205,17 @@ kiln_result ki_map_allocate(kiln_context *context, kiln_map *map, kiln_error *er
         fits = fits && level_floats(map, k, &count) && total <= SIZE_MAX / sizeof(float) - count;
         total += count;
     }
-    float *memory = fits ? ki_alloc(context, total, sizeof(float)) : NULL;
+    float *memory = fits ? ki_alloc_raw(context, total, sizeof(float)) : NULL;
     if (!memory) {
         *map = (kiln_map){0};
         return ki_fail_memory(context, error, "a map", fits ? total * sizeof(float) : SIZE_MAX);
+    }
+    // Memory is slow to come by where there is much of it.
+    clear_job job = {memory, total};
+    if (!ki_parallel_steps(context, NULL, (int)((total + PIECE - 1) / PIECE), clear_piece, &job)) {
+        ki_free(memory);
+        *map = (kiln_map){0};
+        return ki_fail_cancelled(error, "making a map");
     }
     for (int k = 0; k < map->level_count; k++)
         map->level[k] = memory + offset[k];
