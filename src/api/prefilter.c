@@ -11,7 +11,7 @@ kiln_result kiln_plan_create(kiln_context *context, int source_size, const kiln_
     if (source_size < 1 || source_size > KILN_MAX_SIZE / 2)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "source_size is %d rows, it must be 1 to %d",
                        source_size, KILN_MAX_SIZE / 2);
-    return ki_plan_create(context, source_size, def, plan, error);
+    return ki_plan_create(context, source_size, NULL, def, plan, error);
 }
 
 void kiln_plan_destroy(kiln_plan *plan)
@@ -28,8 +28,8 @@ kiln_result kiln_plan_map(const kiln_plan *plan, kiln_map *map, kiln_error *erro
     return result;
 }
 
-kiln_result kiln_plan_execute(kiln_plan *plan, const kiln_map *panorama, kiln_map *map,
-                              kiln_error *error)
+static kiln_result check_and_execute(kiln_plan *plan, const kiln_map *panorama,
+                                     const kiln_map *source, kiln_map *map, kiln_error *error)
 {
     kiln_result result = ki_map_check(panorama, error);
     if (result != KILN_OK || (result = ki_map_check(map, error)) != KILN_OK)
@@ -44,7 +44,13 @@ kiln_result kiln_plan_execute(kiln_plan *plan, const kiln_map *panorama, kiln_ma
                        "the plan writes shape %d, size %d, %d levels; this map has %d, %d, %d",
                        (int)plan->def.shape, plan->def.size, plan->def.level_count, (int)map->shape,
                        map->size, map->level_count);
-    return ki_plan_execute(plan, panorama, map, error);
+    return ki_plan_execute(plan, panorama, source, map, error);
+}
+
+kiln_result kiln_plan_execute(kiln_plan *plan, const kiln_map *panorama, kiln_map *map,
+                              kiln_error *error)
+{
+    return check_and_execute(plan, panorama, NULL, map, error);
 }
 
 const kiln_spectrum *kiln_plan_spectrum(const kiln_plan *plan)
@@ -55,24 +61,27 @@ const kiln_spectrum *kiln_plan_spectrum(const kiln_plan *plan)
 kiln_result kiln_prefilter(kiln_context *context, const kiln_map *source,
                            const kiln_prefilter_def *def, kiln_map *map, kiln_error *error)
 {
-    kiln_map panorama = {0};
+    kiln_map made = {0};
+    const kiln_map *panorama = source;
     kiln_plan *plan = NULL;
     *map = (kiln_map){0};
     kiln_result result = ki_map_check(source, error);
-    if (result == KILN_OK && source->shape != KILN_SHAPE_PANORAMA) {
-        int size = ki_min(2 * source->size, KILN_MAX_SIZE / 2);
-        result = kiln_map_convert(context, source, KILN_SHAPE_PANORAMA, size, 0, &panorama, error);
-        source = &panorama;
-    }
-    if (result == KILN_OK)
+    if (result == KILN_OK && source->shape == KILN_SHAPE_PANORAMA) {
         result = kiln_plan_create(context, source->size, def, &plan, error);
+    } else if (result == KILN_OK) {
+        int size = ki_min(2 * source->size, KILN_MAX_SIZE / 2);
+        panorama = &made;
+        result = kiln_map_convert(context, source, KILN_SHAPE_PANORAMA, size, 0, &made, error);
+        if (result == KILN_OK)
+            result = ki_plan_create(context, size, source, def, &plan, error);
+    }
     if (result == KILN_OK)
         result = kiln_plan_map(plan, map, error);
     if (result == KILN_OK)
-        result = kiln_plan_execute(plan, source, map, error);
+        result = check_and_execute(plan, panorama, source, map, error);
     if (result != KILN_OK)
         kiln_map_free(map);
     kiln_plan_destroy(plan);
-    kiln_map_free(&panorama);
+    kiln_map_free(&made);
     return result;
 }

@@ -168,7 +168,7 @@ kiln_result kiln_spectrum_filter(kiln_context *context, const kiln_spectrum *spe
     result = ki_level_create(context, &legendre, &zonal, &zonal_spectrum, map->shape,
                              kiln_map_level_size(map, level), &plan, error);
     if (result == KILN_OK)
-        result = ki_level_execute(plan, spectrum, NULL, rotation, map, level, error);
+        result = ki_level_execute(plan, spectrum, NULL, rotation, map, level, NULL, error);
     ki_level_destroy(plan);
     ki_legendre_destroy(&legendre);
     return result;

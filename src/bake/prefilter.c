@@ -104,9 +104,29 @@ kiln_result ki_lobe_spectrum(kiln_context *context, const kiln_lobe *lobe, doubl
     return ki_zonal_analyze(context, zonal, tolerance, KILN_MAX_DEGREE, spectrum, error);
 }
 
-kiln_result ki_plan_create(kiln_context *context, int source_size, const kiln_prefilter_def *def,
-                           kiln_plan **plan, kiln_error *error)
+// A mirror shows the source itself, so that what was a cube stays as sharp, or the same; where its
+// texels are much finer than the mirror's, the way by the panorama, which adds all of them up, is
+// better and as sharp.
+static kiln_result plan_mirror(kiln_plan *p, int level, const kiln_map *source, kiln_error *error)
 {
+    kiln_map panorama = {.shape = KILN_SHAPE_PANORAMA, .size = p->source_size, .level_count = 1};
+    kiln_map target = {.shape = p->def.shape, .size = p->def.size, .level_count = level + 1};
+    if (source) {
+        bool exact = source->shape == KILN_SHAPE_CUBE && target.shape == KILN_SHAPE_CUBE &&
+                     fmod(p->def.rotation, 90) == 0;
+        p->direct[level] =
+            exact || kiln_map_texels(source, 0) < 4 * kiln_map_texels(&target, level);
+    }
+    const kiln_map *from = p->direct[level] ? source : &panorama;
+    return ki_resample_plan_create(p->context, from->shape, from->size, target.shape,
+                                   kiln_map_level_size(&target, level), p->def.rotation,
+                                   &p->mirrors[level], error);
+}
+
+kiln_result ki_plan_create(kiln_context *context, int panorama_size, const kiln_map *source,
+                           const kiln_prefilter_def *def, kiln_plan **plan, kiln_error *error)
+{
+    static const char stage[] = "planning";
     kiln_result result = KILN_OK;
     kiln_lobe lobes[KILN_MAX_LEVELS];
     ki_zonal zonals[KILN_MAX_LEVELS];
@@ -116,7 +136,7 @@ kiln_result ki_plan_create(kiln_context *context, int source_size, const kiln_pr
     if (!p)
         return ki_fail_memory(context, error, "a plan", sizeof *p);
     p->context = context;
-    p->source_size = source_size;
+    p->source_size = panorama_size;
     result = ki_prefilter_resolve(def, &p->def, p->roughness, lobes, error);
     if (result != KILN_OK)
         goto done;
@@ -138,17 +158,17 @@ kiln_result ki_plan_create(kiln_context *context, int source_size, const kiln_pr
         goto done;
     }
     ki_model_density(degree, density);
-    result = ki_analysis_create(context, source_size, degree, density, &p->analysis, error);
+    result = ki_analysis_create(context, panorama_size, degree, density, &p->analysis, error);
     if (result == KILN_OK)
         result = ki_intake_create(p->analysis, true, &p->intake, error);
     if (result == KILN_OK)
         result = ki_spectrum_create(p->analysis, &p->spectrum, error);
     for (int i = 0; i < p->def.level_count && result == KILN_OK; i++) {
         int size = ki_max(1, p->def.size >> i);
-        if (ki_is_mirror(&lobes[i]))
-            result =
-                ki_resample_plan_create(context, KILN_SHAPE_PANORAMA, source_size, p->def.shape,
-                                        size, p->def.rotation, &p->mirrors[i], error);
+        if (!ki_progress(context, stage, (double)i / p->def.level_count))
+            result = ki_fail_cancelled(error, stage);
+        else if (ki_is_mirror(&lobes[i]))
+            result = plan_mirror(p, i, source, error);
         else
             result = ki_level_create(context, &p->analysis->legendre, &zonals[i], &spectra[i],
                                      p->def.shape, size, &p->levels[i], error);
@@ -164,8 +184,8 @@ done:
     return result;
 }
 
-kiln_result ki_plan_execute(kiln_plan *p, const kiln_map *panorama, kiln_map *map,
-                            kiln_error *error)
+kiln_result ki_plan_execute(kiln_plan *p, const kiln_map *panorama, const kiln_map *source,
+                            kiln_map *map, kiln_error *error)
 {
     static const char stage[] = "filtering";
     kiln_result result;
@@ -177,15 +197,19 @@ kiln_result ki_plan_execute(kiln_plan *p, const kiln_map *panorama, kiln_map *ma
     for (int i = 0; i < p->def.level_count && result == KILN_OK; i++) {
         if (!ki_progress(p->context, stage, done))
             return ki_fail_cancelled(error, stage);
-        if (p->mirrors[i])
-            ki_resample_execute(p->mirrors[i], panorama->level[0], map->level[i]);
-        else
+        ki_stage part = {stage, done, done + (1 - done) / 2};
+        if (!p->mirrors[i])
             result = ki_level_execute(p->levels[i], p->spectrum, panorama, p->def.rotation, map, i,
-                                      error);
+                                      &part, error);
+        else if (!ki_resample_execute(p->mirrors[i],
+                                      p->direct[i] ? source->level[0] : panorama->level[0],
+                                      map->level[i], &part))
+            result = ki_fail_cancelled(error, stage);
         map->roughness[i] = p->roughness[i];
-        done += (1 - done) / 2;
+        done = part.to;
     }
-    ki_progress(p->context, stage, 1);
+    if (result == KILN_OK && !ki_progress(p->context, stage, 1))
+        return ki_fail_cancelled(error, stage);
     return result;
 }
 

@@ -24,11 +24,13 @@ kiln_result ki_lobe_spectrum(kiln_context *context, const kiln_lobe *lobe, doubl
                              bool split, ki_zonal *zonal, ki_zonal_spectrum *spectrum,
                              kiln_error *error);
 
-kiln_result ki_plan_create(kiln_context *context, int source_size, const kiln_prefilter_def *def,
-                           kiln_plan **plan, kiln_error *error);
-/// `panorama` has the plan's size.
-kiln_result ki_plan_execute(kiln_plan *plan, const kiln_map *panorama, kiln_map *map,
-                            kiln_error *error);
+/// `source` (its shape and size are used) is what `panorama_size` rows of panorama will be made from,
+/// or NULL where it is a panorama of these itself.
+kiln_result ki_plan_create(kiln_context *context, int panorama_size, const kiln_map *source,
+                           const kiln_prefilter_def *def, kiln_plan **plan, kiln_error *error);
+/// `panorama` has the plan's size; `source` as the plan was created with.
+kiln_result ki_plan_execute(kiln_plan *plan, const kiln_map *panorama, const kiln_map *source,
+                            kiln_map *map, kiln_error *error);
 void ki_plan_destroy(kiln_plan *plan);
 
 #endif

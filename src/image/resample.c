@@ -794,33 +794,34 @@ kiln_result ki_resample_plan_create(kiln_context *context, kiln_shape source_sha
     return result;
 }
 
-void ki_resample_execute(ki_resample_plan *plan, const float *source, float *target)
+bool ki_resample_execute(ki_resample_plan *plan, const float *source, float *target,
+                         const ki_stage *stage)
 {
+    kiln_context *context = plan->context;
     resample_job job = {.plan = plan, .source = source, .target = target};
-    int faces = plan->shape == KILN_SHAPE_CUBE ? 6 : 1, count = 0;
+    int rows = plan->size * (plan->shape == KILN_SHAPE_CUBE ? 6 : 1), count = 0;
     switch (plan->kind) {
     case GATHER:
         for (int k = 0; k < plan->grid_count; k++)
             count += plan->grid[k].chunk_count;
         job.target = plan->fine ? plan->fine : target;
-        ki_parallel_for(plan->context, count, gather_task, &job);
+        if (!ki_parallel_steps(context, stage, count, gather_task, &job))
+            return false;
         job.target = target;
         if (plan->fine)
-            ki_parallel_for(plan->context, faces * plan->size, coarsen_task, &job);
-        break;
+            ki_parallel_for(context, rows, coarsen_task, &job);
+        return true;
     case SCATTER:
         for (; job.first * plan->band_rows < plan->size; job.first += BANDS)
-            ki_parallel_for(plan->context, BANDS, scatter_task, &job);
-        break;
+            if (!ki_parallel_steps(context, NULL, BANDS, scatter_task, &job))
+                return false;
+        return true;
     case SEPARABLE:
-        ki_parallel_for(plan->context, plan->size, separable_task, &job);
-        break;
+        return ki_parallel_steps(context, stage, rows, separable_task, &job);
     case FACES:
-        ki_parallel_for(plan->context, faces * plan->size, faces_task, &job);
-        break;
+        return ki_parallel_steps(context, stage, rows, faces_task, &job);
     default:
-        ki_parallel_for(plan->context, faces * plan->size, subsample_task, &job);
-        break;
+        return ki_parallel_steps(context, stage, rows, subsample_task, &job);
     }
 }
 
@@ -852,7 +853,9 @@ kiln_result ki_map_resample(kiln_context *context, const kiln_map *source, doubl
                                 ki_max(1, target->size >> level), rotation, &plan, error);
     if (result || !plan)
         return result;
-    ki_resample_execute(plan, source->level[0], target->level[level]);
+    static const ki_stage stage = {"converting", 0, 1};
+    if (!ki_resample_execute(plan, source->level[0], target->level[level], &stage))
+        result = ki_fail_cancelled(error, stage.name);
     ki_resample_plan_destroy(plan);
-    return KILN_OK;
+    return result;
 }

@@ -13,8 +13,10 @@ kiln_result ki_resample_plan_create(kiln_context *context, kiln_shape source_sha
                                     kiln_shape shape, int size, double rotation,
                                     ki_resample_plan **plan, kiln_error *error);
 /// `source` and `target` are the RGB texels of one level each, of the plan's shapes and sizes; they
-/// must not overlap. Allocates nothing and cannot fail. One execution of a plan at a time.
-void ki_resample_execute(ki_resample_plan *plan, const float *source, float *target);
+/// must not overlap. Allocates nothing and fails only, with false, where a report of progress asks it
+/// to stop; `stage` as in ki_parallel_steps. One execution of a plan at a time.
+bool ki_resample_execute(ki_resample_plan *plan, const float *source, float *target,
+                         const ki_stage *stage);
 /// May be NULL.
 void ki_resample_plan_destroy(ki_resample_plan *plan);
 

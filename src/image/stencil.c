@@ -546,7 +546,8 @@ kiln_result ki_stencil_grid_build(kiln_context *context, ki_stencil_grid *grid, 
     job.cotangent = cotangent;
     job.cosine = cosine;
     job.sine = sine;
-    ki_parallel_for(context, grid->chunk_count, build_chunk, &job);
+    if (!ki_parallel_steps(context, NULL, grid->chunk_count, build_chunk, &job))
+        result = ki_fail_cancelled(error, "planning");
     for (int k = 0; k < grid->chunk_count; k++)
         if (grid->chunks[k].failed && !result)
             result = ki_fail_memory(context, error, "resampling",

@@ -74,16 +74,18 @@ static bool design_taps(ki_level *level)
     return good;
 }
 
-// Where texels lie on the grid. Faces of the same kind differ by a quarter turn or a reflection.
-static void place_texels(ki_level *level)
+// Task: where a row of texels lies on the grid. Faces of the same kind differ by a quarter turn or a
+// reflection: of a cube, the first `size` rows are +X's, as many more +Y's.
+static void place_row(void *data, int row)
 {
-    int n = level->size;
-    kiln_map map = {.shape = level->shape, .size = n, .level_count = 1};
-    size_t face = (size_t)n * (size_t)n;
-    size_t count = level->shape == KILN_SHAPE_CUBE ? 2 * face : kiln_map_texels(&map, 0);
-    for (size_t i = 0; i < count; i++) {
+    ki_level *level = data;
+    int width, height;
+    kiln_map map = {.shape = level->shape, .size = level->size, .level_count = 1};
+    ki_level_extent(&map, 0, &width, &height);
+    size_t face = (size_t)width * (size_t)width, first = (size_t)row * (size_t)width;
+    bool top = level->shape == KILN_SHAPE_CUBE && row >= width;
+    for (size_t i = first; i < first + (size_t)width; i++) {
         double direction[3], u, v;
-        bool top = level->shape == KILN_SHAPE_CUBE && i >= face;
         kiln_map_direction(&map, 0, top ? i + face : i, direction);
         ki_direction_panorama(direction, &u, &v);
         level->positions[2 * i] = v * 2 * level->rings.pair_count - 0.5 + (PAD - TAP_OFFSET);
@@ -156,7 +158,9 @@ static bool plan_grid(ki_level *v, const kiln_map *map)
     v->positions = ki_alloc_raw(v->context, texels, 2 * sizeof(double));
     if (!v->grid || !v->positions || !design_taps(v))
         return false;
-    place_texels(v);
+    int row, height;
+    ki_level_extent(map, 0, &row, &height);
+    ki_parallel_for(v->context, (int)(texels / (size_t)row), place_row, v);
     return true;
 }
 
@@ -459,7 +463,8 @@ static void fill_row(void *data, int index)
 }
 
 kiln_result ki_level_execute(ki_level *v, const kiln_spectrum *spectrum, const kiln_map *panorama,
-                             double rotation, kiln_map *map, int index, kiln_error *error)
+                             double rotation, kiln_map *map, int index, const ki_stage *stage,
+                             kiln_error *error)
 {
     kiln_result result =
         ki_points_create(spectrum, &v->zonal, v->lobe.integral, rotation, &v->points, error);
@@ -477,7 +482,8 @@ kiln_result ki_level_execute(ki_level *v, const kiln_spectrum *spectrum, const k
                         v);
     if (!v->places)
         pad_grid(v);
-    ki_parallel_for(v->context, height, fill_row, v);
+    if (!ki_parallel_steps(v->context, stage, height, fill_row, v))
+        result = ki_fail_cancelled(error, stage ? stage->name : "filtering");
     ki_points_destroy(&v->points);
-    return KILN_OK;
+    return result;
 }

@@ -14,9 +14,10 @@ kiln_result ki_level_create(kiln_context *context, const ki_legendre *legendre,
                             const ki_zonal *zonal, ki_zonal_spectrum *spectrum, kiln_shape shape,
                             int size, ki_level **level, kiln_error *error);
 void ki_level_destroy(ki_level *level);
-/// Writes level `index` of `map`. `panorama` is needed where the zonal has an inner radius.
+/// Writes level `index` of `map`. `panorama` is needed where the zonal has an inner radius. `stage` as
+/// in ki_parallel_steps.
 kiln_result ki_level_execute(ki_level *level, const kiln_spectrum *spectrum,
                              const kiln_map *panorama, double rotation, kiln_map *map, int index,
-                             kiln_error *error);
+                             const ki_stage *stage, kiln_error *error);
 
 #endif

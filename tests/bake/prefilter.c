@@ -1,0 +1,201 @@
+// Mirror levels of cubes and octahedra, and stopping wherever progress is reported.
+#include "bake_test.h"
+
+#include <dirent.h>
+#include <unistd.h>
+
+static kiln_context *context;
+static kiln_error error;
+
+static kiln_map random_map(kiln_shape shape, int size)
+{
+    kiln_map map;
+    CHECK_OK(kiln_map_create(context, shape, size, 1, &map, &error));
+    uint64_t seed = 7;
+    for (size_t i = 0; i < 3 * kiln_map_texels(&map, 0); i++)
+        map.level[0][i] = (float)random_number(&seed);
+    return map;
+}
+
+static kiln_map mirror(const kiln_map *source, kiln_shape shape, int size, double rotation)
+{
+    kiln_map map;
+    kiln_prefilter_def def = {
+        .shape = shape, .has_shape = true, .size = size, .level_count = 1, .rotation = rotation};
+    CHECK_OK(kiln_prefilter(context, source, &def, &map, &error));
+    return map;
+}
+
+// The same size and a quarter turn: texels change places, not their bits.
+static void mirrors_of_the_same_size_are_copies(void **state)
+{
+    (void)state;
+    for (int shape = KILN_SHAPE_CUBE; shape <= KILN_SHAPE_OCTAHEDRON; shape++) {
+        kiln_map source = random_map((kiln_shape)shape, 24);
+        size_t bytes = kiln_map_texels(&source, 0) * 3 * sizeof(float);
+        kiln_map same = mirror(&source, source.shape, 24, 0);
+        assert_memory_equal(same.level[0], source.level[0], bytes);
+        kiln_map once = mirror(&source, source.shape, 24, 90);
+        kiln_map back = mirror(&once, source.shape, 24, 270);
+        assert_memory_not_equal(once.level[0], source.level[0], bytes);
+        assert_memory_equal(back.level[0], source.level[0], bytes);
+        kiln_map_free(&source);
+        kiln_map_free(&same);
+        kiln_map_free(&once);
+        kiln_map_free(&back);
+    }
+}
+
+static double mean_square(const float *a, const float *b, size_t count)
+{
+    double sum = 0;
+    for (size_t i = 0; i < count; i++)
+        sum += ((double)a[i] - (double)b[i]) * ((double)a[i] - (double)b[i]);
+    return sum / (double)count;
+}
+
+// As kiln_map_convert has it from the source itself; from a panorama of it, which blurs once more,
+// noise would lose some of its variance. Much smaller mirrors keep the whole light.
+static void mirrors_of_other_sizes_come_from_the_source(void **state)
+{
+    (void)state;
+    static const struct {
+        kiln_shape from, to;
+        int size;
+        double rotation;
+    } cases[] = {{KILN_SHAPE_CUBE, KILN_SHAPE_CUBE, 12, 0},
+                 {KILN_SHAPE_CUBE, KILN_SHAPE_CUBE, 1, 180},
+                 {KILN_SHAPE_CUBE, KILN_SHAPE_CUBE, 24, 30},
+                 {KILN_SHAPE_CUBE, KILN_SHAPE_OCTAHEDRON, 48, 0},
+                 {KILN_SHAPE_OCTAHEDRON, KILN_SHAPE_CUBE, 24, 0}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        kiln_map source = random_map(cases[i].from, 24), converted;
+        kiln_map got = mirror(&source, cases[i].to, cases[i].size, cases[i].rotation);
+        CHECK_OK(kiln_map_convert(context, &source, cases[i].to, cases[i].size, cases[i].rotation,
+                                  &converted, &error));
+        CHECK_NEAR(mean_square(got.level[0], converted.level[0], 3 * kiln_map_texels(&got, 0)), 0,
+                   0);
+        kiln_map_free(&source);
+        kiln_map_free(&got);
+        kiln_map_free(&converted);
+    }
+    // A lone bright texel that few sub-samples of a coarse, turned mirror would meet.
+    kiln_map source;
+    CHECK_OK(kiln_map_create(context, KILN_SHAPE_CUBE, 256, 1, &source, &error));
+    source.level[0][3 * (256 * 256 * 4 + 256 * 128 + 128)] = 1e6f;
+    kiln_map coarse = mirror(&source, KILN_SHAPE_CUBE, 1, 45);
+    double sum = 0, wanted = 1e6 * (4.0 / (256 * 256)) / (4 * pi) * 6; // at a face's centre
+    for (int f = 0; f < 6; f++)
+        sum += (double)coarse.level[0][3 * f];
+    CHECK_NEAR(sum, wanted, 1e-3 * wanted);
+    kiln_map_free(&source);
+    kiln_map_free(&coarse);
+}
+
+typedef struct countdown {
+    int left, calls;
+} countdown;
+
+static bool count_down(void *user, const char *stage, double fraction)
+{
+    countdown *c = user;
+    assert_non_null(stage);
+    assert_true(fraction >= 0 && fraction <= 1);
+    c->calls++;
+    return c->left-- > 0;
+}
+
+static int files_in(const char *folder)
+{
+    int count = 0;
+    DIR *dir = opendir(folder);
+    assert_non_null(dir);
+    while (readdir(dir))
+        count++;
+    closedir(dir);
+    return count - 2; // itself and its parent
+}
+
+// Stops at each report in turn: all memory comes back, no file is left, and the sentence says so.
+// Returns how many reports there are.
+static int stop_everywhere(const kiln_map *source, kiln_shape shape, const char *folder,
+                           const char *ending)
+{
+    countdown c = {0};
+    kiln_context *own;
+    kiln_context_def def = {.thread_count = 1, .progress = count_down, .progress_user = &c};
+    CHECK_OK(kiln_context_create(&def, &own, &error));
+    char path[256];
+    snprintf(path, sizeof path, "%s/out%s", folder, ending);
+    kiln_result result = KILN_ERROR_CANCELLED;
+    for (int stop = 0; result != KILN_OK; stop += 1 + stop / 8) {
+        c = (countdown){.left = stop};
+        kiln_map map;
+        kiln_prefilter_def what = {.shape = shape, .has_shape = true, .size = 64, .level_count = 2};
+        kiln_save_def how = {.zstd = !strcmp(ending, ".ktx2")};
+        size_t before, after;
+        kiln_context_memory(own, &before, NULL);
+        result = kiln_prefilter(own, source, &what, &map, &error);
+        if (result == KILN_OK)
+            result = kiln_map_save(own, &map, path, &how, NULL, &error);
+        else
+            assert_null(map.owner);
+        kiln_map_free(&map);
+        kiln_context_memory(own, &after, NULL);
+        assert_int_equal(after, before);
+        if (result == KILN_OK)
+            break;
+        assert_int_equal(result, KILN_ERROR_CANCELLED);
+        assert_int_equal(c.calls, stop + 1); // nothing goes on after it
+        assert_non_null(strstr(error.message, "stopped while "));
+        assert_int_equal(files_in(folder), 0);
+    }
+    kiln_context_destroy(own);
+    return c.calls;
+}
+
+static void remove_files(const char *folder)
+{
+    DIR *dir = opendir(folder);
+    assert_non_null(dir);
+    for (struct dirent *entry; (entry = readdir(dir));) {
+        char path[600];
+        snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
+        unlink(path);
+    }
+    closedir(dir);
+}
+
+static void work_stops_wherever_it_reports(void **state)
+{
+    (void)state;
+    char folder[] = "/tmp/kiln-test-XXXXXX";
+    assert_non_null(mkdtemp(folder));
+    kiln_map panorama = random_map(KILN_SHAPE_PANORAMA, 64), cube = random_map(KILN_SHAPE_CUBE, 32);
+    static const char *const endings[] = {".ktx2", ".dds", ".exr", ".hdr", ".png"};
+    for (int i = 0; i < 5; i++) {
+        // Dozens of reports a level and some a file: a bake of any size stops soon.
+        int calls = stop_everywhere(i % 2 ? &cube : &panorama, KILN_SHAPE_CUBE, folder, endings[i]);
+        assert_true(calls > 80);
+        remove_files(folder);
+    }
+    int calls = stop_everywhere(&panorama, KILN_SHAPE_PANORAMA, folder, ".exr");
+    assert_true(calls > 80);
+    remove_files(folder);
+    assert_int_equal(rmdir(folder), 0);
+    kiln_map_free(&panorama);
+    kiln_map_free(&cube);
+}
+
+int main(void)
+{
+    context = make_context(2);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(mirrors_of_the_same_size_are_copies),
+        cmocka_unit_test(mirrors_of_other_sizes_come_from_the_source),
+        cmocka_unit_test(work_stops_wherever_it_reports),
+    };
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    kiln_context_destroy(context);
+    return failed;
+}
