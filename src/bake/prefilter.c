@@ -117,7 +117,7 @@ static kiln_result plan_mirror(kiln_plan *p, int level, const kiln_map *source, 
         p->direct[level] =
             exact || kiln_map_texels(source, 0) < 4 * kiln_map_texels(&target, level);
     }
-    const kiln_map *from = p->direct[level] ? source : &panorama;
+    const kiln_map *from = source && p->direct[level] ? source : &panorama;
     return ki_resample_plan_create(p->context, from->shape, from->size, target.shape,
                                    kiln_map_level_size(&target, level), p->def.rotation,
                                    &p->mirrors[level], error);

@@ -82,10 +82,10 @@ static void mirrors_of_other_sizes_come_from_the_source(void **state)
     // A lone bright texel that few sub-samples of a coarse, turned mirror would meet.
     kiln_map source;
     CHECK_OK(kiln_map_create(context, KILN_SHAPE_CUBE, 256, 1, &source, &error));
-    source.level[0][3 * (256 * 256 * 4 + 256 * 128 + 128)] = 1e6f;
+    source.level[0][(size_t)3 * (256 * 256 * 4 + 256 * 128 + 128)] = 1e6f;
     kiln_map coarse = mirror(&source, KILN_SHAPE_CUBE, 1, 45);
     double sum = 0, wanted = 1e6 * (4.0 / (256 * 256)) / (4 * pi) * 6; // at a face's centre
-    for (int f = 0; f < 6; f++)
+    for (size_t f = 0; f < 6; f++)
         sum += (double)coarse.level[0][3 * f];
     CHECK_NEAR(sum, wanted, 1e-3 * wanted);
     kiln_map_free(&source);
