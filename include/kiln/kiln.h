@@ -174,7 +174,7 @@ KILN_API KILN_CHECKED kiln_result kiln_map_convert(kiln_context *context, const 
 // ---------------------------------------------------------------------------------- files, reading
 
 /// How a flat picture lies on the sphere. Auto: 2:1 is a panorama, 4:3 and 3:4 are crosses,
-/// 6:1 and 1:6 are strips.
+/// 6:1 and 1:6 are strips; an EXR that kiln wrote says that it is an octahedron.
 typedef enum kiln_layout {
     KILN_LAYOUT_AUTO = 0,
     KILN_LAYOUT_PANORAMA,
@@ -324,7 +324,8 @@ typedef struct kiln_prefilter_def {
     bool has_shape;         ///< false: a cube
     int size;               ///< 1 to KILN_MAX_SIZE; 0 for 256
     int level_count;        ///< 1 to KILN_MAX_LEVELS; 0 for all down to 1
-    const float *roughness; ///< level_count numbers in [0, 1]; NULL for level / (level_count - 1)
+    const float *roughness; ///< level_count numbers in [0, 1]; NULL for level / (level_count - 1),
+                            ///< or 1 for Lambert, which has none
     kiln_lobe_kind lobe;    ///< GGX (alpha = roughness^2), Lambert, Charlie (the same alpha,
                             ///< 0.01 at least) or Phong (exponent 2 / alpha^2 - 2, 1 at least)
     double rotation;        ///< degrees about +Y

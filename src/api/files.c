@@ -117,8 +117,10 @@ kiln_result kiln_map_decode(kiln_context *context, const void *bytes, size_t siz
         *map = decoded.map;
         return KILN_OK;
     }
-    result = lay_out(context, &decoded.image, name ? name : "memory",
-                     def ? def->layout : KILN_LAYOUT_AUTO, map, error);
+    enum kiln_layout layout = def ? def->layout : KILN_LAYOUT_AUTO;
+    if (layout == KILN_LAYOUT_AUTO && !strcmp(info.layout, "octahedron"))
+        layout = KILN_LAYOUT_OCTAHEDRON;
+    result = lay_out(context, &decoded.image, name ? name : "memory", layout, map, error);
     if (result == KILN_OK && info.roughness[0] >= 0)
         map->roughness[0] = info.roughness[0];
     ki_decoded_free(&decoded);

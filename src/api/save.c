@@ -107,6 +107,7 @@ static kiln_result write_set(kiln_context *context, const kiln_map *map, const c
         size_t floats = 3 * (size_t)width * (size_t)height;
         ki_exr_options options = {.half = def->format != KILN_FORMAT_RGBA32F,
                                   .panorama = map->shape == KILN_SHAPE_PANORAMA,
+                                  .octahedron = map->shape == KILN_SHAPE_OCTAHEDRON,
                                   .roughness = map->roughness[level]};
         bytes.size = 0;
         if (!expand(template, cube ? face : -1, level, &path)) {

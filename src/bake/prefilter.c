@@ -63,6 +63,8 @@ kiln_result ki_prefilter_resolve(const kiln_prefilter_def *def, kiln_prefilter_d
                        d.tolerance);
     for (int i = 0; i < d.level_count; i++) {
         roughness[i] = d.level_count > 1 ? (float)i / (float)(d.level_count - 1) : 0;
+        if (d.lobe == KILN_LOBE_LAMBERT)
+            roughness[i] = 1;
         if (d.roughness)
             roughness[i] = d.roughness[i];
         if (!(roughness[i] >= 0 && roughness[i] <= 1))

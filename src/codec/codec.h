@@ -53,6 +53,7 @@ kiln_result ki_dds_encode(const kiln_map *map, const kiln_save_def *def, ki_writ
 typedef struct ki_exr_options {
     bool half;       ///< false: 32-bit floats
     bool panorama;   ///< says so in the attribute "envmap"
+    bool octahedron; ///< says so in the attribute "kilnShape"
     float roughness; ///< the attribute "kilnRoughness"; negative for none
 } ki_exr_options;
 kiln_result ki_exr_encode(const float *pixels, int width, int height, int channels,

@@ -116,7 +116,8 @@ kiln_result ki_decode(kiln_context *context, const uint8_t *bytes, size_t size, 
         return result;
     }
     const char *layout = is_map ? "cube" : ki_layout_name(info->width, info->height);
-    snprintf(info->layout, sizeof info->layout, "%s", layout ? layout : "image");
+    if (!info->layout[0]) // unless the file says it
+        snprintf(info->layout, sizeof info->layout, "%s", layout ? layout : "image");
     if (decoded)
         decoded->is_map = is_map;
     return KILN_OK;

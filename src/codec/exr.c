@@ -614,6 +614,11 @@ static void describe(const exr_file *f, kiln_file_info *info)
     if (exr_get_attribute_by_name(f->core, f->part, "software", &software) == EXR_ERR_SUCCESS &&
         software->type == EXR_ATTR_STRING && !strncmp(software->string->str, "kiln ", 5))
         snprintf(info->writer, sizeof info->writer, "%.63s", software->string->str);
+    const exr_attribute_t *shape = NULL;
+    if (exr_get_attribute_by_name(f->core, f->part, "kilnShape", &shape) == EXR_ERR_SUCCESS &&
+        shape->type == EXR_ATTR_STRING && !strcmp(shape->string->str, "octahedron") &&
+        f->width == f->height)
+        snprintf(info->layout, sizeof info->layout, "octahedron");
     float roughness;
     if (exr_attr_get_float(f->core, f->part, "kilnRoughness", &roughness) == EXR_ERR_SUCCESS &&
         roughness >= 0 && roughness <= 1)

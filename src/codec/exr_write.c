@@ -67,6 +67,10 @@ static void header(ki_writer *w, int width, int height, int channels, const ki_e
         attribute(w, "kilnRoughness", "float", 4);
         write_float(w, options->roughness);
     }
+    if (options->octahedron) {
+        attribute(w, "kilnShape", "string", 10);
+        ki_write_text(w, "octahedron");
+    }
     attribute(w, "lineOrder", "lineOrder", 1);
     ki_write_u8(w, 0);
     attribute(w, "pixelAspectRatio", "float", 4);

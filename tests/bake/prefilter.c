@@ -92,6 +92,28 @@ static void mirrors_of_other_sizes_come_from_the_source(void **state)
     kiln_map_free(&coarse);
 }
 
+// Lambert has no roughness; its level is as rough as can be.
+static void roughness_is_stated(void **state)
+{
+    (void)state;
+    kiln_map source = random_map(KILN_SHAPE_PANORAMA, 16), map;
+    kiln_prefilter_def def = {.size = 4};
+    CHECK_OK(kiln_prefilter(context, &source, &def, &map, &error));
+    for (int k = 0; k < 3; k++)
+        CHECK_NEAR((double)map.roughness[k], 0.5 * k, 0);
+    kiln_map_free(&map);
+    def = (kiln_prefilter_def){.size = 4, .level_count = 1, .lobe = KILN_LOBE_LAMBERT};
+    CHECK_OK(kiln_prefilter(context, &source, &def, &map, &error));
+    CHECK_NEAR((double)map.roughness[0], 1, 0);
+    kiln_map_free(&map);
+    def = (kiln_prefilter_def){.size = 4, .level_count = 2, .roughness = (float[]){0.5f, 0.25f}};
+    CHECK_OK(kiln_prefilter(context, &source, &def, &map, &error));
+    CHECK_NEAR((double)map.roughness[0], 0.5, 0);
+    CHECK_NEAR((double)map.roughness[1], 0.25, 0);
+    kiln_map_free(&map);
+    kiln_map_free(&source);
+}
+
 typedef struct countdown {
     int left, calls;
 } countdown;
@@ -193,6 +215,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(mirrors_of_the_same_size_are_copies),
         cmocka_unit_test(mirrors_of_other_sizes_come_from_the_source),
+        cmocka_unit_test(roughness_is_stated),
         cmocka_unit_test(work_stops_wherever_it_reports),
     };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);

@@ -285,6 +285,15 @@ static void names_say_face_and_level(void **state)
     CHECK_OK(kiln_map_save(context, &panorama, in_folder("o.exr"), NULL, NULL, &error));
     assert_int_equal(access(in_folder("o_1.exr"), R_OK), 0);
     kiln_map_free(&panorama);
+
+    // An octahedron is a square like a face: the file says what it is.
+    kiln_file_info info;
+    CHECK_OK(kiln_file_describe(context, in_folder("o_1.exr"), &info, &error));
+    assert_string_equal(info.layout, "octahedron");
+    CHECK_OK(kiln_map_load(context, in_folder("o_1.exr"), NULL, &panorama, &error));
+    assert_int_equal(panorama.shape, KILN_SHAPE_OCTAHEDRON);
+    assert_int_equal(panorama.size, 2);
+    kiln_map_free(&panorama);
 }
 
 static void faces_are_found_again(void **state)
