@@ -70,7 +70,7 @@ kiln_result ki_points_create(const kiln_spectrum *spectrum, const ki_zonal *zona
     int least = zonal->lobe.kind == KILN_LOBE_CHARLIE ? 4 : 1;
     int cells = (int)ki_clamp(ceil(texel / width / 0.5), least, MOST_CELLS), n = 4 * cells;
     suns->near_count = n * n;
-    suns->near_versine = texel > 0.05 * width ? 1 - ki_cos(fmin(KI_PI, 16 * texel)) : -1;
+    suns->near_versine = texel > 0.04 * width ? 1 - ki_cos(fmin(KI_PI, 24 * texel)) : -1;
     suns->far_versine = width > 128 * texel ? -1 : 1 - ki_cos(fmin(KI_PI, 128 * texel));
     suns->horizon = texel;
     size_t count = (size_t)suns->count, near_count = (size_t)suns->near_count;

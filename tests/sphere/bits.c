@@ -52,7 +52,7 @@ static outcome bake(int threads, enum kiln_cpu cpu)
 
 // What every machine and compiler gives. Changes when the engine's arithmetic does; then CHANGELOG.md says
 // so under Output, and the test prints the new numbers.
-static const outcome golden = {0x8617f0c193159b10, 0x2c9b053f18e0013e};
+static const outcome golden = {0x89a28734b1907813, 0x2c9b053f18e0013e};
 
 static void one_hash_for_every_machine_and_compiler(void **state)
 {
