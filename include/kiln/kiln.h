@@ -376,6 +376,69 @@ KILN_API KILN_CHECKED kiln_result kiln_spectrum_sh(const kiln_spectrum *spectrum
 /// The value of the series in a unit direction; may be negative.
 KILN_API void kiln_sh_evaluate(const kiln_sh *sh, const double direction[3], double value[3]);
 
+// ------------------------------------------------------------------------------ microfacet models
+
+/// The distribution of normals.
+typedef enum kiln_d {
+    KILN_D_GGX,     ///< Trowbridge and Reitz 1975, Walter et al. 2007
+    KILN_D_BECKMANN ///< Gaussian slopes, with Smith's masking of its own
+} kiln_d;
+
+/// Masking and shadowing, Smith's or Schlick's approximation with one of the two k in use.
+typedef enum kiln_g {
+    KILN_G_SMITH,              ///< height-correlated Smith (Heitz 2014, eq. 99); the default
+    KILN_G_SMITH_UNCORRELATED, ///< G1(v) G1(l)
+    KILN_G_SCHLICK_K2,         ///< k = roughness^2 / 2 (Karis 2013, image-based light)
+    KILN_G_SCHLICK_TEXT        ///< k = (roughness + 1)^2 / 8 (Karis 2013, point lights)
+} kiln_g;
+
+/// {0} is a good default: GGX with height-correlated Smith shadowing.
+typedef struct kiln_model {
+    kiln_d d;
+    kiln_g g;
+} kiln_model;
+
+// ------------------------------------------------------------------------------------------ tables
+
+enum { KILN_MAX_TABLE = 4096 };
+
+/// What a table holds. u runs along n.v, v along roughness, w (slices) along the third argument.
+typedef enum kiln_table_kind {
+    KILN_TABLE_E,                ///< E, one channel: the directional albedo of F = 1
+    KILN_TABLE_E_AVERAGE,        ///< E_avg, one channel, one texel wide: 2 int E(mu) mu dmu
+    KILN_TABLE_DFG,              ///< A, B: specular albedo = F0 A + B
+    KILN_TABLE_DFG_MULTISCATTER, ///< B, A + B and the cloth's albedo, as Filament orders them
+    KILN_TABLE_SHEEN,            ///< directional albedo of Charlie sheen, one channel
+    KILN_TABLE_E_DIELECTRIC,     ///< E of a rough dielectric's reflection, w along the ior
+    KILN_TABLE_GLASS,            ///< reflected, transmitted from outside, the same from inside
+    KILN_TABLE_E_WALK            ///< albedo with all bounces by random walk, w along F0
+} kiln_table_kind;
+
+/// How n.v runs along u: the warped axes resolve the grazing layer, where E changes fast.
+typedef enum kiln_axis {
+    KILN_AXIS_LINEAR, ///< u = n.v
+    KILN_AXIS_SQRT,   ///< u = (n.v)^(1/2)
+    KILN_AXIS_CBRT    ///< u = (n.v)^(1/3)
+} kiln_axis;
+
+/// {0} is a good default: E of the default model, 128 x 128, u = n.v, texel centres.
+typedef struct kiln_table_def {
+    kiln_table_kind kind;
+    kiln_model model;
+    int width, height, depth; ///< 1 or 2 to KILN_MAX_TABLE; 0 for 128, 128 and (w) 32
+    kiln_axis axis;
+    bool corners;    ///< texel i stands at i / (n - 1), else at (i + 1/2) / n, of each axis
+    bool complement; ///< 1 - value: 1 - E keeps its precision where E is near 1
+    bool flip;       ///< row 0 holds roughness 1, for loaders that turn pictures over
+    int path_count;  ///< random walks a texel, KILN_TABLE_E_WALK only; 0 for 65536
+} kiln_table_def;
+
+/// A table, its slices one below the other in `image`: width x (height * depth).
+typedef struct kiln_table {
+    kiln_table_def def; ///< as made: nothing is left 0 for a default
+    kiln_image image;
+} kiln_table;
+
 // ------------------------------------------------------------------------- the textbook, by its name
 
 /// The methods that courses teach, with their defaults and their errors, to learn from and to
