@@ -402,7 +402,9 @@ typedef struct kiln_model {
 
 enum { KILN_MAX_TABLE = 4096 };
 
-/// What a table holds. u runs along n.v, v along roughness, w (slices) along the third argument.
+/// What a table holds. u runs along n.v, v along roughness, w (slices) along the third argument: F0
+/// itself, or for an ior from 1 to 3 w = 2 (ior - 1) / (ior + 1), which is 2 sqrt(F0), so
+/// ior = (2 + w) / (2 - w).
 typedef enum kiln_table_kind {
     KILN_TABLE_E,                ///< E, one channel: the directional albedo of F = 1
     KILN_TABLE_E_AVERAGE,        ///< E_avg, one channel, one texel wide: 2 int E(mu) mu dmu

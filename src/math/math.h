@@ -19,9 +19,15 @@ double ki_pow(double x, double y);
 double ki_atan2(double y, double x);
 double ki_asin(double x);
 double ki_acos(double x);
+/// Below 2 ulp.
+double ki_erf(double x);
+/// exp(x^2) (1 - erf x), which neither vanishes nor overflows; below 5 ulp, x >= 0.
+double ki_erfcx(double x);
 
 /// Gauss-Legendre nodes, increasing, and weights on [-1, 1]; exact to degree 2 count - 1. Error
 /// of nodes and weights below 4e-16 for count <= 4096.
 void ki_gauss_legendre(int count, double *nodes, double *weights);
+/// The same for count = 16, for composite rules.
+extern const double ki_gauss16_nodes[16], ki_gauss16_weights[16];
 
 #endif

@@ -57,6 +57,26 @@ static void elementary_functions_agree_with_libm(void **unused)
     CHECK_BELOW(arc, 7e-16);
 }
 
+static void error_functions_agree_with_libm(void **unused)
+{
+    (void)unused;
+    double error = 0, scaled = 0;
+    for (int i = 0; i < 200000; i++) {
+        double x = i % 2 ? uniform(-1, 1) : uniform(-7, 7);
+        error = fmax(error, ulps(ki_erf(x), erfl((long double)x)));
+        x = i % 2 ? uniform(0, 2) : uniform(0, 60);
+        long double wide = (long double)x;
+        scaled = fmax(scaled, ulps(ki_erfcx(x), expl(wide * wide) * erfcl(wide)));
+    }
+    CHECK_BELOW(error, 2);
+    CHECK_BELOW(scaled, 5);
+    // The rise and the fall: 1 - 2 x / sqrt(pi), and 1 / (x sqrt(pi)).
+    CHECK_NEAR(ki_erf(1e-300) / 1e-300, 1.1283791670955126, 3e-16);
+    CHECK_NEAR(ki_erfcx(0), 1, 3e-16);
+    CHECK_NEAR(ki_erfcx(1e200) * 1e200, 0.56418958354775629, 3e-16);
+    CHECK_NEAR(ki_erf(40), 1, 0);
+}
+
 static void ends_of_the_ranges(void **unused)
 {
     (void)unused;
@@ -87,12 +107,18 @@ static void gauss_legendre_is_exact_to_its_degree(void **unused)
             CHECK_NEAR(sum, power % 2 ? 0 : 2.0 / (power + 1), 3e-15);
         }
     }
+    ki_gauss_legendre(16, nodes, weights);
+    for (int i = 0; i < 16; i++) {
+        CHECK_NEAR(ki_gauss16_nodes[i], nodes[i], 4e-16);
+        CHECK_NEAR(ki_gauss16_weights[i], weights[i], 4e-16);
+    }
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(elementary_functions_agree_with_libm),
+        cmocka_unit_test(error_functions_agree_with_libm),
         cmocka_unit_test(ends_of_the_ranges),
         cmocka_unit_test(gauss_legendre_is_exact_to_its_degree),
     };

@@ -1,0 +1,133 @@
+#include "brdf/beckmann.h"
+
+#include "base/base.h"
+#include "brdf/brdf.h"
+#include "math/math.h"
+
+#include <float.h>
+#include <math.h>
+
+// Gaussians are cut where their exponent reaches this.
+#define CUT2 27.0
+
+double ki_beckmann_d(double alpha, double noh)
+{
+    if (!(noh > 0))
+        return 0;
+    double a2 = alpha * alpha, c2 = noh * noh;
+    double tan2 = (1 - noh) * (1 + noh) / c2;
+    if (!(a2 > 0))
+        return tan2 > 0 ? 0 : DBL_MAX;
+    return ki_exp(-tan2 / a2) / (KI_PI * a2 * c2 * c2);
+}
+
+double ki_beckmann_lambda(double alpha, double cosine)
+{
+    double sine = sqrt(fmax(0, (1 - cosine) * (1 + cosine)));
+    if (!(cosine > 0))
+        return DBL_MAX;
+    double a = cosine / fmax(alpha * sine, cosine * 1e-2);
+    // Above a = 6 Lambda is below 1e-18.
+    if (a > 6)
+        return 0;
+    return ki_exp(-a * a) * (1 / (a * 1.77245385090551602730) - ki_erfcx(a)) / 2;
+}
+
+// G2 / nov without the division by 0 at grazing angles.
+static double shadowing_over_nov(const kiln_model *model, double roughness, double nov, double nol,
+                                 double lambda_v)
+{
+    double alpha = roughness * roughness, k = alpha / 2;
+    switch (model->g) {
+    case KILN_G_SCHLICK_TEXT:
+        k = ki_schlick_k_direct(roughness);
+        break;
+    case KILN_G_SCHLICK_K2:
+        break;
+    case KILN_G_SMITH_UNCORRELATED:
+        return 1 / (nov * (1 + lambda_v) * (1 + ki_beckmann_lambda(alpha, nol)));
+    default:
+        return 1 / (nov * (1 + lambda_v + ki_beckmann_lambda(alpha, nol)));
+    }
+    return ki_smith_g1_schlick(k, nol) / (nov * (1 - k) + k);
+}
+
+// The azimuth's part at fixed elevations: with phi from the mirror direction on and S = nov + nol,
+//
+//     tan^2 theta_h = tan^2((theta_v - theta_l) / 2) + 4 sin theta_v sin theta_l sin^2(phi/2) / S^2
+//     v.h = S / (2 cos theta_h)
+//
+// so D falls as a Gaussian of sin(phi/2): a trapezoid on the circle where that is wide, else Gauss's
+// rule on the part that matters. sum[0] += the integral of D over the circle, sum[1] with (1-v.h)^5.
+static void integrate_azimuth(double alpha, double tan2, double spread, double s, double weight,
+                              double sum[2])
+{
+    enum { STEPS = 16 };
+    double a2 = alpha * alpha, fall = spread / a2, scale = weight / (KI_PI * a2);
+    double half = fall > CUT2 ? ki_asin(sqrt(CUT2 / fall)) : KI_PI / 2, e = 0, b = 0;
+    bool circle = !(fall > CUT2);
+    for (int i = 0; i <= STEPS - (circle ? 0 : 1); i++) {
+        double x = circle ? half * i / STEPS : half * (1 + ki_gauss16_nodes[i]) / 2;
+        double w = circle ? (i % STEPS ? 2.0 : 1.0) / STEPS : ki_gauss16_weights[i];
+        double sine = ki_sin(x), t = tan2 + spread * sine * sine;
+        double d = w * ki_exp(-t / a2) * (1 + t) * (1 + t);
+        e += d;
+        b += d * ki_schlick_fresnel(fmin(1, s * sqrt(1 + t) / 2));
+    }
+    // The circle is twice phi = 2 x in [0, pi]; the weights' sum is 2.
+    sum[0] += scale * 2 * half * e;
+    sum[1] += scale * 2 * half * b;
+}
+
+// In light space, where D is a Gaussian about the mirror direction of width 2 alpha in elevation:
+//
+//     E(v) = int int D G2 / (4 nov) dphi dnol,      B the same times (1 - v.h)^5.
+//
+// Over the light's elevation psi, cut where D falls below 2e-12 of its peak; where the horizon is
+// nearer than that, G2 has a pole near -psi_v: logarithmic steps of psi + psi_v.
+void ki_beckmann_energy(const kiln_model *model, double roughness, double nov, double ab[2])
+{
+    roughness = ki_clamp(roughness, 0, 1);
+    nov = ki_clamp(nov, 0, 1);
+    double alpha = roughness * roughness, f5 = ki_schlick_fresnel(nov);
+    if (alpha < 1e-8) {
+        double g = 1;
+        if (model->g == KILN_G_SCHLICK_TEXT)
+            g = ki_smith_g_schlick(ki_schlick_k_direct(roughness), nov, nov);
+        ab[0] = g * (1 - f5);
+        ab[1] = g * f5;
+        return;
+    }
+    nov = fmax(nov, 1e-10 * alpha);
+    double psi_v = ki_asin(nov), sine_v = sqrt((1 - nov) * (1 + nov));
+    double lambda_v = ki_beckmann_lambda(alpha, nov);
+    double reach = 2 * ki_atan2(sqrt(CUT2) * alpha, 1);
+    double low = -reach, high = fmin(reach, KI_PI / 2 - psi_v);
+    bool logarithmic = psi_v < reach;
+    if (logarithmic) {
+        low = ki_log(psi_v);
+        high = ki_log(2 * psi_v + high);
+    }
+    int panels = logarithmic ? 2 + (int)((high - low) / 1.5) : 3;
+    double sum[2] = {0};
+    for (int i = 0; i < 16 * panels; i++) {
+        double step = (high - low) / (2 * panels), weight = ki_gauss16_weights[i % 16] * step;
+        int panel = i / 16;
+        double x = low + step * (2 * panel + 1 + ki_gauss16_nodes[i % 16]);
+        double delta = x;
+        if (logarithmic) {
+            double total = ki_exp(x);
+            delta = total - 2 * psi_v;
+            weight *= total;
+        }
+        double nol, sine_l, tangent, cosine;
+        ki_sincos(psi_v + delta, &nol, &sine_l);
+        ki_sincos(delta / 2, &tangent, &cosine);
+        tangent /= cosine;
+        double s = nov + nol;
+        weight *= sine_l * shadowing_over_nov(model, roughness, nov, nol, lambda_v) / 4;
+        integrate_azimuth(alpha, tangent * tangent, 4 * sine_v * sine_l / (s * s), s, weight, sum);
+    }
+    ab[0] = sum[0] - sum[1];
+    ab[1] = sum[1];
+}

@@ -1,0 +1,75 @@
+// Brute force: integrals over the half vector by the double exponential rule, on libm alone.
+#ifndef KILN_TEST_HALF_H
+#define KILN_TEST_HALF_H
+
+#include <math.h>
+
+enum { HALF_NODES = 101 };
+#define HALF_PI 1.57079632679489661923
+
+// Nodes on (a, b), doubly exponentially close to both ends, and weights. Takahasi and Mori 1974.
+static void half_rule(double a, double b, double nodes[HALF_NODES], double weights[HALF_NODES])
+{
+    for (int i = 0; i < HALF_NODES; i++) {
+        double h = 6.4 / (HALF_NODES - 1), t = -3.2 + i * h, u = HALF_PI * sinh(t);
+        double from_end = (b - a) / (1 + exp(2 * fabs(u)));
+        nodes[i] = t < 0 ? a + from_end : b - from_end;
+        weights[i] = h * (b - a) / 2 * HALF_PI * cosh(t) / (cosh(u) * cosh(u));
+    }
+}
+
+// One half vector: its cosines with the normal, the view and, mirrored, the light.
+typedef struct half {
+    double noh, sin_h, voh, nol;
+} half;
+
+// The integral of f over all half vectors that mirror the view to above the horizon, from x_count
+// values of f: `sums` are added to. theta is cut where the full circle of phi ends, which is at half
+// the view's elevation, and phi where n.l = 0, cos phi = -cot theta_v cot 2 theta. `width` is the
+// theta within which f changes first.
+static void half_integrate(double nov, double width,
+                           void (*f)(const void *user, const half *h, double *x), const void *user,
+                           int x_count, double *sums)
+{
+    double theta_v = acos(nov), sin_v = sin(theta_v), turn = (HALF_PI - theta_v) / 2;
+    double end = (HALF_PI + theta_v) / 2, cuts[6] = {0};
+    int cut_count = 1;
+    double inner[] = {width, turn, 8 * width, 1e300};
+    for (int i = 0; i < 3; i++) // in increasing order, all below the end
+        for (int j = i + 1; j < 3; j++)
+            if (inner[j] < inner[i]) {
+                double swap = inner[i];
+                inner[i] = inner[j];
+                inner[j] = swap;
+            }
+    for (int i = 0; inner[i] < end; i++)
+        cuts[cut_count++] = inner[i];
+    cuts[cut_count] = end;
+    for (int panel = 0; panel < cut_count; panel++) {
+        double theta[HALF_NODES], theta_weight[HALF_NODES];
+        half_rule(cuts[panel], cuts[panel + 1], theta, theta_weight);
+        for (int i = 0; i < HALF_NODES; i++) {
+            double cosine = cos(theta[i]), sine = sin(theta[i]), reach = 2 * HALF_PI;
+            if (theta[i] > turn) {
+                double least =
+                    -nov / sin_v * (cosine - sine) * (cosine + sine) / (2 * sine * cosine);
+                reach = acos(fmin(1, fmax(-1, least)));
+            }
+            double phi[HALF_NODES], phi_weight[HALF_NODES];
+            half_rule(0, reach, phi, phi_weight);
+            for (int j = 0; j < HALF_NODES; j++) {
+                half h = {.noh = cosine, .sin_h = sine};
+                h.voh = nov * cosine + sin_v * sine * cos(phi[j]);
+                h.nol = 2 * h.voh * cosine - nov;
+                double x[8], weight = 2 * sine * theta_weight[i] * phi_weight[j];
+                if (!(h.nol > 0) || !(h.voh > 0))
+                    continue;
+                f(user, &h, x);
+                for (int k = 0; k < x_count; k++)
+                    sums[k] += weight * x[k];
+            }
+        }
+    }
+}
+
+#endif
