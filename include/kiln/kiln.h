@@ -398,6 +398,82 @@ typedef struct kiln_model {
     kiln_g g;
 } kiln_model;
 
+// Functions of numbers, which cannot fail: arguments outside their range are clamped into it.
+// nov, nol and noh are the cosines n.v, n.l and n.h, voh is v.h = l.h, all in [0, 1]; alpha =
+// roughness^2. Roughness 0 is the limit from above at fixed cosines, a cosine of 0 the limit after
+// that.
+
+/// D, per steradian: int D(h) (n.h) dh = 1. Infinite at roughness 0 and noh 1.
+KILN_API double kiln_brdf_d(kiln_d d, double roughness, double noh);
+/// G in [0, 1], symmetric. Schlick's two do not depend on the distribution.
+KILN_API double kiln_brdf_g(const kiln_model *model, double roughness, double nov, double nol);
+/// The specular lobe with F = 1, D G / (4 nov nol), per steradian. Finite at nov = 0 or nol = 0,
+/// where G / (nov nol) has a limit; infinite where both are 0 and the model's limit is.
+KILN_API double kiln_brdf_specular(const kiln_model *model, double roughness, double nov,
+                                   double nol, double noh);
+
+/// Schlick 1994: f0 + (1 - f0) (1 - voh)^5.
+KILN_API double kiln_fresnel_schlick(double f0, double voh);
+/// Unpolarised light on a dielectric of ior = n_transmitted / n_incident, 0 to 1e8. Total
+/// reflection is 1.
+KILN_API double kiln_fresnel_dielectric(double ior, double voh);
+/// On a conductor of complex index n + i k relative to the medium outside, each 0 to 1e8.
+KILN_API double kiln_fresnel_conductor(double n, double k, double voh);
+/// The index of the metal with a reflectivity at normal incidence (0 to 0.9999) and an edge tint (0
+/// to 1). Gulbrandsen 2014, factored so that k loses no digits; the reflectivity comes out again.
+KILN_API void kiln_gulbrandsen(double reflectivity, double edge_tint, double *n, double *k);
+
+/// F_avg = 2 int F(mu) mu dmu from 0 to 1. Schlick's is exactly (1 + 20 f0) / 21.
+KILN_API double kiln_fresnel_schlick_average(double f0);
+/// Exact (Walsh 1926, and reciprocity for ior < 1), to 1e-14.
+KILN_API double kiln_fresnel_dielectric_average(double ior);
+/// By adaptive quadrature, to 1e-12.
+KILN_API double kiln_fresnel_conductor_average(double n, double k);
+/// Kulla and Conty's fit (Imageworks 2017) to the dielectric's for ior 0 to 400: off by up to 0.0065
+/// above 1, by 0.0029 below.
+KILN_API double kiln_fresnel_dielectric_average_fit(double ior);
+/// Their polynomial to the conductor's in Gulbrandsen's parameters: off by up to 0.10, by 0.014 RMS.
+KILN_API double kiln_fresnel_conductor_average_fit(double reflectivity, double edge_tint);
+
+// Samplers: xi in [0, 1)^2 uniform; n = (0, 0, 1); pdfs are per steradian. Light from a half
+// vector: l = 2 (v.h) h - v, which may be below the surface (its share is lost, the weight 0).
+
+/// l with the density (n.l) / pi.
+KILN_API void kiln_sample_cosine(const double xi[2], double l[3]);
+KILN_API double kiln_pdf_cosine(double nol);
+/// h with the density D(h) (n.h). Walter et al. 2007, eqs. 28 and 35.
+KILN_API void kiln_sample_half_vector(kiln_d d, double roughness, const double xi[2], double h[3]);
+KILN_API double kiln_pdf_half_vector(kiln_d d, double roughness, double noh);
+/// h among GGX's normals visible from the unit vector v (v[2] >= 0), with the density G1(v) D(h)
+/// (v.h) / (n.v). Heitz 2018, by the spherical caps of Dupuy and Benyoub 2023.
+KILN_API void kiln_sample_visible(double roughness, const double v[3], const double xi[2],
+                                  double h[3]);
+KILN_API double kiln_pdf_visible(double roughness, double nov, double noh, double voh);
+/// The density of l = 2 (v.h) h - v where h has the density `pdf`: pdf / (4 voh).
+KILN_API double kiln_pdf_reflection(double pdf, double voh);
+
+// ------------------------------------------------------------------------- compensation of energy
+
+// The specular lobe leaves out light that bounces more than once between the microfacets. With E(mu)
+// its albedo for F = 1 and E_avg = 2 int E mu dmu, these put it back. See docs/theory/compensation.md.
+
+/// Which factor colours the added lobe; f = F_avg.
+typedef enum kiln_f_add {
+    KILN_F_ADD_SECOND,    ///< f^2 E_avg / (1 - f (1 - E_avg)): all bounces from the second one on
+    KILN_F_ADD_ASSIGNMENT ///< f E_avg / (1 - f (1 - E_avg)), as taught: the first one too
+} kiln_f_add;
+
+/// Kulla and Conty 2017, F = 1: (1 - e_o) (1 - e_i) / (pi (1 - e_average)), reciprocal; its cosine
+/// integral over i is 1 - e_o. Where e_average is 1 nothing is missing, and it is 0.
+KILN_API double kiln_kulla_conty(double e_o, double e_i, double e_average);
+/// The factor to that lobe for other Fresnel terms.
+KILN_API double kiln_kulla_conty_fresnel(kiln_f_add form, double f_average, double e_average);
+/// Turquin 2019: the factor 1 + f0 (1 - e) / e to the specular lobe, e = E(n.v).
+KILN_API double kiln_turquin(double f0, double e);
+/// Fdez-Aguera 2019 for image-based light: prefiltered radiance is multiplied by `single`,
+/// irradiance / pi by `multiple`, where f0 a + b is the split sum's albedo and e = a + b.
+KILN_API void kiln_fdez_aguera(double f0, double a, double b, double *single, double *multiple);
+
 // ------------------------------------------------------------------------------------------ tables
 
 enum { KILN_MAX_TABLE = 4096 };

@@ -3,6 +3,8 @@
 #ifndef KI_BRDF_H
 #define KI_BRDF_H
 
+#include <kiln/kiln.h>
+
 #include <stdint.h>
 
 /// The bits of `index` mirrored about the binary point: van der Corput's sequence in [0, 1).
@@ -25,7 +27,37 @@ double ki_schlick_k_ibl(double alpha);
 /// k for point lights, (roughness + 1)^2 / 8. Karis 2013.
 double ki_schlick_k_direct(double roughness);
 
+/// D by its name.
+double ki_brdf_d(kiln_d d, double roughness, double noh);
+/// G / (nov nol), finite unless both are 0 or roughness is and one of them.
+double ki_visibility(const kiln_model *model, double roughness, double nov, double nol);
+/// G, with its limits where a cosine is 0.
+double ki_masking(const kiln_model *model, double roughness, double nov, double nol);
+/// GGX's G1 / nox = 1 / (nox (1 + Lambda)).
+double ki_smith_g1_over_cosine(double alpha, double nox);
+
 /// (1 - voh)^5, the varying part of Schlick's Fresnel F = f0 + (1 - f0) (1 - voh)^5.
 double ki_schlick_fresnel(double voh);
+/// ior is n_transmitted / n_incident, c the cosine.
+double ki_fresnel_dielectric(double ior, double c);
+double ki_fresnel_conductor(double n, double k, double c);
+void ki_gulbrandsen(double reflectivity, double edge_tint, double *n, double *k);
+/// 2 int F(mu) mu dmu.
+double ki_fresnel_dielectric_average(double ior);
+double ki_fresnel_conductor_average(double n, double k);
+double ki_fresnel_dielectric_average_fit(double ior);
+double ki_fresnel_conductor_average_fit(double reflectivity, double edge_tint);
+
+void ki_sample_cosine(const double xi[2], double l[3]);
+/// A half vector with the density D(h) (n.h) of Beckmann's D: Walter et al. 2007, eqs. 28 and 29.
+void ki_beckmann_half_vector(double alpha, const double xi[2], double h[3]);
+/// A half vector with the density max(v.h, 0) D(h) / int max(v.h, 0) D(h) dh of GGX. v is any unit
+/// vector but (0, 0, -1).
+void ki_sample_visible(double alpha, const double v[3], const double xi[2], double h[3]);
+
+double ki_kulla_conty(double e_o, double e_i, double e_average);
+double ki_kulla_conty_fresnel(kiln_f_add form, double f, double e_average);
+double ki_turquin(double f0, double e);
+void ki_fdez_aguera(double f0, double a, double b, double *single, double *multiple);
 
 #endif

@@ -10,7 +10,7 @@ double ki_ggx_d(double alpha, double noh)
     double a2 = alpha * alpha;
     double rest = (1 - noh) * (1 + noh);
     double d = a2 * noh * noh + rest;
-    return a2 / (KI_PI * d * d);
+    return d > 0 ? a2 / d / d / KI_PI : HUGE_VAL;
 }
 
 void ki_ggx_half_vector(double alpha, const double xi[2], double h[3])
@@ -43,10 +43,4 @@ double ki_schlick_k_ibl(double alpha)
 double ki_schlick_k_direct(double roughness)
 {
     return (roughness + 1) * (roughness + 1) / 8;
-}
-
-double ki_schlick_fresnel(double voh)
-{
-    double c = 1 - voh, c2 = c * c;
-    return c2 * c2 * c;
 }

@@ -1,0 +1,168 @@
+// Fresnel's reflectances of unpolarised light, and their averages over a diffuse illumination.
+#include "brdf/brdf.h"
+
+#include "math/math.h"
+
+#include <math.h>
+
+double ki_schlick_fresnel(double voh)
+{
+    double c = 1 - voh, c2 = c * c;
+    return c2 * c2 * c;
+}
+
+// With c = cos theta, s^2 = 1 - c^2 and g^2 = ior^2 - s^2:
+//
+//     R_s = ((c - g) / (c + g))^2,      R_p = R_s ((c g - s^2) / (c g + s^2))^2,
+//
+// and c - g = (1 - ior^2) / (c + g). Born and Wolf 1999, section 1.5.2.
+double ki_fresnel_dielectric(double ior, double c)
+{
+    double contrast = (1 - ior) * (1 + ior), s2 = (1 - c) * (1 + c);
+    double g2 = c * c - contrast;
+    if (!(g2 > 0))
+        return contrast > 0; // total, or no interface at grazing
+    double g = sqrt(g2), r = contrast / ((c + g) * (c + g)), p = (c * g - s2) / (c * g + s2);
+    double f = r * r * (1 + p * p) / 2;
+    return f < 1 ? f : 1;
+}
+
+// The same with g = a + i b, g^2 = (n + i k)^2 - s^2: the squares become |.|^2. That of the smaller
+// of a and b is found from a b = n k, without cancellation.
+double ki_fresnel_conductor(double n, double k, double c)
+{
+    double s2 = (1 - c) * (1 + c);
+    double real = (n - 1) * (n + 1) - k * k + c * c, size = sqrt(real * real + 4 * n * n * k * k);
+    double a, b, larger = sqrt((size + fabs(real)) / 2);
+    if (!(larger > 0)) // the critical angle, or no interface at grazing
+        return n < 1;
+    if (real > 0) {
+        a = larger;
+        b = n * k / larger;
+    } else {
+        a = n * k / larger;
+        b = larger;
+    }
+    double bc = b * c, s = ((c - a) * (c - a) + b * b) / ((c + a) * (c + a) + b * b);
+    double p = ((a * c - s2) * (a * c - s2) + bc * bc) / ((a * c + s2) * (a * c + s2) + bc * bc);
+    double f = s * (1 + p) / 2;
+    return f < 1 ? f : 1;
+}
+
+// Gulbrandsen 2014: n runs from n_max = (1 + sqrt r) / (1 - sqrt r) to n_min = (1 - r) / (1 + r)
+// with the edge tint, and (1 - r) k^2 = r (n + 1)^2 - (n - 1)^2, which is a product:
+//
+//     k^2 = (n_max - n) (n - 1 / n_max).
+void ki_gulbrandsen(double reflectivity, double edge_tint, double *n, double *k)
+{
+    double root = sqrt(reflectivity);
+    double n_max = (1 + root) / (1 - root), n_min = (1 - reflectivity) / (1 + reflectivity);
+    double less = edge_tint * (n_max - n_min);
+    *n = n_max - less;
+    double k2 = less * (*n - 1 / n_max);
+    *k = sqrt(k2 > 0 ? k2 : 0);
+}
+
+// ---------------------------------------------------------------------------------------- averages
+
+// Walsh 1926. For n > 1, with q = (n - 1) / (n + 1), the integral 2 int F mu dmu is
+//
+//     q (2 + q) / 6 + 2 q^2 (1 + q)^2 ln q / (1 + q^2)^3 + R(q),
+//     R = 1/2 - (1 - q) (1 + q)^3 (1 + 2 q - q^2) / (4 q (1 + q^2)^2)
+//             + (1 - q)^2 (1 + q)^4 (1 + 6 q^2 + q^4) ln n / (8 q^2 (1 + q^2)^3).
+//
+// R's poles at q = 0 cancel: below q = 0.1 its Taylor series stands in, whose first term left out
+// is 120 q^18.
+static double walsh_rest(double n, double q, double p)
+{
+    static const double series[] = {1.0 / 3,
+                                    11.0 / 3,
+                                    -23.0 / 15,
+                                    -191.0 / 15,
+                                    101.0 / 35,
+                                    2993.0 / 105,
+                                    -251.0 / 63,
+                                    -15899.0 / 315,
+                                    17819.0 / 3465,
+                                    272897.0 / 3465,
+                                    -94231.0 / 15015,
+                                    -5104037.0 / 45045,
+                                    334331.0 / 45045,
+                                    771541.0 / 5005,
+                                    -728393.0 / 85085,
+                                    -17125533.0 / 85085,
+                                    141193733.0 / 14549535};
+    double q2 = q * q, d = 1 + q2, u = 1 + q;
+    if (q < 0.1) {
+        double sum = 0;
+        for (int i = (int)(sizeof series / sizeof *series) - 1; i >= 0; i--)
+            sum = (sum + series[i]) * q;
+        return sum;
+    }
+    double u3 = u * u * u;
+    return 0.5 - p * u3 * (1 + 2 * q - q2) / (4 * q * d * d) +
+           p * p * (u3 * u) * (1 + 6 * q2 + q2 * q2) * ki_log(n) / (8 * q2 * (d * d * d));
+}
+
+double ki_fresnel_dielectric_average(double ior)
+{
+    // What enters from the denser side returns by the same ways: n^2 (1 - F_avg(n)) is symmetric.
+    if (ior < 1)
+        return ior > 0 ? 1 - ior * ior * (1 - ki_fresnel_dielectric_average(1 / ior)) : 1;
+    double q = (ior - 1) / (ior + 1), p = 2 / (ior + 1), d = 1 + q * q; // p = 1 - q
+    if (!(q > 0))
+        return 0;
+    double middle = 2 * (q * q) * ((1 + q) * (1 + q)) * ki_log(q) / (d * d * d);
+    return q * (2 + q) / 6 + middle + walsh_rest(ior, q, p);
+}
+
+enum { NODES = 16, DEPTH = 40 };
+
+typedef struct average {
+    double n, k, node[NODES], weight[NODES];
+} average;
+
+static double panel(const average *f, double from, double to)
+{
+    double sum = 0, half = (to - from) / 2;
+    for (int i = 0; i < NODES; i++) {
+        double mu = from + half * (1 + f->node[i]);
+        sum += f->weight[i] * ki_fresnel_conductor(f->n, f->k, mu) * mu;
+    }
+    return sum * 2 * half;
+}
+
+// Halves panels until both halves together agree with the whole. F has a root's kink near the
+// critical angle where n < 1 and k is small.
+static double refine(const average *f, double from, double to, double whole, int depth)
+{
+    double middle = (from + to) / 2;
+    double left = panel(f, from, middle), right = panel(f, middle, to);
+    if (depth == 0 || fabs(left + right - whole) <= 1e-14)
+        return left + right;
+    return refine(f, from, middle, left, depth - 1) + refine(f, middle, to, right, depth - 1);
+}
+
+double ki_fresnel_conductor_average(double n, double k)
+{
+    average f = {.n = n, .k = k};
+    ki_gauss_legendre(NODES, f.node, f.weight);
+    return refine(&f, 0, 1, panel(&f, 0, 1), DEPTH);
+}
+
+// Kulla and Conty 2017, for ior > 1 and below.
+double ki_fresnel_dielectric_average_fit(double ior)
+{
+    if (ior > 1)
+        return (ior - 1) / (4.08567 + 1.00071 * ior);
+    return 0.997118 + ior * (0.1014 + ior * (-0.965241 - 0.130607 * ior));
+}
+
+// Kulla and Conty 2017, page 26: r the reflectivity, g the edge tint.
+double ki_fresnel_conductor_average_fit(double r, double g)
+{
+    double r2 = r * r, g2 = g * g;
+    return 0.087237 + 0.0230685 * g - 0.0864902 * g2 + 0.0774594 * (g2 * g) + 0.782654 * r -
+           0.136432 * r2 + 0.278708 * (r2 * r) + 0.19744 * (r * g) + 0.0360605 * (g2 * r) -
+           0.2586 * (g * r2);
+}
