@@ -1,0 +1,66 @@
+// Which row, and single values.
+#include "brdf/energy.h"
+
+#include "math/math.h"
+
+#include <math.h>
+
+// What every processor of the kind that this is compiled for can do.
+#if defined(KILN_HAVE_X86)
+#define BASELINE ki_energy_row_sse2
+#else
+#define BASELINE ki_energy_row_scalar
+#endif
+
+ki_energy_row *ki_energy_row_for(const kiln_context *context)
+{
+    ki_energy_row *row = ki_energy_row_scalar;
+#if defined(KILN_HAVE_X86)
+    enum kiln_cpu cpu = ki_context_cpu(context);
+    if (cpu >= KILN_CPU_SSE2)
+        row = ki_energy_row_sse2;
+    if (cpu >= KILN_CPU_AVX2)
+        row = ki_energy_row_avx2;
+    if (cpu >= KILN_CPU_AVX512)
+        row = ki_energy_row_avx512;
+#else
+    (void)context;
+#endif
+    return row;
+}
+
+double ki_energy(const kiln_model *model, double roughness, double nov)
+{
+    double e;
+    BASELINE(model, roughness, &nov, 1, false, &e);
+    return e;
+}
+
+void ki_energy_split(const kiln_model *model, double roughness, double nov, double ab[2])
+{
+    BASELINE(model, roughness, &nov, 1, true, ab);
+}
+
+// mu = c (e^u - 1) resolves the grazing layer, which is as wide as alpha and, with correlated
+// shadowing, has a logarithm at its end. Gauss-Legendre panels.
+double ki_energy_average(const kiln_model *model, double roughness)
+{
+    enum { NODES = 16 };
+    double node[NODES], weight[NODES], nov[NODES], e[NODES], sum = 0;
+    double alpha = roughness * roughness;
+    double c = (alpha < 1e-12 ? 1e-12 : alpha) / 50, length = ki_log(1 + 1 / c);
+    int count = (int)ceil(length / 2);
+    double h = length / (2 * count);
+    ki_gauss_legendre(NODES, node, weight);
+    for (int i = 0; i < count; i++) {
+        double rise[NODES];
+        for (int j = 0; j < NODES; j++) {
+            rise[j] = ki_exp(h * (2 * i + 1 + node[j]));
+            nov[j] = ki_clamp(c * (rise[j] - 1), 0, 1);
+        }
+        BASELINE(model, roughness, nov, NODES, false, e);
+        for (int j = 0; j < NODES; j++)
+            sum += 2 * weight[j] * h * c * rise[j] * nov[j] * e[j];
+    }
+    return sum;
+}

@@ -1,0 +1,421 @@
+// The body of ki_energy_row, compiled once an instruction set. Before inclusion: KI_ROW, its name.
+// Plain loops over sixteen nodes, which compilers turn into vectors.
+//
+// With o the view, mu its cosine, and i the light, the azimuth is integrated in closed form and
+//
+//     E = int_0^1 G / (4 mu) [int_0^2pi D dphi] dmu_i,
+//     int D dphi = 2 alpha^2 (1 + 2 s S / Q + s^2 S P / Q^3),
+//     S = mu + mu_i,  s = 1 - alpha^2,
+//     P = sin^2 o + sin^2 i + alpha^2 S^2,
+//     Q^2 = (s (mu_i - mu) - 2 alpha^2 mu)^2 + 4 alpha^2 sin^2 o.
+//
+// Two stretches of mu_i, each in panels of a 16-point Gauss-Legendre rule: up to half the view's
+// cosine mu_i = c (e^u - 1), where -c is the nearest pole of G, then mu_i = m + d sinh t, which
+// makes Q = s d cosh t.
+#include "brdf/energy.h"
+
+#include "math/math.h"
+
+#include <math.h>
+
+enum { NODES = 16, HALF = NODES / 2 };
+
+// Longest panel. A pole is at least pi/2 away from any: at 2.5 the rule errs by 1e-12.
+#define PANEL 2.5
+
+// Positive nodes and weights of the 16-point rule; Abramowitz and Stegun, table 25.4.
+static const double node[HALF] = {
+    0.0950125098376374402, 0.2816035507792589132, 0.4580167776572273863, 0.6178762444026437484,
+    0.7554044083550030339, 0.8656312023878317439, 0.9445750230732325761, 0.9894009349916499326};
+static const double weight[HALF] = {
+    0.1894506104550684963, 0.1826034150449235889, 0.1691565193950025382, 0.1495959888165767321,
+    0.1246289712555338720, 0.0951585116824927848, 0.0622535239386478929, 0.0271524594117540949};
+
+typedef struct view {
+    kiln_g g;
+    double alpha, alpha2, s;
+    double mu, sin2, sine;
+    double k;     // Schlick's
+    double root;  // sqrt(alpha^2 + s mu^2)
+    double front; // what of G / mu does not depend on the light
+    double split; // where the second stretch begins
+    double pole;  // -mu_i of the nearest pole
+} view;
+
+// A panel's nodes: mu_i, 1 - mu_i, mu_i - mu (each exact where it is small), Q and the weight.
+typedef struct panel {
+    double mu[NODES], rest[NODES], delta[NODES], q[NODES], w[NODES];
+} panel;
+
+static void view_set(view *v, const kiln_model *model, double roughness, double nov, bool split)
+{
+    v->g = model->g;
+    v->alpha = roughness * roughness;
+    v->alpha2 = v->alpha * v->alpha;
+    v->s = (1 - v->alpha) * (1 + v->alpha);
+    v->mu = nov;
+    v->sin2 = (1 - nov) * (1 + nov);
+    v->sine = sqrt(v->sin2);
+    v->root = sqrt(v->alpha2 + v->s * nov * nov);
+    v->k = v->g == KILN_G_SCHLICK_K2 ? v->alpha / 2 : (roughness + 1) * (roughness + 1) / 8;
+    switch (v->g) {
+    case KILN_G_SMITH:
+        v->front = 2;
+        v->pole = nov * v->alpha / v->root;
+        break;
+    case KILN_G_SMITH_UNCORRELATED:
+        v->front = 4 / (nov + v->root);
+        v->pole = v->alpha;
+        break;
+    default: // Schlick
+        v->front = 1 / (nov * (1 - v->k) + v->k);
+        v->pole = v->k / (1 - v->k);
+        break;
+    }
+    // A and B have a logarithm at mu_i = -mu.
+    if (split && v->pole > nov)
+        v->pole = nov;
+    v->split = (nov > v->alpha ? nov : v->alpha) / 2;
+    v->pole = ki_clamp(v->pole, 1e-12 * v->split, 1); // nearer, nothing is left to resolve
+}
+
+// ------------------------------------------------------------------------------------------- nodes
+
+// sinh and cosh of h times the positive nodes, |h| <= 1.25: Taylor to x^21, the next term below
+// 1e-19.
+static void hyperbolic(double h, double sinh_y[HALF], double cosh_y[HALF])
+{
+    for (int j = 0; j < HALF; j++) {
+        double y = h * node[j], z = y * y;
+        double p = 1.0 / 51090942171709440000.0, c = 1.0 / 2432902008176640000;
+        p = p * z + 1.0 / 121645100408832000;
+        c = c * z + 1.0 / 6402373705728000;
+        p = p * z + 1.0 / 355687428096000;
+        c = c * z + 1.0 / 20922789888000;
+        p = p * z + 1.0 / 1307674368000;
+        c = c * z + 1.0 / 87178291200;
+        p = p * z + 1.0 / 6227020800;
+        c = c * z + 1.0 / 479001600;
+        p = p * z + 1.0 / 39916800;
+        c = c * z + 1.0 / 3628800;
+        p = p * z + 1.0 / 362880;
+        c = c * z + 1.0 / 40320;
+        p = p * z + 1.0 / 5040;
+        c = c * z + 1.0 / 720;
+        p = p * z + 1.0 / 120;
+        c = c * z + 1.0 / 24;
+        p = p * z + 1.0 / 6;
+        c = c * z + 1.0 / 2;
+        sinh_y[j] = y + y * (z * p);
+        cosh_y[j] = 1 + z * c;
+    }
+}
+
+// Nodes whose Q has no closed form.
+static void finish_nodes(const view *v, panel *p)
+{
+    double back = 2 * v->alpha2 * v->mu, wide = 4 * v->alpha2 * v->sin2;
+    for (int j = 0; j < NODES; j++) {
+        p->delta[j] = p->mu[j] - v->mu;
+        double x = v->s * p->delta[j] - back;
+        p->q[j] = sqrt(x * x + wide);
+    }
+}
+
+// mu_i = c (e^u - 1) about a centre, given as e^centre.
+static void log_nodes(const view *v, double h, double centre, const double *sinh_y,
+                      const double *cosh_y, panel *p)
+{
+    double c = v->pole;
+    for (int j = 0; j < HALF; j++) {
+        double low = centre * (cosh_y[j] - sinh_y[j]), high = centre * (cosh_y[j] + sinh_y[j]);
+        p->mu[j] = c * (low - 1);
+        p->mu[j + HALF] = c * (high - 1);
+        p->w[j] = weight[j] * h * c * low;
+        p->w[j + HALF] = weight[j] * h * c * high;
+    }
+    for (int j = 0; j < NODES; j++)
+        p->rest[j] = 1 - p->mu[j];
+    finish_nodes(v, p);
+}
+
+// mu_i evenly from the split to 1: alpha > 0.7, where no pole is near.
+static void even_nodes(const view *v, panel *p)
+{
+    double h = (1 - v->split) / 2;
+    for (int j = 0; j < HALF; j++) {
+        p->rest[j] = h * (1 + node[j]);
+        p->rest[j + HALF] = h * (1 - node[j]);
+        p->w[j] = p->w[j + HALF] = weight[j] * h;
+    }
+    for (int j = 0; j < NODES; j++)
+        p->mu[j] = 1 - p->rest[j];
+    finish_nodes(v, p);
+}
+
+typedef struct stretch {
+    double m_rest; // 1 - m
+    double ahead;  // m - mu
+    double d;
+} stretch;
+
+// mu_i = m + d sinh t about a centre, given as e^centre.
+static void sinh_nodes(const view *v, const stretch *x, double h, double centre,
+                       const double *sinh_y, const double *cosh_y, panel *p)
+{
+    double sinh_c = (centre - 1 / centre) / 2, cosh_c = (centre + 1 / centre) / 2;
+    double m = v->mu + x->ahead;
+    for (int j = 0; j < HALF; j++) {
+        double even = sinh_c * cosh_y[j], odd = cosh_c * sinh_y[j];
+        double even_c = cosh_c * cosh_y[j], odd_c = sinh_c * sinh_y[j];
+        double low = x->d * (even - odd), high = x->d * (even + odd);
+        double low_c = x->d * (even_c - odd_c), high_c = x->d * (even_c + odd_c);
+        p->mu[j] = m + low;
+        p->mu[j + HALF] = m + high;
+        // Rounding must not bring 1 - mu_i below 0.
+        double rest_low = x->m_rest - low, rest_high = x->m_rest - high;
+        p->rest[j] = rest_low > 0 ? rest_low : 0;
+        p->rest[j + HALF] = rest_high > 0 ? rest_high : 0;
+        p->delta[j] = x->ahead + low;
+        p->delta[j + HALF] = x->ahead + high;
+        p->q[j] = v->s * low_c;
+        p->q[j + HALF] = v->s * high_c;
+        p->w[j] = weight[j] * h * low_c;
+        p->w[j + HALF] = weight[j] * h * high_c;
+    }
+}
+
+// --------------------------------------------------------------------------------------- integrands
+
+// G / (4 mu) as top / bottom, with the weight in `top`.
+static void masking(const view *v, const panel *p, double top[NODES], double bottom[NODES])
+{
+    double front = v->front / 4, k = v->k;
+    for (int j = 0; j < NODES; j++)
+        top[j] = p->w[j] * front * p->mu[j];
+    switch (v->g) {
+    case KILN_G_SMITH:
+        for (int j = 0; j < NODES; j++) {
+            double mu = p->mu[j];
+            bottom[j] = mu * v->root + v->mu * sqrt(v->alpha2 + v->s * mu * mu);
+        }
+        break;
+    case KILN_G_SMITH_UNCORRELATED:
+        for (int j = 0; j < NODES; j++) {
+            double mu = p->mu[j];
+            bottom[j] = mu + sqrt(v->alpha2 + v->s * mu * mu);
+        }
+        break;
+    default:
+        for (int j = 0; j < NODES; j++)
+            bottom[j] = p->mu[j] * (1 - k) + k;
+        break;
+    }
+}
+
+static void add_e(const view *v, const panel *p, const double top[NODES],
+                  const double bottom[NODES], double sum[HALF])
+{
+    double term[NODES];
+    for (int j = 0; j < NODES; j++) {
+        double mu = p->mu[j], total = v->mu + mu, a = v->s * total, q = p->q[j], q2 = q * q;
+        double big_p = v->sin2 + p->rest[j] * (1 + mu) + v->alpha2 * (total * total);
+        term[j] =
+            top[j] * 2 * v->alpha2 * (q2 * (q + 2 * a) + v->s * a * big_p) / (bottom[j] * (q2 * q));
+    }
+    for (int j = 0; j < HALF; j++)
+        sum[j] += term[j] + term[j + HALF];
+}
+
+// Steps after which the arithmetic-geometric mean of 1 and kc has converged to 1e-16.
+static int mean_steps(double kc)
+{
+    return kc > 0.55 ? 4 : kc > 0.09 ? 5 : kc > 1.8e-3 ? 6 : kc > 8e-7 ? 7 : kc > 1.7e-13 ? 8 : 9;
+}
+
+// Over a quarter turn, with Y^2 = cos^2 + kc^2 sin^2 and W = cos^2 + p sin^2: cel = int Y / W, its
+// derivative by p, and e = int Y. Bulirsch's iteration (1965) carried along with its derivative; it
+// only adds positive numbers. After n steps em and qc are 2^n times the arithmetic and the geometric
+// mean, which give e.
+typedef struct elliptic {
+    double cel[NODES], slope[NODES], k[NODES], e[NODES];
+} elliptic;
+
+static void elliptic_integrals(const double kc2[NODES], const double p0[NODES], int steps,
+                               elliptic *out)
+{
+    double a[NODES], da[NODES], b[NODES], db[NODES], p[NODES], dp[NODES];
+    double em[NODES], qc[NODES], ee[NODES], sum[NODES];
+    for (int j = 0; j < NODES; j++) {
+        double root = sqrt(p0[j]), inverse = 1 / root;
+        p[j] = root;
+        dp[j] = 0.5 * inverse;
+        a[j] = 1;
+        da[j] = 0;
+        b[j] = kc2[j] * inverse;
+        db[j] = -b[j] * inverse * dp[j];
+        em[j] = 1;
+        qc[j] = ee[j] = sqrt(kc2[j]);
+        sum[j] = 0.5 * (1 - kc2[j]);
+    }
+    double scale = 0.25; // 2^n / (2^(n + 1))^2
+    for (int step = 0; step < steps; step++, scale /= 2)
+        for (int j = 0; j < NODES; j++) {
+            double f = a[j], df = da[j], inverse = 1 / p[j];
+            double d_inverse = -inverse * inverse * dp[j];
+            a[j] += b[j] * inverse;
+            da[j] += db[j] * inverse + b[j] * d_inverse;
+            double g = ee[j] * inverse, dg = ee[j] * d_inverse;
+            b[j] = 2 * (b[j] + f * g);
+            db[j] = 2 * (db[j] + df * g + f * dg);
+            p[j] += g;
+            dp[j] += dg;
+            double c = em[j] - qc[j];
+            sum[j] += scale * c * c;
+            em[j] += qc[j];
+            qc[j] = 2 * sqrt(ee[j]);
+            ee[j] = qc[j] * em[j];
+        }
+    double power = ldexp(1, steps);
+    for (int j = 0; j < NODES; j++) {
+        double inverse = 1 / (em[j] * (em[j] + p[j])), value = (b[j] + a[j] * em[j]) * inverse;
+        out->cel[j] = KI_PI / 2 * value;
+        out->slope[j] = KI_PI / 2 * (db[j] + da[j] * em[j] - value * em[j] * dp[j]) * inverse;
+        out->k[j] = KI_PI / 2 * power / em[j];
+        out->e[j] = out->k[j] * (1 - sum[j]);
+    }
+}
+
+// B, from its own density: D (1 - c)^5 with c = o.h = sqrt(z) / 2, z = 2 (1 + o.i) = W + a and
+// W = P + q cos phi, q = 2 sin o sin i:
+//
+//     D (1 - c)^5 = alpha^2 / (pi W^2) [z^2 + 5/2 z^3 + 5/16 z^4 - sqrt(z) / 2 (5 z^2 + 5/2 z^3 + z^4 / 16)].
+//
+// Expanded in W about z = a, the even part has powers of W, which integrate as above, the odd part
+// complete elliptic integrals: i1, i3, i5 of sqrt(z)^1, 3, 5, and j1, j2 of sqrt(z) / W, sqrt(z) / W^2.
+static void add_b(const view *v, const panel *p, const double top[NODES],
+                  const double bottom[NODES], double sum[HALF])
+{
+    double total_a[NODES], big_p[NODES], q[NODES], w1[NODES], kc2[NODES], p0[NODES];
+    for (int j = 0; j < NODES; j++) {
+        double mu = p->mu[j], total = v->mu + mu, s2 = total * total, sin2 = p->rest[j] * (1 + mu);
+        double sine = sqrt(sin2), spread = p->delta[j] * total / (sine + v->sine + 1e-300);
+        double w0 = spread * spread + v->alpha2 * s2; // P - q without cancellation
+        total_a[j] = v->s * s2;
+        big_p[j] = v->sin2 + sin2 + v->alpha2 * s2;
+        q[j] = 2 * v->sine * sine;
+        w1[j] = big_p[j] + q[j];
+        kc2[j] = (w0 + total_a[j]) / (w1[j] + total_a[j]);
+        p0[j] = w0 / w1[j];
+    }
+    elliptic x;
+    elliptic_integrals(kc2, p0, mean_steps(sqrt(kc2[HALF - 1])), &x);
+    double term[NODES];
+    for (int j = 0; j < NODES; j++) {
+        double a = total_a[j], a2 = a * a, y1 = w1[j] + a, root = 4 * sqrt(y1);
+        double j1 = root / w1[j] * x.cel[j];
+        double j2 = root / (w1[j] * w1[j]) * (x.cel[j] - 2 * q[j] / w1[j] * x.slope[j]);
+        double i3 = (2 * (1 + kc2[j]) * x.e[j] - kc2[j] * x.k[j]) / 3;
+        double i5 = (4 * (1 + kc2[j]) * i3 - 3 * kc2[j] * x.e[j]) / 5;
+        double i1 = root * x.e[j];
+        i3 *= root * y1;
+        i5 *= root * y1 * y1;
+        double odd = a2 * (5 + 2.5 * a + a2 / 16) * j2 + a * (10 + 7.5 * a + a2 / 4) * j1 +
+                     (5 + 7.5 * a + 0.375 * a2) * i1 + (2.5 + 0.25 * a) * (i3 - a * i1) +
+                     (i5 - 2 * a * i3 + a2 * i1) / 16;
+        double inverse = 1 / (p->q[j] * (v->mu + p->mu[j])), b = big_p[j];
+        double even = a2 * (1 + 2.5 * a + 0.3125 * a2) * b * inverse * inverse * inverse +
+                      a * (2 + 7.5 * a + 1.25 * a2) * inverse + (1 + 7.5 * a + 1.875 * a2) +
+                      (2.5 + 1.25 * a) * b + 0.3125 * (b * b + q[j] * q[j] / 2);
+        term[j] = top[j] * v->alpha2 / KI_PI * (2 * KI_PI * even - odd / 2) / bottom[j];
+    }
+    for (int j = 0; j < HALF; j++)
+        sum[j] += term[j] + term[j + HALF];
+}
+
+// --------------------------------------------------------------------------------------- integrals
+
+static double sum_lanes(const double x[HALF])
+{
+    return ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]));
+}
+
+static void add(const view *v, const panel *p, double e[HALF], double b[HALF], bool split)
+{
+    double top[NODES], bottom[NODES];
+    masking(v, p, top, bottom);
+    add_e(v, p, top, bottom, e);
+    if (split)
+        add_b(v, p, top, bottom, b);
+}
+
+// E and, with `split`, B.
+static void integrate(const view *v, bool split, double out[2])
+{
+    double e[HALF] = {0}, b[HALF] = {0}, sinh_y[HALF], cosh_y[HALF];
+    panel p;
+
+    double length = ki_log(1 + v->split / v->pole);
+    int count = (int)ceil(length / PANEL);
+    double h = length / (2 * count), ahead = ki_exp(h), centre = ahead;
+    hyperbolic(h, sinh_y, cosh_y);
+    for (int i = 0; i < count; i++, centre *= ahead * ahead) {
+        log_nodes(v, h, centre, sinh_y, cosh_y, &p);
+        add(v, &p, e, b, split);
+    }
+
+    if (v->alpha > 0.7) {
+        even_nodes(v, &p);
+        add(v, &p, e, b, split);
+    } else {
+        stretch x = {.m_rest = ((1 - v->mu) - v->alpha2 * (1 + v->mu)) / v->s,
+                     .ahead = 2 * v->alpha2 * v->mu / v->s,
+                     .d = 2 * v->alpha * v->sine / v->s};
+        x.d = x.d > 1e-120 ? x.d : 1e-120;
+        double low = (v->split - v->mu - x.ahead) / x.d, high = x.m_rest / x.d;
+        // e^t of both ends, t = asinh.
+        double root_low = sqrt(low * low + 1), root_high = sqrt(high * high + 1);
+        double from = low > 0 ? low + root_low : 1 / (root_low - low);
+        double to = high > 0 ? high + root_high : 1 / (root_high - high);
+        length = ki_log(to / from);
+        count = (int)ceil(length / PANEL);
+        h = length / (2 * count);
+        ahead = ki_exp(h);
+        centre = from * ahead;
+        hyperbolic(h, sinh_y, cosh_y);
+        for (int i = 0; i < count; i++, centre *= ahead * ahead) {
+            sinh_nodes(v, &x, h, centre, sinh_y, cosh_y, &p);
+            add(v, &p, e, b, split);
+        }
+    }
+    out[0] = sum_lanes(e);
+    out[1] = sum_lanes(b);
+}
+
+// The mirror: everything goes where i = o in mirror image, masked by G there.
+static void mirror(const view *v, double out[2])
+{
+    double g1 = v->mu / (v->mu * (1 - v->k) + v->k), c = 1 - v->mu;
+    out[0] = v->g == KILN_G_SCHLICK_TEXT ? g1 * g1 : 1;
+    out[1] = out[0] * (c * c) * (c * c) * c;
+}
+
+void KI_ROW(const kiln_model *model, double roughness, const double *nov, int count, bool split,
+            double *out)
+{
+    for (int i = 0; i < count; i++) {
+        view v;
+        double both[2];
+        view_set(&v, model, roughness, nov[i], split);
+        if (v.alpha < 1e-30)
+            mirror(&v, both);
+        else
+            integrate(&v, split, both);
+        if (split) {
+            out[2 * i] = both[0] - both[1];
+            out[2 * i + 1] = both[1];
+        } else {
+            out[i] = both[0];
+        }
+    }
+}
