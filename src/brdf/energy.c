@@ -1,6 +1,7 @@
 // Which row, and single values.
 #include "brdf/energy.h"
 
+#include "brdf/beckmann.h"
 #include "math/math.h"
 
 #include <math.h>
@@ -12,7 +13,7 @@
 #define BASELINE ki_energy_row_scalar
 #endif
 
-ki_energy_row *ki_energy_row_for(const kiln_context *context)
+static ki_energy_row *fastest(const kiln_context *context)
 {
     ki_energy_row *row = ki_energy_row_scalar;
 #if defined(KILN_HAVE_X86)
@@ -29,16 +30,42 @@ ki_energy_row *ki_energy_row_for(const kiln_context *context)
     return row;
 }
 
+static void beckmann_row(const kiln_model *model, double roughness, const double *nov, int count,
+                         bool split, double *out)
+{
+    for (int i = 0; i < count; i++) {
+        double ab[2];
+        ki_beckmann_energy(model, roughness, nov[i], ab);
+        if (split) {
+            out[2 * i] = ab[0];
+            out[2 * i + 1] = ab[1];
+        } else {
+            out[i] = ab[0] + ab[1];
+        }
+    }
+}
+
+static ki_energy_row *row_of(const kiln_model *model, ki_energy_row *ggx)
+{
+    return model->d == KILN_D_BECKMANN ? beckmann_row : ggx;
+}
+
+void ki_energy_values(const kiln_context *context, const kiln_model *model, double roughness,
+                      const double *nov, int count, bool split, double *out)
+{
+    row_of(model, fastest(context))(model, roughness, nov, count, split, out);
+}
+
 double ki_energy(const kiln_model *model, double roughness, double nov)
 {
     double e;
-    BASELINE(model, roughness, &nov, 1, false, &e);
+    row_of(model, BASELINE)(model, roughness, &nov, 1, false, &e);
     return e;
 }
 
 void ki_energy_split(const kiln_model *model, double roughness, double nov, double ab[2])
 {
-    BASELINE(model, roughness, &nov, 1, true, ab);
+    row_of(model, BASELINE)(model, roughness, &nov, 1, true, ab);
 }
 
 // mu = c (e^u - 1) resolves the grazing layer, which is as wide as alpha and, with correlated
@@ -58,7 +85,7 @@ double ki_energy_average(const kiln_model *model, double roughness)
             rise[j] = ki_exp(h * (2 * i + 1 + node[j]));
             nov[j] = ki_clamp(c * (rise[j] - 1), 0, 1);
         }
-        BASELINE(model, roughness, nov, NODES, false, e);
+        row_of(model, BASELINE)(model, roughness, nov, NODES, false, e);
         for (int j = 0; j < NODES; j++)
             sum += 2 * weight[j] * h * c * rise[j] * nov[j] * e[j];
     }
