@@ -7,6 +7,7 @@ cd "$(dirname "$0")"
 build_needs="cmake:cmake ninja:ninja-build cc:gcc pkg-config:pkg-config libc6-dev libopenexr-dev
     libdeflate-dev libpng-dev libzstd-dev libpopt-dev libcjson-dev libcmocka-dev"
 test_needs="node:nodejs npm:npm mandoc:mandoc clang-format:clang-format script:bsdutils"
+web_needs="cmake:cmake ninja:ninja-build emcc:emscripten node:nodejs npm:npm"
 bench_needs="cmgen:libfilament-tools oiiotool:openimageio-tools valgrind:valgrind"
 lint_needs="clang-tidy:clang-tidy clang-format:clang-format cppcheck:cppcheck shellcheck:shellcheck"
 fuzz_needs="clang:clang libclang-rt-14-dev"
@@ -114,10 +115,11 @@ build)
     say "the command is build/release/bin/kiln"
     ;;
 test)
-    need_all "$build_needs $test_needs"
+    need_all "$build_needs $test_needs $web_needs"
     panoramas
     npm_packages
     build release
+    build wasm
     run_tests release
     build asan -DKILN_BENCH=OFF -DKILN_EXAMPLES=OFF
     run_tests asan -L unit -LE slow

@@ -3,6 +3,10 @@
 include(CMakePackageConfigHelpers)
 
 add_library(kiln_static STATIC $<TARGET_OBJECTS:kiln_objects>)
+if(EMSCRIPTEN) # part of a page: nothing is shared, nothing installed
+    target_include_directories(kiln_static INTERFACE include)
+    return()
+endif()
 add_library(kiln_shared SHARED $<TARGET_OBJECTS:kiln_objects>)
 set(KILN_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/kiln)
 foreach(kind static shared)

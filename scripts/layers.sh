@@ -6,7 +6,7 @@ cd "${1:-$(dirname "$0")/..}"
 
 # shellcheck disable=SC2016 # the dollars are awk's
 status=$(
-    find src cli bench examples viewer -name '*.[ch]' -o -name '*.inl' 2>/dev/null | sort |
+    find src cli bench examples viewer web -name '*.[ch]' -o -name '*.inl' 2>/dev/null | sort |
         xargs awk '
     BEGIN {
         # Each folder of src and those it may include.

@@ -163,8 +163,7 @@ void kiln_context_memory(const kiln_context *context, size_t *current, size_t *p
 
 const char *kiln_context_cpu(const kiln_context *context)
 {
-    static const char *const names[] = {"best", "scalar", "sse2", "avx2", "avx512"};
-    return names[context->def.cpu];
+    return ki_cpu_name(context->def.cpu);
 }
 
 enum kiln_cpu ki_context_cpu(const kiln_context *context)

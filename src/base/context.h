@@ -34,5 +34,6 @@ bool ki_threads_start(kiln_context *context);
 void ki_threads_stop(kiln_context *context);
 int ki_core_count(void);
 enum kiln_cpu ki_cpu_best(void);
+const char *ki_cpu_name(enum kiln_cpu cpu);
 
 #endif

@@ -14,6 +14,18 @@ enum kiln_cpu ki_cpu_best(void)
         __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq") &&
         __builtin_cpu_supports("avx512bw"))
         best = KILN_CPU_AVX512;
+#elif defined(KILN_HAVE_SIMD128)
+    best = KILN_CPU_SSE2;
 #endif
     return best;
+}
+
+const char *ki_cpu_name(enum kiln_cpu cpu)
+{
+#if defined(KILN_HAVE_SIMD128)
+    static const char *const names[] = {"best", "scalar", "simd128", "simd128", "simd128"};
+#else
+    static const char *const names[] = {"best", "scalar", "sse2", "avx2", "avx512"};
+#endif
+    return names[cpu];
 }

@@ -2,11 +2,11 @@
 // first, zstd for each level where asked for.
 #include "codec/codec.h"
 #include "codec/texel.h"
+#include "codec/zstd.h"
 
 #include <limits.h>
 #include <stdio.h>
 #include <string.h>
-#include <zstd.h>
 
 static const uint8_t identifier[12] = {0xab, 'K',  'T',  'X',  ' ',  '2',
                                        '0',  0xbb, '\r', '\n', 0x1a, '\n'};
@@ -196,39 +196,6 @@ static void read_metadata(const uint8_t *bytes, size_t size, kiln_file_info *inf
 
 // ----------------------------------------------------------------------------------------- writing
 
-enum { ZSTD_STEP = 1 << 17 };
-
-// One frame that states its size. Returns its own size, or 0 with `result` telling why.
-static size_t compress(kiln_context *context, const uint8_t *plain, size_t size, int level,
-                       uint8_t *room, size_t bound, kiln_result *result)
-{
-    ZSTD_CCtx *zstd = ZSTD_createCCtx();
-    ZSTD_inBuffer in = {plain, 0, 0};
-    ZSTD_outBuffer out = {room, bound, 0};
-    size_t left = 1;
-    *result = KILN_ERROR_MEMORY;
-    if (!zstd || ZSTD_isError(ZSTD_CCtx_setParameter(zstd, ZSTD_c_compressionLevel, level)) ||
-        ZSTD_isError(ZSTD_CCtx_setPledgedSrcSize(zstd, size)))
-        goto done;
-    while (left > 0) {
-        if (in.pos == in.size)
-            in.size += size - in.size < ZSTD_STEP ? size - in.size : ZSTD_STEP;
-        bool last = in.size == size;
-        left = ZSTD_compressStream2(zstd, &out, &in, last ? ZSTD_e_end : ZSTD_e_continue);
-        if (ZSTD_isError(left) || out.pos == out.size)
-            goto done;
-        left = last ? left : 1;
-        if (!ki_go_on(context)) {
-            *result = KILN_ERROR_CANCELLED;
-            goto done;
-        }
-    }
-    *result = KILN_OK;
-done:
-    ZSTD_freeCCtx(zstd);
-    return *result == KILN_OK ? out.pos : 0;
-}
-
 static kiln_result write_level(ki_writer *w, const kiln_map *map, int level, const ki_texel *texel,
                                int zstd, size_t entry, uint64_t file_start, kiln_error *error)
 {
@@ -237,15 +204,14 @@ static kiln_result write_level(ki_writer *w, const kiln_map *map, int level, con
     if (!zstd)
         ki_write_align(w, (size_t)ki_max(4, texel->bytes));
     uint64_t start = w->size;
-    // What zstd makes has room for one byte more than it may need.
-    size_t bound = zstd ? ZSTD_compressBound(size) + 1 : size, packed = size;
+    size_t bound = zstd ? ki_zstd_bound(size) : size, packed = size;
     uint8_t *room = ki_write_room(w, bound);
     uint8_t *plain = zstd && room ? ki_alloc_raw(w->context, size, 1) : room;
     kiln_result result = plain ? KILN_OK : KILN_ERROR_MEMORY;
     if (plain && !ki_texels_pack_many(w->context, texel, map->level[level], texels, plain))
         result = KILN_ERROR_CANCELLED;
     if (zstd && result == KILN_OK)
-        packed = compress(w->context, plain, size, zstd, room, bound, &result);
+        result = ki_zstd_pack(w->context, plain, size, zstd, room, bound, &packed);
     if (zstd)
         ki_free(plain);
     if (result == KILN_ERROR_CANCELLED)
@@ -270,6 +236,9 @@ kiln_result ki_ktx2_encode(const kiln_map *map, const kiln_save_def *def, ki_wri
                        (int)def->format, (int)KILN_FORMAT_B10G11R11);
     if (def->zstd < 0 || def->zstd > 22)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "zstd is %d, it must be 0 to 22", def->zstd);
+    kiln_result known = def->zstd ? ki_zstd_known("a KTX2 file", error) : KILN_OK;
+    if (known != KILN_OK)
+        return known;
     ki_writer *w = writer;
     size_t start = w->size;
     ki_write(w, identifier, sizeof identifier);
@@ -354,6 +323,9 @@ static kiln_result read_header(ki_reader *r, const char *name, ktx_header *h, ki
         return ki_fail(error, KILN_ERROR_UNSUPPORTED,
                        "%s: has supercompression scheme %u; 0 and 2 (zstd) are read", name,
                        h->scheme);
+    kiln_result known = h->scheme == SCHEME_ZSTD ? ki_zstd_known(name, error) : KILN_OK;
+    if (known != KILN_OK)
+        return known;
     if (h->width < 1 || h->width != h->height || h->width > KILN_MAX_SIZE)
         return ki_fail(error, KILN_ERROR_FORMAT,
                        "%s: faces are %u x %u, they must be square and 1 to %d", name, h->width,
@@ -377,10 +349,9 @@ static kiln_result find_levels(ki_reader *r, const uint8_t *bytes, size_t size, 
                            "%s: level %u has %llu bytes at %llu, the file has %zu", name, k,
                            (unsigned long long)length, (unsigned long long)offset, size);
         levels[k] = (ktx_level){bytes + offset, (size_t)length, (size_t)wanted};
-        uint64_t stated = h->scheme == SCHEME_ZSTD
-                              ? ZSTD_getFrameContentSize(levels[k].bytes, levels[k].size)
-                              : length;
-        if (stated == ZSTD_CONTENTSIZE_UNKNOWN || stated == ZSTD_CONTENTSIZE_ERROR)
+        uint64_t stated = length;
+        if (h->scheme == SCHEME_ZSTD &&
+            !ki_zstd_stated_size(levels[k].bytes, levels[k].size, &stated))
             return ki_fail(error, KILN_ERROR_FORMAT,
                            "%s: level %u is no zstd frame that states its size", name, k);
         if (plain != wanted || stated != wanted)
@@ -405,10 +376,10 @@ static kiln_result read_level(kiln_context *context, const char *name, const ktx
         unpacked = ki_alloc_raw(context, level->plain_size, 1);
         if (!unpacked)
             return ki_fail_memory(context, error, name, level->plain_size);
-        size_t size = ZSTD_decompress(unpacked, level->plain_size, level->bytes, level->size);
-        if (size != level->plain_size)
-            result = ki_fail(error, KILN_ERROR_FORMAT, "%s: level %d is damaged: %s", name, k,
-                             ZSTD_isError(size) ? ZSTD_getErrorName(size) : "too short");
+        const char *fault = ki_zstd_unpack(level->bytes, level->size, unpacked, level->plain_size);
+        if (fault)
+            result =
+                ki_fail(error, KILN_ERROR_FORMAT, "%s: level %d is damaged: %s", name, k, fault);
         plain = unpacked;
     }
     if (result == KILN_OK)

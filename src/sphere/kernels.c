@@ -14,6 +14,9 @@ const ki_kernels *ki_sphere_kernels(const kiln_context *context)
         kernels = &ki_kernels_avx2;
     if (cpu >= KILN_CPU_AVX512)
         kernels = &ki_kernels_avx512;
+#elif defined(KILN_HAVE_SIMD128)
+    if (ki_context_cpu(context) >= KILN_CPU_SSE2)
+        kernels = &ki_kernels_simd128;
 #else
     (void)context;
 #endif

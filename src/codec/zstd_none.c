@@ -1,0 +1,33 @@
+// A build without zstd's library.
+#include "codec/zstd.h"
+
+kiln_result ki_zstd_known(const char *name, kiln_error *error)
+{
+    return ki_fail(error, KILN_ERROR_UNSUPPORTED, "%s: this build of kiln leaves zstd out", name);
+}
+
+size_t ki_zstd_bound(size_t size)
+{
+    return size;
+}
+
+kiln_result ki_zstd_pack(kiln_context *context, const uint8_t *plain, size_t size, int level,
+                         uint8_t *room, size_t bound, size_t *packed_size)
+{
+    (void)context, (void)plain, (void)size, (void)level, (void)room, (void)bound;
+    *packed_size = 0;
+    return KILN_ERROR_MEMORY;
+}
+
+bool ki_zstd_stated_size(const uint8_t *packed, size_t packed_size, uint64_t *size)
+{
+    (void)packed, (void)packed_size;
+    *size = 0;
+    return false;
+}
+
+const char *ki_zstd_unpack(const uint8_t *packed, size_t packed_size, uint8_t *plain, size_t size)
+{
+    (void)packed, (void)packed_size, (void)plain, (void)size;
+    return "this build of kiln leaves zstd out";
+}

@@ -1,0 +1,49 @@
+// WebAssembly gives the bits that the processor gives: every file of the baker in the page is the
+// command's, byte for byte.
+import { check, checkSame, checkThrows, kiln, makeBaker, read } from './lib.mjs';
+
+const stages = new Set();
+const baker = await makeBaker({ progress: (stage, fraction) => {
+    stages.add(stage);
+    check(fraction >= 0 && fraction <= 1, `progress of ${stage} is ${fraction}`);
+} });
+check(baker.cpu === 'simd128', `kernels are ${baker.cpu}, not simd128`);
+
+kiln('sky', '-o', 'sky.exr', '--size', '256', '--elevation', '8', '--azimuth', '40');
+kiln('sky', '-o', 'sky.hdr', '--size', '100', '--turbidity', '6');
+kiln('bake', 'sky.exr', '-q', '-o', 'cube.ktx2', '--size', '64', '--format', 'rgb9e5');
+kiln('bake', 'sky.exr', '-q', '-o', 'cube.dds', '--size', '64', '--format', 'rgba32f');
+
+const open = (name) => baker.open(read(name), name);
+const sources = {
+    'sky.exr': () => baker.sky({ size: 256, elevation: 8, azimuth: 40 }),
+    'sky.hdr': () => open('sky.hdr'),
+    'cube.ktx2': () => open('cube.ktx2'),
+    'cube.dds': () => open('cube.dds'),
+};
+const bakes = [
+    [{}, []],
+    [{ size: 48, levels: 4, rotation: 33.5, exposure: -2.5 },
+     ['--size', '48', '--levels', '4', '--rotate', '33.5', '--exposure', '-2.5']],
+];
+let compared = 0;
+for (const [name, take] of Object.entries(sources))
+    for (const [options, args] of bakes) {
+        take();
+        baker.bake(options);
+        for (const format of ['rgba16f', 'rgba32f', 'rgb9e5', 'b10g11r11']) {
+            kiln('bake', name, '-q', '-o', 'out.ktx2', '--sh', 'out.json', '--format', format, ...args);
+            checkSame(baker.file('out.ktx2', format), read('out.ktx2'), `${name} as ${format}`);
+            checkSame(baker.file('out.json'), read('out.json'), `harmonics of ${name}`);
+            compared += 2;
+        }
+    }
+check(stages.size > 2, `told of ${[...stages]} only`);
+
+// What cannot be read is said, and what was there stays.
+const before = baker.file('out.ktx2');
+checkThrows(() => baker.open(new Uint8Array(100), 'zeros.hdr'), /^zeros\.hdr: its 100 bytes do not begin/);
+checkThrows(() => baker.open(read('sky.hdr').subarray(0, 2000), 'cut.hdr'), /^cut\.hdr: /);
+checkThrows(() => baker.bake({ size: 0.5 - 2 }), /size/);
+checkSame(baker.file('out.ktx2'), before, 'the file after failures');
+console.log(`${compared} files are the command's`);

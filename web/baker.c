@@ -1,0 +1,195 @@
+#include "baker.h"
+
+#include <kiln/kiln.h>
+
+#include <emscripten.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct baker {
+    kiln_context *context;
+    kiln_error error;
+    kiln_map source, baked;
+    kiln_sh sh;
+};
+
+EM_JS(void, tell, (const char *stage, double fraction), {
+    if (Module["progress"])
+        Module["progress"](UTF8ToString(stage), fraction);
+})
+
+static bool progress(void *user, const char *stage, double fraction)
+{
+    (void)user;
+    tell(stage, fraction);
+    return true;
+}
+
+// Memory of a page ends at 2 GiB; a part of that is kept for files.
+#define MEMORY ((size_t)1800 << 20)
+
+baker *baker_create(void)
+{
+    baker *b = calloc(1, sizeof *b);
+    kiln_context_def def = {.thread_count = 1, .memory_limit = MEMORY, .progress = progress};
+    if (b && kiln_context_create(&def, &b->context, &b->error)) {
+        free(b);
+        return NULL;
+    }
+    return b;
+}
+
+const char *baker_message(const baker *b)
+{
+    return b->error.message;
+}
+
+const char *baker_cpu(const baker *b)
+{
+    return kiln_context_cpu(b->context);
+}
+
+static bool take_source(baker *b, kiln_result result, kiln_map *map)
+{
+    if (result)
+        return false;
+    kiln_map_free(&b->source);
+    b->source = *map;
+    return true;
+}
+
+bool baker_open(baker *b, const void *bytes, size_t size, const char *name)
+{
+    kiln_map map;
+    return take_source(b, kiln_map_decode(b->context, bytes, size, name, NULL, &map, &b->error),
+                       &map);
+}
+
+bool baker_sky(baker *b, int size, double elevation, double azimuth, double turbidity)
+{
+    kiln_sky_def def = {.size = size,
+                        .elevation = elevation,
+                        .has_elevation = true,
+                        .azimuth = azimuth,
+                        .turbidity = turbidity};
+    kiln_map map;
+    return take_source(b, kiln_sky(b->context, &def, &map, &b->error), &map);
+}
+
+int baker_source_shape(const baker *b)
+{
+    return (int)b->source.shape;
+}
+
+int baker_source_size(const baker *b)
+{
+    return b->source.size;
+}
+
+const float *baker_source_texels(const baker *b)
+{
+    return b->source.level[0];
+}
+
+static kiln_result exposed(baker *b, double stops, kiln_map *map)
+{
+    kiln_result result =
+        kiln_map_create(b->context, b->source.shape, b->source.size, 1, map, &b->error);
+    if (result)
+        return result;
+    memcpy(map->level[0], b->source.level[0], 3 * sizeof(float) * kiln_map_texels(map, 0));
+    kiln_map_expose(map, stops);
+    return KILN_OK;
+}
+
+// The harmonics that `kiln bake` stores: of the filter's spectrum where that has enough degrees.
+static kiln_result harmonics(baker *b, const kiln_map *source, const kiln_spectrum *spectrum,
+                             double rotation)
+{
+    kiln_spectrum *own = NULL;
+    kiln_result result = KILN_OK;
+    int wanted = 2 * source->size < KILN_MAX_BANDS ? 2 * source->size : KILN_MAX_BANDS;
+    if (!spectrum || kiln_spectrum_degree(spectrum) < wanted) {
+        result = kiln_spectrum_analyze(b->context, source, wanted, &own, &b->error);
+        spectrum = own;
+    }
+    if (!result)
+        result = kiln_spectrum_sh(spectrum, 3, false, 0, rotation, &b->sh, &b->error);
+    kiln_spectrum_destroy(own);
+    return result;
+}
+
+static kiln_result filter(baker *b, const kiln_map *source, const kiln_prefilter_def *def,
+                          kiln_map *map)
+{
+    kiln_plan *plan = NULL;
+    kiln_result result;
+    if (source->shape != KILN_SHAPE_PANORAMA) {
+        result = kiln_prefilter(b->context, source, def, map, &b->error);
+        return result ? result : harmonics(b, source, NULL, def->rotation);
+    }
+    if ((result = kiln_plan_create(b->context, source->size, def, &plan, &b->error)) == KILN_OK &&
+        (result = kiln_plan_map(plan, map, &b->error)) == KILN_OK &&
+        (result = kiln_plan_execute(plan, source, map, &b->error)) == KILN_OK)
+        result = harmonics(b, source, kiln_plan_spectrum(plan), def->rotation);
+    kiln_plan_destroy(plan);
+    return result;
+}
+
+bool baker_bake(baker *b, int size, int levels, double rotation, double exposure)
+{
+    kiln_prefilter_def def = {.size = size, .level_count = levels, .rotation = rotation};
+    kiln_map brighter = {0}, map = {0};
+    kiln_sh before = b->sh;
+    kiln_result result = KILN_OK;
+    if (!b->source.size)
+        result = KILN_ERROR_ARGUMENT;
+    else if (exposure != 0)
+        result = exposed(b, exposure, &brighter);
+    if (!result)
+        result = filter(b, exposure != 0 ? &brighter : &b->source, &def, &map);
+    kiln_map_free(&brighter);
+    if (result) {
+        kiln_map_free(&map);
+        b->sh = before;
+        return false;
+    }
+    kiln_map_free(&b->baked);
+    b->baked = map;
+    return true;
+}
+
+int baker_level_count(const baker *b)
+{
+    return b->baked.level_count;
+}
+
+int baker_level_size(const baker *b, int level)
+{
+    return kiln_map_level_size(&b->baked, level);
+}
+
+double baker_roughness(const baker *b, int level)
+{
+    return (double)b->baked.roughness[level];
+}
+
+const float *baker_texels(const baker *b, int level)
+{
+    return b->baked.level[level];
+}
+
+const double *baker_harmonics(const baker *b)
+{
+    return &b->sh.c[0][0];
+}
+
+bool baker_save(baker *b, const char *path, int format)
+{
+    const char *dot = strrchr(path, '.');
+    bool texture = dot && (!strcmp(dot, ".ktx2") || !strcmp(dot, ".dds"));
+    kiln_save_def def = {.format = (kiln_format)format, .sh = &b->sh, .lobe = "ggx"};
+    return !(texture ? kiln_map_save(b->context, &b->baked, path, &def, NULL, &b->error)
+                     : kiln_sh_save(b->context, &b->sh, path, &b->error));
+}

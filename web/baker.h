@@ -1,0 +1,39 @@
+// The baker in the page: kiln's library behind functions of numbers, which baker.js calls. It makes
+// the files that the command makes, in the file system that emscripten keeps in memory. What returns
+// bool leaves a sentence in baker_message where it returns false, and what was there before stays.
+#ifndef BAKER_H
+#define BAKER_H
+
+#include <emscripten.h>
+#include <stdbool.h>
+#include <stddef.h>
+
+#define BAKER EMSCRIPTEN_KEEPALIVE
+
+typedef struct baker baker;
+
+BAKER baker *baker_create(void);
+/// The sentence of the last failure.
+BAKER const char *baker_message(const baker *b);
+BAKER const char *baker_cpu(const baker *b);
+/// Reads a file from memory. What was opened before stays where it fails.
+BAKER bool baker_open(baker *b, const void *bytes, size_t size, const char *name);
+BAKER bool baker_sky(baker *b, int size, double elevation, double azimuth, double turbidity);
+BAKER int baker_source_shape(const baker *b);
+BAKER int baker_source_size(const baker *b);
+BAKER const float *baker_source_texels(const baker *b);
+/// What `kiln bake --size --levels --rotate --exposure` does; 0 levels for all. What was baked
+/// before stays where it fails.
+BAKER bool baker_bake(baker *b, int size, int levels, double rotation, double exposure);
+BAKER int baker_level_count(const baker *b);
+BAKER int baker_level_size(const baker *b, int level);
+BAKER double baker_roughness(const baker *b, int level);
+/// Six faces of RGB floats.
+BAKER const float *baker_texels(const baker *b, int level);
+/// Coefficients [9][3] of the radiance.
+BAKER const double *baker_harmonics(const baker *b);
+/// Writes a file by its name's ending: .ktx2 (format: kiln_format), .dds, or the harmonics as
+/// .json, .txt and .h.
+BAKER bool baker_save(baker *b, const char *path, int format);
+
+#endif

@@ -1,0 +1,73 @@
+// kiln as an object: what baker.h says, with exceptions that carry its sentences.
+//   const baker = await Baker.make({ progress(stage, fraction) {} })
+export const FORMATS = { rgba16f: 1, rgba32f: 2, rgb9e5: 3, b10g11r11: 4 };
+export const SHAPES = ['panorama', 'cube', 'octahedron'];
+
+export class Baker {
+    static async make(makeModule, options = {}) {
+        const baker = new Baker();
+        baker.module = await makeModule(options);
+        baker.self = baker.module._baker_create();
+        if (!baker.self)
+            throw new Error('kiln cannot start: there is no memory for it');
+        return baker;
+    }
+
+    call(name, ...values) {
+        const types = values.map((value) => (typeof value === 'string' ? 'string' : 'number'));
+        const good = this.module.ccall(name, 'boolean', ['number', ...types],
+                                       [this.self, ...values]);
+        if (!good)
+            throw new Error(this.module.UTF8ToString(this.module._baker_message(this.self)));
+    }
+
+    // The file's bytes are copied; `name` stands in sentences.
+    open(bytes, name) {
+        const at = this.module._malloc(bytes.length);
+        if (!at)
+            throw new Error(`${name}: its ${bytes.length} bytes do not fit into the page's memory`);
+        try {
+            this.module.HEAPU8.set(bytes, at);
+            this.call('baker_open', at, bytes.length, name);
+        } finally {
+            this.module._free(at);
+        }
+    }
+
+    sky({ size = 512, elevation = 30, azimuth = 0, turbidity = 3 } = {}) {
+        this.call('baker_sky', size, elevation, azimuth, turbidity);
+    }
+
+    source() {
+        const { module, self } = this;
+        return { shape: SHAPES[module._baker_source_shape(self)],
+                 size: module._baker_source_size(self) };
+    }
+
+    bake({ size = 256, levels = 0, rotation = 0, exposure = 0 } = {}) {
+        this.call('baker_bake', size, levels, rotation, exposure);
+    }
+
+    // What was baked: of each level its size, roughness and six faces of RGB floats, copied.
+    levels() {
+        const { module, self } = this;
+        return Array.from({ length: module._baker_level_count(self) }, (_, k) => {
+            const size = module._baker_level_size(self, k), at = module._baker_texels(self, k) >>> 2;
+            return { size, roughness: module._baker_roughness(self, k),
+                     texels: module.HEAPF32.slice(at, at + 18 * size * size) };
+        });
+    }
+
+    // A file that the command would write, by the name's ending: .ktx2 .dds .json .txt .h
+    file(name, format = 'rgba16f') {
+        const path = `/${name}`;
+        this.call('baker_save', path, FORMATS[format]);
+        const bytes = this.module.FS.readFile(path);
+        this.module.FS.unlink(path);
+        return bytes;
+    }
+
+    get cpu() {
+        return this.module.UTF8ToString(this.module._baker_cpu(this.self));
+    }
+}
