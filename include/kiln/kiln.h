@@ -530,6 +530,19 @@ typedef struct kiln_table {
     kiln_image image;
 } kiln_table;
 
+/// Fills a table; `def` may be NULL. Every texel is the integral itself, rounded to a float.
+KILN_API KILN_CHECKED kiln_result kiln_table_create(kiln_context *context,
+                                                    const kiln_table_def *def, kiln_table *table,
+                                                    kiln_error *error);
+KILN_API void kiln_table_free(kiln_table *table);
+/// What a texel stands for.
+KILN_API void kiln_table_texel(const kiln_table *table, int x, int y, int slice, double *nov,
+                               double *roughness, double *third);
+/// The value between texels, interpolated as graphics hardware does, with the complement undone.
+/// `third` counts where the kind has one. `values` receives the table's channels.
+KILN_API void kiln_table_lookup(const kiln_table *table, double nov, double roughness, double third,
+                                double *values);
+
 // ------------------------------------------------------------------------- the textbook, by its name
 
 /// The methods that courses teach, with their defaults and their errors, to learn from and to

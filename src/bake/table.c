@@ -1,0 +1,171 @@
+#include "bake/table.h"
+
+#include "bake/table_axis.h"
+#include "brdf/energy.h"
+
+int ki_table_channels(kiln_table_kind kind)
+{
+    switch (kind) {
+    case KILN_TABLE_DFG:
+        return 2;
+    case KILN_TABLE_DFG_MULTISCATTER:
+        return 3;
+    case KILN_TABLE_GLASS:
+        return 4;
+    default:
+        return 1;
+    }
+}
+
+// ------------------------------------------------------------------------------------------- kinds
+
+enum { CHUNK = 64, MAX_CHANNELS = 4 };
+
+// Texels of one row and slice: `count` values of n.v to out[count][channels].
+typedef void fill_chunk(const kiln_context *context, const kiln_table_def *def, double roughness,
+                        double third, const double *nov, int count, double *out);
+
+static void fill_e(const kiln_context *context, const kiln_table_def *def, double roughness,
+                   double third, const double *nov, int count, double *out)
+{
+    (void)third;
+    ki_energy_values(context, &def->model, roughness, nov, count, false, out);
+}
+
+static void fill_average(const kiln_context *context, const kiln_table_def *def, double roughness,
+                         double third, const double *nov, int count, double *out)
+{
+    (void)context, (void)third, (void)nov;
+    for (int i = 0; i < count; i++)
+        out[i] = ki_energy_average(&def->model, roughness);
+}
+
+static void fill_dfg(const kiln_context *context, const kiln_table_def *def, double roughness,
+                     double third, const double *nov, int count, double *out)
+{
+    (void)third;
+    ki_energy_values(context, &def->model, roughness, nov, count, true, out);
+}
+
+static fill_chunk *const fill_of[KILN_TABLE_E_WALK + 1] = {
+    [KILN_TABLE_E] = fill_e,
+    [KILN_TABLE_E_AVERAGE] = fill_average,
+    [KILN_TABLE_DFG] = fill_dfg,
+};
+
+// ------------------------------------------------------------------------------------------ checks
+
+static kiln_result check_size(const char *name, int size, int limit, kiln_error *error)
+{
+    if (size < 1 || size > limit)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s of the table is %d, it must be 1 to %d",
+                       name, size, limit);
+    return KILN_OK;
+}
+
+static kiln_result check_depth(const kiln_table_def *def, bool has_depth, kiln_error *error)
+{
+    enum { LIMIT = 1 << 26 };
+    if (!has_depth && def->depth != 1)
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "depth of the table is %d, it must be 1: this kind has no third axis",
+                       def->depth);
+    if ((int64_t)def->width * def->height * def->depth > LIMIT)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "%d x %d x %d texels are %lld, the limit is %d",
+                       def->width, def->height, def->depth,
+                       (long long)def->width * def->height * def->depth, LIMIT);
+    return KILN_OK;
+}
+
+static kiln_result check_choices(const kiln_table_def *def, kiln_error *error)
+{
+    if ((unsigned)def->kind > KILN_TABLE_E_WALK)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "kind of the table is %d, there are 0 to %d",
+                       (int)def->kind, KILN_TABLE_E_WALK);
+    if ((unsigned)def->model.d > KILN_D_BECKMANN || (unsigned)def->model.g > KILN_G_SCHLICK_TEXT)
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "the model is (%d, %d), there are 0 to %d and 0 to %d", (int)def->model.d,
+                       (int)def->model.g, KILN_D_BECKMANN, KILN_G_SCHLICK_TEXT);
+    if ((unsigned)def->axis > KILN_AXIS_CBRT)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "axis of the table is %d, there are 0 to %d",
+                       (int)def->axis, KILN_AXIS_CBRT);
+    if (def->complement && ki_table_channels(def->kind) != 1)
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "the complement is for tables of one channel, this one has %d",
+                       ki_table_channels(def->kind));
+    return KILN_OK;
+}
+
+kiln_result ki_table_complete(kiln_table_def *def, kiln_error *error)
+{
+    kiln_result result = check_choices(def, error);
+    if (result)
+        return result;
+    if (!fill_of[def->kind])
+        return ki_fail(error, KILN_ERROR_UNSUPPORTED, "tables of kind %d are not made yet",
+                       (int)def->kind);
+    bool has_depth = ki_table_third(def->kind) != KI_THIRD_NONE;
+    if (def->kind == KILN_TABLE_E_AVERAGE)
+        def->width = 1;
+    def->width = def->width ? def->width : has_depth ? 32 : 128;
+    def->height = def->height ? def->height : has_depth ? 32 : 128;
+    def->depth = def->depth ? def->depth : has_depth ? 32 : 1;
+    result = check_size("width", def->width, KILN_MAX_TABLE, error);
+    if (!result)
+        result = check_size("height", def->height, KILN_MAX_TABLE, error);
+    if (!result)
+        result = check_size("depth", def->depth, KILN_MAX_TABLE, error);
+    if (!result)
+        result = check_depth(def, has_depth, error);
+    return result;
+}
+
+// -------------------------------------------------------------------------------------------- rows
+
+typedef struct fill_job {
+    const kiln_context *context;
+    kiln_table *table;
+    fill_chunk *fill;
+    const double *nov; // of every column
+    int channels;
+} fill_job;
+
+static void fill_row(void *data, int index)
+{
+    const fill_job *job = data;
+    const kiln_table_def *def = &job->table->def;
+    int slice = index / def->height, row = index % def->height;
+    double roughness = ki_texel_place(row, def->height, def->corners);
+    double w = ki_texel_place(slice, def->depth, def->corners);
+    double third = ki_third_from_w(ki_table_third(def->kind), w);
+    float *texel =
+        job->table->image.pixels + (size_t)index * (size_t)def->width * (size_t)job->channels;
+    for (int x = 0; x < def->width; x += CHUNK) {
+        double values[CHUNK * MAX_CHANNELS];
+        int count = ki_min(CHUNK, def->width - x);
+        job->fill(job->context, def, def->flip ? 1 - roughness : roughness, third, job->nov + x,
+                  count, values);
+        for (int i = 0; i < count * job->channels; i++)
+            *texel++ = (float)(def->complement ? 1 - values[i] : values[i]);
+    }
+}
+
+kiln_result ki_table_fill(kiln_context *context, kiln_table *table, kiln_error *error)
+{
+    const kiln_table_def *def = &table->def;
+    double *nov = ki_alloc_raw(context, (size_t)def->width, sizeof *nov);
+    if (!nov)
+        return ki_fail_memory(context, error, "a table's columns",
+                              (size_t)def->width * sizeof *nov);
+    for (int x = 0; x < def->width; x++)
+        nov[x] = ki_axis_to_nov(def->axis, ki_texel_place(x, def->width, def->corners));
+    fill_job job = {.context = context,
+                    .table = table,
+                    .fill = fill_of[def->kind],
+                    .nov = nov,
+                    .channels = ki_table_channels(def->kind)};
+    ki_stage stage = {"table", 0, 1};
+    bool whole = ki_parallel_steps(context, &stage, def->height * def->depth, fill_row, &job);
+    ki_free(nov);
+    return whole ? KILN_OK : ki_fail_cancelled(error, "table");
+}
