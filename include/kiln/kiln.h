@@ -465,6 +465,16 @@ KILN_API double kiln_energy_average(const kiln_model *model, double roughness);
 KILN_API void kiln_energy_split(const kiln_model *model, double roughness, double nov,
                                 double ab[2]);
 
+/// Masking of Charlie sheen.
+typedef enum kiln_sheen {
+    KILN_SHEEN_ASHIKHMIN, ///< 1 / (4 (n.l + n.v - n.l n.v)), Filament's and most viewers'; the default
+    KILN_SHEEN_ESTEVEZ    ///< Estevez and Kulla's fit of Lambda, as KHR_materials_sheen gives it
+} kiln_sheen;
+
+/// The directional albedo of Charlie sheen of colour 1, alpha = roughness^2, roughness at least 0.01.
+/// It exceeds 1 at grazing angles: neither masking conserves energy. Source: docs/theory/sheen.md.
+KILN_API double kiln_sheen_albedo(kiln_sheen sheen, double roughness, double nov);
+
 // ------------------------------------------------------------------------- compensation of energy
 
 // The specular lobe leaves out light that bounces more than once between the microfacets. With E(mu)

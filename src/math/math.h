@@ -29,5 +29,9 @@ double ki_erfcx(double x);
 void ki_gauss_legendre(int count, double *nodes, double *weights);
 /// The same for count = 16, for composite rules.
 extern const double ki_gauss16_nodes[16], ki_gauss16_weights[16];
+/// The double exponential rule on [0, 1], count odd: nodes crowd at both ends, whose singularities
+/// are then no trouble, down to exp(-pi sinh reach) of the length: 4e-17 for reach = 3.2, 8e-11 for
+/// 2.7. nodes[count - 1 - i] is the distance of node i from 1 without rounding.
+void ki_double_exponential(int count, double reach, double *nodes, double *weights);
 
 #endif

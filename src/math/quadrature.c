@@ -43,3 +43,16 @@ void ki_gauss_legendre(int count, double *nodes, double *weights)
         weights[i] = weights[count - 1 - i] = weight;
     }
 }
+
+// x = 1 / (1 + exp(-pi sinh t)), equal steps of t in [-reach, reach]. Takahasi and Mori 1974.
+void ki_double_exponential(int count, double reach, double *nodes, double *weights)
+{
+    double step = 2 * reach / (count - 1);
+    for (int i = 0; i <= count / 2; i++) {
+        double e = ki_exp(-reach + i * step); // exp t, t <= 0
+        double u = ki_exp(KI_PI / 2 * (e - 1 / e)), x = u / (1 + u);
+        nodes[i] = x;
+        nodes[count - 1 - i] = 1 - x;
+        weights[i] = weights[count - 1 - i] = step * KI_PI / 2 * (e + 1 / e) * x / (1 + u);
+    }
+}
