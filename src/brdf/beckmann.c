@@ -33,25 +33,6 @@ double ki_beckmann_lambda(double alpha, double cosine)
     return ki_exp(-a * a) * (1 / (a * 1.77245385090551602730) - ki_erfcx(a)) / 2;
 }
 
-// G2 / nov without the division by 0 at grazing angles.
-static double shadowing_over_nov(const kiln_model *model, double roughness, double nov, double nol,
-                                 double lambda_v)
-{
-    double alpha = roughness * roughness, k = alpha / 2;
-    switch (model->g) {
-    case KILN_G_SCHLICK_TEXT:
-        k = ki_schlick_k_direct(roughness);
-        break;
-    case KILN_G_SCHLICK_K2:
-        break;
-    case KILN_G_SMITH_UNCORRELATED:
-        return 1 / (nov * (1 + lambda_v) * (1 + ki_beckmann_lambda(alpha, nol)));
-    default:
-        return 1 / (nov * (1 + lambda_v + ki_beckmann_lambda(alpha, nol)));
-    }
-    return ki_smith_g1_schlick(k, nol) / (nov * (1 - k) + k);
-}
-
 // The azimuth's part at fixed elevations: with phi from the mirror direction on and S = nov + nol,
 //
 //     tan^2 theta_h = tan^2((theta_v - theta_l) / 2) + 4 sin theta_v sin theta_l sin^2(phi/2) / S^2
@@ -100,7 +81,6 @@ void ki_beckmann_energy(const kiln_model *model, double roughness, double nov, d
     }
     nov = fmax(nov, 1e-10 * alpha);
     double psi_v = ki_asin(nov), sine_v = sqrt((1 - nov) * (1 + nov));
-    double lambda_v = ki_beckmann_lambda(alpha, nov);
     double reach = 2 * ki_atan2(sqrt(CUT2) * alpha, 1);
     double low = -reach, high = fmin(reach, KI_PI / 2 - psi_v);
     bool logarithmic = psi_v < reach;
@@ -125,7 +105,7 @@ void ki_beckmann_energy(const kiln_model *model, double roughness, double nov, d
         ki_sincos(delta / 2, &tangent, &cosine);
         tangent /= cosine;
         double s = nov + nol;
-        weight *= sine_l * shadowing_over_nov(model, roughness, nov, nol, lambda_v) / 4;
+        weight *= sine_l * nol * ki_visibility(model, roughness, nov, nol) / 4;
         integrate_azimuth(alpha, tangent * tangent, 4 * sine_v * sine_l / (s * s), s, weight, sum);
     }
     ab[0] = sum[0] - sum[1];
