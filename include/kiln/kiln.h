@@ -519,7 +519,9 @@ typedef enum kiln_table_kind {
 typedef enum kiln_axis {
     KILN_AXIS_LINEAR, ///< u = n.v
     KILN_AXIS_SQRT,   ///< u = (n.v)^(1/2)
-    KILN_AXIS_CBRT    ///< u = (n.v)^(1/3)
+    KILN_AXIS_CBRT,   ///< u = (n.v)^(1/3)
+    KILN_AXIS_GRAZING ///< u = sqrt(n.v (1 + c) / (n.v + c)), for E: errs least by far. c is alpha,
+                      ///< for Schlick's text k / (1 - k), so that every row has its layer alike
 } kiln_axis;
 
 /// {0} is a good default: E of the default model, 128 x 128, u = n.v, texel centres.

@@ -33,8 +33,8 @@ void kiln_table_texel(const kiln_table *table, int x, int y, int slice, double *
 {
     const kiln_table_def *def = &table->def;
     double v = ki_texel_place(y, def->height, def->corners);
-    *nov = ki_axis_to_nov(def->axis, ki_texel_place(x, def->width, def->corners));
     *roughness = def->flip ? 1 - v : v;
+    *nov = ki_axis_to_nov(def, *roughness, ki_texel_place(x, def->width, def->corners));
     *third =
         ki_third_from_w(ki_table_third(def->kind), ki_texel_place(slice, def->depth, def->corners));
 }
@@ -57,7 +57,7 @@ void kiln_table_lookup(const kiln_table *table, double nov, double roughness, do
 {
     const kiln_table_def *def = &table->def;
     size_t channels = (size_t)table->image.channels, row = channels * (size_t)def->width;
-    double u = ki_axis_from_nov(def->axis, ki_clamp(nov, 0, 1));
+    double u = ki_axis_from_nov(def, roughness, ki_clamp(nov, 0, 1));
     between x = find(u, def->width, def->corners, channels);
     between y = find(def->flip ? 1 - roughness : roughness, def->height, def->corners, row);
     between z = find(ki_third_to_w(ki_table_third(def->kind), third), def->depth, def->corners,

@@ -86,9 +86,9 @@ static kiln_result check_choices(const kiln_table_def *def, kiln_error *error)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
                        "the model is (%d, %d), there are 0 to %d and 0 to %d", (int)def->model.d,
                        (int)def->model.g, KILN_D_BECKMANN, KILN_G_SCHLICK_TEXT);
-    if ((unsigned)def->axis > KILN_AXIS_CBRT)
+    if ((unsigned)def->axis > KILN_AXIS_GRAZING)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "axis of the table is %d, there are 0 to %d",
-                       (int)def->axis, KILN_AXIS_CBRT);
+                       (int)def->axis, KILN_AXIS_GRAZING);
     if (def->complement && ki_table_channels(def->kind) != 1)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
                        "the complement is for tables of one channel, this one has %d",
@@ -126,7 +126,6 @@ typedef struct fill_job {
     const kiln_context *context;
     kiln_table *table;
     fill_chunk *fill;
-    const double *nov; // of every column
     int channels;
 } fill_job;
 
@@ -140,11 +139,18 @@ static void fill_row(void *data, int index)
     double third = ki_third_from_w(ki_table_third(def->kind), w);
     float *texel =
         job->table->image.pixels + (size_t)index * (size_t)def->width * (size_t)job->channels;
+    if (def->flip)
+        roughness = 1 - roughness;
+    if (def->axis == KILN_AXIS_GRAZING && roughness < KI_GRAZING_MIN)
+        roughness = KI_GRAZING_MIN;
     for (int x = 0; x < def->width; x += CHUNK) {
-        double values[CHUNK * MAX_CHANNELS];
+        double nov[CHUNK], values[CHUNK * MAX_CHANNELS];
         int count = ki_min(CHUNK, def->width - x);
-        job->fill(job->context, def, def->flip ? 1 - roughness : roughness, third, job->nov + x,
-                  count, values);
+        for (int i = 0; i < count; i++) {
+            double u = ki_texel_place(x + i, def->width, def->corners);
+            nov[i] = ki_axis_to_nov(def, roughness, u);
+        }
+        job->fill(job->context, def, roughness, third, nov, count, values);
         for (int i = 0; i < count * job->channels; i++)
             *texel++ = (float)(def->complement ? 1 - values[i] : values[i]);
     }
@@ -153,19 +159,11 @@ static void fill_row(void *data, int index)
 kiln_result ki_table_fill(kiln_context *context, kiln_table *table, kiln_error *error)
 {
     const kiln_table_def *def = &table->def;
-    double *nov = ki_alloc_raw(context, (size_t)def->width, sizeof *nov);
-    if (!nov)
-        return ki_fail_memory(context, error, "a table's columns",
-                              (size_t)def->width * sizeof *nov);
-    for (int x = 0; x < def->width; x++)
-        nov[x] = ki_axis_to_nov(def->axis, ki_texel_place(x, def->width, def->corners));
     fill_job job = {.context = context,
                     .table = table,
                     .fill = fill_of[def->kind],
-                    .nov = nov,
                     .channels = ki_table_channels(def->kind)};
     ki_stage stage = {"table", 0, 1};
     bool whole = ki_parallel_steps(context, &stage, def->height * def->depth, fill_row, &job);
-    ki_free(nov);
     return whole ? KILN_OK : ki_fail_cancelled(error, "table");
 }

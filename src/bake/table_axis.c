@@ -1,6 +1,7 @@
 #include "bake/table_axis.h"
 
 #include "base/base.h"
+#include "brdf/brdf.h"
 #include "math/math.h"
 
 #include <math.h>
@@ -14,14 +15,46 @@ static double cube_root(double x)
     return y - (y * y * y - x) / (3 * y * y);
 }
 
-double ki_axis_from_nov(kiln_axis axis, double nov)
+double ki_axis_scale(const kiln_model *model, double roughness)
 {
-    return axis == KILN_AXIS_LINEAR ? nov : axis == KILN_AXIS_SQRT ? sqrt(nov) : cube_root(nov);
+    double r = roughness > KI_GRAZING_MIN ? roughness : KI_GRAZING_MIN;
+    if (model->g == KILN_G_SCHLICK_TEXT) {
+        double k = ki_schlick_k_direct(r);
+        return k / (1 - k);
+    }
+    return r * r;
 }
 
-double ki_axis_to_nov(kiln_axis axis, double u)
+double ki_axis_from_nov(const kiln_table_def *def, double roughness, double nov)
 {
-    return axis == KILN_AXIS_LINEAR ? u : axis == KILN_AXIS_SQRT ? u * u : u * u * u;
+    switch (def->axis) {
+    case KILN_AXIS_SQRT:
+        return sqrt(nov);
+    case KILN_AXIS_CBRT:
+        return cube_root(nov);
+    case KILN_AXIS_GRAZING: {
+        double c = ki_axis_scale(&def->model, roughness);
+        return nov < 1 ? sqrt(nov * (1 + c) / (nov + c)) : 1;
+    }
+    default:
+        return nov;
+    }
+}
+
+double ki_axis_to_nov(const kiln_table_def *def, double roughness, double u)
+{
+    switch (def->axis) {
+    case KILN_AXIS_SQRT:
+        return u * u;
+    case KILN_AXIS_CBRT:
+        return u * u * u;
+    case KILN_AXIS_GRAZING: {
+        double c = ki_axis_scale(&def->model, roughness), t = u * u;
+        return u < 1 ? t * c / (c + (1 - t)) : 1;
+    }
+    default:
+        return u;
+    }
 }
 
 ki_third ki_table_third(kiln_table_kind kind)
