@@ -1,0 +1,97 @@
+// Microfacet functions of numbers, GLSL ES 3.00. Each has the name, the arguments and the value of a
+// function of kiln's C library without its prefix (src/brdf/), tested to 1e-5 relative.
+// nov, nol, noh, voh are cosines in [0, 1]; roughness is perceptual, alpha = roughness^2.
+// SPDX-License-Identifier: MIT
+
+const float PI = 3.14159265358979;
+
+// How a surface masks and shadows itself; the numbers are kiln_g's.
+const int SMITH = 0;             // height-correlated
+const int SMITH_UNCORRELATED = 1;
+const int SCHLICK_K2 = 2;        // k = roughness^2 / 2
+const int SCHLICK_TEXT = 3;      // k = (roughness + 1)^2 / 8
+
+// ------------------------------------------------------------------------------------ distribution
+
+// GGX (Walter et al. 2007, eq. 33) without the cancellation near n.h = 1.
+float ggx_d(float alpha, float noh)
+{
+    float a2 = alpha * alpha;
+    float d = a2 * noh * noh + (1.0 - noh) * (1.0 + noh);
+    return a2 / (PI * d * d);
+}
+
+// ----------------------------------------------------------------------------- masking, shadowing
+
+float smith_g1_schlick(float k, float nox)
+{
+    return nox / (nox * (1.0 - k) + k);
+}
+
+float smith_g_schlick(float k, float nov, float nol)
+{
+    return smith_g1_schlick(k, nov) * smith_g1_schlick(k, nol);
+}
+
+float schlick_k_ibl(float alpha)
+{
+    return alpha / 2.0;
+}
+
+float schlick_k_direct(float roughness)
+{
+    return (roughness + 1.0) * (roughness + 1.0) / 8.0;
+}
+
+// x (1 + 2 Lambda(x)) of GGX: Heitz 2014, eq. 72.
+float ggx_root(float alpha, float x)
+{
+    return sqrt(x * x + alpha * alpha * ((1.0 - x) * (1.0 + x)));
+}
+
+float smith_g1_over_cosine(float alpha, float nox)
+{
+    return 2.0 / (nox + ggx_root(alpha, nox));
+}
+
+// G / (nov nol): finite at grazing angles. The BRDF is F D visibility / 4.
+float visibility(int g, float roughness, float nov, float nol)
+{
+    float alpha = roughness * roughness;
+    if (g == SMITH)
+        return 2.0 / (nol * ggx_root(alpha, nov) + nov * ggx_root(alpha, nol));
+    if (g == SMITH_UNCORRELATED)
+        return smith_g1_over_cosine(alpha, nov) * smith_g1_over_cosine(alpha, nol);
+    float k = g == SCHLICK_TEXT ? schlick_k_direct(roughness) : schlick_k_ibl(alpha);
+    return 1.0 / ((nov * (1.0 - k) + k) * (nol * (1.0 - k) + k));
+}
+
+// ----------------------------------------------------------------------------------------- Fresnel
+
+// (1 - voh)^5, the varying part of Schlick's F = f0 + (1 - f0) (1 - voh)^5.
+float schlick_fresnel(float voh)
+{
+    float c = 1.0 - voh, c2 = c * c;
+    return c2 * c2 * c;
+}
+
+// ior is n_transmitted / n_incident. Born and Wolf 1999, section 1.5.2.
+float fresnel_dielectric(float ior, float c)
+{
+    float contrast = (1.0 - ior) * (1.0 + ior), s2 = (1.0 - c) * (1.0 + c);
+    float g2 = c * c - contrast;
+    if (g2 <= 0.0)
+        return contrast > 0.0 ? 1.0 : 0.0;
+    float g = sqrt(g2), r = contrast / ((c + g) * (c + g)), p = (c * g - s2) / (c * g + s2);
+    return min(r * r * (1.0 + p * p) / 2.0, 1.0);
+}
+
+// The mean 2 int F(mu) mu dmu of a conductor with reflectivity r and edge tint g: Kulla and Conty
+// 2017, page 26. Off by up to 0.10.
+vec3 fresnel_conductor_average_fit(vec3 r, vec3 g)
+{
+    vec3 r2 = r * r, g2 = g * g;
+    return 0.087237 + 0.0230685 * g - 0.0864902 * g2 + 0.0774594 * (g2 * g) + 0.782654 * r -
+           0.136432 * r2 + 0.278708 * (r2 * r) + 0.19744 * (r * g) + 0.0360605 * (g2 * r) -
+           0.2586 * (g * r2);
+}

@@ -1,0 +1,75 @@
+// The energy that a single bounce loses, put back: Kulla and Conty 2017, Turquin 2019, Fdez-Aguera
+// 2019; and how to read the tables that `kiln tables` writes. Needs brdf.glsl.
+// The names are those of kiln's C functions (src/brdf/compensate.c).
+// SPDX-License-Identifier: MIT
+
+// The numbers are kiln_f_add's.
+const int F_ADD_BOUNCES = 0;    // f^2 E / (1 - f (1 - E)): the bounces from the second one on
+const int F_ADD_ASSIGNMENT = 1; // f E / (1 - f (1 - E)): the assignment's, the first one twice
+
+// The lobe f_ms for F = 1. These take what is missing, 1 - E, since a table of 1 - E keeps its
+// digits where E is near 1.
+float kulla_conty_missing(float missing_o, float missing_i, float missing_average)
+{
+    return missing_average > 0.0 ? missing_o * missing_i / (PI * missing_average) : 0.0;
+}
+
+float kulla_conty(float e_o, float e_i, float e_average)
+{
+    return kulla_conty_missing(1.0 - e_o, 1.0 - e_i, 1.0 - e_average);
+}
+
+// What the lobe is multiplied by where surfaces absorb; f is Fresnel's mean F_avg.
+vec3 kulla_conty_fresnel(int form, vec3 f, vec3 e_average)
+{
+    vec3 sum = f * e_average / max((1.0 - f) + f * e_average, 1e-30);
+    return form == F_ADD_ASSIGNMENT ? sum : f * sum;
+}
+
+// What the single bounce is multiplied by.
+vec3 turquin(vec3 f0, float e)
+{
+    return 1.0 + f0 * (1.0 - e) / e;
+}
+
+// The albedo of the single bounce, and of the rest as diffuse light.
+void fdez_aguera(vec3 f0, float a, float b, out vec3 single, out vec3 multiple)
+{
+    vec3 f = (1.0 + 20.0 * f0) / 21.0;
+    float e = a + b;
+    single = f0 * a + b;
+    multiple = single * f * (1.0 - e) / max((1.0 - f) + f * e, 1e-30);
+}
+
+// ------------------------------------------------------------------------------------------ tables
+
+// How a table lies: kiln_table_def's fields as numbers, vec4(axis, corners, complement, flip).
+// n.v runs along x on its axis (0 linear, 1 square root, 2 cube root), roughness along y.
+vec2 table_place(vec4 layout_, ivec2 size, float nov, float roughness)
+{
+    float u = layout_.x > 1.5 ? pow(nov, 1.0 / 3.0) : layout_.x > 0.5 ? sqrt(nov) : nov;
+    float v = layout_.w > 0.5 ? 1.0 - roughness : roughness;
+    vec2 last = vec2(size - 1);
+    vec2 at = layout_.y > 0.5 ? vec2(u, v) * last : vec2(u, v) * vec2(size) - 0.5;
+    return clamp(at, vec2(0.0), last);
+}
+
+// Interpolated between four texels here, since GL's own filter may have no more than 8 bits and
+// may not filter 32-bit floats at all.
+vec2 table_read(sampler2D table, vec4 layout_, float nov, float roughness)
+{
+    ivec2 size = textureSize(table, 0);
+    vec2 at = table_place(layout_, size, nov, roughness);
+    ivec2 a = ivec2(at), b = min(a + 1, size - 1);
+    vec2 t = at - vec2(a);
+    vec2 low = mix(texelFetch(table, a, 0).rg, texelFetch(table, ivec2(b.x, a.y), 0).rg, t.x);
+    vec2 high = mix(texelFetch(table, ivec2(a.x, b.y), 0).rg, texelFetch(table, b, 0).rg, t.x);
+    return mix(low, high, t.y);
+}
+
+// 1 - E from a table of E or of 1 - E.
+float table_missing(sampler2D table, vec4 layout_, float nov, float roughness)
+{
+    float value = table_read(table, layout_, nov, roughness).r;
+    return layout_.z > 0.5 ? value : 1.0 - value;
+}

@@ -1,0 +1,271 @@
+// Balls by ray casting: for each of n x n rays of a pixel the nearest ball, shaded; the mean is
+// tone-mapped. So edges are smooth, the geometry is exact, and the picture depends on nothing but
+// its options.
+
+#include "brdf.glsl"
+#include "kulla_conty.glsl"
+#include "ibl.glsl"
+#include "tone.glsl"
+
+// The numbers of viewer.h.
+const int SCENE_ASSIGNMENT = 0, SCENE_FURNACE = 2, SCENE_COMPARE = 4;
+const int METHOD_KULLA_CONTY = 1, METHOD_HANDOUT = 2, METHOD_FDEZ_AGUERA = 3, METHOD_TURQUIN = 4;
+const int DEBUG_LEVEL = 1, DEBUG_TABLE_E = 2, DEBUG_TABLE_E_AVERAGE = 3, DEBUG_TABLE_SPLIT = 4,
+          DEBUG_E = 5, DEBUG_F = 6;
+const int TONE_LINEAR = 0, TONE_ASSIGNMENT = 2;
+const int MAX_BALLS = 64, CANDIDATES = 8;
+
+layout(std140) uniform View
+{
+    vec4 eye;
+    vec4 right;               // w: tan(fov / 2) times width / height
+    vec4 up;                  // w: tan(fov / 2)
+    vec4 back;                // w: what radiance is multiplied by
+    vec4 light;               // where it comes from; w: its radiance
+    vec4 turn;                // cosine and sine of the rotation; the handle; the background's roughness
+    vec4 screen;              // width, height
+    vec4 handout_average;     // what the handout's figure 6 reads for E_avg
+    ivec4 mode;               // scene, debug, rays a side, balls
+    ivec4 flags;              // tone, as printed, occlusion, diffuse light from the cube
+    ivec4 levels;             // of the two environments; the level shown; 1 with G of Schlick's
+    vec4 table_layout[6];     // E, E_avg, split of the assignment's model; of the environment's
+    vec4 level_roughness[8];  // of the two environments
+    vec4 harmonics[18];       // of the two environments
+    vec4 balls[4 * MAX_BALLS]; // centre, radius; f0, roughness; F_avg, method; albedo, metallic
+};
+
+uniform highp samplerCube environment, environment_textbook, irradiance;
+uniform highp sampler2D handout_e, handout_e_average, handout_split;
+uniform highp sampler2D e, e_average, split_sum;
+
+out vec4 color;
+
+struct Ball
+{
+    vec3 centre;
+    float radius;
+    vec3 f0;
+    float roughness;
+    vec3 f_average;
+    int method;
+    vec3 albedo;
+};
+
+Ball ball_at(int i)
+{
+    vec4 a = balls[4 * i], b = balls[4 * i + 1], c = balls[4 * i + 2], d = balls[4 * i + 3];
+    return Ball(a.xyz, a.w, b.xyz, b.w, c.xyz, int(c.w), d.xyz);
+}
+
+// ---------------------------------------------------------------------------------------- the light
+
+// Where the unturned environment has what is seen in direction d: turned from -Z toward +X.
+vec3 turned(vec3 d)
+{
+    return vec3(d.x * turn.x - d.z * turn.y, d.y, d.z * turn.x + d.x * turn.y);
+}
+
+vec3 environment_seen(int slot, vec3 d, float roughness)
+{
+    if (mode.x == SCENE_FURNACE)
+        return vec3(1.0);
+    vec4 of_level[4];
+    for (int i = 0; i < 4; i++)
+        of_level[i] = level_roughness[4 * slot + i];
+    float level = environment_level(of_level, levels[slot], roughness);
+    vec3 to = turned(d);
+    return slot == 0 ? textureLod(environment, to, level).rgb
+                     : textureLod(environment_textbook, to, level).rgb;
+}
+
+vec3 irradiance_at(int slot, vec3 n)
+{
+    if (mode.x == SCENE_FURNACE)
+        return vec3(1.0);
+    vec3 to = turned(n);
+    if (flags.w != 0)
+        return textureLod(irradiance, to, 0.0).rgb;
+    vec3 c[9];
+    for (int i = 0; i < 9; i++)
+        c[i] = harmonics[9 * slot + i].rgb;
+    return max(sh_irradiance(c, to), 0.0);
+}
+
+// What the other balls leave of the sky.
+float occlusion_at(int self, vec3 p, vec3 n)
+{
+    float open = 1.0;
+    for (int i = 0; i < mode.w; i++)
+        if (i != self)
+            open *= ball_occlusion(n, balls[4 * i].xyz - p, balls[4 * i].w);
+    return open;
+}
+
+// --------------------------------------------------------------------------------------- reflection
+
+// Radiance towards v from one directional light: the microfacet lobe and, above, Kulla and Conty's.
+vec3 lit_by_light(Ball ball, vec3 n, vec3 v, float nov)
+{
+    vec3 l = light.xyz, h = normalize(v + l);
+    float nol = max(dot(n, l), 0.0), noh = max(dot(n, h), 0.0), voh = max(dot(v, h), 0.0);
+    float alpha = ball.roughness * ball.roughness;
+    vec3 f = ball.f0 + (1.0 - ball.f0) * schlick_fresnel(voh);
+    float g = smith_g_schlick(schlick_k_ibl(alpha), nov, nol);
+    vec3 lobe = f * (ggx_d(alpha, noh) * g / max(4.0 * nol * nov, 0.001));
+    if (ball.method == METHOD_KULLA_CONTY || ball.method == METHOD_HANDOUT) {
+        float o = table_missing(handout_e, table_layout[0], nov, ball.roughness);
+        float i = table_missing(handout_e, table_layout[0], nol, ball.roughness);
+        float a = table_missing(handout_e_average, table_layout[1], 0.0, ball.roughness);
+        int form = ball.method == METHOD_HANDOUT ? F_ADD_ASSIGNMENT : F_ADD_BOUNCES;
+        if (flags.y != 0) {
+            // Figure 6: the sampler of E_avg is bound to nothing, so that it reads the albedo.
+            vec3 wrong = handout_average.rgb;
+            lobe += o * i / (PI * (1.0 - wrong)) * kulla_conty_fresnel(form, ball.f_average, wrong);
+        } else {
+            lobe += kulla_conty_missing(o, i, a) *
+                    kulla_conty_fresnel(form, ball.f_average, vec3(1.0 - a));
+        }
+    }
+    return lobe * nol * light.w;
+}
+
+// The split sum: the environment through the lobe, times the albedo; what bounces more often leaves
+// as diffuse light; what is not reflected reaches the base.
+vec3 lit_by_environment(int slot, Ball ball, vec3 n, vec3 v, float nov, float open)
+{
+    vec3 mirrored = environment_seen(slot, 2.0 * nov * n - v, ball.roughness);
+    vec3 around = irradiance_at(slot, n) * open;
+    vec2 ab = table_read(split_sum, table_layout[5], nov, ball.roughness).rg;
+    float missing = table_missing(e, table_layout[3], nov, ball.roughness);
+    vec3 single = ball.f0 * ab.x + ab.y, multiple = vec3(0.0);
+    if (ball.method == METHOD_KULLA_CONTY || ball.method == METHOD_HANDOUT) {
+        float a = table_missing(e_average, table_layout[4], 0.0, ball.roughness);
+        int form = ball.method == METHOD_HANDOUT ? F_ADD_ASSIGNMENT : F_ADD_BOUNCES;
+        multiple = kulla_conty_fresnel(form, ball.f_average, vec3(1.0 - a)) * missing;
+    } else if (ball.method == METHOD_FDEZ_AGUERA) {
+        fdez_aguera(ball.f0, ab.x, ab.y, single, multiple);
+    } else if (ball.method == METHOD_TURQUIN) {
+        single *= turquin(ball.f0, 1.0 - missing);
+    }
+    vec3 base = ball.albedo * (1.0 - single - multiple);
+    float specular_open = open < 1.0 ? specular_occlusion(nov, open, ball.roughness) : 1.0;
+    return mirrored * single * specular_open + around * (multiple + base);
+}
+
+// ------------------------------------------------------------------------------------------ picture
+
+// The nearest of the balls in `list` along d; n is the normal there. -1 where there is none.
+int nearest(int list[CANDIDATES], int count, vec3 d, out vec3 n, out vec3 p, out float nov)
+{
+    int found = -1;
+    float reach = 1e30;
+    for (int i = 0; i < count; i++) {
+        vec4 ball = balls[4 * list[i]];
+        vec3 from = eye.xyz - ball.xyz;
+        float along = dot(from, d);
+        vec3 closest = from - along * d;
+        float rest = ball.w * ball.w - dot(closest, closest);
+        if (rest <= 0.0)
+            continue;
+        float half_chord = sqrt(rest), t = -along - half_chord;
+        if (t <= 0.0 || t >= reach)
+            continue;
+        reach = t;
+        found = list[i];
+        vec3 offset = closest - half_chord * d;
+        n = offset / ball.w;
+        p = ball.xyz + offset;
+        nov = half_chord / ball.w;
+    }
+    return found;
+}
+
+vec3 shaded(int slot, int index, vec3 d, vec3 n, vec3 p, float nov)
+{
+    Ball ball = ball_at(index);
+    if (mode.y == DEBUG_E) {
+        float missing = levels.w != 0
+                            ? table_missing(handout_e, table_layout[0], nov, ball.roughness)
+                            : table_missing(e, table_layout[3], nov, ball.roughness);
+        return vec3(1.0 - missing);
+    }
+    if (mode.y == DEBUG_F)
+        return ball.f0 + (1.0 - ball.f0) * schlick_fresnel(nov);
+    if (mode.x == SCENE_ASSIGNMENT)
+        return lit_by_light(ball, n, -d, nov);
+    float open = flags.z != 0 ? occlusion_at(index, p, n) : 1.0;
+    return lit_by_environment(slot, ball, n, -d, nov, open);
+}
+
+vec3 direction_at(vec2 at)
+{
+    vec2 s = 2.0 * at / screen.xy - 1.0;
+    return normalize(s.x * right.w * right.xyz + s.y * up.w * up.xyz - back.xyz);
+}
+
+vec3 balls_at(vec2 corner, int slot)
+{
+    // Which balls the pixel may touch: those within its half diagonal, taken generously.
+    vec3 middle = direction_at(corner + 0.5);
+    float spread = 2.0 * max(up.w / screen.y, right.w / screen.x);
+    int list[CANDIDATES], count = 0;
+    for (int i = 0; i < mode.w && count < CANDIDATES; i++) {
+        vec3 from = eye.xyz - balls[4 * i].xyz;
+        float along = dot(from, middle);
+        float reach = balls[4 * i].w - along * spread;
+        vec3 closest = from - along * middle;
+        if (along < 0.0 && dot(closest, closest) < reach * reach)
+            list[count++] = i;
+    }
+    vec3 sum = vec3(0.0);
+    int side = mode.z;
+    for (int i = 0; i < side * side; i++) {
+        vec2 at = (vec2(i % side, i / side) + 0.5) / float(side);
+        vec3 d = direction_at(corner + at), n, p;
+        float nov;
+        int hit = nearest(list, count, d, n, p, nov);
+        if (hit >= 0)
+            sum += shaded(slot, hit, d, n, p, nov);
+        else if (mode.x != SCENE_ASSIGNMENT && mode.y == 0)
+            sum += environment_seen(slot, d, turn.w);
+    }
+    return sum / float(side * side);
+}
+
+// A table or a level over the whole screen.
+vec3 chart_at(vec2 at)
+{
+    bool handout = levels.w != 0;
+    if (mode.y == DEBUG_LEVEL) {
+        float phi = 2.0 * PI * (at.x - 0.5), theta = PI * (1.0 - at.y);
+        vec3 d = vec3(sin(theta) * sin(phi), cos(theta), -sin(theta) * cos(phi));
+        return textureLod(environment, turned(d), float(levels.z)).rgb;
+    }
+    if (mode.y == DEBUG_TABLE_E)
+        return vec3(1.0 - (handout ? table_missing(handout_e, table_layout[0], at.x, at.y)
+                                   : table_missing(e, table_layout[3], at.x, at.y)));
+    if (mode.y == DEBUG_TABLE_E_AVERAGE)
+        return vec3(1.0 - (handout
+                               ? table_missing(handout_e_average, table_layout[1], 0.0, at.y)
+                               : table_missing(e_average, table_layout[4], 0.0, at.y)));
+    vec2 ab = handout ? table_read(handout_split, table_layout[2], at.x, at.y)
+                      : table_read(split_sum, table_layout[5], at.x, at.y);
+    return vec3(ab, 0.0);
+}
+
+void main()
+{
+    vec2 corner = gl_FragCoord.xy - 0.5;
+    bool chart = mode.y >= DEBUG_LEVEL && mode.y <= DEBUG_TABLE_SPLIT;
+    bool values = mode.y > DEBUG_LEVEL; // numbers, not light: shown as they are
+    float handle = floor(turn.z * screen.x);
+    int slot = mode.x == SCENE_COMPARE && corner.x >= handle ? 1 : 0;
+    vec3 c = chart ? chart_at(gl_FragCoord.xy / screen.xy) : balls_at(corner, slot);
+    if (flags.x != TONE_LINEAR && !values) {
+        c *= back.w;
+        c = flags.x == TONE_ASSIGNMENT ? tone_assignment(c) : srgb_encode(tone_neutral(c));
+        if (mode.x == SCENE_COMPARE && !chart && abs(gl_FragCoord.x - handle) < 1.0)
+            c = vec3(1.0);
+    }
+    color = vec4(c, 1.0);
+}

@@ -1,0 +1,74 @@
+// The functions of OpenGL ES 3.0 that the renderer calls, looked up at run time, so that nothing of
+// GL is needed where it is not used.
+#ifndef KILN_VIEWER_GL_H
+#define KILN_VIEWER_GL_H
+
+#include "viewer.h"
+
+#include <GLES3/gl3.h>
+
+#define VIEW_GL_FUNCTIONS(X)                                                                       \
+    X(ActiveTexture)                                                                               \
+    X(AttachShader)                                                                                \
+    X(BindBuffer)                                                                                  \
+    X(BindBufferBase)                                                                              \
+    X(BindFramebuffer)                                                                             \
+    X(BindRenderbuffer)                                                                            \
+    X(BindTexture)                                                                                 \
+    X(BindVertexArray)                                                                             \
+    X(BufferData)                                                                                  \
+    X(CheckFramebufferStatus)                                                                      \
+    X(CompileShader)                                                                               \
+    X(CreateProgram)                                                                               \
+    X(CreateShader)                                                                                \
+    X(DeleteBuffers)                                                                               \
+    X(DeleteFramebuffers)                                                                          \
+    X(DeleteProgram)                                                                               \
+    X(DeleteRenderbuffers)                                                                         \
+    X(DeleteShader)                                                                                \
+    X(DeleteTextures)                                                                              \
+    X(DeleteVertexArrays)                                                                          \
+    X(Disable)                                                                                     \
+    X(DrawArrays)                                                                                  \
+    X(FramebufferRenderbuffer)                                                                     \
+    X(GenBuffers)                                                                                  \
+    X(GenFramebuffers)                                                                             \
+    X(GenRenderbuffers)                                                                            \
+    X(GenTextures)                                                                                 \
+    X(GenVertexArrays)                                                                             \
+    X(GetError)                                                                                    \
+    X(GetIntegerv)                                                                                 \
+    X(GetProgramInfoLog)                                                                           \
+    X(GetProgramiv)                                                                                \
+    X(GetShaderInfoLog)                                                                            \
+    X(GetShaderiv)                                                                                 \
+    X(GetString)                                                                                   \
+    X(GetStringi)                                                                                  \
+    X(GetUniformBlockIndex)                                                                        \
+    X(GetUniformLocation)                                                                          \
+    X(LinkProgram)                                                                                 \
+    X(PixelStorei)                                                                                 \
+    X(ReadPixels)                                                                                  \
+    X(RenderbufferStorage)                                                                         \
+    X(ShaderSource)                                                                                \
+    X(TexImage2D)                                                                                  \
+    X(TexParameteri)                                                                               \
+    X(Uniform1f)                                                                                   \
+    X(Uniform1i)                                                                                   \
+    X(Uniform2f)                                                                                   \
+    X(UniformBlockBinding)                                                                         \
+    X(UseProgram)                                                                                  \
+    X(Viewport)
+
+typedef struct view_gl {
+#define VIEW_GL_MEMBER(name) __typeof__(&gl##name) name;
+    VIEW_GL_FUNCTIONS(VIEW_GL_MEMBER)
+#undef VIEW_GL_MEMBER
+} view_gl;
+
+/// False where a function is missing; its name goes to `missing`.
+bool view_gl_load(view_gl *gl, view_lookup *lookup, const char **missing);
+/// The context offers this extension.
+bool view_gl_has(const view_gl *gl, const char *extension);
+
+#endif

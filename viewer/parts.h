@@ -1,0 +1,19 @@
+// What the viewer's files share among themselves.
+#ifndef KILN_VIEWER_PARTS_H
+#define KILN_VIEWER_PARTS_H
+
+#include "viewer.h"
+
+/// Writes the sentence unless `error` is NULL.
+void view_describe(kiln_error *error, kiln_result result, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+/// The same, and is `result`.
+#define view_fail(error, result, ...) (view_describe((error), (result), __VA_ARGS__), (result))
+
+/// Radiance to what a screen shows, 0 to 1, as shaders/tone.glsl does it.
+void view_tone(view_scene scene, const double radiance[3], double shown[3]);
+
+/// A shader with its #includes in place, without version and precision lines; ends in NUL.
+extern const char view_shader_screen_vert[], view_shader_scene_frag[];
+
+#endif
