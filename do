@@ -5,8 +5,9 @@ cd "$(dirname "$0")"
 
 # What each part needs, as tool:package where a tool shows that it is there, else as a package.
 build_needs="cmake:cmake ninja:ninja-build cc:gcc pkg-config:pkg-config libc6-dev libopenexr-dev
-    libdeflate-dev libpng-dev libzstd-dev libpopt-dev libcjson-dev libcmocka-dev"
-test_needs="node:nodejs npm:npm mandoc:mandoc clang-format:clang-format script:bsdutils"
+    libdeflate-dev libpng-dev libzstd-dev libpopt-dev libcjson-dev libcmocka-dev
+    libegl-dev libgles-dev libglfw3-dev libegl1 libgl1-mesa-dri"
+test_needs="node:nodejs npm:npm mandoc:mandoc clang-format:clang-format script:bsdutils Xvfb:xvfb"
 web_needs="cmake:cmake ninja:ninja-build emcc:emscripten node:nodejs npm:npm"
 bench_needs="cmgen:libfilament-tools oiiotool:openimageio-tools valgrind:valgrind"
 lint_needs="clang-tidy:clang-tidy clang-format:clang-format cppcheck:cppcheck shellcheck:shellcheck"
@@ -150,7 +151,7 @@ lint)
     shellcheck -S warning ./do .ci/run
     find scripts tests bench -name "*.sh" -not -path "*/node_modules/*" -exec shellcheck -x -P SCRIPTDIR -S warning {} +
     build release
-    sources=$(find src cli bench examples tests -name '*.c' -not -path '*/node_modules/*')
+    sources=$(find src cli viewer bench examples tests -name '*.c' -not -path '*/node_modules/*')
     say "cppcheck"
     # shellcheck disable=SC2086 # a list is split on purpose
     cppcheck --quiet --error-exitcode=1 --inline-suppr --std=c11 -I include -I src \

@@ -26,6 +26,7 @@ typedef struct cli_command {
 } cli_command;
 
 extern const cli_command cli_bake, cli_info, cli_sky, cli_tables;
+extern const cli_command cli_render; // with KILN_VIEWER
 
 // ----------------------------------------------------------------------------------------- options
 

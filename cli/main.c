@@ -5,8 +5,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { COMMANDS = 4 };
-static const cli_command *const commands[COMMANDS] = {&cli_bake, &cli_info, &cli_sky, &cli_tables};
+static const cli_command *const commands[] = {
+    &cli_bake,   &cli_info, &cli_sky, &cli_tables,
+#ifdef KILN_VIEWER
+    &cli_render,
+#endif
+};
+enum { COMMANDS = sizeof commands / sizeof *commands };
 
 static void print_help(FILE *file)
 {

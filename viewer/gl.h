@@ -71,4 +71,14 @@ bool view_gl_load(view_gl *gl, view_lookup *lookup, const char **missing);
 /// The context offers this extension.
 bool view_gl_has(const view_gl *gl, const char *extension);
 
+/// A program of the screen's triangle and a fragment shader's text, without version and precision.
+KILN_CHECKED kiln_result view_link(const view_gl *gl, const char *fragment, GLuint *program,
+                                   kiln_error *error);
+
+/// A new texture in place of `texture`, bound to a unit. Half floats, all levels, filtered: a cube.
+KILN_CHECKED kiln_result view_upload_cube(const view_gl *gl, int unit, GLuint *texture,
+                                          const kiln_map *map, kiln_error *error);
+/// 32-bit floats, not filtered.
+void view_upload_image(const view_gl *gl, int unit, GLuint *texture, const kiln_image *image);
+
 #endif

@@ -21,14 +21,14 @@
     X(QueryString)                                                                                 \
     X(Terminate)
 
-typedef struct egl {
+typedef struct egl_functions {
 #define MEMBER(name) __typeof__(&egl##name) name;
     EGL_FUNCTIONS(MEMBER)
 #undef MEMBER
-} egl;
+} egl_functions;
 
 struct view_headless {
-    egl egl;
+    egl_functions egl;
     EGLDisplay display;
     EGLContext context;
 };
@@ -42,13 +42,14 @@ static bool find(void *library, const char *name, void *function)
 }
 
 // EGL stays loaded until the process ends: drivers do not like to be unloaded.
-static kiln_result load(egl *egl, kiln_error *error)
+static kiln_result load(egl_functions *egl, kiln_error *error)
 {
     void *library = dlopen("libEGL.so.1", RTLD_NOW | RTLD_LOCAL);
     if (!library)
-        return view_fail(error, KILN_ERROR_UNSUPPORTED,
-                         "there is no EGL here (libEGL.so.1): rendering needs it, and a driver such "
-                         "as Mesa's (Debian: libegl1 and libgl1-mesa-dri)");
+        return view_fail(
+            error, KILN_ERROR_UNSUPPORTED,
+            "there is no EGL here (libEGL.so.1): rendering needs it, and a driver such "
+            "as Mesa's (Debian: libegl1 and libgl1-mesa-dri)");
 #define FIND(name)                                                                                 \
     if (!find(library, "egl" #name, &egl->name))                                                   \
         return view_fail(error, KILN_ERROR_UNSUPPORTED, "libEGL.so.1 has no egl" #name);
@@ -57,7 +58,7 @@ static kiln_result load(egl *egl, kiln_error *error)
     return KILN_OK;
 }
 
-static EGLDisplay open_display(const egl *egl)
+static EGLDisplay open_display(const egl_functions *egl)
 {
     const char *extensions = egl->QueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
     EGLDisplay display = EGL_NO_DISPLAY;
@@ -74,7 +75,7 @@ static EGLDisplay open_display(const egl *egl)
 
 static kiln_result start(view_headless *h, kiln_error *error)
 {
-    const egl *egl = &h->egl;
+    const egl_functions *egl = &h->egl;
     h->display = open_display(egl);
     if (!h->display)
         return view_fail(error, KILN_ERROR_UNSUPPORTED,

@@ -16,4 +16,7 @@ void view_tone(view_scene scene, const double radiance[3], double shown[3]);
 /// A shader with its #includes in place, without version and precision lines; ends in NUL.
 extern const char view_shader_screen_vert[], view_shader_scene_frag[];
 
+/// What the handout's figure 6 reads for E_avg: the albedo texture.
+extern const double view_handout_albedo[3];
+
 #endif

@@ -16,7 +16,7 @@ typedef enum view_scene {
     VIEW_SCENE_IBL,        ///< the same rows in the environment
     VIEW_SCENE_FURNACE,    ///< the same rows, reflecting everything, in uniform white
     VIEW_SCENE_GRID,       ///< roughness from left to right by metallic from bottom to top
-    VIEW_SCENE_COMPARE,    ///< ibl with the exact bake left of the handle, the textbook's right of it
+    VIEW_SCENE_COMPARE, ///< ibl with the exact bake left of the handle, the textbook's right of it
     VIEW_SCENE_COUNT
 } view_scene;
 
@@ -70,13 +70,13 @@ typedef struct view_options {
     double rotation; ///< of the environment about +Y in degrees, as kiln_map_convert turns it
     double exposure; ///< stops
     view_debug debug;
-    int debug_level;    ///< 0 to level_count - 1
-    double split;       ///< where the handle of compare is, 0 at the left to 1
-    double background;  ///< roughness at which the environment is seen behind the balls, 0 to 1
-    int samples;        ///< n x n rays a pixel on a regular grid, 1 to 8; their mean is tone-mapped
-    bool as_printed;    ///< assignment: the handout's figure 6 with its mistake
-    bool occlusion;     ///< balls shade one another's ambient light
-    bool cube_diffuse;  ///< diffuse light from the irradiance cube, else from spherical harmonics
+    int debug_level;   ///< 0 to level_count - 1
+    double split;      ///< where the handle of compare is, 0 at the left to 1
+    double background; ///< roughness at which the environment is seen behind the balls, 0 to 1
+    int samples;       ///< n x n rays a pixel on a regular grid, 1 to 8; their mean is tone-mapped
+    bool as_printed;   ///< assignment: the handout's figure 6 with its mistake
+    bool occlusion;    ///< balls shade one another's ambient light
+    bool cube_diffuse; ///< diffuse light from the irradiance cube, else from spherical harmonics
 } view_options;
 
 /// The scene as it is meant to be seen.
@@ -107,6 +107,21 @@ int view_balls(const view_options *options, view_ball balls[VIEW_MAX_BALLS]);
 /// Position of the camera and its axes: right, up, backwards. Unit and orthogonal.
 void view_camera_axes(const view_camera *camera, double eye[3], double right[3], double up[3],
                       double back[3]);
+
+// ------------------------------------------------------------------------------------- environment
+
+/// What the shaders read of an environment.
+typedef struct view_environment {
+    kiln_map levels;     ///< GGX, a cube, the last level of 8 texels
+    kiln_map irradiance; ///< divided by pi, a cube
+    kiln_sh sh;          ///< of the radiance
+} view_environment;
+
+/// Bakes any map; a cube with levels is taken as baked already. `textbook` has the levels by 1024
+/// samples a texel instead. `size` 16 to 2048, 0 for 256.
+KILN_CHECKED kiln_result view_bake(kiln_context *context, const kiln_map *source, int size,
+                                   bool textbook, view_environment *environment, kiln_error *error);
+void view_environment_free(view_environment *environment);
 
 // ---------------------------------------------------------------------------------------- renderer
 

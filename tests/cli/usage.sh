@@ -13,7 +13,9 @@ expect 0 "" --help
 grep -q 'kiln bake' log/out || die "help without the commands"
 expect 0 "" --version
 grep -qx 'kiln [0-9]*\.[0-9]*\.[0-9]*' log/out || die "version"
-for command in bake info sky tables; do
+commands="bake info sky tables"
+! "$KILN" --help | grep -q 'kiln render' || commands="$commands render"
+for command in $commands; do
     expect 0 "" help $command
     cp log/out log/help
     grep -q '^Examples:' log/out || die "no examples"
@@ -101,6 +103,26 @@ expect 2 "only textbook" tables -o out.exr --method exact
 expect 2 "must end in" tables -o out.ktx2 --method textbook
 expect 2 "from 2 to 4096" tables -o out.exr --method textbook --size 1
 expect 2 "no input" info
+
+case $commands in
+*render*)
+    expect 2 "no output" render
+    expect 2 "must end in .png, .exr or .hdr" render -o out.jpg
+    expect 2 "2 inputs" render a.exr b.exr -o out.png
+    expect 2 "WIDTHxHEIGHT" render -o out.png --size 640
+    expect 2 "from 1 to 16384" render -o out.png --size 0x10
+    expect 2 "from 1 to 8" render -o out.png --samples 9
+    expect 2 "has no environment" render a.exr -o out.png --scene furnace
+    expect 2 "for --scene assignment" render -o out.png --scene ibl --as-printed
+    expect 2 "for --scene compare" render -o out.png --split 0.5
+    expect 2 "needs --debug level" render -o out.png --level 1
+    expect 2 "has its own" render -o out.png --material gold
+    expect 1 "there is no folder nowhere" render -o nowhere/out.png
+    for option in scene method material debug diffuse; do
+        expect 2 "$option is 'frob', it must be .* or " render -o out.png --$option frob
+    done
+    ;;
+esac
 
 [ -z "$(find . -type f -not -path './log/*')" ] || die "something was written"
 passed

@@ -28,6 +28,7 @@ plant src/new/a.c '"base/base.h"'
 plant cli/a.c '"../src/base/base.h"'
 plant bench/a.c '<kiln/other.h>'
 plant examples/a.c '"base/base.h"'
+plant viewer/a.c '"brdf/brdf.h"'
 
 # And what is allowed passes.
 mkdir -p "$work/tree/src/api" "$work/tree/cli"

@@ -1,0 +1,89 @@
+// From a panorama to what the shaders read.
+#include "parts.h"
+
+#include <string.h>
+
+enum { SIZE = 256, SMALLEST = 8, IRRADIANCE_SIZE = 32, BANDS = 3 };
+
+// Down to SMALLEST texels: a level of one texel has six values for the whole sphere.
+static int count_levels(int size)
+{
+    int count = 1;
+    while (size >> count >= SMALLEST && count < KILN_MAX_LEVELS)
+        count++;
+    return count;
+}
+
+static kiln_result copy(kiln_context *context, const kiln_map *from, kiln_map *to,
+                        kiln_error *error)
+{
+    kiln_result result =
+        kiln_map_create(context, from->shape, from->size, from->level_count, to, error);
+    for (int level = 0; level < from->level_count && result == KILN_OK; level++) {
+        memcpy(to->level[level], from->level[level],
+               kiln_map_texels(from, level) * 3 * sizeof(float));
+        to->roughness[level] = from->roughness[level];
+    }
+    return result;
+}
+
+static kiln_result textbook_levels(kiln_context *context, const kiln_map *source, int size,
+                                   int level_count, kiln_map *levels, kiln_error *error)
+{
+    kiln_map panorama = {0};
+    kiln_textbook_def def = {.shape = KILN_SHAPE_CUBE, .size = size, .level_count = level_count};
+    bool convert = source->shape != KILN_SHAPE_PANORAMA;
+    kiln_result result = convert ? kiln_map_convert(context, source, KILN_SHAPE_PANORAMA,
+                                                    2 * source->size, 0, &panorama, error)
+                                 : KILN_OK;
+    if (result == KILN_OK)
+        result =
+            kiln_textbook_prefilter(context, convert ? &panorama : source, &def, levels, error);
+    kiln_map_free(&panorama);
+    return result;
+}
+
+static kiln_result make_levels(kiln_context *context, const kiln_map *source, int size,
+                               bool textbook, kiln_map *levels, kiln_error *error)
+{
+    int level_count = count_levels(size);
+    if (textbook)
+        return textbook_levels(context, source, size, level_count, levels, error);
+    if (source->shape == KILN_SHAPE_CUBE && source->level_count > 1)
+        return copy(context, source, levels, error);
+    kiln_prefilter_def def = {.size = size, .level_count = level_count};
+    return kiln_prefilter(context, source, &def, levels, error);
+}
+
+kiln_result view_bake(kiln_context *context, const kiln_map *source, int size, bool textbook,
+                      view_environment *environment, kiln_error *error)
+{
+    *environment = (view_environment){0};
+    size = size ? size : SIZE;
+    if (size < 16 || size > 2048)
+        return view_fail(error, KILN_ERROR_ARGUMENT, "a cube of %d, it must be from 16 to 2048",
+                         size);
+    kiln_spectrum *spectrum = NULL;
+    const kiln_lobe lambert = kiln_lobe_lambert();
+    kiln_map *irradiance = &environment->irradiance;
+    kiln_result result = make_levels(context, source, size, textbook, &environment->levels, error);
+    if (result == KILN_OK)
+        result = kiln_spectrum_analyze(context, source, 0, &spectrum, error);
+    if (result == KILN_OK)
+        result = kiln_spectrum_sh(spectrum, BANDS, false, 0, 0, &environment->sh, error);
+    if (result == KILN_OK)
+        result = kiln_map_create(context, KILN_SHAPE_CUBE, IRRADIANCE_SIZE, 1, irradiance, error);
+    if (result == KILN_OK)
+        result = kiln_spectrum_filter(context, spectrum, &lambert, 0, irradiance, 0, error);
+    kiln_spectrum_destroy(spectrum);
+    if (result != KILN_OK)
+        view_environment_free(environment);
+    return result;
+}
+
+void view_environment_free(view_environment *environment)
+{
+    kiln_map_free(&environment->levels);
+    kiln_map_free(&environment->irradiance);
+    *environment = (view_environment){0};
+}

@@ -1,0 +1,215 @@
+// What stands where, made of what: numbers only, shared by the renderer and the reference.
+#include "parts.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+static const double degree = 0.017453292519943295;
+
+// ------------------------------------------------------------------------------------------- names
+
+static const char *const scene_names[] = {"assignment", "ibl", "furnace", "grid", "compare"};
+static const char *const method_names[] = {"single", "kulla-conty", "handout", "fdez-aguera",
+                                           "turquin"};
+static const char *const material_names[] = {"gold",    "copper",  "aluminium", "white",
+                                             "handout", "plastic", "chalk"};
+static const char *const debug_names[] = {"none",        "level", "table-e", "table-e-average",
+                                          "table-split", "e",     "f"};
+
+const char *view_scene_name(int scene)
+{
+    return scene >= 0 && scene < VIEW_SCENE_COUNT ? scene_names[scene] : NULL;
+}
+
+const char *view_method_name(int method)
+{
+    return method >= 0 && method < VIEW_METHOD_COUNT ? method_names[method] : NULL;
+}
+
+const char *view_material_name(int material)
+{
+    return material >= 0 && material < VIEW_MATERIAL_COUNT ? material_names[material] : NULL;
+}
+
+const char *view_debug_name(int debug)
+{
+    return debug >= 0 && debug < VIEW_DEBUG_COUNT ? debug_names[debug] : NULL;
+}
+
+void view_describe(kiln_error *error, kiln_result result, const char *format, ...)
+{
+    if (!error)
+        return;
+    error->result = result;
+    va_list list;
+    va_start(list, format);
+    vsnprintf(error->message, sizeof error->message, format, list);
+    va_end(list);
+}
+
+// ------------------------------------------------------------------------------------------ camera
+
+view_options view_defaults(view_scene scene)
+{
+    view_options o = {
+        .scene = scene,
+        .method = VIEW_METHOD_KULLA_CONTY,
+        .material = VIEW_MATERIAL_GOLD,
+        .camera = {.target = {20, 0, 0}, .elevation = 8, .distance = 330, .fov = 45},
+        .split = 0.5,
+        .samples = 4,
+    };
+    if (scene == VIEW_SCENE_ASSIGNMENT) {
+        // At (0, 80, 300), looking at the origin.
+        o.camera = (view_camera){.elevation = atan2(80, 300) / degree,
+                                 .distance = sqrt(80.0 * 80 + 300.0 * 300),
+                                 .fov = 75};
+        o.method = VIEW_METHOD_KULLA_CONTY_HANDOUT;
+        o.material = VIEW_MATERIAL_HANDOUT;
+    } else if (scene == VIEW_SCENE_FURNACE) {
+        o.material = VIEW_MATERIAL_WHITE;
+    } else if (scene == VIEW_SCENE_GRID) {
+        o.camera = (view_camera){.elevation = 0, .distance = 600, .fov = 45};
+    }
+    return o;
+}
+
+void view_camera_axes(const view_camera *c, double eye[3], double right[3], double up[3],
+                      double back[3])
+{
+    double sin_a = sin(c->azimuth * degree), cos_a = cos(c->azimuth * degree);
+    double sin_e = sin(c->elevation * degree), cos_e = cos(c->elevation * degree);
+    // From the target to the eye; right is level.
+    back[0] = cos_e * sin_a;
+    back[1] = sin_e;
+    back[2] = cos_e * cos_a;
+    right[0] = cos_a;
+    right[1] = 0;
+    right[2] = -sin_a;
+    up[0] = -sin_e * sin_a;
+    up[1] = cos_e;
+    up[2] = -sin_e * cos_a;
+    for (int i = 0; i < 3; i++)
+        eye[i] = c->target[i] + c->distance * back[i];
+}
+
+// ------------------------------------------------------------------------------------------- balls
+
+typedef struct substance {
+    double f0[3], albedo[3];
+} substance;
+
+// Metals: F0 in linear Rec. 709 from measured indices of refraction, Akenine-Moller et al., Real-Time
+// Rendering, 4th edition 2018, table 9.2; gold's red, 1.022 there, lies outside the primaries.
+static const substance substances[VIEW_MATERIAL_COUNT] = {
+    [VIEW_MATERIAL_GOLD] = {.f0 = {1.0, 0.782, 0.344}},
+    [VIEW_MATERIAL_COPPER] = {.f0 = {0.955, 0.638, 0.538}},
+    [VIEW_MATERIAL_ALUMINIUM] = {.f0 = {0.913, 0.922, 0.924}},
+    [VIEW_MATERIAL_WHITE] = {.f0 = {1, 1, 1}},
+    [VIEW_MATERIAL_PLASTIC] = {.f0 = {0.04, 0.04, 0.04}, .albedo = {0.6, 0.05, 0.04}},
+    [VIEW_MATERIAL_CHALK] = {.f0 = {0.04, 0.04, 0.04}, .albedo = {0.9, 0.9, 0.9}},
+};
+
+// The assignment's copper: reflectivity as stored, decoded by the power 2.2, and edge tint.
+const double view_handout_albedo[3] = {0.7216, 0.451, 0.2};
+static const double handout_edge[3] = {0.827, 0.792, 0.678};
+
+static void set_substance(view_ball *ball, view_material material)
+{
+    for (int c = 0; c < 3; c++) {
+        if (material == VIEW_MATERIAL_HANDOUT) {
+            ball->f0[c] = pow(view_handout_albedo[c], 2.2);
+            ball->f_average[c] = kiln_fresnel_conductor_average_fit(ball->f0[c], handout_edge[c]);
+        } else {
+            ball->f0[c] = substances[material].f0[c];
+            ball->f_average[c] = (1 + 20 * ball->f0[c]) / 21;
+        }
+        ball->albedo[c] = substances[material].albedo[c];
+    }
+    ball->metallic = material != VIEW_MATERIAL_PLASTIC && material != VIEW_MATERIAL_CHALK;
+}
+
+// The assignment's rows: compensated above, one bounce below.
+static int make_rows(const view_options *o, view_material material, view_ball *balls)
+{
+    enum { COLUMNS = 5 };
+    for (int i = 0; i < 2 * COLUMNS; i++) {
+        int column = i % COLUMNS;
+        balls[i] = (view_ball){
+            .centre = {180 - 80.0 * column, i < COLUMNS ? 60 : -60, 0},
+            .radius = 36,
+            .roughness = 0.15 + 0.2 * column,
+            .method = i < COLUMNS ? o->method : VIEW_METHOD_SINGLE,
+        };
+        set_substance(&balls[i], material);
+    }
+    return 2 * COLUMNS;
+}
+
+// Roughness 0 to 1 from left to right, metallic 0 to 1 upwards: F0 and albedo between a dielectric's
+// and the metal's, which a metal keeps in its F0.
+static int make_grid(const view_options *o, view_ball *balls)
+{
+    enum { COLUMNS = 7, ROWS = 5 };
+    for (int i = 0; i < COLUMNS * ROWS; i++) {
+        int column = i % COLUMNS, row = i / COLUMNS;
+        view_ball *ball = &balls[i];
+        *ball = (view_ball){
+            .centre = {80.0 * column - 240, 80.0 * row - 160, 0},
+            .radius = 36,
+            .roughness = column / (COLUMNS - 1.0),
+            .method = o->method,
+        };
+        set_substance(ball, o->material);
+        bool metal = ball->metallic > 0;
+        double m = ball->metallic = row / (ROWS - 1.0);
+        for (int c = 0; c < 3; c++) {
+            double colour = metal ? ball->f0[c] : ball->albedo[c];
+            ball->f0[c] = 0.04 * (1 - m) + colour * m;
+            ball->albedo[c] = colour * (1 - m);
+            ball->f_average[c] = (1 + 20 * ball->f0[c]) / 21;
+        }
+    }
+    return COLUMNS * ROWS;
+}
+
+int view_balls(const view_options *o, view_ball balls[VIEW_MAX_BALLS])
+{
+    switch (o->scene) {
+    case VIEW_SCENE_ASSIGNMENT:
+        return make_rows(o, VIEW_MATERIAL_HANDOUT, balls);
+    case VIEW_SCENE_FURNACE:
+        return make_rows(o, VIEW_MATERIAL_WHITE, balls);
+    case VIEW_SCENE_GRID:
+        return make_grid(o, balls);
+    case VIEW_SCENE_IBL:
+    case VIEW_SCENE_COMPARE:
+    case VIEW_SCENE_COUNT:
+        break;
+    }
+    return make_rows(o, o->material, balls);
+}
+
+// -------------------------------------------------------------------------------------------- tone
+
+static double tone_bend(double c, double peak)
+{
+    double bent = 1 - 0.04 / (peak - 0.6), white = 1 - 1 / (0.15 * (peak - bent) + 1);
+    return c * bent / peak * (1 - white) + bent * white;
+}
+
+void view_tone(view_scene scene, const double radiance[3], double shown[3])
+{
+    double peak = fmax(radiance[0], fmax(radiance[1], radiance[2]));
+    for (int i = 0; i < 3; i++) {
+        double c = radiance[i];
+        if (scene == VIEW_SCENE_ASSIGNMENT) {
+            shown[i] = pow(c / (c + 1), 1 / 2.2);
+        } else {
+            c = peak > 0.8 ? tone_bend(c, peak) : c;
+            shown[i] = c <= 0.0031308 ? 12.92 * c : 1.055 * pow(c, 1 / 2.4) - 0.055;
+        }
+    }
+}
