@@ -547,6 +547,12 @@ KILN_API KILN_CHECKED kiln_result kiln_table_create(kiln_context *context,
                                                     const kiln_table_def *def, kiln_table *table,
                                                     kiln_error *error);
 KILN_API void kiln_table_free(kiln_table *table);
+/// E_avg of what looking up a table of E shows, rather than of E: with it Kulla and Conty's lobe gives
+/// back exactly what the table says is missing, and the furnace errs by no more than the lookup.
+/// `height` texels, 0 for 1024.
+KILN_API KILN_CHECKED kiln_result kiln_table_average(kiln_context *context, const kiln_table *table,
+                                                     int height, kiln_table *average,
+                                                     kiln_error *error);
 /// What a texel stands for.
 KILN_API void kiln_table_texel(const kiln_table *table, int x, int y, int slice, double *nov,
                                double *roughness, double *third);

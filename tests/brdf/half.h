@@ -3,6 +3,7 @@
 #define KILN_TEST_HALF_H
 
 #include <math.h>
+#include <stdbool.h>
 
 enum { HALF_NODES = 101 };
 #define HALF_PI 1.57079632679489661923
@@ -31,19 +32,21 @@ static void half_integrate(double nov, double width,
                            void (*f)(const void *user, const half *h, double *x), const void *user,
                            int x_count, double *sums)
 {
+    enum { STRETCH = 30, MAX_CUTS = 16 };
     double theta_v = acos(nov), sin_v = sin(theta_v), turn = (HALF_PI - theta_v) / 2;
-    double end = (HALF_PI + theta_v) / 2, cuts[6] = {0};
+    double end = (HALF_PI + theta_v) / 2, cuts[MAX_CUTS] = {0};
     int cut_count = 1;
-    double inner[] = {width, turn, 8 * width, 1e300};
-    for (int i = 0; i < 3; i++) // in increasing order, all below the end
-        for (int j = i + 1; j < 3; j++)
-            if (inner[j] < inner[i]) {
-                double swap = inner[i];
-                inner[i] = inner[j];
-                inner[j] = swap;
-            }
-    for (int i = 0; inner[i] < end; i++)
-        cuts[cut_count++] = inner[i];
+    bool turned = !(turn > 0);
+    for (double next = width; next < end && cut_count < MAX_CUTS - 2; next *= STRETCH) {
+        if (!turned && turn <= next) {
+            cuts[cut_count++] = turn;
+            turned = true;
+        }
+        if (next > cuts[cut_count - 1])
+            cuts[cut_count++] = next;
+    }
+    if (!turned)
+        cuts[cut_count++] = turn;
     cuts[cut_count] = end;
     for (int panel = 0; panel < cut_count; panel++) {
         double theta[HALF_NODES], theta_weight[HALF_NODES];

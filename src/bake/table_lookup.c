@@ -1,0 +1,102 @@
+// Reading tables, between texels and in the mean.
+#include "bake/table.h"
+
+#include "bake/table_axis.h"
+#include "math/math.h"
+
+#include <math.h>
+
+void ki_table_texel(const kiln_table *table, int x, int y, int slice, double *nov,
+                    double *roughness, double *third)
+{
+    const kiln_table_def *def = &table->def;
+    double v = ki_texel_place(y, def->height, def->corners);
+    *roughness = def->flip ? 1 - v : v;
+    if (def->axis == KILN_AXIS_GRAZING && *roughness < KI_GRAZING_MIN)
+        *roughness = KI_GRAZING_MIN;
+    *nov = ki_axis_to_nov(def, *roughness, ki_texel_place(x, def->width, def->corners));
+    *third =
+        ki_third_from_w(ki_table_third(def->kind), ki_texel_place(slice, def->depth, def->corners));
+}
+
+// A place between two texels: the lower one, the step to the other (0 at the end) and its share.
+typedef struct between {
+    size_t index, step;
+    double share;
+} between;
+
+static between find(double place, int count, bool corners, size_t stride)
+{
+    double index = ki_texel_index(place > 0 ? place < 1 ? place : 1 : 0, count, corners);
+    double low = floor(index);
+    return (between){(size_t)low * stride, low < count - 1 ? stride : 0, index - low};
+}
+
+void ki_table_lookup(const kiln_table *table, double nov, double roughness, double third,
+                     double *values)
+{
+    const kiln_table_def *def = &table->def;
+    size_t channels = (size_t)table->image.channels, row = channels * (size_t)def->width;
+    double u = ki_axis_from_nov(def, roughness, ki_clamp(nov, 0, 1));
+    between x = find(u, def->width, def->corners, channels);
+    between y = find(def->flip ? 1 - roughness : roughness, def->height, def->corners, row);
+    between z = find(ki_third_to_w(ki_table_third(def->kind), third), def->depth, def->corners,
+                     row * (size_t)def->height);
+    const float *texel = table->image.pixels + x.index + y.index + z.index;
+    for (size_t c = 0; c < channels; c++, texel++) {
+        double slice[2];
+        for (size_t k = 0; k < 2; k++) {
+            const float *t = texel + k * z.step;
+            double top = (double)t[0] + ((double)t[x.step] - (double)t[0]) * x.share;
+            t += y.step;
+            double bottom = (double)t[0] + ((double)t[x.step] - (double)t[0]) * x.share;
+            slice[k] = top + (bottom - top) * y.share;
+        }
+        values[c] = slice[0] + (slice[1] - slice[0]) * z.share;
+        if (def->complement)
+            values[c] = 1 - values[c];
+    }
+}
+
+// 2 int E(mu) mu dmu of what the lookup shows, in panels from column to column, where it is smooth.
+static double average_row(const kiln_table *table, double roughness)
+{
+    enum { NODES = 6 };
+    const kiln_table_def *def = &table->def;
+    double node[NODES], weight[NODES], sum = 0, from = 0;
+    ki_gauss_legendre(NODES, node, weight);
+    for (int x = 0; x <= def->width; x++) {
+        double u = x < def->width ? ki_texel_place(x, def->width, def->corners) : 1;
+        double to = ki_axis_to_nov(def, roughness, u), half = (to - from) / 2;
+        for (int i = 0; i < NODES; i++) {
+            double nov = from + half * (1 + node[i]), e;
+            ki_table_lookup(table, nov, roughness, 0, &e);
+            sum += 2 * weight[i] * half * nov * e;
+        }
+        from = to;
+    }
+    return sum;
+}
+
+typedef struct average_job {
+    const kiln_table *table;
+    kiln_table *average;
+} average_job;
+
+static void average_task(void *data, int row)
+{
+    const average_job *job = data;
+    double nov, roughness, third;
+    ki_table_texel(job->average, 0, row, 0, &nov, &roughness, &third);
+    double e = average_row(job->table, roughness);
+    job->average->image.pixels[row] = (float)(job->average->def.complement ? 1 - e : e);
+}
+
+kiln_result ki_table_average(kiln_context *context, const kiln_table *table, kiln_table *average,
+                             kiln_error *error)
+{
+    average_job job = {table, average};
+    ki_stage stage = {"average", 0, 1};
+    bool whole = ki_parallel_steps(context, &stage, average->def.height, average_task, &job);
+    return whole ? KILN_OK : ki_fail_cancelled(error, "average");
+}
