@@ -7,7 +7,7 @@ cd "$(dirname "$0")"
 build_needs="cmake:cmake ninja:ninja-build cc:gcc pkg-config:pkg-config libc6-dev libopenexr-dev
     libdeflate-dev libpng-dev libzstd-dev libpopt-dev libcjson-dev libcmocka-dev
     libegl-dev libgles-dev libglfw3-dev libegl1 libgl1-mesa-dri"
-test_needs="node:nodejs npm:npm mandoc:mandoc clang-format:clang-format script:bsdutils Xvfb:xvfb"
+test_needs="node:nodejs npm:npm chromium:chromium mandoc:mandoc clang-format:clang-format script:bsdutils Xvfb:xvfb"
 web_needs="cmake:cmake ninja:ninja-build emcc:emscripten node:nodejs npm:npm"
 bench_needs="cmgen:libfilament-tools oiiotool:openimageio-tools valgrind:valgrind"
 lint_needs="clang-tidy:clang-tidy clang-format:clang-format cppcheck:cppcheck shellcheck:shellcheck"
@@ -18,6 +18,7 @@ usage() {
 ./do build     builds the command: build/release/bin/kiln
 ./do test      builds and runs every test
 ./do demo      bakes a sky and a real panorama into a page: build/demo/index.html
+./do web [N]   builds the page that bakes in the browser, serves it on loopback (port N, else 8420)
 ./do bench     measures speed and accuracy beside other bakers
 ./do lint      clang-tidy, cppcheck, shellcheck, formatting, layers
 ./do format    formats the sources
@@ -76,10 +77,9 @@ panoramas() {
         { $([ "$(id -u)" = 0 ] || echo sudo) apt-get update -q && scripts/panoramas.sh; }
 }
 
-# Packages from npm that check what kiln writes, as their lock file names them.
+# npm_packages FOLDER...: packages as the folder's lock file names them.
 npm_packages() {
-    for folder in tests/*/*/package-lock.json; do
-        folder=${folder%/package-lock.json}
+    for folder; do
         [ -e "$folder/package-lock.json" ] || continue
         stamp=$folder/node_modules/.package-lock.json
         [ -e "$stamp" ] && [ -z "$(find "$folder/package-lock.json" -newer "$stamp")" ] && continue
@@ -118,7 +118,7 @@ build)
 test)
     need_all "$build_needs $test_needs $web_needs"
     panoramas
-    npm_packages
+    npm_packages web tests/web tests/files/ktx
     build release
     build wasm
     run_tests release
@@ -126,6 +126,12 @@ test)
     run_tests asan -L unit -LE slow
     printf '\n%d passed, %d failed\n' "$passed" "$failed"
     [ "$failed" = 0 ]
+    ;;
+web)
+    need_all "$web_needs"
+    npm_packages web
+    build wasm
+    node web/serve.mjs build/wasm/site "$@"
     ;;
 demo)
     need_all "$build_needs"
@@ -176,7 +182,7 @@ fuzz)
     done
     ;;
 clean)
-    rm -rf build tests/*/*/node_modules
+    rm -rf build web/node_modules tests/*/node_modules tests/*/*/node_modules
     ;;
 help | -h | --help)
     usage

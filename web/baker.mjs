@@ -21,7 +21,7 @@ export class Baker {
             throw new Error(this.module.UTF8ToString(this.module._baker_message(this.self)));
     }
 
-    // The file's bytes are copied; `name` stands in sentences.
+    // The file's bytes are copied; `name` stands in sentences. Returns what was opened.
     open(bytes, name) {
         const at = this.module._malloc(bytes.length);
         if (!at)
@@ -32,30 +32,38 @@ export class Baker {
         } finally {
             this.module._free(at);
         }
+        return this.source();
     }
 
     sky({ size = 512, elevation = 30, azimuth = 0, turbidity = 3 } = {}) {
         this.call('baker_sky', size, elevation, azimuth, turbidity);
+        return this.source();
     }
 
     source() {
         const { module, self } = this;
-        return { shape: SHAPES[module._baker_source_shape(self)],
-                 size: module._baker_source_size(self) };
+        const shape = SHAPES[module._baker_source_shape(self)];
+        const size = module._baker_source_size(self);
+        return { shape, width: shape === 'panorama' ? 2 * size : size, height: size };
     }
 
+    // Returns what was baked, copied: of each level its size, roughness and six faces of RGB floats.
     bake({ size = 256, levels = 0, rotation = 0, exposure = 0 } = {}) {
+        const { module, self } = this, began = performance.now();
         this.call('baker_bake', size, levels, rotation, exposure);
-    }
-
-    // What was baked: of each level its size, roughness and six faces of RGB floats, copied.
-    levels() {
-        const { module, self } = this;
-        return Array.from({ length: module._baker_level_count(self) }, (_, k) => {
-            const size = module._baker_level_size(self, k), at = module._baker_texels(self, k) >>> 2;
-            return { size, roughness: module._baker_roughness(self, k),
-                     texels: module.HEAPF32.slice(at, at + 18 * size * size) };
-        });
+        const seconds = (performance.now() - began) / 1000, floats = module.HEAPF32;
+        const sh = module._baker_harmonics(self) >>> 3;
+        return {
+            seconds,
+            cpu: module.UTF8ToString(module._baker_cpu(self)),
+            harmonics: module.HEAPF64.slice(sh, sh + 27),
+            levels: Array.from({ length: module._baker_level_count(self) }, (_, k) => {
+                const side = module._baker_level_size(self, k);
+                const at = module._baker_texels(self, k) >>> 2;
+                return { size: side, roughness: module._baker_roughness(self, k),
+                         texels: floats.slice(at, at + 18 * side * side) };
+            }),
+        };
     }
 
     // A file that the command would write, by the name's ending: .ktx2 .dds .json .txt .h
@@ -65,9 +73,5 @@ export class Baker {
         const bytes = this.module.FS.readFile(path);
         this.module.FS.unlink(path);
         return bytes;
-    }
-
-    get cpu() {
-        return this.module.UTF8ToString(this.module._baker_cpu(this.self));
     }
 }

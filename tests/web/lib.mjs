@@ -4,7 +4,7 @@ import fs from 'node:fs';
 import path from 'node:path';
 import { pathToFileURL } from 'node:url';
 
-export const [kilnPath, site, folder] = process.argv.slice(2);
+export const [kilnPath, site, folder] = process.argv.slice(2).map((name) => path.resolve(name));
 
 if (!folder || !fs.existsSync(path.join(site, 'baker.wasm'))) {
     console.error(`${site}: holds no baker.wasm; cmake --preset wasm && cmake --build --preset wasm`);

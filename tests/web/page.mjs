@@ -1,0 +1,121 @@
+// The page as a visitor meets it: drop a file, bake, see, download; by keyboard; by address; and what
+// a broken file does.
+import { downloaded, drop, idle, withPage } from './browser.mjs';
+import { check, checkSame, kiln, read, site } from './lib.mjs';
+
+const text = (page, id) => page.textContent(`#${id}`);
+const levels = (page) => page.locator('#levels button').count();
+const button = (page, name) => page.getByRole('button', { name, exact: true });
+const cube = (page) => downloaded(page, () => button(page, 'Cube, KTX2').click());
+
+function bakeByCommand(source, ...args) {
+    kiln('bake', source, '-q', '-o', 'out.ktx2', '--sh', 'out.json', ...args);
+    return read('out.ktx2');
+}
+
+// What the view shows, as the mean of its picture's bytes.
+const brightness = (page) => page.evaluate(() => {
+    const view = document.getElementById('view'), small = document.createElement('canvas');
+    small.width = small.height = 16;
+    const pen = small.getContext('2d');
+    pen.drawImage(view, 0, 0, 16, 16);
+    return pen.getImageData(0, 0, 16, 16).data.reduce((sum, v) => sum + v, 0) / 1024;
+});
+
+async function theSkyIsBakedAtOnce(page, address) {
+    await page.goto(address);
+    await idle(page);
+    check(/^The sky: .* 9 levels baked in .* Nothing left this machine\.$/.test(await text(page, 'status')),
+          `status says "${await text(page, 'status')}"`);
+    kiln('sky', '-o', 'sky.exr');
+    const { name, bytes } = await cube(page);
+    check(name === 'sky.ktx2', `the download is called ${name}`);
+    checkSame(bytes, bakeByCommand('sky.exr'), name);
+    check(await brightness(page) > 70, `the view is dark: ${await brightness(page)}`);
+}
+
+async function aFileIsDroppedAndBaked(page) {
+    kiln('sky', '-o', 'low.hdr', '--size', '128', '--elevation', '5', '--azimuth', '-60');
+    await drop(page, 'low.hdr', read('low.hdr'));
+    check(/^low\.hdr: from a panorama of 256 x 128/.test(await text(page, 'status')),
+          `status says "${await text(page, 'status')}"`);
+    const { name, bytes } = await cube(page);
+    check(name === 'low.ktx2', `the download is called ${name}`);
+    checkSame(bytes, bakeByCommand('low.hdr'), name);
+    const sh = await downloaded(page, () => button(page, 'Harmonics, JSON').click());
+    checkSame(sh.bytes, read('out.json'), sh.name);
+}
+
+async function aBrokenFileGivesASentence(page) {
+    const broken = { 'empty.hdr': Buffer.alloc(0), 'noise.exr': Buffer.alloc(300, 77),
+                     'cut.hdr': read('low.hdr').subarray(0, 3000) };
+    for (const [name, bytes] of Object.entries(broken)) {
+        await drop(page, name, bytes);
+        const sentence = await text(page, 'error');
+        check(await page.isVisible('#error') && sentence.startsWith(`${name}: `) &&
+              sentence.endsWith('.'), `of ${name} it says "${sentence}"`);
+        check(await levels(page) === 9, `${await levels(page)} levels are left`);
+    }
+    const { name, bytes } = await cube(page);
+    checkSame(bytes, bakeByCommand('low.hdr'), name);
+    await drop(page, 'low.hdr', read('low.hdr'));
+    check(!await page.isVisible('#error'), 'the sentence stays after a good file');
+}
+
+async function theKeyboardSuffices(page, address) {
+    await page.goto('about:blank');
+    await page.goto(address);
+    await idle(page);
+    const focus = () => page.evaluate(() => document.activeElement.textContent ||
+                                            document.activeElement.id);
+    const tabTo = async (name) => {
+        for (let i = 0; i < 60 && await focus() !== name; i++)
+            await page.keyboard.press('Tab');
+        check(await focus() === name, `${name} cannot be reached by Tab`);
+    };
+    await tabTo('Choose a panorama');
+    const [chooser] = await Promise.all([page.waitForEvent('filechooser'),
+                                         page.keyboard.press('Enter')]);
+    await chooser.setFiles({ name: 'low.hdr', mimeType: '', buffer: read('low.hdr') });
+    await page.waitForFunction(() => /^low/.test(document.getElementById('status').textContent));
+    await idle(page);
+    await tabTo('Cube, KTX2');
+    const { name, bytes } = await downloaded(page, () => page.keyboard.press('Enter'));
+    checkSame(bytes, bakeByCommand('low.hdr'), name);
+}
+
+async function theAddressHoldsTheState(page, address) {
+    await page.goto('about:blank');
+    await page.goto(`${address}#elevation=8&azimuth=40&size=64&turn=33.5&stops=-2.5&level=2&size2=x`);
+    await idle(page);
+    kiln('sky', '-o', 'low.exr', '--elevation', '8', '--azimuth', '40');
+    const wanted = bakeByCommand('low.exr', '--size', '64', '--rotate', '33.5', '--exposure', '-2.5');
+    checkSame((await cube(page)).bytes, wanted, 'the address\'s cube');
+    check(await page.getAttribute('#levels li:nth-child(3) button', 'aria-pressed') === 'true',
+          'level 2 is not the chosen one');
+    await page.locator('#levels li:nth-child(5) button').click();
+    const url = new URL(page.url());
+    check(/level=4/.test(url.hash) && /elevation=8/.test(url.hash) && !/size2/.test(url.hash),
+          `the address is ${url.hash}`);
+    await page.goto('about:blank');
+    await page.goto(url.href);
+    await idle(page);
+    check(await page.getAttribute('#levels li:nth-child(5) button', 'aria-pressed') === 'true',
+          'level 4 is not restored');
+    checkSame((await cube(page)).bytes, wanted, 'the restored cube');
+    // Nonsense in an address is no reason to fail.
+    await page.goto('about:blank');
+    await page.goto(`${address}#elevation=high&size=1e9&turn=&level=-3&source=mine.exr`);
+    await idle(page);
+    check(await levels(page) === 11, `${await levels(page)} levels of the largest size`);
+    check(/mine\.exr/.test(await text(page, 'error')), 'the missing file is not named');
+}
+
+await withPage(site, async (page, address) => {
+    for (const test of [theSkyIsBakedAtOnce, aFileIsDroppedAndBaked, aBrokenFileGivesASentence,
+                        theKeyboardSuffices, theAddressHoldsTheState]) {
+        const began = Date.now();
+        await test(page, address);
+        console.log(`${test.name}: ${Date.now() - began} ms`);
+    }
+});

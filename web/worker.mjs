@@ -1,0 +1,27 @@
+// The baker's own thread. Takes {id, work, values} one after the other, answers {id, result} or
+// {id, error}, and between them {stage, fraction}.
+import makeModule from './baker.js';
+import { Baker } from './baker.mjs';
+
+let told = 0;
+const ready = Baker.make(makeModule, {
+    progress(stage, fraction) {
+        const now = performance.now();
+        if (now - told < 50)
+            return;
+        told = now;
+        postMessage({ stage, fraction });
+    },
+});
+
+async function answer({ id, work, values }) {
+    try {
+        const baker = await ready;
+        const result = baker[work](...values);
+        postMessage({ id, result }, result?.levels?.map((level) => level.texels.buffer) ?? []);
+    } catch (error) {
+        postMessage({ id, error: error.message, fatal: error instanceof WebAssembly.RuntimeError });
+    }
+}
+
+onmessage = ({ data }) => answer(data);
