@@ -25,7 +25,7 @@ typedef struct cli_command {
     int (*run)(int argc, const char **argv);
 } cli_command;
 
-extern const cli_command cli_bake, cli_info, cli_sky, cli_tables;
+extern const cli_command cli_bake, cli_eval, cli_info, cli_sky, cli_tables;
 extern const cli_command cli_render; // with KILN_VIEWER
 
 // ----------------------------------------------------------------------------------------- options
@@ -67,6 +67,11 @@ int cli_number(const cli_arguments *arguments, int option, const char *name, dou
 /// The place of the option's word in `words`, which ends in NULL.
 int cli_choice(const cli_arguments *arguments, int option, const char *name,
                const char *const *words, int *value);
+
+/// The words of --d, --g and --sheen, in the order of the enums, NULL last.
+extern const char *const cli_d_names[], *const cli_g_names[], *const cli_sheen_names[];
+/// The model that two options name; not given leaves its part alone.
+int cli_model(const cli_arguments *arguments, int option_d, int option_g, kiln_model *model);
 
 /// The ending of a file's name without its dot, "" where it has none, "/" for a folder.
 const char *cli_ending(const char *path);

@@ -6,7 +6,7 @@
 #include <string.h>
 
 static const cli_command *const commands[] = {
-    &cli_bake,   &cli_info, &cli_sky, &cli_tables,
+    &cli_bake,   &cli_info, &cli_sky, &cli_tables, &cli_eval,
 #ifdef KILN_VIEWER
     &cli_render,
 #endif

@@ -13,7 +13,7 @@ expect 0 "" --help
 grep -q 'kiln bake' log/out || die "help without the commands"
 expect 0 "" --version
 grep -qx 'kiln [0-9]*\.[0-9]*\.[0-9]*' log/out || die "version"
-commands="bake info sky tables"
+commands="bake eval info sky tables"
 ! "$KILN" --help | grep -q 'kiln render' || commands="$commands render"
 for command in $commands; do
     expect 0 "" help $command
@@ -103,6 +103,17 @@ expect 2 "only textbook" tables -o out.exr --method exact
 expect 2 "must end in" tables -o out.ktx2 --method textbook
 expect 2 "from 2 to 4096" tables -o out.exr --method textbook --size 1
 expect 2 "no input" info
+expect 2 "no quantity: name e, eavg" eval
+expect 2 "frob: no such quantity, it must be e, .* or turquin" eval frob
+expect 2 "one quantity at a time" eval e a --mu 1
+expect 2 "from 0 to 1" eval e --roughness 1.5 --mu 1
+expect 2 "from 0 to 1" eval e --roughness nan --mu 1
+expect 2 "must be a number" eval e --roughness rough --mu 1
+expect 2 "from 0 to 1e+08" eval dielectric --ior -1 --voh 1
+expect 2 "eavg does not depend on --mu" eval eavg --roughness 1 --mu 1
+expect 2 "d is 'frob', it must be ggx or beckmann" eval e --d frob
+expect 2 "g is 'frob', it must be smith, .* or schlick-text" eval e --g frob
+expect 2 "sheen is 'frob'" eval sheen --sheen frob
 
 case $commands in
 *render*)
