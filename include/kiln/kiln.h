@@ -496,6 +496,41 @@ KILN_API double kiln_turquin(double f0, double e);
 /// Fdez-Aguera 2019 for image-based light: prefiltered radiance is multiplied by `single`,
 /// irradiance / pi by `multiple`, where f0 a + b is the split sum's albedo and e = a + b.
 KILN_API void kiln_fdez_aguera(double f0, double a, double b, double *single, double *multiple);
+/// The factor to the specular lobe that brings its albedo to the random walk's: e_walk / e_single,
+/// where e_single = f0 a + b and e_walk is a texel of KILN_TABLE_E_WALK or kiln_walk_albedo's.
+KILN_API double kiln_compensate_walk(double e_single, double e_walk);
+
+/// The F of a walk's microfacets.
+typedef enum kiln_walk_fresnel {
+    KILN_WALK_SCHLICK,  ///< of f0
+    KILN_WALK_CONSTANT, ///< f0 itself; 1 is the white furnace
+    KILN_WALK_CONDUCTOR ///< exact, of n and k
+} kiln_walk_fresnel;
+
+/// {0} is a good default: Schlick's F of f0 = 0, 65536 paths.
+typedef struct kiln_walk_def {
+    kiln_walk_fresnel fresnel;
+    double f0;      ///< 0 to 1
+    double n, k;    ///< as for kiln_fresnel_conductor
+    int path_count; ///< rounded up to 16 times a power of 2, 16 to 2^24; 0 for 65536
+    uint32_t seed;  ///< other paths; their difference is as the standard error says
+} kiln_walk_def;
+
+enum { KILN_WALK_BOUNCES = 16 };
+
+/// The share of the light that comes back, with all bounces.
+typedef struct kiln_walk {
+    double albedo;
+    double standard_error;            ///< of the albedo, from 16 independent parts
+    double bounce[KILN_WALK_BOUNCES]; ///< the albedo by the number of bounces: 1, 2, ..., the rest
+    int path_count;                   ///< walked
+} kiln_walk;
+
+/// Ground truth for all of these: a random walk between the microfacets of GGX (Heitz, Hanika, d'Eon
+/// and Dachsbacher 2016), whose single bounce is the height-correlated Smith model. The same bits
+/// everywhere. Source, cost and error: docs/theory/walk.md.
+KILN_API void kiln_walk_albedo(const kiln_walk_def *def, double roughness, double nov,
+                               kiln_walk *walk);
 
 // ------------------------------------------------------------------------------------------ tables
 

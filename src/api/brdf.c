@@ -1,5 +1,6 @@
 // The functions of the reflection model as the caller sees them: arguments are clamped.
 #include "brdf/brdf.h"
+#include "brdf/walk.h"
 
 #include "base/base.h"
 #include "math/math.h"
@@ -161,4 +162,18 @@ void kiln_fdez_aguera(double f0, double a, double b, double *single, double *mul
 {
     double a1 = unit(a), b1 = unit(b);
     ki_fdez_aguera(unit(f0), a1, b1 < 1 - a1 ? b1 : 1 - a1, single, multiple);
+}
+
+double kiln_compensate_walk(double e_single, double e_walk)
+{
+    return unit(e_walk) / ki_clamp(e_single, 1e-6, 1);
+}
+
+void kiln_walk_albedo(const kiln_walk_def *def, double roughness, double nov, kiln_walk *walk)
+{
+    kiln_walk_def d = *def;
+    d.f0 = unit(d.f0);
+    d.n = index_of(d.n);
+    d.k = index_of(d.k);
+    ki_walk_albedo(&d, unit(roughness), unit(nov), walk);
 }

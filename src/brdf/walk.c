@@ -1,0 +1,242 @@
+// Heitz, Hanika, d'Eon and Dachsbacher 2016, for GGX. With x = -log C1(height), C1 the share of the
+// microsurface below, the distribution of heights drops out: rays meet microfacets like particles in
+// a half space, Lambda(w) a unit of x on the way up and 1 + Lambda(-w) on the way down. Of what goes
+// up at x, the share exp(-x Lambda) leaves.
+#include "brdf/walk.h"
+
+#include "brdf/brdf.h"
+#include "brdf/energy.h"
+#include "math/math.h"
+
+#include <math.h>
+#include <string.h>
+
+enum {
+    REPLICATES = 16,   // lattices with shifts of their own, whose spread is the standard error
+    DIMENSIONS = 16,   // drawn from the lattice; further ones are hashed
+    MAX_BOUNCES = 1024 // of which no path has more
+};
+
+// Below this weight chance decides whether a ray leaves.
+static const double TAIL = 0.1;
+
+// ----------------------------------------------------------------------------------------- the ray
+
+// sqrt(c^2 + alpha^2 s^2) = c (1 + 2 Lambda). Heitz 2014, eq. 72.
+static double stretched(double alpha, double sine, double c)
+{
+    return sqrt(c * c + alpha * alpha * (sine * sine));
+}
+
+ki_ray ki_walk_enter(double alpha, double nov, double xi)
+{
+    ki_ray ray = {.sine = sqrt((1 - nov) * (1 + nov)), .cosine = -nov, .inside = 1};
+    // 1 / (1 + Lambda) = 2 c / (c + root)
+    ray.depth = -ki_log(1 - xi) * (2 * nov / (nov + stretched(alpha, ray.sine, nov)));
+    return ray;
+}
+
+double ki_walk_bounce(double alpha, const double xi[2], ki_ray *ray)
+{
+    double v[3] = {-ray->sine, 0, -ray->cosine}, h[3];
+    ki_sample_visible(alpha, v, xi, h);
+    double voh = v[0] * h[0] + v[2] * h[2];
+    double x = 2 * voh * h[0] - v[0], y = 2 * voh * h[1], z = 2 * voh * h[2] - v[2];
+    double flat = x * x + y * y, length = sqrt(flat + z * z);
+    ray->sine = sqrt(flat) / length;
+    ray->cosine = z / length;
+    return ki_clamp(voh, 0, 1);
+}
+
+double ki_walk_on(double alpha, double xi, ki_ray *ray)
+{
+    double c = ray->cosine, root = stretched(alpha, ray->sine, c);
+    if (!(c > 0)) {
+        ray->depth -= ki_log(1 - xi) * (-2 * c / (root - c));
+        return 0;
+    }
+    double lambda = alpha * alpha * (ray->sine * ray->sine) / (2 * c * (root + c));
+    double share = ki_exp(-lambda * ray->depth), leaves = ray->inside * share;
+    if (ray->inside - leaves > TAIL) {
+        // Its next depth, given that it stays.
+        ray->depth += ki_log(1 - xi * (1 - share)) / lambda;
+        ray->inside -= leaves;
+    } else if (xi < 1 - share) {
+        ray->depth += ki_log(1 - xi) / lambda;
+        leaves = 0;
+    } else {
+        leaves = ray->inside;
+        ray->inside = 0;
+    }
+    ray->depth = ray->depth > 0 ? ray->depth : 0;
+    return leaves;
+}
+
+// -------------------------------------------------------------------------------------- the numbers
+
+// A rank-1 lattice for 2^k points, k to 20, by component-by-component search (Cools, Kuo and Nuyens
+// 2006; the vector is Kuo's lattice-32001-1024-1048576.3600), shifted at random.
+static const uint32_t generators[DIMENSIONS] = {1,      182667, 469891, 498753, 110745, 446247,
+                                                250185, 118627, 245333, 283199, 408519, 391023,
+                                                246327, 126539, 399185, 461527};
+
+typedef struct lattice {
+    uint32_t step[DIMENSIONS]; // of a coordinate in units of 2^-32
+    uint32_t shift[DIMENSIONS];
+    uint64_t key;
+} lattice;
+
+// The finaliser of splitmix64 (Steele, Lea and Flood 2014).
+static uint64_t mix(uint64_t x)
+{
+    x += 0x9e3779b97f4a7c15u;
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+    return x ^ (x >> 31);
+}
+
+static void make_lattice(uint32_t seed, int replicate, int bits, lattice *l)
+{
+    l->key = mix(((uint64_t)seed << 32) | (uint32_t)replicate);
+    for (int d = 0; d < DIMENSIONS; d++) {
+        l->step[d] = generators[d] << (32 - bits);
+        l->shift[d] = (uint32_t)(mix(l->key + (uint64_t)d) >> 32);
+    }
+}
+
+// Coordinate `d` of point `index`, in (0, 1). The lattice is folded at 1/2, which makes integrands
+// periodic (Hickernell 2002): three times less variance here.
+static double coordinate(const lattice *l, uint32_t index, int d)
+{
+    if (d >= DIMENSIONS)
+        return ((double)(mix(mix(l->key ^ index) + (uint64_t)d) >> 12) + 0.5) / 4503599627370496.0;
+    uint32_t x = index * l->step[d] + l->shift[d];
+    x = x >> 31 ? ~(x << 1) : x << 1;
+    return ((double)x + 0.5) * (1.0 / 4294967296.0);
+}
+
+// log2 of the points of a replicate.
+static int lattice_bits(int path_count)
+{
+    int bits = 0;
+    while (bits < 20 && (REPLICATES << bits) < path_count)
+        bits++;
+    return bits;
+}
+
+// ------------------------------------------------------------------------------------------ albedo
+
+// Called for each bounce of a path with its v.h and the weight that leaves after it.
+typedef void visit(void *data, int bounce, double voh, double leaves);
+
+static void walk_path(double alpha, double nov, const lattice *l, uint32_t index, visit *seen,
+                      void *data)
+{
+    ki_ray ray = ki_walk_enter(alpha, nov, coordinate(l, index, 0));
+    for (int bounce = 0; bounce < MAX_BOUNCES && ray.inside > 0; bounce++) {
+        int d = 1 + 3 * bounce;
+        double xi[2] = {coordinate(l, index, d), coordinate(l, index, d + 1)};
+        double voh = ki_walk_bounce(alpha, xi, &ray);
+        seen(data, bounce, voh, ki_walk_on(alpha, coordinate(l, index, d + 2), &ray));
+    }
+}
+
+typedef struct series {
+    const kiln_walk_def *def;
+    double throughput, bounce[KILN_WALK_BOUNCES];
+} series;
+
+static double fresnel(const kiln_walk_def *def, double voh)
+{
+    switch (def->fresnel) {
+    case KILN_WALK_CONSTANT:
+        return def->f0;
+    case KILN_WALK_CONDUCTOR:
+        return ki_fresnel_conductor(def->n, def->k, voh);
+    case KILN_WALK_SCHLICK:
+        break;
+    }
+    return def->f0 + (1 - def->f0) * ki_schlick_fresnel(voh);
+}
+
+static void add_bounce(void *data, int bounce, double voh, double leaves)
+{
+    series *s = data;
+    s->throughput = (bounce ? s->throughput : 1) * fresnel(s->def, voh);
+    s->bounce[bounce < KILN_WALK_BOUNCES ? bounce : KILN_WALK_BOUNCES - 1] +=
+        s->throughput * leaves;
+}
+
+void ki_walk_albedo(const kiln_walk_def *def, double roughness, double nov, kiln_walk *walk)
+{
+    *walk = (kiln_walk){0};
+    double alpha = roughness * roughness, squares = 0, sums[REPLICATES];
+    if (!(alpha > 1e-100)) { // the mirror
+        walk->albedo = walk->bounce[0] = fresnel(def, nov);
+        return;
+    }
+    int bits = lattice_bits(def->path_count ? def->path_count : 65536);
+    double scale = 1.0 / (1 << bits);
+    for (int r = 0; r < REPLICATES; r++) {
+        lattice l;
+        series s = {.def = def};
+        make_lattice(def->seed, r, bits, &l);
+        for (uint32_t i = 0; i < 1u << bits; i++)
+            walk_path(alpha, nov, &l, i, add_bounce, &s);
+        sums[r] = 0;
+        for (int b = 0; b < KILN_WALK_BOUNCES; b++) {
+            sums[r] += s.bounce[b] * scale;
+            walk->bounce[b] += s.bounce[b] * scale / REPLICATES;
+        }
+        walk->albedo += sums[r] / REPLICATES;
+    }
+    for (int r = 0; r < REPLICATES; r++)
+        squares += (sums[r] - walk->albedo) * (sums[r] - walk->albedo);
+    walk->standard_error = sqrt(squares / (REPLICATES * (REPLICATES - 1)));
+    walk->path_count = REPLICATES << bits;
+}
+
+typedef struct column {
+    const double *f0;
+    int count;
+    double throughput[KI_WALK_COLUMN], sum[KI_WALK_COLUMN];
+    double weight; // that left from the second bounce on
+} column;
+
+static void add_bounces(void *data, int bounce, double voh, double leaves)
+{
+    column *c = data;
+    double s = ki_schlick_fresnel(voh);
+    if (bounce == 0) {
+        for (int k = 0; k < c->count; k++)
+            c->throughput[k] = c->f0[k] + (1 - c->f0[k]) * s;
+        return;
+    }
+    c->weight += leaves;
+    for (int k = 0; k < c->count; k++) {
+        c->throughput[k] *= c->f0[k] + (1 - c->f0[k]) * s;
+        c->sum[k] += leaves * c->throughput[k];
+    }
+}
+
+void ki_walk_column(double roughness, double nov, const double *f0, int count, int path_count,
+                    uint32_t seed, double *albedo)
+{
+    double alpha = roughness * roughness, ab[2];
+    column c = {.f0 = f0, .count = count};
+    int bits = lattice_bits(path_count ? path_count : 65536);
+    for (int r = 0; r < REPLICATES && alpha > 1e-100; r++) {
+        lattice l;
+        make_lattice(seed, r, bits, &l);
+        for (uint32_t i = 0; i < 1u << bits; i++)
+            walk_path(alpha, nov, &l, i, add_bounces, &c);
+    }
+    // The walk says how dark the later bounces are; how much light they have is known.
+    ki_energy_split(&(kiln_model){0}, roughness, nov, ab);
+    // Light so rare that no path had it is as dark as two average first bounces.
+    double e = ab[0] + ab[1], missing = e < 1 ? 1 - e : 0;
+    for (int k = 0; k < count; k++) {
+        double single = f0[k] * ab[0] + ab[1], f = single / e;
+        albedo[k] = single + missing * (c.weight > 0 ? c.sum[k] / c.weight : f * f);
+    }
+}
