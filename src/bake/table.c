@@ -2,6 +2,7 @@
 
 #include "bake/table_axis.h"
 #include "brdf/energy.h"
+#include "brdf/surface.h"
 
 int ki_table_channels(kiln_table_kind kind)
 {
@@ -19,32 +20,46 @@ int ki_table_channels(kiln_table_kind kind)
 
 // ------------------------------------------------------------------------------------------- kinds
 
-enum { CHUNK = 64, MAX_CHANNELS = 4 };
+enum { CHUNK = 256, MAX_CHANNELS = 4 };
 
-// Texels of one row and slice: `count` values of n.v to out[count][channels].
-typedef void fill_chunk(const kiln_context *context, const kiln_table_def *def, double roughness,
-                        double third, const double *nov, int count, double *out);
+typedef struct fill_job fill_job;
 
-static void fill_e(const kiln_context *context, const kiln_table_def *def, double roughness,
-                   double third, const double *nov, int count, double *out)
+// Texels of one row and slice: `count` values of n.v, at most CHUNK, to out[count][channels].
+typedef void fill_chunk(const fill_job *job, double roughness, double third, const double *nov,
+                        int count, double *out);
+
+struct fill_job {
+    kiln_context *context;
+    kiln_table *table;
+    const kiln_table_def *def;
+    fill_chunk *fill;
+    const ki_surface *surface; // of E, NULL where the integrals themselves are fewer
+    int channels;
+};
+
+static void fill_e(const fill_job *job, double roughness, double third, const double *nov,
+                   int count, double *out)
 {
     (void)third;
-    ki_energy_values(context, &def->model, roughness, nov, count, false, out);
+    if (job->surface && roughness > 1e-5)
+        ki_surface_values(job->context, job->surface, roughness, nov, count, out);
+    else
+        ki_energy_values(job->context, &job->def->model, roughness, nov, count, false, out);
 }
 
-static void fill_average(const kiln_context *context, const kiln_table_def *def, double roughness,
-                         double third, const double *nov, int count, double *out)
+static void fill_average(const fill_job *job, double roughness, double third, const double *nov,
+                         int count, double *out)
 {
-    (void)context, (void)third, (void)nov;
+    (void)third, (void)nov;
     for (int i = 0; i < count; i++)
-        out[i] = ki_energy_average(&def->model, roughness);
+        out[i] = ki_energy_average(&job->def->model, roughness);
 }
 
-static void fill_dfg(const kiln_context *context, const kiln_table_def *def, double roughness,
-                     double third, const double *nov, int count, double *out)
+static void fill_dfg(const fill_job *job, double roughness, double third, const double *nov,
+                     int count, double *out)
 {
     (void)third;
-    ki_energy_values(context, &def->model, roughness, nov, count, true, out);
+    ki_energy_values(job->context, &job->def->model, roughness, nov, count, true, out);
 }
 
 static fill_chunk *const fill_of[KILN_TABLE_E_WALK + 1] = {
@@ -122,38 +137,30 @@ kiln_result ki_table_complete(kiln_table_def *def, kiln_error *error)
 
 // -------------------------------------------------------------------------------------------- rows
 
-typedef struct fill_job {
-    const kiln_context *context;
-    kiln_table *table;
-    fill_chunk *fill;
-    int channels;
-} fill_job;
-
 static void fill_row(void *data, int index)
 {
     const fill_job *job = data;
-    const kiln_table_def *def = &job->table->def;
+    const kiln_table_def *def = job->def;
     int slice = index / def->height, row = index % def->height;
-    double roughness = ki_texel_place(row, def->height, def->corners);
-    double w = ki_texel_place(slice, def->depth, def->corners);
-    double third = ki_third_from_w(ki_table_third(def->kind), w);
+    double nov, roughness, third;
+    ki_table_texel(job->table, 0, row, slice, &nov, &roughness, &third);
     float *texel =
         job->table->image.pixels + (size_t)index * (size_t)def->width * (size_t)job->channels;
-    if (def->flip)
-        roughness = 1 - roughness;
-    if (def->axis == KILN_AXIS_GRAZING && roughness < KI_GRAZING_MIN)
-        roughness = KI_GRAZING_MIN;
     for (int x = 0; x < def->width; x += CHUNK) {
-        double nov[CHUNK], values[CHUNK * MAX_CHANNELS];
+        double chunk[CHUNK], values[CHUNK * MAX_CHANNELS];
         int count = ki_min(CHUNK, def->width - x);
-        for (int i = 0; i < count; i++) {
-            double u = ki_texel_place(x + i, def->width, def->corners);
-            nov[i] = ki_axis_to_nov(def, roughness, u);
-        }
-        job->fill(job->context, def, roughness, third, nov, count, values);
+        ki_axis_columns(def, roughness, x, count, chunk);
+        job->fill(job, roughness, third, chunk, count, values);
         for (int i = 0; i < count * job->channels; i++)
             *texel++ = (float)(def->complement ? 1 - values[i] : values[i]);
     }
+}
+
+// Whether the series' integrals are well below the texels'.
+static bool wants_surface(const kiln_table_def *def)
+{
+    return def->kind == KILN_TABLE_E && def->model.d == KILN_D_GGX &&
+           def->width * def->height > 4 * KI_SURFACE_NOV * KI_SURFACE_ROUGHNESS;
 }
 
 kiln_result ki_table_fill(kiln_context *context, kiln_table *table, kiln_error *error)
@@ -161,9 +168,19 @@ kiln_result ki_table_fill(kiln_context *context, kiln_table *table, kiln_error *
     const kiln_table_def *def = &table->def;
     fill_job job = {.context = context,
                     .table = table,
+                    .def = def,
                     .fill = fill_of[def->kind],
                     .channels = ki_table_channels(def->kind)};
+    ki_surface *surface = NULL;
+    if (wants_surface(def)) {
+        surface = ki_alloc_raw(context, 1, sizeof *surface);
+        if (!surface)
+            return ki_fail_memory(context, error, "a table's series", sizeof *surface);
+        ki_surface_build(context, &def->model, surface);
+    }
+    job.surface = surface;
     ki_stage stage = {"table", 0, 1};
     bool whole = ki_parallel_steps(context, &stage, def->height * def->depth, fill_row, &job);
+    ki_free(surface);
     return whole ? KILN_OK : ki_fail_cancelled(error, "table");
 }

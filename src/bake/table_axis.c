@@ -1,7 +1,7 @@
 #include "bake/table_axis.h"
 
 #include "base/base.h"
-#include "brdf/brdf.h"
+#include "brdf/surface.h"
 #include "math/math.h"
 
 #include <math.h>
@@ -15,16 +15,6 @@ static double cube_root(double x)
     return y - (y * y * y - x) / (3 * y * y);
 }
 
-double ki_axis_scale(const kiln_model *model, double roughness)
-{
-    double r = roughness > KI_GRAZING_MIN ? roughness : KI_GRAZING_MIN;
-    if (model->g == KILN_G_SCHLICK_TEXT) {
-        double k = ki_schlick_k_direct(r);
-        return k / (1 - k);
-    }
-    return r * r;
-}
-
 double ki_axis_from_nov(const kiln_table_def *def, double roughness, double nov)
 {
     switch (def->axis) {
@@ -33,7 +23,7 @@ double ki_axis_from_nov(const kiln_table_def *def, double roughness, double nov)
     case KILN_AXIS_CBRT:
         return cube_root(nov);
     case KILN_AXIS_GRAZING: {
-        double c = ki_axis_scale(&def->model, roughness);
+        double c = ki_grazing_scale(&def->model, roughness);
         return nov < 1 ? sqrt(nov * (1 + c) / (nov + c)) : 1;
     }
     default:
@@ -41,20 +31,47 @@ double ki_axis_from_nov(const kiln_table_def *def, double roughness, double nov)
     }
 }
 
+double ki_texel_place(int index, int count, bool corners)
+{
+    return corners && count > 1 ? (double)index / (count - 1) : (index + 0.5) / count;
+}
+
+// The place u to n.v, for many at once.
+static void to_nov(kiln_axis axis, double c, const double *u, int count, double *nov)
+{
+    switch (axis) {
+    case KILN_AXIS_SQRT:
+        for (int i = 0; i < count; i++)
+            nov[i] = u[i] * u[i];
+        break;
+    case KILN_AXIS_CBRT:
+        for (int i = 0; i < count; i++)
+            nov[i] = u[i] * u[i] * u[i];
+        break;
+    case KILN_AXIS_GRAZING:
+        // 1 at u = 1, to the last bit.
+        for (int i = 0; i < count; i++)
+            nov[i] = u[i] * u[i] * c / (c + (1 - u[i] * u[i]));
+        break;
+    default:
+        for (int i = 0; i < count; i++)
+            nov[i] = u[i];
+        break;
+    }
+}
+
 double ki_axis_to_nov(const kiln_table_def *def, double roughness, double u)
 {
-    switch (def->axis) {
-    case KILN_AXIS_SQRT:
-        return u * u;
-    case KILN_AXIS_CBRT:
-        return u * u * u;
-    case KILN_AXIS_GRAZING: {
-        double c = ki_axis_scale(&def->model, roughness), t = u * u;
-        return u < 1 ? t * c / (c + (1 - t)) : 1;
-    }
-    default:
-        return u;
-    }
+    double nov;
+    to_nov(def->axis, ki_grazing_scale(&def->model, roughness), &u, 1, &nov);
+    return nov;
+}
+
+void ki_axis_columns(const kiln_table_def *def, double roughness, int from, int count, double *nov)
+{
+    for (int i = 0; i < count; i++)
+        nov[i] = ki_texel_place(from + i, def->width, def->corners);
+    to_nov(def->axis, ki_grazing_scale(&def->model, roughness), nov, count, nov);
 }
 
 ki_third ki_table_third(kiln_table_kind kind)
@@ -79,11 +96,6 @@ double ki_third_to_w(ki_third third, double value)
 double ki_third_from_w(ki_third third, double w)
 {
     return third == KI_THIRD_IOR ? (2 + w) / (2 - w) : w;
-}
-
-double ki_texel_place(int index, int count, bool corners)
-{
-    return corners && count > 1 ? (double)index / (count - 1) : (index + 0.5) / count;
 }
 
 double ki_texel_index(double place, int count, bool corners)

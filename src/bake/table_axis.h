@@ -8,12 +8,14 @@
 /// Roughness below which the grazing axis is that of this roughness: its layer would have no width.
 #define KI_GRAZING_MIN 1e-6
 
-/// c of the grazing axis, n.v's scale in the layer that it resolves.
-double ki_axis_scale(const kiln_model *model, double roughness);
-/// u in [0, 1] of n.v in [0, 1] and back, in the row of a roughness. 0 and 1 stay exactly themselves;
+/// u in [0, 1] of n.v in [0, 1] and back, in the row of a roughness; the grazing axis' c is
+/// ki_grazing_scale's. 0 and 1 stay exactly themselves;
 /// error below 1e-15.
 double ki_axis_from_nov(const kiln_table_def *def, double roughness, double nov);
 double ki_axis_to_nov(const kiln_table_def *def, double roughness, double u);
+
+/// n.v of `count` columns of that row from column `from` on.
+void ki_axis_columns(const kiln_table_def *def, double roughness, int from, int count, double *nov);
 
 /// What a table's kind has along w: 0 without a third axis.
 typedef enum ki_third { KI_THIRD_NONE, KI_THIRD_F0, KI_THIRD_IOR } ki_third;

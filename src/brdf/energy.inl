@@ -349,44 +349,69 @@ static void add(const view *v, const panel *p, double e[HALF], double b[HALF], b
         add_b(v, p, top, bottom, b);
 }
 
+// One stretch of mu_i: e^u or e^t at its lower end and as the ratio to its upper one; panels of half
+// length h, and e^h.
+typedef struct tiling {
+    double from, ratio, h, ahead;
+    int count;
+} tiling;
+
+// Everything about an entry that is known before its panels.
+typedef struct entry {
+    view v;
+    stretch x;
+    tiling near, far;
+} entry;
+
+static void entry_set(entry *n, const kiln_model *model, double roughness, double nov, bool split)
+{
+    view *v = &n->v;
+    view_set(v, model, roughness, nov, split);
+    n->near = (tiling){.from = 1, .ratio = 1 + v->split / v->pole};
+    n->far = (tiling){.from = 1, .ratio = 1};
+    if (v->alpha > 0.7)
+        return; // even_nodes
+    n->x.m_rest = ((1 - nov) - v->alpha2 * (1 + nov)) / v->s;
+    n->x.ahead = 2 * v->alpha2 * nov / v->s;
+    double d = 2 * v->alpha * v->sine / v->s;
+    n->x.d = d > 1e-120 ? d : 1e-120;
+    // e^t of both ends, t = asinh((mu_i - m) / d).
+    double low = (v->split - nov - n->x.ahead) / n->x.d, high = n->x.m_rest / n->x.d;
+    double root_low = sqrt(low * low + 1), root_high = sqrt(high * high + 1);
+    double to = high > 0 ? high + root_high : 1 / (root_high - high);
+    n->far.from = low > 0 ? low + root_low : 1 / (root_low - low);
+    n->far.ratio = to / n->far.from;
+}
+
+static void tile(tiling *t)
+{
+    double length = ki_log(t->ratio);
+    t->count = (int)ceil(length / PANEL);
+    t->h = length / (2 * (t->count > 0 ? t->count : 1));
+    t->ahead = ki_exp(t->h);
+}
+
 // E and, with `split`, B.
-static void integrate(const view *v, bool split, double out[2])
+static void integrate(const entry *n, bool split, double out[2])
 {
     double e[HALF] = {0}, b[HALF] = {0}, sinh_y[HALF], cosh_y[HALF];
+    const view *v = &n->v;
     panel p;
-
-    double length = ki_log(1 + v->split / v->pole);
-    int count = (int)ceil(length / PANEL);
-    double h = length / (2 * count), ahead = ki_exp(h), centre = ahead;
-    hyperbolic(h, sinh_y, cosh_y);
-    for (int i = 0; i < count; i++, centre *= ahead * ahead) {
-        log_nodes(v, h, centre, sinh_y, cosh_y, &p);
+    double step = n->near.ahead * n->near.ahead, centre = n->near.from * n->near.ahead;
+    hyperbolic(n->near.h, sinh_y, cosh_y);
+    for (int i = 0; i < n->near.count; i++, centre *= step) {
+        log_nodes(v, n->near.h, centre, sinh_y, cosh_y, &p);
         add(v, &p, e, b, split);
     }
-
     if (v->alpha > 0.7) {
         even_nodes(v, &p);
         add(v, &p, e, b, split);
-    } else {
-        stretch x = {.m_rest = ((1 - v->mu) - v->alpha2 * (1 + v->mu)) / v->s,
-                     .ahead = 2 * v->alpha2 * v->mu / v->s,
-                     .d = 2 * v->alpha * v->sine / v->s};
-        x.d = x.d > 1e-120 ? x.d : 1e-120;
-        double low = (v->split - v->mu - x.ahead) / x.d, high = x.m_rest / x.d;
-        // e^t of both ends, t = asinh.
-        double root_low = sqrt(low * low + 1), root_high = sqrt(high * high + 1);
-        double from = low > 0 ? low + root_low : 1 / (root_low - low);
-        double to = high > 0 ? high + root_high : 1 / (root_high - high);
-        length = ki_log(to / from);
-        count = (int)ceil(length / PANEL);
-        h = length / (2 * count);
-        ahead = ki_exp(h);
-        centre = from * ahead;
-        hyperbolic(h, sinh_y, cosh_y);
-        for (int i = 0; i < count; i++, centre *= ahead * ahead) {
-            sinh_nodes(v, &x, h, centre, sinh_y, cosh_y, &p);
-            add(v, &p, e, b, split);
-        }
+    }
+    step = n->far.ahead * n->far.ahead, centre = n->far.from * n->far.ahead;
+    hyperbolic(n->far.h, sinh_y, cosh_y);
+    for (int i = 0; i < n->far.count; i++, centre *= step) {
+        sinh_nodes(v, &n->x, n->far.h, centre, sinh_y, cosh_y, &p);
+        add(v, &p, e, b, split);
     }
     out[0] = sum_lanes(e);
     out[1] = sum_lanes(b);
@@ -400,22 +425,33 @@ static void mirror(const view *v, double out[2])
     out[1] = out[0] * (c * c) * (c * c) * c;
 }
 
+// In blocks, so that the logarithms and exponentials of several entries overlap.
 void KI_ROW(const kiln_model *model, double roughness, const double *nov, int count, bool split,
             double *out)
 {
-    for (int i = 0; i < count; i++) {
-        view v;
-        double both[2];
-        view_set(&v, model, roughness, nov[i], split);
-        if (v.alpha < 1e-30)
-            mirror(&v, both);
-        else
-            integrate(&v, split, both);
-        if (split) {
-            out[2 * i] = both[0] - both[1];
-            out[2 * i + 1] = both[1];
-        } else {
-            out[i] = both[0];
+    enum { BLOCK = 16 };
+    bool mirrors = roughness < 1e-15;
+    for (int from = 0; from < count; from += BLOCK) {
+        entry block[BLOCK];
+        int n = ki_min(BLOCK, count - from);
+        for (int i = 0; i < n; i++)
+            entry_set(&block[i], model, roughness, nov[from + i], split);
+        for (int i = 0; i < n && !mirrors; i++) {
+            tile(&block[i].near);
+            tile(&block[i].far);
+        }
+        for (int i = 0; i < n; i++) {
+            double both[2];
+            if (mirrors)
+                mirror(&block[i].v, both);
+            else
+                integrate(&block[i], split, both);
+            if (split) {
+                out[2 * (from + i)] = both[0] - both[1];
+                out[2 * (from + i) + 1] = both[1];
+            } else {
+                out[from + i] = both[0];
+            }
         }
     }
 }

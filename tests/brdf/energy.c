@@ -265,6 +265,34 @@ static void texels_are_the_integrals(void **unused)
     kiln_context_destroy(context);
 }
 
+// They come from a series.
+static void large_tables_are_the_integrals_too(void **unused)
+{
+    (void)unused;
+    kiln_context *context;
+    kiln_error error;
+    CHECK_OK(kiln_context_create(NULL, &context, &error));
+    for (int i = 0; i < 4 * MASKINGS; i++) {
+        kiln_table_def def = {.model = models[i % MASKINGS],
+                              .axis = (kiln_axis)(i / MASKINGS),
+                              .corners = true,
+                              .width = 211,
+                              .height = 127};
+        kiln_table table;
+        double worst = 0;
+        make(context, &def, &table);
+        for (int at = 0; at < def.width * def.height; at++) {
+            double nov, roughness, third;
+            kiln_table_texel(&table, at % def.width, at / def.width, 0, &nov, &roughness, &third);
+            double e = kiln_energy(&def.model, roughness, nov);
+            worst = fmax(worst, fabs((double)table.image.pixels[at] - e));
+        }
+        CHECK_BELOW(worst, 1e-7);
+        kiln_table_free(&table);
+    }
+    kiln_context_destroy(context);
+}
+
 static void same_bits_on_every_instruction_set(void **unused)
 {
     (void)unused;
@@ -334,6 +362,7 @@ int main(void)
         cmocka_unit_test(furnace_closes),
         cmocka_unit_test(furnace_closes_through_a_table),
         cmocka_unit_test(texels_are_the_integrals),
+        cmocka_unit_test(large_tables_are_the_integrals_too),
         cmocka_unit_test(same_bits_on_every_instruction_set),
         cmocka_unit_test(wrong_tables_are_named),
     };

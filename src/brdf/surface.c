@@ -1,0 +1,123 @@
+#include "brdf/surface.h"
+
+#include "brdf/brdf.h"
+#include "brdf/energy.h"
+#include "math/math.h"
+
+#include <string.h>
+
+double ki_grazing_scale(const kiln_model *model, double roughness)
+{
+    if (model->g == KILN_G_SCHLICK_TEXT) {
+        double k = ki_schlick_k_direct(roughness);
+        return k / (1 - k);
+    }
+    double alpha = roughness * roughness;
+    return alpha > 1e-12 ? alpha : 1e-12;
+}
+
+// Chebyshev's points of the first kind on [0, 1].
+static double point(int index, int count)
+{
+    return (1 + ki_cos(KI_PI * (index + 0.5) / count)) / 2;
+}
+
+// Rows are degrees, columns points: values times it are coefficients.
+static void transform_matrix(int count, double matrix[KI_SURFACE_NOV][KI_SURFACE_NOV])
+{
+    double cosine[4 * KI_SURFACE_NOV];
+    for (int i = 0; i < 4 * count; i++)
+        cosine[i] = ki_cos(KI_PI * i / (2 * count));
+    for (int k = 0; k < count; k++)
+        for (int i = 0; i < count; i++)
+            matrix[i][k] = cosine[k * (2 * i + 1) % (4 * count)] * (k ? 2.0 : 1.0) / count;
+}
+
+typedef struct build_job {
+    const kiln_context *context;
+    ki_surface *surface;
+    double by_nov[KI_SURFACE_NOV][KI_SURFACE_NOV], by_roughness[KI_SURFACE_NOV][KI_SURFACE_NOV];
+} build_job;
+
+static void build_row(void *data, int row)
+{
+    const build_job *job = data;
+    ki_surface *surface = job->surface;
+    int columns = surface->columns;
+    double nov[KI_SURFACE_NOV], e[KI_SURFACE_NOV], roughness = point(row, surface->rows);
+    double c = ki_grazing_scale(&surface->model, roughness);
+    for (int i = 0; i < columns; i++) {
+        double u = point(i, columns), t = surface->quartic ? u * u * (u * u) : u * u;
+        nov[i] = t * c / (c + (1 - t));
+    }
+    ki_energy_values(job->context, &surface->model, roughness, nov, columns, false, e);
+    double *coefficient = surface->coefficient[row];
+    for (int k = 0; k < KI_SURFACE_NOV; k++)
+        coefficient[k] = 0;
+    for (int i = 0; i < columns; i++)
+        for (int k = 0; k < columns; k++)
+            coefficient[k] += job->by_nov[i][k] * e[i];
+}
+
+// How many degrees bring each model below 6e-8: with correlated shadowing E has a logarithm at n.v = 0,
+// and with the text's k a second, faint layer of width alpha.
+static void choose_degrees(ki_surface *surface)
+{
+    surface->quartic = surface->model.g == KILN_G_SMITH;
+    surface->columns = surface->quartic ? 46 : 34; // even
+    surface->rows = surface->model.g == KILN_G_SCHLICK_TEXT ? KI_SURFACE_ROUGHNESS : 18;
+}
+
+void ki_surface_build(kiln_context *context, const kiln_model *model, ki_surface *surface)
+{
+    surface->model = *model;
+    choose_degrees(surface);
+    build_job job = {.context = context, .surface = surface};
+    transform_matrix(surface->columns, job.by_nov);
+    transform_matrix(surface->rows, job.by_roughness);
+    ki_parallel_for(context, surface->rows, build_row, &job);
+    double row[KI_SURFACE_ROUGHNESS][KI_SURFACE_NOV];
+    memcpy(row, surface->coefficient, sizeof row);
+    for (int k = 0; k < surface->rows; k++) {
+        double *coefficient = surface->coefficient[k];
+        memset(coefficient, 0, sizeof row[0]);
+        for (int i = 0; i < surface->rows; i++)
+            for (int j = 0; j < surface->columns; j++)
+                coefficient[j] += job.by_roughness[i][k] * row[i][j];
+    }
+}
+
+static ki_surface_row *fastest(const kiln_context *context)
+{
+    ki_surface_row *row = ki_surface_row_scalar;
+#if defined(KILN_HAVE_X86)
+    enum kiln_cpu cpu = ki_context_cpu(context);
+    if (cpu >= KILN_CPU_SSE2)
+        row = ki_surface_row_sse2;
+    if (cpu >= KILN_CPU_AVX2)
+        row = ki_surface_row_avx2;
+    if (cpu >= KILN_CPU_AVX512)
+        row = ki_surface_row_avx512;
+#else
+    (void)context;
+#endif
+    return row;
+}
+
+void ki_surface_values(const kiln_context *context, const ki_surface *surface, double roughness,
+                       const double *nov, int count, double *out)
+{
+    double coefficient[KI_SURFACE_NOV] = {0}, x = 2 * roughness - 1, before = 1, now = x;
+    for (int i = 0; i < surface->rows; i++) {
+        double value = i ? now : 1;
+        for (int k = 0; k < KI_SURFACE_NOV; k++)
+            coefficient[k] += value * surface->coefficient[i][k];
+        if (i) {
+            double next = 2 * x * now - before;
+            before = now;
+            now = next;
+        }
+    }
+    fastest(context)(surface, coefficient, ki_grazing_scale(&surface->model, roughness), nov, count,
+                     out);
+}
