@@ -20,6 +20,7 @@ static const bench_case cases[] = {
     {"scaling", "inputs of 1k to 8k, faces of 128 to 1024", bench_scaling, false},
     {"peer", "whole processes: kiln beside cmgen", bench_peer, false},
     {"memory", "peak memory of baking 8192 x 4096", bench_memory, false},
+    {"tables", "tables of E beside 1024 importance samples, one thread", bench_tables, false},
     {"fixed", "one small bake with AVX2, for counting instructions", bench_fixed, true},
 };
 enum { CASE_COUNT = sizeof cases / sizeof *cases };

@@ -17,7 +17,7 @@ if [ "${1:-}" = --update ]; then
     update=yes
     shift
 fi
-[ $# -gt 0 ] || set -- accuracy probe threads instructions files scaling peer memory count
+[ $# -gt 0 ] || set -- accuracy probe threads instructions files scaling peer memory tables count
 for part in bench kiln; do
     [ -x $bin/$part ] || fail "there is no $bin/$part: run ./do bench"
 done

@@ -578,7 +578,7 @@ typedef struct kiln_table {
 } kiln_table;
 
 /// Fills a table; `def` may be NULL. Texels are the integrals rounded to floats; large tables of E come
-/// from a series that is within 6e-8 of it.
+/// from a series that is within 7e-8 of it.
 KILN_API KILN_CHECKED kiln_result kiln_table_create(kiln_context *context,
                                                     const kiln_table_def *def, kiln_table *table,
                                                     kiln_error *error);

@@ -59,13 +59,17 @@ static void build_row(void *data, int row)
             coefficient[k] += job->by_nov[i][k] * e[i];
 }
 
-// How many degrees bring each model below 6e-8: with correlated shadowing E has a logarithm at n.v = 0,
+// How many degrees bring each model below 7e-8: with correlated shadowing E has a logarithm at n.v = 0,
 // and with the text's k a second, faint layer of width alpha.
 static void choose_degrees(ki_surface *surface)
 {
     surface->quartic = surface->model.g == KILN_G_SMITH;
     surface->columns = surface->quartic ? 46 : 34; // even
-    surface->rows = surface->model.g == KILN_G_SCHLICK_TEXT ? KI_SURFACE_ROUGHNESS : 18;
+    surface->rows = 18;
+    if (surface->model.g == KILN_G_SCHLICK_TEXT) {
+        surface->columns = 20;
+        surface->rows = 36;
+    }
 }
 
 void ki_surface_build(kiln_context *context, const kiln_model *model, ki_surface *surface)

@@ -22,7 +22,7 @@ double ki_grazing_scale(const kiln_model *model, double roughness);
 
 void ki_surface_build(kiln_context *context, const kiln_model *model, ki_surface *surface);
 
-/// E for `count` values of nov in one row: within 6e-8 of ki_energy on [0, 1]^2, without the corner
+/// E for `count` values of nov in one row: within 7e-8 of ki_energy on [0, 1]^2, without the corner
 /// roughness = nov = 0. The same bits on every instruction set.
 void ki_surface_values(const kiln_context *context, const ki_surface *surface, double roughness,
                        const double *nov, int count, double *out);
