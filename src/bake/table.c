@@ -3,6 +3,7 @@
 #include "bake/table_axis.h"
 #include "brdf/energy.h"
 #include "brdf/surface.h"
+#include "brdf/walk.h"
 
 int ki_table_channels(kiln_table_kind kind)
 {
@@ -104,6 +105,14 @@ static kiln_result check_choices(const kiln_table_def *def, kiln_error *error)
     if ((unsigned)def->axis > KILN_AXIS_GRAZING)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "axis of the table is %d, there are 0 to %d",
                        (int)def->axis, KILN_AXIS_GRAZING);
+    if (def->kind == KILN_TABLE_E_WALK &&
+        (def->model.d != KILN_D_GGX || def->model.g != KILN_G_SMITH))
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "the walk is of GGX and height-correlated Smith, not of the model (%d, %d)",
+                       (int)def->model.d, (int)def->model.g);
+    if (def->path_count && (def->path_count < 16 || def->path_count > 1 << 24))
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "path_count is %d, it must be 16 to %d, or 0",
+                       def->path_count, 1 << 24);
     if (def->complement && ki_table_channels(def->kind) != 1)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
                        "the complement is for tables of one channel, this one has %d",
@@ -116,7 +125,7 @@ kiln_result ki_table_complete(kiln_table_def *def, kiln_error *error)
     kiln_result result = check_choices(def, error);
     if (result)
         return result;
-    if (!fill_of[def->kind])
+    if (!fill_of[def->kind] && def->kind != KILN_TABLE_E_WALK)
         return ki_fail(error, KILN_ERROR_UNSUPPORTED, "tables of kind %d are not made yet",
                        (int)def->kind);
     bool has_depth = ki_table_third(def->kind) != KI_THIRD_NONE;
@@ -125,6 +134,7 @@ kiln_result ki_table_complete(kiln_table_def *def, kiln_error *error)
     def->width = def->width ? def->width : has_depth ? 32 : 128;
     def->height = def->height ? def->height : has_depth ? 32 : 128;
     def->depth = def->depth ? def->depth : has_depth ? 32 : 1;
+    def->path_count = def->path_count ? def->path_count : 1 << 16;
     result = check_size("width", def->width, KILN_MAX_TABLE, error);
     if (!result)
         result = check_size("height", def->height, KILN_MAX_TABLE, error);
@@ -156,6 +166,29 @@ static void fill_row(void *data, int index)
     }
 }
 
+// All slices of a row at once: the walks are the same for every F0.
+static void fill_walk_row(void *data, int row)
+{
+    const fill_job *job = data;
+    const kiln_table_def *def = job->def;
+    size_t slice = (size_t)def->width * (size_t)def->height;
+    float *pixels = job->table->image.pixels + (size_t)row * (size_t)def->width;
+    for (int z = 0; z < def->depth; z += KI_WALK_COLUMN) {
+        double f0[KI_WALK_COLUMN], albedo[KI_WALK_COLUMN];
+        int count = ki_min(KI_WALK_COLUMN, def->depth - z);
+        for (int x = 0; x < def->width; x++) {
+            double nov, roughness;
+            for (int i = 0; i < count; i++)
+                ki_table_texel(job->table, x, row, z + i, &nov, &roughness, &f0[i]);
+            ki_walk_column(roughness, nov, f0, count, def->path_count, 0, albedo);
+            for (int i = 0; i < count; i++) {
+                double value = def->complement ? 1 - albedo[i] : albedo[i];
+                pixels[(size_t)(z + i) * slice + (size_t)x] = (float)value;
+            }
+        }
+    }
+}
+
 // Whether the series' integrals are well below the texels'.
 static bool wants_surface(const kiln_table_def *def)
 {
@@ -180,7 +213,9 @@ kiln_result ki_table_fill(kiln_context *context, kiln_table *table, kiln_error *
     }
     job.surface = surface;
     ki_stage stage = {"table", 0, 1};
-    bool whole = ki_parallel_steps(context, &stage, def->height * def->depth, fill_row, &job);
+    bool walks = def->kind == KILN_TABLE_E_WALK;
+    bool whole = ki_parallel_steps(context, &stage, walks ? def->height : def->height * def->depth,
+                                   walks ? fill_walk_row : fill_row, &job);
     ki_free(surface);
     return whole ? KILN_OK : ki_fail_cancelled(error, "table");
 }
