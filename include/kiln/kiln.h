@@ -475,6 +475,16 @@ typedef enum kiln_sheen {
 /// It exceeds 1 at grazing angles: neither masking conserves energy. Source: docs/theory/sheen.md.
 KILN_API double kiln_sheen_albedo(kiln_sheen sheen, double roughness, double nov);
 
+/// Rough glass, exact Fresnel: rt[0] of the light from n.v is reflected and rt[1] transmitted by one
+/// microfacet; the rest is lost to further bounces. ior = n beyond / n on the side of v: below 1 from
+/// the inside; clamped to [1/16, 16]. Error below 2e-6. KILN_G_SMITH hides transmitted light by Heitz's
+/// beta function, the others by the product. Source: docs/theory/glass.md.
+KILN_API void kiln_glass(const kiln_model *model, double roughness, double ior, double nov,
+                         double rt[2]);
+/// 2 int R mu dmu and 2 int T mu dmu. Reciprocity: T_avg(ior) = ior^2 T_avg(1 / ior).
+KILN_API void kiln_glass_average(const kiln_model *model, double roughness, double ior,
+                                 double rt[2]);
+
 // ------------------------------------------------------------------------- compensation of energy
 
 // The specular lobe leaves out light that bounces more than once between the microfacets. With E(mu)

@@ -77,6 +77,45 @@ static void error_functions_agree_with_libm(void **unused)
     CHECK_NEAR(ki_erf(40), 1, 0);
 }
 
+static void beta_agrees_with_libm(void **unused)
+{
+    (void)unused;
+    double small = 0, great = 0;
+    for (int i = 0; i < 100000; i++) {
+        double a = 1 + exp(uniform(-8, 3)), b = 1 + exp(uniform(-8, 3));
+        long double wide = (long double)a + (long double)b;
+        long double wanted =
+            expl(lgammal((long double)a) + lgammal((long double)b) - lgammal(wide));
+        small = fmax(small, fabs(ki_beta(a, b) / (double)wanted - 1));
+        CHECK_NEAR(ki_beta(a, b), ki_beta(b, a), 0);
+        // B(a, n) = (n - 1)! / (a (a + 1) ... (a + n - 1)).
+        a = exp(uniform(0, 20));
+        great = fmax(great, fabs(ki_beta(a, 3) * a * (a + 1) * (a + 2) / 2 - 1));
+    }
+    CHECK_BELOW(small, 1e-12);
+    CHECK_BELOW(great, 1e-12);
+    CHECK_NEAR(ki_beta(1, 1), 1, 1e-15);
+}
+
+static void double_exponential_ignores_ends(void **unused)
+{
+    (void)unused;
+    double nodes[81], weights[81], sums[4] = {0};
+    ki_double_exponential(81, 3.2, nodes, weights);
+    for (int i = 0; i < 81; i++) {
+        assert_true(i == 0 || nodes[i] >= nodes[i - 1]);
+        CHECK_NEAR(nodes[i] + nodes[80 - i], 1, 2e-16);
+        sums[0] += weights[i];
+        sums[1] += weights[i] * sqrt(nodes[i]);
+        sums[2] -= weights[i] * log(nodes[i]);
+        sums[3] += weights[i] * sqrt(nodes[80 - i]); // sqrt(1 - x)
+    }
+    CHECK_NEAR(sums[0], 1, 1e-14);
+    CHECK_NEAR(sums[1], 2.0 / 3, 1e-14);
+    CHECK_NEAR(sums[2], 1, 1e-13);
+    CHECK_NEAR(sums[3], 2.0 / 3, 1e-14);
+}
+
 static void ends_of_the_ranges(void **unused)
 {
     (void)unused;
@@ -119,6 +158,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(elementary_functions_agree_with_libm),
         cmocka_unit_test(error_functions_agree_with_libm),
+        cmocka_unit_test(beta_agrees_with_libm),
+        cmocka_unit_test(double_exponential_ignores_ends),
         cmocka_unit_test(ends_of_the_ranges),
         cmocka_unit_test(gauss_legendre_is_exact_to_its_degree),
     };

@@ -1,0 +1,294 @@
+#include "brdf/dielectric.h"
+
+#include "base/base.h"
+#include "brdf/beckmann.h"
+#include "brdf/brdf.h"
+#include "brdf/energy.h"
+#include "math/math.h"
+
+#include <math.h>
+
+// With half vectors h over the microfacets, F the exact Fresnel term and c = v.h,
+//
+//     R(v) = int D F c G(v, l) / (n.v) dh,            l = 2 c h - v,
+//     T(v) = int D (1 - F) c G(v, l) / (n.v) dh,      l = (eta c - g) h - eta v,
+//
+// where eta = 1 / ior and g = sqrt(1 - eta^2 (1 - c^2)) is the cosine beyond the facet. Walter et al.
+// 2007, eqs. 20, 21, 38 and 40, whose Jacobians of h and l cancel.
+//
+// h runs over theta, its angle from n, outside, and phi from v's side on, inside. c falls with phi,
+// and so do all of the conditions on it: each integral is over one arc, phi < reach, where
+//
+//     reflected       n.l = 2 c cos theta - n.v > 0
+//     transmitted     c > 0, from inside c > critical and -n.l = eta n.v - (eta c - g) cos theta > 0
+//
+// Total reflection has F = 1, so R from inside is E less the integral of 1 - F, over c > critical too.
+typedef enum part { REFLECTED, TRANSMITTED } part;
+
+typedef struct boundary {
+    kiln_model model;
+    double roughness, alpha, ior, eta;
+    double mu, sin_v, theta_v;
+    double critical; // c of total reflection, 0 from outside
+    double lambda_v; // Smith's, for transmission
+    double pole;     // G has one at about n.l = -pole
+} boundary;
+
+static double lambda(const boundary *s, double cosine)
+{
+    if (s->model.d == KILN_D_BECKMANN)
+        return fmin(1e9, ki_beckmann_lambda(s->alpha, cosine));
+    double root = sqrt(cosine * cosine + s->alpha * s->alpha * ((1 - cosine) * (1 + cosine)));
+    return fmin(1e9, (root / cosine - 1) / 2);
+}
+
+// G / (n.v) across the boundary. Light that leaves below is hidden by what lies below, not above: with
+// Smith's heights u uniform in [0, 1], int u^Lambda(v) (1 - u)^Lambda(l) du, a beta function (Heitz et
+// al. 2016, Dupuy et al. 2016). The other three are products on either side.
+static double transmitted_masking(const boundary *s, double nol)
+{
+    if (s->model.g == KILN_G_SMITH)
+        return ki_beta(1 + s->lambda_v, 1 + lambda(s, nol)) / s->mu;
+    return nol * ki_visibility(&s->model, s->roughness, s->mu, nol);
+}
+
+// The integrand less D, for one half vector.
+static double facet(const boundary *s, part what, double cos_h, double c)
+{
+    if (!(c > s->critical))
+        return 0;
+    double f = ki_fresnel_dielectric(s->ior, fmin(c, 1));
+    if (what == REFLECTED) {
+        double nol = fmin(1, 2 * c * cos_h - s->mu);
+        if (!(nol > 0))
+            return 0;
+        return (s->critical > 0 ? 1 - f : f) * c * nol *
+               ki_visibility(&s->model, s->roughness, s->mu, nol);
+    }
+    double g2 = 1 - s->eta * s->eta * ((1 - c) * (1 + c)), g = sqrt(fmax(0, g2));
+    double nol = fmin(1, s->eta * s->mu - (s->eta * c - g) * cos_h);
+    return nol > 0 ? (1 - f) * c * transmitted_masking(s, nol) : 0;
+}
+
+// Where cos phi = y, and how far beyond it in phi the integrand's next singularity lies that is `more`
+// beyond in cos phi.
+static double arc_end(double y)
+{
+    return y >= 1 ? 0 : y <= -1 ? KI_PI : ki_acos(y);
+}
+
+static double arc_margin(double y, double reach, double more)
+{
+    double sine = ki_sin(reach);
+    double margin =
+        y < -1 ? sqrt(2 * (more - 1 - y)) : 2 * more / (sine + sqrt(sine * sine + 2 * more));
+    return ki_clamp(margin, 1e-9, 1e3);
+}
+
+enum { NODES = 16 };
+
+// The arc phi < reach, in logarithmic steps of the distance from its end plus `margin`; `root` where
+// the end has a square root's singularity.
+static double integrate_arc(const boundary *s, part what, const double h[2], double reach,
+                            double margin, bool root)
+{
+    if (!(reach > 0))
+        return 0;
+    double length = ki_log(1 + reach / margin), sum = 0;
+    int panels = 1 + (int)(length / 2.5);
+    for (int i = 0; i < NODES * panels; i++) {
+        int panel = i / NODES;
+        double x = (panel + (1 + ki_gauss16_nodes[i % NODES]) / 2) / panels;
+        double weight = ki_gauss16_weights[i % NODES] / (2 * panels);
+        if (root) {
+            weight *= 2 * x;
+            x *= x;
+        }
+        double from_end = margin * ki_exp(length * x);
+        double c = h[1] * s->mu + h[0] * s->sin_v * ki_cos(reach + margin - from_end);
+        sum += weight * from_end * facet(s, what, h[1], c);
+    }
+    return 2 * length * sum;
+}
+
+// One theta, h its sine and cosine.
+static double ring(const boundary *s, part what, const double h[2])
+{
+    double k = s->sin_v * h[0], least = h[1] * s->mu; // c = least + k cos phi
+    double critical = (s->critical - least) / k, y, pole;
+    if (what == REFLECTED) {
+        y = (s->mu / (2 * h[1]) - least) / k;
+        pole = s->pole / (2 * h[1] * k);
+    } else {
+        y = -least / k;
+        pole = fmin(s->pole, 0.5 * sqrt(fabs(s->ior - 1)) + 1e-3) / (h[1] * k);
+        // n.l = 0 at c = (m^2 + eta^2 - 1) / (2 eta m) with m = eta n.v / cos theta.
+        double m = s->eta * s->mu / h[1], m2 = s->eta * s->eta - 1;
+        y = s->critical > 0 && m * m < m2 ? ((m * m + m2) / (2 * s->eta * m) - least) / k : y;
+        pole = s->critical > 0 ? s->pole / (h[1] * k) : pole;
+    }
+    if (!(s->critical > 0)) {
+        double reach = arc_end(y);
+        return integrate_arc(s, what, h, reach, arc_margin(y, reach, pole), false);
+    }
+    // The root of total reflection is the arc's end, or beyond it.
+    if (y <= critical) {
+        double reach = arc_end(critical);
+        double margin = fmax(arc_margin(critical, reach, 0), reach / 20);
+        return integrate_arc(s, what, h, reach, margin, true);
+    }
+    double reach = arc_end(y), margin = fmax(reach / 20, arc_margin(y, reach, y - critical));
+    return integrate_arc(s, what, h, reach, fmin(margin, arc_margin(y, reach, pole)), true);
+}
+
+// D sin theta.
+static double density(const boundary *s, const double h[2])
+{
+    double a2 = s->alpha * s->alpha, s2 = h[0] * h[0], c2 = h[1] * h[1];
+    if (s->model.d == KILN_D_BECKMANN)
+        return h[0] * ki_exp(-s2 / (a2 * c2)) / (KI_PI * a2 * c2 * c2);
+    double d = a2 * c2 + s2;
+    return h[0] * a2 / (KI_PI * d * d);
+}
+
+// Between two angles where an arc comes, goes, or changes its kind: theta = width sinh x, in panels
+// of x, slow at the ends where the arc's length is a square root.
+static double integrate_rings(const boundary *s, part what, double from, double to)
+{
+    double width = fmin(s->alpha, fmax(s->mu, 0.1 * s->alpha)), sum = 0;
+    double a = from / width, b = to / width;
+    a = ki_log(a + sqrt(1 + a * a));
+    b = ki_log(b + sqrt(1 + b * b));
+    int panels = s->model.d == KILN_D_BECKMANN ? 2 + (int)(b - a) : 1 + (int)((b - a) / 2);
+    for (int i = 0; i < NODES * panels; i++) {
+        int panel = i / NODES;
+        double x = (panel + (1 + ki_gauss16_nodes[i % NODES]) / 2) / panels;
+        double weight = ki_gauss16_weights[i % NODES] / (2 * panels) * (b - a) * width / 2;
+        weight *= from > 0 ? 6 * x * (1 - x) : 2 * (1 - x);
+        x = from > 0 ? x * x * (3 - 2 * x) : x * (2 - x);
+        double e = ki_exp(a + (b - a) * x), h[2];
+        ki_sincos(width * (e - 1 / e) / 2, &h[0], &h[1]);
+        sum += weight * (e + 1 / e) * density(s, h) * ring(s, what, h);
+    }
+    return sum;
+}
+
+static double integrate_part(const boundary *s, part what)
+{
+    double elevation = KI_PI / 2 - s->theta_v, start = 0, end = KI_PI / 2, cuts[6];
+    int count = 0;
+    cuts[count++] = what == REFLECTED ? elevation / 2 : elevation;
+    if (what == REFLECTED) {
+        // Grazing light is next to G's pole.
+        end = (KI_PI - elevation) / 2;
+        cuts[count++] = elevation < 0.05 ? end - 8 * elevation : end;
+    }
+    if (s->critical > 0) {
+        double total = ki_acos(s->critical), sine, cosine;
+        end = fmin(end, s->theta_v + total);
+        cuts[count++] = fabs(s->theta_v - total);
+        double crossing = what == REFLECTED ? s->mu / (2 * s->critical) : s->mu / s->critical;
+        if (crossing < 1)
+            cuts[count++] = ki_acos(crossing);
+        if (s->theta_v > total && what == REFLECTED)
+            start = s->theta_v - total;
+        if (s->theta_v > total && what == TRANSMITTED) {
+            // Refraction turns the ray by the view's elevation: it leaves along the surface.
+            ki_sincos(elevation, &sine, &cosine);
+            start = s->theta_v - ki_atan2(sine, s->eta - cosine);
+        }
+    }
+    double sum = 0, from = fmax(0, start);
+    for (;;) { // the cuts in order
+        double to = end;
+        for (int i = 0; i < count; i++)
+            if (cuts[i] > from && cuts[i] < to)
+                to = cuts[i];
+        if (to > from)
+            sum += integrate_rings(s, what, from, to);
+        if (!(to < end))
+            return sum;
+        from = to;
+    }
+}
+
+// The smooth boundary, where G is not 1 for Schlick's k of the text only.
+static void smooth(const kiln_model *model, double ior, double nov, double rt[2])
+{
+    double f = ki_fresnel_dielectric(ior, nov);
+    double beyond = sqrt(fmax(0, 1 - (1 - nov) * (1 + nov) / (ior * ior)));
+    rt[0] = f * ki_masking(model, 0, nov, nov);
+    rt[1] = f < 1 ? (1 - f) * ki_masking(model, 0, nov, beyond) : 0;
+}
+
+static bool prepare(const kiln_model *model, double roughness, double ior, double nov, boundary *s)
+{
+    *s = (boundary){.model = *model, .roughness = ki_clamp(roughness, 0, 1)};
+    s->alpha = s->roughness * s->roughness;
+    s->ior = ki_clamp(ior, 1.0 / 16, 16);
+    s->eta = 1 / s->ior;
+    s->mu = ki_clamp(nov, 1e-8 * s->alpha, 1);
+    if (s->roughness < 1e-4)
+        return false;
+    s->sin_v = sqrt((1 - s->mu) * (1 + s->mu));
+    s->theta_v = ki_acos(s->mu);
+    s->critical = s->ior < 1 ? sqrt((1 - s->ior) * (1 + s->ior)) : 0;
+    s->lambda_v = lambda(s, s->mu);
+    s->pole = s->alpha;
+    if (model->g == KILN_G_SMITH)
+        s->pole = fmin(s->alpha, s->mu);
+    if (model->g == KILN_G_SCHLICK_K2)
+        s->pole = ki_schlick_k_ibl(s->alpha);
+    if (model->g == KILN_G_SCHLICK_TEXT)
+        s->pole = ki_schlick_k_direct(s->roughness);
+    return true;
+}
+
+static double reflected(const boundary *s)
+{
+    double sum = integrate_part(s, REFLECTED);
+    return s->critical > 0 ? ki_energy(&s->model, s->roughness, s->mu) - sum : sum;
+}
+
+void ki_dielectric(const kiln_model *model, double roughness, double ior, double nov, double rt[2])
+{
+    boundary s;
+    if (!prepare(model, roughness, ior, nov, &s)) {
+        smooth(model, s.ior, s.mu, rt);
+        return;
+    }
+    rt[0] = reflected(&s);
+    rt[1] = integrate_part(&s, TRANSMITTED);
+}
+
+double ki_dielectric_reflection(const kiln_model *model, double roughness, double ior, double nov)
+{
+    boundary s;
+    double rt[2];
+    if (prepare(model, roughness, ior, nov, &s))
+        return reflected(&s);
+    smooth(model, s.ior, s.mu, rt);
+    return rt[0];
+}
+
+// The two change fast at grazing angles, by the critical angle and where the cone of total reflection
+// meets the horizon (n.v = ior): parts between those, slow at their ends.
+void ki_dielectric_average(const kiln_model *model, double roughness, double ior, double rt[2])
+{
+    enum { PANELS = 2 };
+    double critical = ior < 1 ? sqrt((1 - ior) * (1 + ior)) : 0, open = ior < 1 ? ior : 0;
+    double cuts[4] = {0, fmin(critical, open), fmax(critical, open), 1};
+    rt[0] = rt[1] = 0;
+    for (int i = 0; i < 3 * PANELS * NODES; i++) {
+        int panel = i / NODES, third = panel / PANELS;
+        double length = cuts[third + 1] - cuts[third], at[2];
+        if (!(length > 0))
+            continue;
+        double x = (panel % PANELS + (1 + ki_gauss16_nodes[i % NODES]) / 2) / PANELS;
+        double weight = ki_gauss16_weights[i % NODES] / (2 * PANELS) * 6 * x * (1 - x) * length;
+        double mu = cuts[third] + length * (x * x * (3 - 2 * x));
+        ki_dielectric(model, roughness, ior, mu, at);
+        for (int k = 0; k < 2; k++)
+            rt[k] += 2 * mu * weight * at[k];
+    }
+}

@@ -1,0 +1,21 @@
+// The double exponential rule on libm alone, for brute force.
+#ifndef KILN_TEST_RULE_H
+#define KILN_TEST_RULE_H
+
+#include <math.h>
+
+enum { HALF_NODES = 101 };
+#define HALF_PI 1.57079632679489661923
+
+// Nodes on (a, b), doubly exponentially close to both ends, and weights. Takahasi and Mori 1974.
+static void half_rule(double a, double b, double nodes[HALF_NODES], double weights[HALF_NODES])
+{
+    for (int i = 0; i < HALF_NODES; i++) {
+        double h = 6.4 / (HALF_NODES - 1), t = -3.2 + i * h, u = HALF_PI * sinh(t);
+        double from_end = (b - a) / (1 + exp(2 * fabs(u)));
+        nodes[i] = t < 0 ? a + from_end : b - from_end;
+        weights[i] = h * (b - a) / 2 * HALF_PI * cosh(t) / (cosh(u) * cosh(u));
+    }
+}
+
+#endif
