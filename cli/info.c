@@ -19,6 +19,8 @@ static void print_text(const char *path, const kiln_file_info *info)
     printf("  format       %s, %s, %s\n", info->format, info->encoding,
            cli_bytes((double)info->byte_count, bytes));
     printf("  layout       %s, %d x %d", info->layout, info->width, info->height);
+    if (info->depth > 1)
+        printf(" x %d", info->depth);
     if (info->face_count > 1)
         printf(", %d faces", info->face_count);
     if (info->level_count > 1)
@@ -30,6 +32,8 @@ static void print_text(const char *path, const kiln_file_info *info)
             printf(" %.4g", (double)info->roughness[k]);
         putchar('\n');
     }
+    if (info->table[0])
+        printf("  table        %s\n", info->table);
     if (info->orientation[0])
         printf("  orientation  %s\n", info->orientation);
     if (info->sh_bands) {
@@ -64,6 +68,7 @@ static cJSON *to_json(const char *path, const kiln_file_info *info)
     cJSON_AddStringToObject(json, "layout", info->layout);
     cJSON_AddNumberToObject(json, "width", info->width);
     cJSON_AddNumberToObject(json, "height", info->height);
+    cJSON_AddNumberToObject(json, "depth", info->depth);
     cJSON_AddNumberToObject(json, "face_count", info->face_count);
     cJSON_AddNumberToObject(json, "level_count", info->level_count);
     cJSON_AddNumberToObject(json, "channel_count", info->channel_count);
@@ -73,6 +78,8 @@ static cJSON *to_json(const char *path, const kiln_file_info *info)
         for (int k = 0; k < info->level_count && k < KILN_MAX_LEVELS; k++)
             cJSON_AddItemToArray(roughness, number(info->roughness[k]));
     }
+    if (info->table[0])
+        cJSON_AddStringToObject(json, "table", info->table);
     if (info->orientation[0])
         cJSON_AddStringToObject(json, "orientation", info->orientation);
     if (info->writer[0])

@@ -200,7 +200,8 @@ KILN_API KILN_CHECKED kiln_result kiln_map_decode(kiln_context *context, const v
                                                   size_t size, const char *name,
                                                   const kiln_load_def *def, kiln_map *map,
                                                   kiln_error *error);
-/// A flat picture as it is, without a shape.
+/// A flat picture as it is, without a shape, of three channels; a table (KTX2) of 1, 2 or 4, its
+/// slices one below the other.
 KILN_API KILN_CHECKED kiln_result kiln_image_load(kiln_context *context, const char *path,
                                                   kiln_image *image, kiln_error *error);
 
@@ -208,14 +209,16 @@ KILN_API KILN_CHECKED kiln_result kiln_image_load(kiln_context *context, const c
 typedef struct kiln_file_info {
     char format[16];   ///< "exr", "hdr", "png", "ktx2", "dds"
     char encoding[48]; ///< texel type and compression, "half rgb, piz"
-    char layout[24];   ///< "panorama", "cross", "strip", "cube", "octahedron", "image"
-    int width, height; ///< of one face or of the picture
+    char layout[24];   ///< "panorama", "cross", "strip", "cube", "octahedron", "image", "table"
+    int width, height; ///< of one face, of the picture or of a table's slice
+    int depth;         ///< slices of a table, else 1
     int face_count, level_count;
     int channel_count;
     uint64_t byte_count;
     float roughness[KILN_MAX_LEVELS]; ///< of each level, where the file says; else -1
     char writer[64];                  ///< "kiln 0.1.0", or empty
     char orientation[16];             ///< as the file states it, or empty
+    char table[160];                  ///< what a table that kiln wrote is: "kind=e d=ggx ..."
     int sh_bands;                     ///< 0 where the file holds no spherical harmonics
     float sh[KILN_MAX_BANDS * KILN_MAX_BANDS][3];
 } kiln_file_info;
@@ -681,6 +684,45 @@ KILN_API KILN_CHECKED kiln_result kiln_map_save(kiln_context *context, const kil
 /// A flat picture: .exr, .hdr (three channels) or .png (8 bits, values as they are, 0 to 1).
 KILN_API KILN_CHECKED kiln_result kiln_image_save(kiln_context *context, const kiln_image *image,
                                                   const char *path, kiln_error *error);
+
+/// How a table's numbers are stored.
+typedef enum kiln_table_format {
+    KILN_TABLE_FORMAT_AUTO =
+        0, ///< halves in KTX2, which every device filters, 16 bits in PNG, else floats
+    KILN_TABLE_FORMAT_F32,
+    KILN_TABLE_FORMAT_F16,
+    KILN_TABLE_FORMAT_U16, ///< 0 to 1 in 65535 steps, clamped
+    KILN_TABLE_FORMAT_U8   ///< 0 to 1 in 255 steps, clamped
+} kiln_table_format;
+
+/// {0} is a good default.
+typedef struct kiln_table_save_def {
+    kiln_table_format format;
+    int zstd;         ///< KTX2: compression level 1 to 22, 0 for none
+    const char *name; ///< what names in .h and .glsl begin with; NULL for the file's own name
+} kiln_table_save_def;
+
+/// Writes a table whole or not at all. By ending (docs/tables.md says what is in each):
+///   .ktx2          a 2-D texture, or a 3-D one where there are slices
+///   .exr .hdr .png slices one below the other; two channels are red and green
+///   .raw .bin      the numbers alone, little-endian
+///   .h             a C array of floats, at most 4194304 of them
+///   .glsl          a constant array and its lookup, at most 65536 bytes
+/// `def` may be NULL.
+KILN_API KILN_CHECKED kiln_result kiln_table_save(kiln_context *context, const kiln_table *table,
+                                                  const char *path, const kiln_table_save_def *def,
+                                                  kiln_error *error);
+/// Reads a KTX2 table that kiln wrote.
+KILN_API KILN_CHECKED kiln_result kiln_table_load(kiln_context *context, const char *path,
+                                                  kiln_table *table, kiln_error *error);
+/// Writes source code that looks up tables made with this def (of a kiln_table): .h, a C99 and C++
+/// function on an array of floats; .glsl, a GLSL ES 3.00 function on a texture, which the sampler
+/// must filter linearly and clamp at the edge. Names begin with `name`; NULL for the file's own name
+/// without "_lookup".
+KILN_API KILN_CHECKED kiln_result kiln_table_lookup_save(kiln_context *context,
+                                                         const kiln_table_def *def,
+                                                         const char *path, const char *name,
+                                                         kiln_error *error);
 /// Coefficients as .json, .txt (one line each) or .h (a C array).
 KILN_API KILN_CHECKED kiln_result kiln_sh_save(kiln_context *context, const kiln_sh *sh,
                                                const char *path, kiln_error *error);

@@ -117,6 +117,11 @@ kiln_result kiln_map_decode(kiln_context *context, const void *bytes, size_t siz
         *map = decoded.map;
         return KILN_OK;
     }
+    if (decoded.is_table) {
+        ki_decoded_free(&decoded);
+        return ki_fail(error, KILN_ERROR_UNSUPPORTED, "%s: holds a table, not an environment",
+                       name ? name : "memory");
+    }
     enum kiln_layout layout = def ? def->layout : KILN_LAYOUT_AUTO;
     if (layout == KILN_LAYOUT_AUTO && !strcmp(info.layout, "octahedron"))
         layout = KILN_LAYOUT_OCTAHEDRON;
@@ -276,7 +281,9 @@ static kiln_result load_faces(kiln_context *context, const face_paths *paths, ki
         if (result != KILN_OK)
             break;
         int size = image.width;
-        if (image.width != image.height) {
+        if (image.channels != 3) {
+            result = ki_fail(error, KILN_ERROR_UNSUPPORTED, "%s: holds a table, not a face", path);
+        } else if (image.width != image.height) {
             result = ki_fail(error, KILN_ERROR_FORMAT, "%s: is %d x %d, a face must be square",
                              path, image.width, image.height);
         } else if (face == 0) {

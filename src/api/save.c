@@ -75,14 +75,14 @@ static bool expand(const char *template, int face, int level, text_writer *w)
 
 // One picture by the ending of its path.
 static kiln_result encode(const char *path, const float *pixels, int width, int height,
-                          int channels, const ki_exr_options *options, bool srgb, ki_writer *w,
-                          kiln_error *error)
+                          int channels, const ki_exr_options *options, ki_png_coding coding,
+                          ki_writer *w, kiln_error *error)
 {
     if (ends_with(path, ".exr"))
         return ki_exr_encode(pixels, width, height, channels, options, w, error);
     if (ends_with(path, ".hdr"))
         return ki_hdr_encode(pixels, width, height, w, error);
-    return ki_png_encode(pixels, width, height, channels, srgb, w, error);
+    return ki_png_encode(pixels, width, height, channels, coding, w, error);
 }
 
 static kiln_result write_set(kiln_context *context, const kiln_map *map, const char *template,
@@ -116,7 +116,7 @@ static kiln_result write_set(kiln_context *context, const kiln_map *map, const c
         }
         const char *name = (const char *)path.bytes;
         result = encode(name, map->level[level] + floats * (size_t)face, width, height, 3, &options,
-                        true, &bytes, error);
+                        KI_PNG_SRGB8, &bytes, error);
         if (result == KILN_OK)
             result = ki_file_set_add(set, name, bytes.bytes, bytes.size, error);
         count++;
@@ -227,7 +227,7 @@ kiln_result kiln_image_save(kiln_context *context, const kiln_image *image, cons
     ki_writer bytes = {.context = context};
     ki_exr_options options = {.half = false, .roughness = -1};
     kiln_result result = encode(path, image->pixels, image->width, image->height, image->channels,
-                                &options, false, &bytes, error);
+                                &options, KI_PNG_PLAIN8, &bytes, error);
     if (result == KILN_OK)
         result = ki_file_write(context, path, bytes.bytes, bytes.size, error);
     ki_writer_free(&bytes);

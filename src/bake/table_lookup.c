@@ -37,6 +37,7 @@ void ki_table_lookup(const kiln_table *table, double nov, double roughness, doub
 {
     const kiln_table_def *def = &table->def;
     size_t channels = (size_t)table->image.channels, row = channels * (size_t)def->width;
+    roughness = ki_clamp(roughness, 0, 1);
     double u = ki_axis_from_nov(def, roughness, ki_clamp(nov, 0, 1));
     between x = find(u, def->width, def->corners, channels);
     between y = find(def->flip ? 1 - roughness : roughness, def->height, def->corners, row);

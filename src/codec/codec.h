@@ -7,9 +7,10 @@
 #include "base/bytes.h"
 #include "image/image.h"
 
-/// What a decoder finds: a flat picture, or (KTX2, DDS) a cube with its levels.
+/// What a decoder finds: a flat picture of three channels, or (KTX2, DDS) a cube with its levels, or
+/// (KTX2) a table in `image`, its slices one below the other, of 1, 2 or 4 channels that may be negative.
 typedef struct ki_decoded {
-    bool is_map;
+    bool is_map, is_table;
     kiln_image image;
     kiln_map map;
 } ki_decoded;
@@ -26,6 +27,9 @@ const char *ki_parse_number(const char *text, double *value);
 /// Nine digits: enough for a float to come back as it was.
 void ki_write_number(ki_writer *writer, double value);
 
+/// What a file says of its table, as far as it is printable.
+void ki_describe_table(kiln_file_info *info, const char *text);
+
 kiln_result ki_exr_decode(kiln_context *context, const uint8_t *bytes, size_t size,
                           const char *name, kiln_image *image, kiln_file_info *info,
                           kiln_error *error);
@@ -35,8 +39,9 @@ kiln_result ki_hdr_decode(kiln_context *context, const uint8_t *bytes, size_t si
 kiln_result ki_png_decode(kiln_context *context, const uint8_t *bytes, size_t size,
                           const char *name, kiln_image *image, kiln_file_info *info,
                           kiln_error *error);
+/// A cube goes to `map`, a table to `image`; both or neither are NULL. `info` is needed.
 kiln_result ki_ktx2_decode(kiln_context *context, const uint8_t *bytes, size_t size,
-                           const char *name, kiln_map *map, kiln_file_info *info,
+                           const char *name, kiln_map *map, kiln_image *image, kiln_file_info *info,
                            kiln_error *error);
 kiln_result ki_dds_decode(kiln_context *context, const uint8_t *bytes, size_t size,
                           const char *name, kiln_map *map, kiln_file_info *info, kiln_error *error);
@@ -49,19 +54,25 @@ kiln_result ki_ktx2_encode(const kiln_map *map, const kiln_save_def *def, ki_wri
                            kiln_error *error);
 kiln_result ki_dds_encode(const kiln_map *map, const kiln_save_def *def, ki_writer *writer,
                           kiln_error *error);
+/// A table of `depth` slices one below the other, 3-D where there are several. `text` says what it is.
+kiln_result ki_ktx2_encode_table(const kiln_image *image, int depth, const char *text,
+                                 kiln_table_format format, int zstd, ki_writer *writer,
+                                 kiln_error *error);
 /// `width` * `height` texels of `channels` (1 to 4) floats, ZIP.
 typedef struct ki_exr_options {
-    bool half;       ///< false: 32-bit floats
-    bool panorama;   ///< says so in the attribute "envmap"
-    bool octahedron; ///< says so in the attribute "kilnShape"
-    float roughness; ///< the attribute "kilnRoughness"; negative for none
+    bool half;         ///< false: 32-bit floats
+    bool panorama;     ///< says so in the attribute "envmap"
+    bool octahedron;   ///< says so in the attribute "kilnShape"
+    float roughness;   ///< the attribute "kilnRoughness"; negative for none
+    const char *table; ///< the attribute "kilnTable"; may be NULL
 } ki_exr_options;
 kiln_result ki_exr_encode(const float *pixels, int width, int height, int channels,
                           const ki_exr_options *options, ki_writer *writer, kiln_error *error);
 kiln_result ki_hdr_encode(const float *pixels, int width, int height, ki_writer *writer,
                           kiln_error *error);
-/// 8 bits. `srgb`: encode linear values by the sRGB curve; else values are stored as they are.
-kiln_result ki_png_encode(const float *pixels, int width, int height, int channels, bool srgb,
-                          ki_writer *writer, kiln_error *error);
+/// How a PNG holds values of 0 to 1: by the sRGB curve, or as they are.
+typedef enum ki_png_coding { KI_PNG_SRGB8, KI_PNG_PLAIN8, KI_PNG_PLAIN16 } ki_png_coding;
+kiln_result ki_png_encode(const float *pixels, int width, int height, int channels,
+                          ki_png_coding coding, ki_writer *writer, kiln_error *error);
 
 #endif

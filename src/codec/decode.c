@@ -65,6 +65,14 @@ void ki_write_number(ki_writer *writer, double value)
     ki_write_text(writer, "%s", text);
 }
 
+void ki_describe_table(kiln_file_info *info, const char *text)
+{
+    size_t i = 0;
+    for (; i + 1 < sizeof info->table && text[i] >= ' ' && text[i] <= '~'; i++)
+        info->table[i] = text[i];
+    info->table[i] = 0;
+}
+
 static bool starts(const uint8_t *bytes, size_t size, const char *magic, size_t length)
 {
     return size >= length && !memcmp(bytes, magic, length);
@@ -74,7 +82,7 @@ static void clear_info(kiln_file_info *info, size_t size)
 {
     memset(info, 0, sizeof *info);
     info->byte_count = size;
-    info->face_count = 1;
+    info->face_count = info->depth = 1;
     for (int k = 0; k < KILN_MAX_LEVELS; k++)
         info->roughness[k] = -1;
 }
@@ -90,7 +98,6 @@ kiln_result ki_decode(kiln_context *context, const uint8_t *bytes, size_t size, 
     clear_info(info, size);
     kiln_image *image = decoded ? &decoded->image : NULL;
     kiln_map *map = decoded ? &decoded->map : NULL;
-    bool is_map = false;
     kiln_result result;
     if (starts(bytes, size, "\x76\x2f\x31\x01", 4)) {
         result = ki_exr_decode(context, bytes, size, name, image, info, error);
@@ -99,11 +106,9 @@ kiln_result ki_decode(kiln_context *context, const uint8_t *bytes, size_t size, 
     } else if (starts(bytes, size, "\x89PNG\r\n\x1a\n", 8)) {
         result = ki_png_decode(context, bytes, size, name, image, info, error);
     } else if (starts(bytes, size, "\xabKTX 20\xbb\r\n\x1a\n", 12)) {
-        result = ki_ktx2_decode(context, bytes, size, name, map, info, error);
-        is_map = true;
+        result = ki_ktx2_decode(context, bytes, size, name, map, image, info, error);
     } else if (starts(bytes, size, "DDS ", 4)) {
         result = ki_dds_decode(context, bytes, size, name, map, info, error);
-        is_map = true;
     } else {
         result =
             ki_fail(error, KILN_ERROR_FORMAT,
@@ -115,11 +120,14 @@ kiln_result ki_decode(kiln_context *context, const uint8_t *bytes, size_t size, 
             *decoded = (ki_decoded){0};
         return result;
     }
+    bool is_map = info->face_count == 6;
     const char *layout = is_map ? "cube" : ki_layout_name(info->width, info->height);
     if (!info->layout[0]) // unless the file says it
         snprintf(info->layout, sizeof info->layout, "%s", layout ? layout : "image");
-    if (decoded)
+    if (decoded) {
         decoded->is_map = is_map;
+        decoded->is_table = !strcmp(info->layout, "table");
+    }
     return KILN_OK;
 }
 
@@ -127,5 +135,5 @@ void ki_decoded_free(ki_decoded *decoded)
 {
     kiln_image_free(&decoded->image);
     kiln_map_free(&decoded->map);
-    decoded->is_map = false;
+    decoded->is_map = decoded->is_table = false;
 }

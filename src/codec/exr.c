@@ -619,6 +619,10 @@ static void describe(const exr_file *f, kiln_file_info *info)
         shape->type == EXR_ATTR_STRING && !strcmp(shape->string->str, "octahedron") &&
         f->width == f->height)
         snprintf(info->layout, sizeof info->layout, "octahedron");
+    const exr_attribute_t *table = NULL;
+    if (exr_get_attribute_by_name(f->core, f->part, "kilnTable", &table) == EXR_ERR_SUCCESS &&
+        table->type == EXR_ATTR_STRING)
+        ki_describe_table(info, table->string->str);
     float roughness;
     if (exr_attr_get_float(f->core, f->part, "kilnRoughness", &roughness) == EXR_ERR_SUCCESS &&
         roughness >= 0 && roughness <= 1)

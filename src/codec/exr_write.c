@@ -71,6 +71,10 @@ static void header(ki_writer *w, int width, int height, int channels, const ki_e
         attribute(w, "kilnShape", "string", 10);
         ki_write_text(w, "octahedron");
     }
+    if (options->table) {
+        attribute(w, "kilnTable", "string", (uint32_t)strlen(options->table));
+        ki_write_text(w, "%s", options->table);
+    }
     attribute(w, "lineOrder", "lineOrder", 1);
     ki_write_u8(w, 0);
     attribute(w, "pixelAspectRatio", "float", 4);

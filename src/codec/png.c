@@ -1,6 +1,7 @@
 // PNG by libpng: 8 and 16 bits, every colour type, interlaced or not. Values are sRGB whatever the
 // chunks gAMA, cHRM, iCCP and cICP say; alpha is left out.
 #include "codec/codec.h"
+#include "codec/numbers.h"
 #include "image/pack.h"
 
 #include <png.h>
@@ -247,8 +248,24 @@ static uint8_t to_byte(float value, const float *thresholds)
     return (uint8_t)low;
 }
 
+// One row of `count` values; 16 bits are stored with the high byte first.
+static void to_row(const float *values, size_t count, ki_png_coding coding, const float *thresholds,
+                   uint8_t *row)
+{
+    for (size_t i = 0; i < count; i++) {
+        if (coding != KI_PNG_PLAIN16) {
+            row[i] = to_byte(values[i], coding == KI_PNG_SRGB8 ? thresholds : NULL);
+            continue;
+        }
+        uint8_t low_first[2];
+        ki_numbers_pack(KILN_TABLE_FORMAT_U16, values + i, 1, 1, 1, low_first);
+        row[2 * i] = low_first[1];
+        row[2 * i + 1] = low_first[0];
+    }
+}
+
 static void write_all(png_state *s, const float *pixels, int width, int height, int channels,
-                      bool srgb)
+                      ki_png_coding coding)
 {
     static const int colors[4] = {PNG_COLOR_TYPE_GRAY, PNG_COLOR_TYPE_GRAY_ALPHA,
                                   PNG_COLOR_TYPE_RGB, PNG_COLOR_TYPE_RGB_ALPHA};
@@ -256,13 +273,15 @@ static void write_all(png_state *s, const float *pixels, int width, int height, 
     make_thresholds(thresholds);
     png_set_write_fn(s->png, s, write_bytes, flush);
     png_set_user_limits(s->png, 0x7fffffff, 0x7fffffff);
-    png_set_IHDR(s->png, s->info, (png_uint_32)width, (png_uint_32)height, 8, colors[channels - 1],
-                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    if (srgb)
+    int bits = coding == KI_PNG_PLAIN16 ? 16 : 8;
+    png_set_IHDR(s->png, s->info, (png_uint_32)width, (png_uint_32)height, bits,
+                 colors[channels - 1], PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+                 PNG_FILTER_TYPE_DEFAULT);
+    if (coding == KI_PNG_SRGB8)
         png_set_sRGB(s->png, s->info, PNG_sRGB_INTENT_RELATIVE);
     png_write_info(s->png, s->info);
     size_t row_size = (size_t)width * (size_t)channels;
-    s->rows = ki_alloc_raw(s->context, row_size, 1);
+    s->rows = ki_alloc_raw(s->context, row_size, 2);
     if (!s->rows) {
         s->out_of_memory = true;
         png_error(s->png, "out of memory");
@@ -272,15 +291,14 @@ static void write_all(png_state *s, const float *pixels, int width, int height, 
             s->cancelled = true;
             png_error(s->png, "cancelled");
         }
-        for (size_t i = 0; i < row_size; i++)
-            s->rows[i] = to_byte(pixels[(size_t)y * row_size + i], srgb ? thresholds : NULL);
+        to_row(pixels + (size_t)y * row_size, row_size, coding, thresholds, s->rows);
         png_write_row(s->png, s->rows);
     }
     png_write_end(s->png, s->info);
 }
 
-kiln_result ki_png_encode(const float *pixels, int width, int height, int channels, bool srgb,
-                          ki_writer *writer, kiln_error *error)
+kiln_result ki_png_encode(const float *pixels, int width, int height, int channels,
+                          ki_png_coding coding, ki_writer *writer, kiln_error *error)
 {
     kiln_result result;
     png_state *s = ki_alloc(writer->context, 1, sizeof *s);
@@ -298,7 +316,7 @@ kiln_result ki_png_encode(const float *pixels, int width, int height, int channe
     } else if (setjmp(png_jmpbuf(s->png))) {
         result = say(s, error);
     } else {
-        write_all(s, pixels, width, height, channels, srgb);
+        write_all(s, pixels, width, height, channels, coding);
         result = KILN_OK;
     }
     png_destroy_write_struct(&s->png, &s->info);

@@ -11,9 +11,9 @@ kiln_result ki_png_decode(kiln_context *context, const uint8_t *bytes, size_t si
     return ki_fail(error, KILN_ERROR_UNSUPPORTED, "%s: this build of kiln leaves PNG out", name);
 }
 
-kiln_result ki_png_encode(const float *pixels, int width, int height, int channels, bool srgb,
-                          ki_writer *writer, kiln_error *error)
+kiln_result ki_png_encode(const float *pixels, int width, int height, int channels,
+                          ki_png_coding coding, ki_writer *writer, kiln_error *error)
 {
-    (void)pixels, (void)width, (void)height, (void)channels, (void)srgb, (void)writer;
+    (void)pixels, (void)width, (void)height, (void)channels, (void)coding, (void)writer;
     return ki_fail(error, KILN_ERROR_UNSUPPORTED, "this build of kiln leaves PNG out");
 }

@@ -340,8 +340,11 @@ static void what_is_not_read_is_said(void **state)
     CHECK_OK(ki_ktx2_encode(&map, &def, &w, &error));
     refused(&w, 12, 37, KILN_ERROR_UNSUPPORTED,
             "bad: has vkFormat 37; 97, 109, 122 and 123 are read");
-    refused(&w, 36, 1, KILN_ERROR_UNSUPPORTED,
-            "bad: has 1 faces, 0 layers and depth 0, only single cubes are read");
+    refused(&w, 36, 3, KILN_ERROR_UNSUPPORTED,
+            "bad: has 3 faces, 0 layers and depth 0, only single cubes and tables are read");
+    refused(&w, 28, 2, KILN_ERROR_UNSUPPORTED,
+            "bad: has 6 faces, 0 layers and depth 2, only single cubes and tables are read");
+    refused(&w, 36, 1, KILN_ERROR_FORMAT, "bad: level 0 holds 3072 bytes, its texels need 512");
     refused(&w, 44, 1, KILN_ERROR_UNSUPPORTED,
             "bad: has supercompression scheme 1; 0 and 2 (zstd) are read");
     refused(&w, 24, 4, KILN_ERROR_FORMAT,

@@ -111,7 +111,7 @@ static int make_samples(void **state)
         else if (i == 3)
             CHECK_OK(ki_hdr_encode(map.level[0], 32, 16, &w, &error));
         else if (i < 6)
-            CHECK_OK(ki_png_encode(map.level[0], 32, 16, i == 4 ? 1 : 3, true, &w, &error));
+            CHECK_OK(ki_png_encode(map.level[0], 32, 16, i == 4 ? 1 : 3, KI_PNG_SRGB8, &w, &error));
         else
             CHECK_OK(ki_exr_encode(map.level[0], 32, 16, 3, &options, &w, &error));
         add_good(names[i], &w);

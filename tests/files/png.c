@@ -123,7 +123,8 @@ static void what_is_written_comes_back(void **state)
     for (int srgb = 0; srgb < 2; srgb++)
         for (int channels = 3; channels <= 4; channels++) {
             ki_writer w = {.context = context};
-            CHECK_OK(ki_png_encode(pixels, 256 * 4 / channels / 4, 4, channels, srgb, &w, &error));
+            CHECK_OK(ki_png_encode(pixels, 256 * 4 / channels / 4, 4, channels,
+                                   srgb ? KI_PNG_SRGB8 : KI_PNG_PLAIN8, &w, &error));
             ki_decoded decoded;
             CHECK_OK(ki_decode(context, w.bytes, w.size, "back.png", &decoded, NULL, &error));
             int count = 256 * 4 / channels / 4 * 4;
@@ -146,7 +147,7 @@ static void srgb_bytes_are_nearest(void **state)
     float middle = ki_linear_from_srgb(100.5f / 255);
     const float pixels[6] = {nextafterf(middle, 0), middle, -1, 2, NAN, 1};
     ki_writer w = {.context = context};
-    CHECK_OK(ki_png_encode(pixels, 6, 1, 1, true, &w, &error));
+    CHECK_OK(ki_png_encode(pixels, 6, 1, 1, KI_PNG_SRGB8, &w, &error));
     ki_decoded decoded;
     CHECK_OK(ki_decode(context, w.bytes, w.size, "back.png", &decoded, NULL, &error));
     const int wanted[6] = {100, 101, 0, 255, 0, 255};

@@ -1,0 +1,299 @@
+// Tables as files, and the source code of their lookups.
+#include "api/table_source.h"
+#include "bake/table.h"
+#include "bake/table_text.h"
+#include "base/file.h"
+#include "codec/codec.h"
+#include "codec/numbers.h"
+
+#include <math.h>
+#include <string.h>
+
+// ------------------------------------------------------------------------------------------ checks
+
+static kiln_result check_def(const kiln_table_def *def, kiln_error *error)
+{
+    if ((unsigned)def->kind > KILN_TABLE_E_WALK || (unsigned)def->model.d > KILN_D_BECKMANN ||
+        (unsigned)def->model.g > KILN_G_SCHLICK_TEXT || (unsigned)def->axis > KILN_AXIS_GRAZING)
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "the table's kind, D, G and axis are %d, %d, %d and %d", (int)def->kind,
+                       (int)def->model.d, (int)def->model.g, (int)def->axis);
+    if (def->width < 1 || def->width > KILN_MAX_TABLE || def->height < 1 ||
+        def->height > KILN_MAX_TABLE || def->depth < 1 || def->depth > KILN_MAX_TABLE ||
+        def->path_count < 0)
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "the table is %d x %d x %d with %d paths, sides must be 1 to %d", def->width,
+                       def->height, def->depth, def->path_count, KILN_MAX_TABLE);
+    return KILN_OK;
+}
+
+static kiln_result check_table(const kiln_table *table, kiln_error *error)
+{
+    const kiln_table_def *def = &table->def;
+    const kiln_image *image = &table->image;
+    kiln_result result = check_def(def, error);
+    if (result != KILN_OK)
+        return result;
+    int channels = ki_table_channels(def->kind);
+    if (!image->pixels || image->width != def->width ||
+        (int64_t)image->height != (int64_t)def->height * def->depth || image->channels != channels)
+        return ki_fail(
+            error, KILN_ERROR_ARGUMENT,
+            "the table's image is %d x %d with %d channels%s, it must be %d x %lld with %d",
+            image->width, image->height, image->channels, image->pixels ? "" : " and no pixels",
+            def->width, (long long)def->height * def->depth, channels);
+    size_t count = (size_t)image->width * (size_t)image->height * (size_t)channels;
+    for (size_t i = 0; i < count; i++)
+        if (!isfinite(image->pixels[i]))
+            return ki_fail(error, KILN_ERROR_ARGUMENT, "number %zu of the table is not finite", i);
+    return KILN_OK;
+}
+
+// ----------------------------------------------------------------------------------------- formats
+
+enum {
+    F32 = 1 << KILN_TABLE_FORMAT_F32,
+    F16 = 1 << KILN_TABLE_FORMAT_F16,
+    U16 = 1 << KILN_TABLE_FORMAT_U16,
+    U8 = 1 << KILN_TABLE_FORMAT_U8
+};
+
+typedef enum file_kind { KTX2, EXR, HDR, PNG, RAW, HEADER, GLSL } file_kind;
+
+static const struct ending {
+    const char *text;
+    file_kind kind;
+    kiln_table_format automatic;
+    unsigned formats;
+} endings[] = {
+    {".ktx2", KTX2, KILN_TABLE_FORMAT_F16, F32 | F16 | U16 | U8},
+    {".exr", EXR, KILN_TABLE_FORMAT_F32, F32 | F16},
+    {".hdr", HDR, KILN_TABLE_FORMAT_F32, 0},
+    {".png", PNG, KILN_TABLE_FORMAT_U16, U16 | U8},
+    {".raw", RAW, KILN_TABLE_FORMAT_F32, F32 | F16 | U16 | U8},
+    {".bin", RAW, KILN_TABLE_FORMAT_F32, F32 | F16 | U16 | U8},
+    {".h", HEADER, KILN_TABLE_FORMAT_F32, F32},
+    {".glsl", GLSL, KILN_TABLE_FORMAT_F32, F32 | F16 | U16 | U8},
+};
+
+static bool ends_with(const char *text, const char *ending)
+{
+    size_t length = strlen(text), tail = strlen(ending);
+    return length > tail && !strcmp(text + length - tail, ending);
+}
+
+static kiln_result find_ending(const char *path, const kiln_table_save_def *def,
+                               const struct ending **ending, kiln_table_format *format,
+                               kiln_error *error)
+{
+    *ending = NULL;
+    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++)
+        if (ends_with(path, endings[i].text))
+            *ending = &endings[i];
+    if (!*ending)
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "%s: ends in none of .ktx2 .exr .hdr .png .raw .bin .h .glsl", path);
+    if ((unsigned)def->format > KILN_TABLE_FORMAT_U8)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "format is %d, it must be 0 to %d",
+                       (int)def->format, (int)KILN_TABLE_FORMAT_U8);
+    static const char *const names[] = {"", "f32", "f16", "u16", "u8"};
+    if (def->format && !((*ending)->formats & 1U << def->format))
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: a %s file has no format %s", path,
+                       (*ending)->text, names[def->format]);
+    if (def->zstd && (*ending)->kind != KTX2)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: only KTX2 has zstd", path);
+    *format = def->format ? def->format : (*ending)->automatic;
+    return KILN_OK;
+}
+
+// ---------------------------------------------------------------------------------------- pictures
+
+// The same with three channels: grey where there was one, no blue where there were two.
+static kiln_result widen(kiln_context *context, const kiln_image *image, kiln_image *rgb,
+                         kiln_error *error)
+{
+    kiln_result result = kiln_image_create(context, image->width, image->height, 3, rgb, error);
+    size_t count = result ? 0 : (size_t)image->width * (size_t)image->height;
+    int last = image->channels - 1;
+    for (size_t i = 0; i < count; i++)
+        for (int c = 0; c < 3; c++)
+            rgb->pixels[3 * i + (size_t)c] =
+                c <= last || last == 0
+                    ? image->pixels[i * (size_t)image->channels + (size_t)ki_min(c, last)]
+                    : 0;
+    return result;
+}
+
+static kiln_result encode_picture(const kiln_table *table, file_kind kind, kiln_table_format format,
+                                  const char *path, ki_writer *w, kiln_error *error)
+{
+    const kiln_image *image = &table->image;
+    if (kind == HDR && image->channels == 4)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: HDR has three channels, the table 4", path);
+    if (kind == EXR) {
+        char text[KI_TABLE_TEXT];
+        ki_table_describe(&table->def, text);
+        ki_exr_options options = {
+            .half = format == KILN_TABLE_FORMAT_F16, .roughness = -1, .table = text};
+        return ki_exr_encode(image->pixels, image->width, image->height, image->channels, &options,
+                             w, error);
+    }
+    kiln_image rgb = {0};
+    kiln_result result = KILN_OK;
+    if (image->channels == 2 || (kind == HDR && image->channels == 1)) {
+        result = widen(w->context, image, &rgb, error);
+        image = &rgb;
+    }
+    if (result == KILN_OK && kind == HDR)
+        result = ki_hdr_encode(image->pixels, image->width, image->height, w, error);
+    else if (result == KILN_OK)
+        result = ki_png_encode(image->pixels, image->width, image->height, image->channels,
+                               format == KILN_TABLE_FORMAT_U8 ? KI_PNG_PLAIN8 : KI_PNG_PLAIN16, w,
+                               error);
+    kiln_image_free(&rgb);
+    return result;
+}
+
+static kiln_result encode_raw(const kiln_table *table, kiln_table_format format, ki_writer *w,
+                              kiln_error *error)
+{
+    const kiln_image *image = &table->image;
+    size_t numbers = (size_t)image->width * (size_t)image->channels;
+    size_t row = numbers * (size_t)ki_number_bytes(format);
+    uint8_t *room = ki_write_room(w, row * (size_t)image->height);
+    for (int y = 0; room && y < image->height; y++) {
+        if (y % 64 == 0 && !ki_go_on(w->context))
+            return ki_fail_cancelled(error, "writing");
+        ki_numbers_pack(format, image->pixels + (size_t)y * numbers, numbers, 1, 1,
+                        room + (size_t)y * row);
+    }
+    return KILN_OK;
+}
+
+static kiln_result encode(const kiln_table *table, const char *path, const kiln_table_save_def *def,
+                          ki_writer *w, kiln_error *error)
+{
+    const struct ending *ending;
+    kiln_table_format format = KILN_TABLE_FORMAT_F32;
+    ki_source_name name;
+    kiln_result result = find_ending(path, def, &ending, &format, error);
+    if (result == KILN_OK)
+        result = ki_source_name_make(path, def->name, &name, error);
+    if (result != KILN_OK)
+        return result;
+    char text[KI_TABLE_TEXT];
+    switch (ending->kind) {
+    case KTX2:
+        ki_table_describe(&table->def, text);
+        return ki_ktx2_encode_table(&table->image, table->def.depth, text, format, def->zstd, w,
+                                    error);
+    case EXR:
+    case HDR:
+    case PNG:
+        return encode_picture(table, ending->kind, format, path, w, error);
+    case RAW:
+        return encode_raw(table, format, w, error);
+    case HEADER:
+        return ki_table_write_header(table, path, name.text, w, error);
+    case GLSL:
+        return ki_table_write_glsl(table, format, path, name.text, w, error);
+    }
+    return KILN_OK;
+}
+
+// ------------------------------------------------------------------------------------- there and back
+
+static kiln_result put(kiln_result result, const char *path, ki_writer *w, kiln_error *error)
+{
+    if (result == KILN_OK && w->failed)
+        result = ki_fail_memory(w->context, error, path, w->size);
+    if (result == KILN_OK)
+        result = ki_file_write(w->context, path, w->bytes, w->size, error);
+    ki_writer_free(w);
+    return result;
+}
+
+kiln_result kiln_table_save(kiln_context *context, const kiln_table *table, const char *path,
+                            const kiln_table_save_def *def, kiln_error *error)
+{
+    static const kiln_table_save_def defaults = {0};
+    kiln_result result = check_table(table, error);
+    if (result != KILN_OK)
+        return result;
+    if (!ki_progress(context, "writing", 0))
+        return ki_fail_cancelled(error, "writing");
+    ki_writer w = {.context = context};
+    result = encode(table, path, def ? def : &defaults, &w, error);
+    return put(result, path, &w, error);
+}
+
+kiln_result kiln_table_lookup_save(kiln_context *context, const kiln_table_def *def,
+                                   const char *path, const char *name, kiln_error *error)
+{
+    bool glsl = ends_with(path, ".glsl");
+    if (!glsl && !ends_with(path, ".h"))
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: ends in none of .h .glsl", path);
+    ki_source_name made;
+    kiln_result result = check_def(def, error);
+    if (result == KILN_OK)
+        result = ki_source_name_make(path, name, &made, error);
+    if (result != KILN_OK)
+        return result;
+    ki_writer w = {.context = context};
+    ki_table_write_lookup(def, glsl, made.text, &w);
+    return put(KILN_OK, path, &w, error);
+}
+
+// Takes the fourth channel away that three are stored with.
+static void narrow(kiln_image *image)
+{
+    size_t count = (size_t)image->width * (size_t)image->height;
+    for (size_t i = 0; i < count; i++)
+        memmove(image->pixels + 3 * i, image->pixels + 4 * i, 3 * sizeof(float));
+    image->channels = 3;
+}
+
+static kiln_result take(const char *path, ki_decoded *decoded, const kiln_file_info *info,
+                        kiln_table *table, kiln_error *error)
+{
+    kiln_image *image = &decoded->image;
+    kiln_table_def def;
+    if (!decoded->is_table)
+        return ki_fail(error, KILN_ERROR_UNSUPPORTED, "%s: holds no table, but a %s (%s)", path,
+                       info->layout, info->format);
+    if (!ki_table_parse(info->table, &def))
+        return ki_fail(error, KILN_ERROR_FORMAT, "%s: says of its table \"%s\"", path, info->table);
+    if (def.width != info->width || def.height != info->height || def.depth != info->depth)
+        return ki_fail(error, KILN_ERROR_FORMAT,
+                       "%s: is %d x %d x %d texels and says that its table is %d x %d x %d", path,
+                       info->width, info->height, info->depth, def.width, def.height, def.depth);
+    int channels = ki_table_channels(def.kind);
+    if (image->channels != channels + (channels == 3))
+        return ki_fail(error, KILN_ERROR_FORMAT, "%s: has %d channels, its kind of table %d", path,
+                       image->channels, channels);
+    if (channels == 3)
+        narrow(image);
+    *table = (kiln_table){def, *image};
+    *image = (kiln_image){0};
+    return KILN_OK;
+}
+
+kiln_result kiln_table_load(kiln_context *context, const char *path, kiln_table *table,
+                            kiln_error *error)
+{
+    *table = (kiln_table){0};
+    uint8_t *bytes;
+    size_t size;
+    kiln_result result = ki_file_read(context, path, &bytes, &size, error);
+    if (result != KILN_OK)
+        return result;
+    ki_decoded decoded;
+    kiln_file_info info;
+    result = ki_decode(context, bytes, size, path, &decoded, &info, error);
+    ki_free(bytes);
+    if (result != KILN_OK)
+        return result;
+    result = take(path, &decoded, &info, table, error);
+    ki_decoded_free(&decoded);
+    return result;
+}

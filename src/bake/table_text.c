@@ -1,0 +1,95 @@
+#include "bake/table_text.h"
+
+#include <limits.h>
+#include <stdio.h>
+#include <string.h>
+
+static const char *const kinds[] = {
+    "e", "eavg", "dfg", "dfg-multiscatter", "sheen", "e-dielectric", "glass", "e-walk", NULL};
+static const char *const distributions[] = {"ggx", "beckmann", NULL};
+static const char *const maskings[] = {"smith", "smith-uncorrelated", "schlick-k2", "schlick-text",
+                                       NULL};
+static const char *const axes[] = {"linear", "sqrt", "cbrt", "grazing", NULL};
+
+void ki_table_describe(const kiln_table_def *def, char text[KI_TABLE_TEXT])
+{
+    snprintf(text, KI_TABLE_TEXT,
+             "kind=%s d=%s g=%s axis=%s corners=%d complement=%d flip=%d size=%dx%dx%d paths=%d",
+             kinds[def->kind], distributions[def->model.d], maskings[def->model.g], axes[def->axis],
+             def->corners, def->complement, def->flip, def->width, def->height, def->depth,
+             def->path_count);
+}
+
+// What follows "KEY=WORD" and a space, with the word's place in `words`; NULL where it is not so.
+static const char *parse_word(const char *text, const char *key, const char *const *words,
+                              int *value)
+{
+    size_t length = strlen(key);
+    if (!text || strncmp(text, key, length) != 0 || text[length] != '=')
+        return NULL;
+    text += length + 1;
+    size_t end = strcspn(text, " ");
+    for (int i = 0; words[i]; i++)
+        if (strlen(words[i]) == end && !strncmp(text, words[i], end)) {
+            *value = i;
+            return text + end + (text[end] == ' ');
+        }
+    return NULL;
+}
+
+// A whole number, up to `limit`, and what follows it.
+static const char *parse_count(const char *text, int limit, int *value)
+{
+    int64_t number = 0;
+    if (*text < '0' || *text > '9')
+        return NULL;
+    for (; *text >= '0' && *text <= '9'; text++) {
+        number = number * 10 + (*text - '0');
+        if (number > limit)
+            return NULL;
+    }
+    *value = (int)number;
+    return text;
+}
+
+static const char *parse_size(const char *text, kiln_table_def *def)
+{
+    int *const sides[3] = {&def->width, &def->height, &def->depth};
+    if (!text || strncmp(text, "size=", 5) != 0)
+        return NULL;
+    text += 5;
+    for (int i = 0; i < 3; i++) {
+        text = parse_count(text, KILN_MAX_TABLE, sides[i]);
+        if (!text || *sides[i] < 1 || *text++ != (i < 2 ? 'x' : ' '))
+            return NULL;
+    }
+    return text;
+}
+
+bool ki_table_parse(const char *text, kiln_table_def *def)
+{
+    static const char *const answers[] = {"0", "1", NULL};
+    int kind = 0, d = 0, g = 0, axis = 0, corners = 0, complement = 0, flip = 0;
+    *def = (kiln_table_def){0};
+    text = parse_word(text, "kind", kinds, &kind);
+    text = parse_word(text, "d", distributions, &d);
+    text = parse_word(text, "g", maskings, &g);
+    text = parse_word(text, "axis", axes, &axis);
+    text = parse_word(text, "corners", answers, &corners);
+    text = parse_word(text, "complement", answers, &complement);
+    text = parse_word(text, "flip", answers, &flip);
+    text = parse_size(text, def);
+    text = text && !strncmp(text, "paths=", 6) ? parse_count(text + 6, INT_MAX, &def->path_count)
+                                               : NULL;
+    if (!text || *text) {
+        *def = (kiln_table_def){0};
+        return false;
+    }
+    def->kind = (kiln_table_kind)kind;
+    def->model = (kiln_model){(kiln_d)d, (kiln_g)g};
+    def->axis = (kiln_axis)axis;
+    def->corners = corners;
+    def->complement = complement;
+    def->flip = flip;
+    return true;
+}

@@ -1,0 +1,178 @@
+// KTX2 cubes with all their levels.
+#include "codec/ktx2.h"
+#include "codec/texel.h"
+
+#include <stdio.h>
+#include <string.h>
+
+// ----------------------------------------------------------------------------------------- writing
+
+// One sample for each channel (and, for the shared exponent, one more).
+static int find_samples(const ki_texel *texel, ki_ktx2_sample samples[6])
+{
+    const uint32_t minus_one = 0xbf800000, one = 0x3f800000;
+    switch (texel->format) {
+    case KILN_FORMAT_RGB9E5:
+        // Upper and lower as the specification's table of this format states them.
+        for (int c = 0; c < 3; c++) {
+            samples[2 * (size_t)c] = (ki_ktx2_sample){9 * c, 9, c, 0, 8448};
+            samples[2 * (size_t)c + 1] = (ki_ktx2_sample){27, 5, c | KI_KTX2_EXPONENT, 15, 31};
+        }
+        return 6;
+    case KILN_FORMAT_B10G11R11:
+        samples[0] = (ki_ktx2_sample){0, 11, 0 | KI_KTX2_FLOAT, 0, one};
+        samples[1] = (ki_ktx2_sample){11, 11, 1 | KI_KTX2_FLOAT, 0, one};
+        samples[2] = (ki_ktx2_sample){22, 10, 2 | KI_KTX2_FLOAT, 0, one};
+        return 3;
+    case KILN_FORMAT_AUTO:
+    case KILN_FORMAT_RGBA16F:
+    case KILN_FORMAT_RGBA32F:
+        break;
+    }
+    int bits = 2 * texel->bytes;
+    for (int c = 0; c < 4; c++)
+        samples[c] = (ki_ktx2_sample){bits * c, bits,
+                                      (c == 3 ? KI_KTX2_ALPHA : c) | KI_KTX2_FLOAT | KI_KTX2_SIGNED,
+                                      minus_one, one};
+    return 4;
+}
+
+// Keys in the order of their bytes.
+static void write_metadata(ki_writer *w, const kiln_map *map, const kiln_save_def *def)
+{
+    ki_ktx2_write_common(w, "rd");
+    if (def->lobe) {
+        size_t entry = ki_ktx2_begin_entry(w, "kiln:lobe");
+        ki_write(w, def->lobe, strlen(def->lobe));
+        ki_ktx2_end_entry(w, entry);
+    }
+    size_t entry = ki_ktx2_begin_entry(w, "kiln:roughness");
+    for (int k = 0; k < map->level_count; k++) {
+        ki_write_text(w, k ? " " : "");
+        ki_write_number(w, (double)map->roughness[k]);
+    }
+    ki_ktx2_end_entry(w, entry);
+    if (def->sh) {
+        const kiln_sh *sh = def->sh;
+        entry = ki_ktx2_begin_entry(w, "kiln:sh");
+        ki_write_text(w, "bands %d\nirradiance %d\nwindow ", sh->bands, sh->irradiance);
+        ki_write_number(w, sh->window);
+        for (int i = 0; i < sh->bands * sh->bands; i++)
+            for (int c = 0; c < 3; c++) {
+                ki_write_text(w, c ? " " : "\n");
+                ki_write_number(w, sh->c[i][c]);
+            }
+        ki_ktx2_end_entry(w, entry);
+    }
+}
+
+typedef struct pack_job {
+    const kiln_map *map;
+    const ki_texel *texel;
+} pack_job;
+
+static bool pack_level(kiln_context *context, const void *data, int level, uint8_t *bytes)
+{
+    const pack_job *job = data;
+    return ki_texels_pack_many(context, job->texel, job->map->level[level],
+                               kiln_map_texels(job->map, level), bytes);
+}
+
+kiln_result ki_ktx2_encode(const kiln_map *map, const kiln_save_def *def, ki_writer *writer,
+                           kiln_error *error)
+{
+    const ki_texel *texel = ki_texel_of_format(def->format);
+    if (map->shape != KILN_SHAPE_CUBE)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "a KTX2 file holds a cube, not another shape");
+    if (!texel)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "format is %d, it must be 0 to %d",
+                       (int)def->format, (int)KILN_FORMAT_B10G11R11);
+    ki_ktx2_file file = {.vk = texel->vk,
+                         .type_size = texel->type_size,
+                         .texel_size = texel->bytes,
+                         .width = map->size,
+                         .height = map->size,
+                         .face_count = 6,
+                         .level_count = map->level_count,
+                         .zstd = def->zstd};
+    file.sample_count = find_samples(texel, file.samples);
+    ki_ktx2_writer k;
+    kiln_result result = ki_ktx2_begin(writer, &file, &k, error);
+    if (result != KILN_OK)
+        return result;
+    write_metadata(writer, map, def);
+    result = ki_ktx2_end_metadata(&k, error);
+    pack_job job = {map, texel};
+    for (int level = map->level_count - 1; level >= 0 && result == KILN_OK; level--)
+        result = ki_ktx2_write_level(&k, level, kiln_map_texels(map, level) * (size_t)texel->bytes,
+                                     pack_level, &job, error);
+    return result;
+}
+
+// ----------------------------------------------------------------------------------------- reading
+
+static kiln_result check(const ki_ktx2_source *s, const ki_texel *texel, kiln_error *error)
+{
+    if (!texel)
+        return ki_fail(error, KILN_ERROR_UNSUPPORTED,
+                       "%s: has vkFormat %u; 97, 109, 122 and 123 are read", s->name, s->vk);
+    if (s->width < 1 || s->width != s->height || s->width > KILN_MAX_SIZE)
+        return ki_fail(error, KILN_ERROR_FORMAT,
+                       "%s: faces are %u x %u, they must be square and 1 to %d", s->name, s->width,
+                       s->height, KILN_MAX_SIZE);
+    if (s->level_count > KILN_MAX_LEVELS || s->width >> (s->level_count - 1) == 0)
+        return ki_fail(error, KILN_ERROR_FORMAT, "%s: has %u levels for a size of %u", s->name,
+                       s->level_count, s->width);
+    return KILN_OK;
+}
+
+static kiln_result read_level(kiln_context *context, const ki_ktx2_source *s, const ki_texel *texel,
+                              const ki_ktx2_level *level, int k, kiln_map *map, kiln_error *error)
+{
+    const uint8_t *plain;
+    uint8_t *unpacked;
+    kiln_result result = ki_ktx2_unpack(context, s, k, level, &plain, &unpacked, error);
+    if (result == KILN_OK)
+        ki_texels_unpack(texel, plain, kiln_map_texels(map, k), map->level[k]);
+    ki_free(unpacked);
+    return result;
+}
+
+static void describe(const ki_ktx2_source *s, const ki_texel *texel, kiln_file_info *info)
+{
+    snprintf(info->format, sizeof info->format, "ktx2");
+    snprintf(info->encoding, sizeof info->encoding, "%s%s", texel->name, s->zstd ? ", zstd" : "");
+    info->width = info->height = (int)s->width;
+    info->face_count = 6;
+    info->level_count = (int)s->level_count;
+    info->channel_count = texel->bytes == 4 ? 3 : 4;
+}
+
+kiln_result ki_ktx2_decode_cube(kiln_context *context, ki_ktx2_source *s, kiln_map *map,
+                                kiln_file_info *info, kiln_error *error)
+{
+    const ki_texel *texel = ki_texel_of_vk(s->vk);
+    ki_ktx2_level levels[KILN_MAX_LEVELS];
+    kiln_result result = check(s, texel, error);
+    if (result != KILN_OK || !texel)
+        return result;
+    describe(s, texel, info);
+    for (uint32_t k = 0; k < s->level_count && result == KILN_OK; k++) {
+        uint64_t edge = s->width >> k, wanted = 6 * edge * edge * (uint64_t)texel->bytes;
+        result = ki_ktx2_find_level(s, k, wanted, &levels[k], error);
+    }
+    if (result != KILN_OK || !map)
+        return result;
+
+    int count = (int)s->level_count;
+    *map = (kiln_map){.shape = KILN_SHAPE_CUBE, .size = (int)s->width, .level_count = count};
+    result = ki_map_allocate(context, map, error);
+    for (int k = 0; k < count && result == KILN_OK; k++) {
+        float linear = count > 1 ? (float)k / (float)(count - 1) : 0;
+        map->roughness[k] = info->roughness[k] >= 0 ? info->roughness[k] : linear;
+        result = read_level(context, s, texel, &levels[k], k, map, error);
+    }
+    if (result != KILN_OK)
+        kiln_map_free(map);
+    return result;
+}
