@@ -644,6 +644,55 @@ KILN_API KILN_CHECKED kiln_result kiln_textbook_brdf(kiln_context *context, int 
                                                      int sample_count, kiln_image *table,
                                                      kiln_error *error);
 
+// ----------------------------------------------------------------------- the assignment, by its name
+
+/// How GAMES202's fourth assignment (2021) computes E(mu), with its sizes, its samples and its
+/// errors. See docs/theory/assignment.md.
+typedef enum kiln_assignment_method {
+    KILN_ASSIGNMENT_MONTE_CARLO, ///< light drawn by its cosine, in jittered strata (SplitMix64)
+    KILN_ASSIGNMENT_IMPORTANCE,  ///< GGX's half vectors on Hammersley points: its bonus 1
+    KILN_ASSIGNMENT_SPLIT_SUM    ///< the sums A and B on the same points, added: its bonus 2
+} kiln_assignment_method;
+
+/// {0} is the assignment's own: 128 x 128 texels, 1024 samples each, k = roughness^2 / 2.
+typedef struct kiln_assignment_def {
+    int size;         ///< 2 to 1024; 0 for 128
+    int sample_count; ///< to 1048576; 0 for 1024. Monte Carlo takes the largest square up to it
+    kiln_g g;         ///< see has_g. D is GGX
+    bool has_g;       ///< false: KILN_G_SCHLICK_K2, which its figures have; its text has the other k
+    bool unclamped;   ///< Monte Carlo: D's denominator as it is, where the framework has 1e-4 at least
+    bool unflipped;   ///< row 0 holds roughness 0, as in figure 3; else the top row is roughness 1
+    uint64_t seed;    ///< of Monte Carlo's numbers
+} kiln_assignment_def;
+
+/// E with F = 1, size x size, one channel, before it is cut to bytes: mu = (x + 1/2) / size from left
+/// to right, roughness = (y + 1/2) / size upwards. `def` may be NULL.
+KILN_API KILN_CHECKED kiln_result kiln_assignment_energy(kiln_context *context,
+                                                         kiln_assignment_method method,
+                                                         const kiln_assignment_def *def,
+                                                         kiln_image *table, kiln_error *error);
+/// E_avg of such a table: each row is 2 mean(E mu) of that row, in every texel.
+KILN_API KILN_CHECKED kiln_result kiln_assignment_average(kiln_context *context,
+                                                          const kiln_image *energy,
+                                                          kiln_image *average, kiln_error *error);
+/// Cuts every value to what (uint8)(255 x) keeps of it: saved as PNG, it is that byte.
+KILN_API void kiln_assignment_truncate(kiln_image *image);
+
+/// Of the texels of two tables, the one minus the other.
+typedef struct kiln_difference {
+    double max, rms; ///< of its size
+    double mean;     ///< with its sign
+} kiln_difference;
+
+/// Tables of one channel, alike in size. `map`, which may be NULL, receives a picture (sRGB) of the
+/// error by decades from 1e-4, white, to 1, dark: blue where `table` is too dark, red where too
+/// bright.
+KILN_API KILN_CHECKED kiln_result kiln_assignment_compare(kiln_context *context,
+                                                          const kiln_image *table,
+                                                          const kiln_image *exact,
+                                                          kiln_difference *difference,
+                                                          kiln_image *map, kiln_error *error);
+
 // --------------------------------------------------------------------------------------- reference
 
 /// Brute force: the sum over every texel of a panorama in double precision, the lobe integrated over

@@ -1,0 +1,270 @@
+// The assignment's pictures: computed all, then written all.
+#include "assignment.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+const char *const assignment_g_names[] = {"schlick-k2", "schlick-text", NULL};
+
+const char *const assignment_names[ASSIGNMENT_TABLES] = {
+    [ASSIGNMENT_MC] = "Emu_MC",
+    [ASSIGNMENT_MC_UNCLAMPED] = "Emu_MC_unclamped",
+    [ASSIGNMENT_IS] = "Emu_IS",
+    [ASSIGNMENT_SPLIT_SUM] = "Emu_split_sum",
+    [ASSIGNMENT_EXACT] = "Emu_exact",
+    [ASSIGNMENT_AVERAGE_MC] = "Eavg_MC",
+    [ASSIGNMENT_AVERAGE] = "Eavg",
+    [ASSIGNMENT_AVERAGE_BYTES] = "Eavg_from_bytes",
+    [ASSIGNMENT_AVERAGE_EXACT] = "Eavg_exact",
+};
+
+const char *const assignment_words[ASSIGNMENT_TABLES] = {
+    [ASSIGNMENT_MC] = "E(mu), cosine-weighted Monte Carlo, D clamped as in figure 1",
+    [ASSIGNMENT_MC_UNCLAMPED] = "the same samples, D as it is",
+    [ASSIGNMENT_IS] = "E(mu), GGX importance sampling: bonus 1, figure 2",
+    [ASSIGNMENT_SPLIT_SUM] = "E(mu) = A + B by split sum with F0 = 1: bonus 2",
+    [ASSIGNMENT_EXACT] = "E(mu), the integral itself",
+    [ASSIGNMENT_AVERAGE_MC] = "E_avg of Emu_MC",
+    [ASSIGNMENT_AVERAGE] = "E_avg of Emu_IS: figure 4 as it should be",
+    [ASSIGNMENT_AVERAGE_BYTES] = "E_avg of Emu_IS as its PNG holds it",
+    [ASSIGNMENT_AVERAGE_EXACT] = "E_avg, the integral itself",
+};
+
+// What each average is the average of.
+static const int source_of[ASSIGNMENT_TABLES] = {
+    [ASSIGNMENT_AVERAGE_MC] = ASSIGNMENT_MC,
+    [ASSIGNMENT_AVERAGE] = ASSIGNMENT_IS,
+    [ASSIGNMENT_AVERAGE_BYTES] = ASSIGNMENT_IS,
+};
+
+bool assignment_is_exact(int table)
+{
+    return table == ASSIGNMENT_EXACT || table == ASSIGNMENT_AVERAGE_EXACT;
+}
+
+int assignment_check_folder(const char *folder)
+{
+    struct stat status;
+    if (!folder[0])
+        return cli_wrong(&cli_tables, "--output is empty, it must name a folder");
+    if (stat(folder, &status) == 0) {
+        if (!S_ISDIR(status.st_mode))
+            return cli_fail("%s: is a file, the assignment's pictures need a folder", folder);
+        return access(folder, W_OK | X_OK) ? cli_fail("%s: cannot be written to", folder) : CLI_GO;
+    }
+    if (errno != ENOENT)
+        return cli_fail("%s: %s", folder, strerror(errno));
+    // A slash at the end would hide whether its own folder is there.
+    char path[4096];
+    size_t length = strlen(folder);
+    while (length > 1 && folder[length - 1] == '/')
+        length--;
+    if (length >= sizeof path)
+        return cli_fail("%.60s...: the name is too long", folder);
+    memcpy(path, folder, length);
+    path[length] = 0;
+    return cli_check_folder(path);
+}
+
+// ---------------------------------------------------------------------------------------- computing
+
+static kiln_result compute_energies(assignment *a)
+{
+    static const struct {
+        int table;
+        kiln_assignment_method method;
+        bool unclamped;
+    } methods[] = {{ASSIGNMENT_MC, KILN_ASSIGNMENT_MONTE_CARLO, false},
+                   {ASSIGNMENT_MC_UNCLAMPED, KILN_ASSIGNMENT_MONTE_CARLO, true},
+                   {ASSIGNMENT_IS, KILN_ASSIGNMENT_IMPORTANCE, false},
+                   {ASSIGNMENT_SPLIT_SUM, KILN_ASSIGNMENT_SPLIT_SUM, false}};
+    kiln_result result = KILN_OK;
+    for (size_t i = 0; i < sizeof methods / sizeof *methods && !result; i++) {
+        kiln_assignment_def def = {.size = a->def->size,
+                                   .sample_count = a->def->samples,
+                                   .g = a->def->g,
+                                   .has_g = true,
+                                   .unclamped = methods[i].unclamped};
+        result = kiln_assignment_energy(a->job->context, methods[i].method, &def,
+                                        &a->table[methods[i].table], &a->job->error);
+    }
+    return result;
+}
+
+// E_avg of a table of E, or with `bytes` of what its 8-bit picture holds.
+static kiln_result compute_average(assignment *a, int table, bool bytes)
+{
+    const kiln_image *source = &a->table[source_of[table]];
+    kiln_image energy = {0};
+    kiln_result result = kiln_image_create(a->job->context, source->width, source->height, 1,
+                                           &energy, &a->job->error);
+    if (!result) {
+        memcpy(energy.pixels, source->pixels,
+               (size_t)source->width * (size_t)source->height * sizeof *energy.pixels);
+        if (bytes)
+            kiln_assignment_truncate(&energy);
+        result = kiln_assignment_average(a->job->context, &energy, &a->table[table],
+                                         &a->job->error);
+    }
+    kiln_image_free(&energy);
+    return result;
+}
+
+// The same model on the same texels, without sampling.
+static kiln_result compute_exact(assignment *a)
+{
+    int size = a->def->size;
+    kiln_table_def def = {
+        .model = {.g = a->def->g}, .width = size, .height = size, .flip = true};
+    kiln_table energy = {0}, average = {0};
+    kiln_result result = kiln_table_create(a->job->context, &def, &energy, &a->job->error);
+    a->table[ASSIGNMENT_EXACT] = energy.image;
+    def.kind = KILN_TABLE_E_AVERAGE;
+    if (!result)
+        result = kiln_table_create(a->job->context, &def, &average, &a->job->error);
+    kiln_image *wide = &a->table[ASSIGNMENT_AVERAGE_EXACT];
+    if (!result)
+        result = kiln_image_create(a->job->context, size, size, 1, wide, &a->job->error);
+    for (int i = 0; i < size * size && !result; i++)
+        wide->pixels[i] = average.image.pixels[i / size];
+    kiln_table_free(&average);
+    return result;
+}
+
+static kiln_result compute(assignment *a)
+{
+    kiln_result result = compute_exact(a);
+    if (!result)
+        result = compute_energies(a);
+    for (int t = ASSIGNMENT_AVERAGE_MC; t <= ASSIGNMENT_AVERAGE_BYTES && !result; t++)
+        result = compute_average(a, t, t == ASSIGNMENT_AVERAGE_BYTES);
+    for (int t = 0; t < ASSIGNMENT_TABLES && !result; t++) {
+        int exact = t <= ASSIGNMENT_EXACT ? ASSIGNMENT_EXACT : ASSIGNMENT_AVERAGE_EXACT;
+        bool mapped = t != exact && t != ASSIGNMENT_AVERAGE_BYTES;
+        result =
+            kiln_assignment_compare(a->job->context, &a->table[t], &a->table[exact],
+                                    &a->difference[t], mapped ? &a->map[t] : NULL, &a->job->error);
+    }
+    return result;
+}
+
+// ------------------------------------------------------------------------------------------ writing
+
+static kiln_result save(assignment *a, const kiln_image *image, const char *before,
+                        const char *name)
+{
+    char path[4400];
+    snprintf(path, sizeof path, "%s/%s%s.png", a->def->folder, before, name);
+    a->file_count++;
+    return kiln_image_save(a->job->context, image, path, &a->job->error);
+}
+
+// As the framework does: three equal channels, (uint8)(255 x). `figure3` is 1 - E, row 0 at
+// roughness 0.
+static kiln_result save_table(assignment *a, const kiln_image *table, const char *name,
+                              bool figure3)
+{
+    kiln_image rgb = {0};
+    kiln_result result = kiln_image_create(a->job->context, table->width, table->height, 3, &rgb,
+                                           &a->job->error);
+    if (!result) {
+        size_t width = (size_t)table->width, height = (size_t)table->height;
+        for (size_t y = 0; y < height; y++)
+            for (size_t i = 0; i < 3 * width; i++) {
+                float e = table->pixels[(figure3 ? height - 1 - y : y) * width + i / 3];
+                rgb.pixels[3 * y * width + i] = figure3 ? 1 - e : e;
+            }
+        kiln_assignment_truncate(&rgb);
+        result = save(a, &rgb, "", name);
+    }
+    kiln_image_free(&rgb);
+    return result;
+}
+
+// The colours of the error maps, from 1 too dark on the left to 1 too bright on the right, a decade
+// wherever the report says.
+static kiln_result save_legend(assignment *a)
+{
+    enum { HALF = 160, HEIGHT = 20 };
+    kiln_image off = {0}, none = {0}, map = {0};
+    kiln_difference difference;
+    kiln_error *error = &a->job->error;
+    kiln_context *context = a->job->context;
+    kiln_result result = kiln_image_create(context, 2 * HALF, HEIGHT, 1, &off, error);
+    if (!result)
+        result = kiln_image_create(context, 2 * HALF, HEIGHT, 1, &none, error);
+    for (int i = 0; i < 2 * HALF * HEIGHT && !result; i++) {
+        double x = (i % (2 * HALF) + 0.5) / HALF - 1;
+        off.pixels[i] = (float)(copysign(1e-4, x) * pow(10, 4 * fabs(x)));
+    }
+    if (!result)
+        result = kiln_assignment_compare(context, &off, &none, &difference, &map, error);
+    if (!result)
+        result = save(a, &map, "", "error_legend");
+    kiln_image_free(&map);
+    kiln_image_free(&none);
+    kiln_image_free(&off);
+    return result;
+}
+
+static kiln_result write_pictures(assignment *a)
+{
+    kiln_result result = KILN_OK;
+    for (int t = 0; t < ASSIGNMENT_TABLES && !result; t++) {
+        if (t != ASSIGNMENT_AVERAGE_BYTES) // differs by a byte: in the report only
+            result = save_table(a, &a->table[t], assignment_names[t], false);
+        if (!result && a->map[t].pixels)
+            result = save(a, &a->map[t], "error_", assignment_names[t]);
+    }
+    if (!result)
+        result = save_table(a, &a->table[ASSIGNMENT_IS], "one_minus_Emu_IS", true);
+    return result ? result : save_legend(a);
+}
+
+static void print_figures(const assignment *a)
+{
+    printf("%s: %d files, %d x %d, %d samples, %s, %.2f s\n", a->def->folder, a->file_count,
+           a->def->size, a->def->size, a->def->samples,
+           assignment_g_names[a->def->g - KILN_G_SCHLICK_K2], cli_seconds() - a->job->began);
+    printf("  %-17s %9s %9s %10s\n", "against the exact", "largest", "rms", "mean");
+    for (int t = 0; t < ASSIGNMENT_TABLES; t++)
+        if (!assignment_is_exact(t))
+            printf("  %-17s %9.2e %9.2e %+10.2e\n", assignment_names[t], a->difference[t].max,
+                   a->difference[t].rms, a->difference[t].mean);
+}
+
+int assignment_write(cli_job *job, const assignment_def *def)
+{
+    assignment a = {.job = job, .def = def};
+    int code = CLI_FAILED;
+    bool made = false;
+    if (compute(&a))
+        goto done;
+    made = mkdir(def->folder, 0777) == 0;
+    if (!made && errno != EEXIST) {
+        cli_clear_progress(job);
+        code = cli_fail("%s: cannot be made: %s", def->folder, strerror(errno));
+        goto done;
+    }
+    if (!write_pictures(&a)) {
+        a.file_count++;
+        code = assignment_write_report(&a);
+    }
+    cli_clear_progress(job);
+    if (code == CLI_DONE && def->json)
+        code = assignment_print_json(&a);
+    else if (code == CLI_DONE && !def->quiet)
+        print_figures(&a);
+    if (code != CLI_DONE && made)
+        rmdir(def->folder); // stays where a picture was written
+done:
+    for (int t = 0; t < ASSIGNMENT_TABLES; t++) {
+        kiln_image_free(&a.table[t]);
+        kiln_image_free(&a.map[t]);
+    }
+    return code;
+}

@@ -1,0 +1,56 @@
+// kiln tables --assignment: the offline part of GAMES202's fourth assignment, beside what is exact.
+#ifndef KILN_CLI_ASSIGNMENT_H
+#define KILN_CLI_ASSIGNMENT_H
+
+#include "cli.h"
+
+typedef struct assignment_def {
+    const char *folder; ///< made where missing
+    int size, samples;
+    kiln_g g; ///< one of Schlick's two
+    bool json, quiet;
+} assignment_def;
+
+/// The names of the values of g that the assignment knows, from KILN_G_SCHLICK_K2 on; ends in NULL.
+extern const char *const assignment_g_names[];
+
+/// CLI_GO, or the exit code: the folder's name cannot be one.
+int assignment_check_folder(const char *folder);
+/// Computes all, then writes all: pictures and report.md. CLI_DONE or CLI_FAILED.
+int assignment_write(cli_job *job, const assignment_def *def);
+
+// What follows is between the work and its report.
+
+enum {
+    ASSIGNMENT_MC,
+    ASSIGNMENT_MC_UNCLAMPED,
+    ASSIGNMENT_IS,
+    ASSIGNMENT_SPLIT_SUM,
+    ASSIGNMENT_EXACT,
+    ASSIGNMENT_AVERAGE_MC,
+    ASSIGNMENT_AVERAGE,
+    ASSIGNMENT_AVERAGE_BYTES,
+    ASSIGNMENT_AVERAGE_EXACT,
+    ASSIGNMENT_TABLES
+};
+
+typedef struct assignment {
+    cli_job *job;
+    const assignment_def *def;
+    kiln_image table[ASSIGNMENT_TABLES];           ///< one channel, the top row is roughness 1
+    kiln_image map[ASSIGNMENT_TABLES];             ///< of the error, where there is a file for it
+    kiln_difference difference[ASSIGNMENT_TABLES]; ///< to the exact table
+    int file_count;
+} assignment;
+
+/// The file's name without its ending, and what is in it.
+extern const char *const assignment_names[ASSIGNMENT_TABLES];
+extern const char *const assignment_words[ASSIGNMENT_TABLES];
+/// The exact table has no error.
+bool assignment_is_exact(int table);
+
+/// report.md, written whole or not at all.
+int assignment_write_report(const assignment *a);
+int assignment_print_json(const assignment *a);
+
+#endif

@@ -1,0 +1,183 @@
+// The assignment's estimators. mu = n.v and roughness stand at texel centres, (i + 0.5) / size; the
+// view is (sqrt(1 - mu^2), 0, mu), the normal +z, F = 1.
+#include "bake/assignment.h"
+
+#include "brdf/brdf.h"
+#include "math/math.h"
+
+#include <math.h>
+
+// What the framework keeps D's denominator above.
+static const double least_denominator = 1e-4;
+
+typedef struct assignment {
+    kiln_assignment_method method;
+    const kiln_assignment_def *def;
+    kiln_model model;
+    kiln_image *table;
+    int side;        // Monte Carlo: strata along each side of the square
+    double *cos_phi; // Hammersley: of each sample's azimuth
+} assignment;
+
+// ------------------------------------------------------------------------------------- Monte Carlo
+
+// Number `index` of a sequence, in [0, 1): SplitMix64 (Steele, Lea and Flood 2014), whose state is a
+// counter, so that any number can be had without those before it.
+static double random_number(uint64_t seed, uint64_t index)
+{
+    uint64_t z = seed + (index + 1) * 0x9e3779b97f4a7c15u;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return (double)((z ^ (z >> 31)) >> 11) * (1.0 / 9007199254740992.0);
+}
+
+// pi D of the half vector between l and v = (v[0], 0, v[1]).
+static double lobe(double alpha, const double v[2], const double l[3], bool unclamped)
+{
+    double a2 = alpha * alpha, x = l[0] + v[0], z = l[2] + v[1];
+    double flat = x * x + l[1] * l[1], length = flat + z * z;
+    // (n.h)^2 (alpha^2 - 1) + 1, without the cancellation.
+    double q = (a2 * z * z + flat) / length, denominator = KI_PI * q * q;
+    if (!unclamped && denominator < least_denominator)
+        denominator = least_denominator;
+    return KI_PI * a2 / denominator;
+}
+
+// With l drawn by (n.l) / pi, E is the mean of f (n.l) pi / (n.l) = pi D G / (4 n.v n.l).
+static double monte_carlo(const assignment *r, double roughness, double mu, uint64_t texel)
+{
+    double v[2] = {sqrt((1 - mu) * (1 + mu)), mu}, sum = 0;
+    uint64_t samples = (uint64_t)r->side * (uint64_t)r->side, at = 2 * samples * texel;
+    for (int t = 0; t < r->side; t++)
+        for (int p = 0; p < r->side; p++, at += 2) {
+            // sin^2 theta is jittered within 1 / side, and so is phi / 2 pi.
+            double xi[2] = {(p + random_number(r->def->seed, at + 1)) / r->side,
+                            (t + random_number(r->def->seed, at)) / r->side};
+            double l[3];
+            ki_sample_cosine(xi, l);
+            sum += lobe(roughness * roughness, v, l, r->def->unclamped) *
+                   ki_visibility(&r->model, roughness, mu, l[2]);
+        }
+    return sum / (4 * (double)samples);
+}
+
+// ------------------------------------------------------------------------------ importance sampling
+
+// With h drawn by D(h) (n.h) and l = 2 (v.h) h - v, E is the mean of
+//
+//     (v.h) G / ((n.v) (n.h)),        0 for l below the horizon,
+//
+// and the split sum is the mean of the same times (1 - F5) and times F5. The points are Hammersley's
+// (i / N, radical inverse of i); the first coordinate gives theta, tan^2 = alpha^2 xi / (1 - xi), the
+// second phi. Section 2.2.2 of the assignment; Walter et al. 2007, eqs. 35, 36, 38 and 41.
+static void importance(const assignment *r, double roughness, double mu, double ab[2])
+{
+    int count = r->def->sample_count;
+    double alpha = roughness * roughness, vx = sqrt((1 - mu) * (1 + mu));
+    ab[0] = ab[1] = 0;
+    for (int i = 0; i < count; i++) {
+        double xi = (double)i / count, d = (1 - xi) + alpha * alpha * xi;
+        double noh = sqrt((1 - xi) / d), hx = alpha * sqrt(xi / d) * r->cos_phi[i];
+        double voh = vx * hx + mu * noh, nol = 2 * voh * noh - mu;
+        if (!(nol > 0))
+            continue;
+        voh = voh < 1 ? voh : 1;
+        nol = nol < 1 ? nol : 1;
+        double weight = voh * nol * ki_visibility(&r->model, roughness, mu, nol) / noh;
+        double f5 = r->method == KILN_ASSIGNMENT_SPLIT_SUM ? ki_schlick_fresnel(voh) : 0;
+        ab[0] += (1 - f5) * weight;
+        ab[1] += f5 * weight;
+    }
+    ab[0] /= count;
+    ab[1] /= count;
+}
+
+// ------------------------------------------------------------------------------------------- tables
+
+static void fill_row(void *data, int index)
+{
+    const assignment *r = data;
+    int size = r->def->size, row = r->def->unflipped ? index : size - 1 - index;
+    double roughness = (index + 0.5) / size;
+    float *texel = r->table->pixels + (size_t)row * (size_t)size;
+    for (int x = 0; x < size; x++) {
+        double mu = (x + 0.5) / size, ab[2] = {0};
+        if (r->method == KILN_ASSIGNMENT_MONTE_CARLO)
+            ab[0] = monte_carlo(r, roughness, mu, (uint64_t)index * (uint64_t)size + (uint64_t)x);
+        else
+            importance(r, roughness, mu, ab);
+        texel[x] = (float)(ab[0] + ab[1]); // F0 = 1: A + B
+    }
+}
+
+kiln_result ki_assignment_energy(kiln_context *context, kiln_assignment_method method,
+                                 const kiln_assignment_def *def, kiln_image *table,
+                                 kiln_error *error)
+{
+    static const char *const names[] = {"Monte Carlo", "importance sampling", "split sum"};
+    assignment r = {.method = method, .def = def, .model = {.g = def->g}, .table = table};
+    size_t count = (size_t)def->sample_count;
+    while ((r.side + 1) * (r.side + 1) <= def->sample_count)
+        r.side++;
+    r.cos_phi = ki_alloc_raw(context, count, sizeof *r.cos_phi);
+    if (!r.cos_phi)
+        return ki_fail_memory(context, error, "the assignment's samples",
+                              count * sizeof *r.cos_phi);
+    for (size_t i = 0; i < count; i++)
+        r.cos_phi[i] = ki_cos(2 * KI_PI * ki_radical_inverse((uint32_t)i));
+    ki_stage stage = {names[method], 0, 1};
+    bool whole = ki_parallel_steps(context, &stage, def->size, fill_row, &r);
+    ki_free(r.cos_phi);
+    return whole ? KILN_OK : ki_fail_cancelled(error, names[method]);
+}
+
+void ki_assignment_average(const kiln_image *energy, kiln_image *average)
+{
+    size_t width = (size_t)energy->width;
+    for (size_t y = 0; y < (size_t)energy->height; y++) {
+        const float *e = energy->pixels + y * width;
+        double sum = 0;
+        for (size_t x = 0; x < width; x++)
+            sum += (double)e[x] * (((double)x + 0.5) / (double)width);
+        for (size_t x = 0; x < width; x++)
+            average->pixels[y * width + x] = (float)(2 * sum / (double)width);
+    }
+}
+
+// ----------------------------------------------------------------------------------------- comparing
+
+// sRGB by the decade of the error, from 1e-4 to 1: each step is about as much darker to the eye. Blue
+// is too dark, red too bright.
+enum { STOPS = 5 };
+static const double ramp[2][STOPS][3] = {
+    {{247, 246, 243}, {150, 200, 230}, {70, 145, 200}, {30, 90, 160}, {12, 40, 90}},
+    {{247, 246, 243}, {250, 180, 120}, {225, 110, 65}, {165, 50, 40}, {90, 5, 25}}};
+
+static void error_color(double off, float color[3])
+{
+    double size = fabs(off), at = 0;
+    if (size > 1e-4)
+        at = ki_clamp(STOPS - 1 + ki_log(size) / ki_log(10), 0, STOPS - 1);
+    int i = ki_min((int)at, STOPS - 2);
+    const double *low = ramp[off > 0][i], *high = ramp[off > 0][i + 1];
+    for (int c = 0; c < 3; c++)
+        color[c] = (float)((low[c] + (high[c] - low[c]) * (at - i)) / 255);
+}
+
+kiln_difference ki_assignment_compare(const kiln_image *table, const kiln_image *exact,
+                                      kiln_image *map)
+{
+    kiln_difference figures = {0};
+    size_t count = (size_t)table->width * (size_t)table->height;
+    for (size_t i = 0; i < count; i++) {
+        double off = (double)table->pixels[i] - (double)exact->pixels[i];
+        figures.max = fabs(off) > figures.max ? fabs(off) : figures.max;
+        figures.rms += off * off;
+        figures.mean += off;
+        if (map)
+            error_color(off, map->pixels + 3 * i);
+    }
+    figures.rms = sqrt(figures.rms / (double)count);
+    figures.mean /= (double)count;
+    return figures;
+}
