@@ -8,8 +8,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-const char *const assignment_g_names[] = {"schlick-k2", "schlick-text", NULL};
-
 const char *const assignment_names[ASSIGNMENT_TABLES] = {
     [ASSIGNMENT_MC] = "Emu_MC",
     [ASSIGNMENT_MC_UNCLAMPED] = "Emu_MC_unclamped",
@@ -107,8 +105,8 @@ static kiln_result compute_average(assignment *a, int table, bool bytes)
                (size_t)source->width * (size_t)source->height * sizeof *energy.pixels);
         if (bytes)
             kiln_assignment_truncate(&energy);
-        result = kiln_assignment_average(a->job->context, &energy, &a->table[table],
-                                         &a->job->error);
+        result =
+            kiln_assignment_average(a->job->context, &energy, &a->table[table], &a->job->error);
     }
     kiln_image_free(&energy);
     return result;
@@ -118,8 +116,7 @@ static kiln_result compute_average(assignment *a, int table, bool bytes)
 static kiln_result compute_exact(assignment *a)
 {
     int size = a->def->size;
-    kiln_table_def def = {
-        .model = {.g = a->def->g}, .width = size, .height = size, .flip = true};
+    kiln_table_def def = {.model = {.g = a->def->g}, .width = size, .height = size, .flip = true};
     kiln_table energy = {0}, average = {0};
     kiln_result result = kiln_table_create(a->job->context, &def, &energy, &a->job->error);
     a->table[ASSIGNMENT_EXACT] = energy.image;
@@ -169,8 +166,8 @@ static kiln_result save_table(assignment *a, const kiln_image *table, const char
                               bool figure3)
 {
     kiln_image rgb = {0};
-    kiln_result result = kiln_image_create(a->job->context, table->width, table->height, 3, &rgb,
-                                           &a->job->error);
+    kiln_result result =
+        kiln_image_create(a->job->context, table->width, table->height, 3, &rgb, &a->job->error);
     if (!result) {
         size_t width = (size_t)table->width, height = (size_t)table->height;
         for (size_t y = 0; y < height; y++)
@@ -228,8 +225,8 @@ static kiln_result write_pictures(assignment *a)
 static void print_figures(const assignment *a)
 {
     printf("%s: %d files, %d x %d, %d samples, %s, %.2f s\n", a->def->folder, a->file_count,
-           a->def->size, a->def->size, a->def->samples,
-           assignment_g_names[a->def->g - KILN_G_SCHLICK_K2], cli_seconds() - a->job->began);
+           a->def->size, a->def->size, a->def->samples, cli_g_names[a->def->g],
+           cli_seconds() - a->job->began);
     printf("  %-17s %9s %9s %10s\n", "against the exact", "largest", "rms", "mean");
     for (int t = 0; t < ASSIGNMENT_TABLES; t++)
         if (!assignment_is_exact(t))

@@ -11,9 +11,6 @@ typedef struct assignment_def {
     bool json, quiet;
 } assignment_def;
 
-/// The names of the values of g that the assignment knows, from KILN_G_SCHLICK_K2 on; ends in NULL.
-extern const char *const assignment_g_names[];
-
 /// CLI_GO, or the exit code: the folder's name cannot be one.
 int assignment_check_folder(const char *folder);
 /// Computes all, then writes all: pictures and report.md. CLI_DONE or CLI_FAILED.

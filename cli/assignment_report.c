@@ -82,24 +82,25 @@ static void write_errors(const assignment *a, FILE *f)
                     assignment_words[t], a->difference[t].max, a->difference[t].rms,
                     a->difference[t].mean);
     fputs("\nThe cut to bytes takes off up to 1/255 = 3.9e-3 more, half of that on average. The "
-          "framework computes E_avg from the picture: the last row but the exact one.\n\n",
+          "framework reads the picture to compute E_avg, which is Eavg_from_bytes.\n\n",
           f);
 }
 
 static void write_band(const assignment *a, FILE *f)
 {
     static const double roughness[] = {0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.5};
-    fprintf(f,
-            "## The dark band of figure 1 is the clamp's\n\n"
-            "The framework divides by max(pi ((n.h)^2 (alpha^2 - 1) + 1)^2, 1e-4). At the peak of D "
-            "that is pi alpha^4, which is below 1e-4 for every roughness below %.3f: there the peak, "
-            "and with it E, is cut off. The assignment blames the noise. But noise has no sign: "
-            "with the same samples and D as it is, the means of the rows stay near the exact ones "
-            "as long as some samples hit the lobe, while the clamp takes their light away. "
-            "(Below roughness 0.1 or so 1024 samples seldom hit it at all: a few texels hold it "
-            "all.) Means over mu:\n\n"
-            "| roughness | exact | unclamped | clamped |\n|---|---|---|---|\n",
-            clamp_reach());
+    fprintf(
+        f,
+        "## The dark band of figure 1 is the clamp's\n\n"
+        "The framework divides by max(pi ((n.h)^2 (alpha^2 - 1) + 1)^2, 1e-4). At the peak of D "
+        "that is pi alpha^4, which is below 1e-4 for every roughness below %.3f: there the peak, "
+        "and with it E, is cut off. The assignment blames the noise. But noise has no sign: "
+        "with the same samples and D as it is, the means of the rows stay near the exact ones "
+        "as long as some samples hit the lobe, while the clamp takes their light away. "
+        "(Below roughness 0.1 or so 1024 samples seldom hit it at all: a few texels hold it "
+        "all.) Means over mu:\n\n"
+        "| roughness | exact | unclamped | clamped |\n|---|---|---|---|\n",
+        clamp_reach());
     for (size_t i = 0; i < sizeof roughness / sizeof *roughness; i++) {
         int row = row_of(a, roughness[i]);
         fprintf(f, "| %.4f | %.4f | %.4f | %.4f |\n", roughness_of(a, row),
@@ -121,18 +122,19 @@ static void write_contradictions(const assignment *a, FILE *f)
             "With the text's k even a mirror shadows itself: E_avg at roughness 0 is %.3f, so that "
             "Kulla and Conty's lobe would make it glow with the missing %.3f. With the figures' "
             "it is %.3f. The text's k is meant for point lights.\n",
-            text ? "(roughness + 1)^2 / 8" : "roughness^2 / 2",
-            assignment_g_names[a->def->g - KILN_G_SCHLICK_K2], assignment_g_names[!text],
+            text ? "(roughness + 1)^2 / 8" : "roughness^2 / 2", cli_g_names[a->def->g],
+            cli_g_names[text ? KILN_G_SCHLICK_K2 : KILN_G_SCHLICK_TEXT],
             mirror_average(KILN_G_SCHLICK_TEXT), 1 - mirror_average(KILN_G_SCHLICK_TEXT),
             mirror_average(KILN_G_SCHLICK_K2));
-    fprintf(f,
-            "- **D.** The text's denominator, ((n.h)^2 ((alpha^2 - 1) + 1))^2, has a parenthesis in "
-            "the wrong place: that is (n.h)^4 alpha^4, no distribution at all. Meant, and used "
-            "here, is ((n.h)^2 (alpha^2 - 1) + 1)^2.\n"
-            "- **Figure 4.** Its top row, roughness %.4f, reads about 0.2235. The exact value is "
-            "%.4f, and the recipe of the text, 2 mean(E mu), gives %.4f from our samples.\n",
-            roughness_of(a, 0), first_of_row(a, ASSIGNMENT_AVERAGE_EXACT, 0),
-            first_of_row(a, ASSIGNMENT_AVERAGE, 0));
+    fprintf(
+        f,
+        "- **D.** The text's denominator, ((n.h)^2 ((alpha^2 - 1) + 1))^2, has a parenthesis in "
+        "the wrong place: that is (n.h)^4 alpha^4, no distribution at all. Meant, and used "
+        "here, is ((n.h)^2 (alpha^2 - 1) + 1)^2.\n"
+        "- **Figure 4.** Its top row, roughness %.4f, reads about 0.2235. The exact value is "
+        "%.4f, and the recipe of the text, 2 mean(E mu), gives %.4f from our samples.\n",
+        roughness_of(a, 0), first_of_row(a, ASSIGNMENT_AVERAGE_EXACT, 0),
+        first_of_row(a, ASSIGNMENT_AVERAGE, 0));
 }
 
 static void write_text(const assignment *a, FILE *f)
@@ -143,8 +145,7 @@ static void write_text(const assignment *a, FILE *f)
             "with Schlick's G, k = %s. %d x %d texels, %d samples each. Made by `kiln tables "
             "--assignment --g %s`, kiln %s.\n\n",
             a->def->g == KILN_G_SCHLICK_TEXT ? "(roughness + 1)^2 / 8" : "roughness^2 / 2",
-            a->def->size, a->def->size, a->def->samples,
-            assignment_g_names[a->def->g - KILN_G_SCHLICK_K2], kiln_version());
+            a->def->size, a->def->size, a->def->samples, cli_g_names[a->def->g], kiln_version());
     write_files(a, f);
     write_errors(a, f);
     write_band(a, f);
@@ -182,7 +183,7 @@ int assignment_print_json(const assignment *a)
     cJSON_AddNumberToObject(json, "files", a->file_count);
     cJSON_AddNumberToObject(json, "size", a->def->size);
     cJSON_AddNumberToObject(json, "samples", a->def->samples);
-    cJSON_AddStringToObject(json, "g", assignment_g_names[a->def->g - KILN_G_SCHLICK_K2]);
+    cJSON_AddStringToObject(json, "g", cli_g_names[a->def->g]);
     cJSON_AddNumberToObject(json, "mirror_average", mirror_average(a->def->g));
     cJSON_AddNumberToObject(json, "clamped_below_roughness", clamp_reach());
     cJSON *tables = cJSON_AddArrayToObject(json, "tables");

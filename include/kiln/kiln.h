@@ -659,10 +659,11 @@ typedef struct kiln_assignment_def {
     int size;         ///< 2 to 1024; 0 for 128
     int sample_count; ///< to 1048576; 0 for 1024. Monte Carlo takes the largest square up to it
     kiln_g g;         ///< see has_g. D is GGX
-    bool has_g;       ///< false: KILN_G_SCHLICK_K2, which its figures have; its text has the other k
-    bool unclamped;   ///< Monte Carlo: D's denominator as it is, where the framework has 1e-4 at least
-    bool unflipped;   ///< row 0 holds roughness 0, as in figure 3; else the top row is roughness 1
-    uint64_t seed;    ///< of Monte Carlo's numbers
+    bool has_g; ///< false: KILN_G_SCHLICK_K2, which its figures have; its text has the other k
+    bool
+        unclamped; ///< Monte Carlo: D's denominator as it is, where the framework has 1e-4 at least
+    bool unflipped; ///< row 0 holds roughness 0, as in figure 3; else the top row is roughness 1
+    uint64_t seed;  ///< of Monte Carlo's numbers
 } kiln_assignment_def;
 
 /// E with F = 1, size x size, one channel, before it is cut to bytes: mu = (x + 1/2) / size from left

@@ -36,6 +36,8 @@ temporary() { ls ./*.tmp >log/ls 2>&1; }
     stop HUP 129 moment bake sky.exr -o out.ktx2 $long --threads 1
     stop INT 130 moment bake sky.exr -o out.ktx2 --size 2048 --format rgba32f
     stop INT 130 moment tables --method textbook -o out.exr --size 1024 --samples 2000
+    stop INT 130 moment tables --assignment -o out --size 1024
+    [ ! -e out ] || die "a folder with nothing in it"
 }
 # While the file is being written.
 stop INT 130 temporary bake sky.exr -o out.ktx2 --size 1024 --levels 1 --format rgba32f
