@@ -94,7 +94,7 @@ static void write_band(const assignment *a, FILE *f)
         "## The dark band of figure 1 is the clamp's\n\n"
         "The framework divides by max(pi ((n.h)^2 (alpha^2 - 1) + 1)^2, 1e-4). At the peak of D "
         "that is pi alpha^4, which is below 1e-4 for every roughness below %.3f: there the peak, "
-        "and with it E, is cut off. The assignment blames the noise. But noise has no sign: "
+        "and with it E, is cut off. The assignment blames the noise. But noise errs both ways: "
         "with the same samples and D as it is, the means of the rows stay near the exact ones "
         "as long as some samples hit the lobe, while the clamp takes their light away. "
         "(Below roughness 0.1 or so 1024 samples seldom hit it at all: a few texels hold it "
