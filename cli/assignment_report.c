@@ -29,7 +29,7 @@ static double row_mean(const assignment *a, int table, int row)
 
 static double first_of_row(const assignment *a, int table, int row)
 {
-    return (double)a->table[table].pixels[row * a->def->size];
+    return (double)a->table[table].pixels[(size_t)row * (size_t)a->def->size];
 }
 
 // Below this roughness the denominator of D's peak, pi alpha^4, is under the clamp's 1e-4.

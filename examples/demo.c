@@ -655,9 +655,12 @@ static kiln_result write_page(demo *d, const char *path, const char *sections, c
         demo_page_text(f, i ? base_name(names[i - 1]) : "A computed sky");
         fputs("</a>", f);
     }
-    fprintf(f, "<a href=\"#table\">The split-sum table</a></nav>\n</div></header>\n<main>\n%s",
+    fprintf(f,
+            "<a href=\"#table\">The split-sum table</a>"
+            "<a href=\"assignment.html\">The assignment</a></nav>\n</div></header>\n<main>\n%s",
             sections);
-    demo_page_foot(f);
+    demo_page_foot(f, "Pictures are brought to the screen by one exposure a section and a filmic "
+                      "curve; every number is computed from the linear values.");
     bool failed = ferror(f);
     failed |= fclose(f) != 0;
     if (failed && !result) {
@@ -687,6 +690,8 @@ static kiln_result make_page(demo *d, const char *folder, char **names, int coun
     if (!result)
         result = show_split_sum(d);
     fclose(d->page.file);
+    if (!result)
+        result = demo_assignment_page(d->context, folder, d->scratch, &d->error);
     if (!result)
         result = write_page(d, path, sections, names, count);
     free(sections);

@@ -67,7 +67,8 @@ typedef struct demo_page {
 
 /// Head, style and title up to the first section.
 void demo_page_head(FILE *file);
-void demo_page_foot(FILE *file);
+/// `words` stand below the page.
+void demo_page_foot(FILE *file, const char *words);
 /// Text with &, < and > escaped.
 void demo_page_text(FILE *file, const char *text);
 /// <img> with the picture inside, which is released.
@@ -75,5 +76,9 @@ kiln_result demo_page_picture(demo_page *page, kiln_image *image, const char *st
                               const char *alt, kiln_error *error);
 /// The scale of the error maps.
 void demo_page_legend(FILE *file);
+
+/// assignment.html in `folder`; `scratch` as in demo_page.
+kiln_result demo_assignment_page(kiln_context *context, const char *folder, const char *scratch,
+                                 kiln_error *error);
 
 #endif

@@ -121,13 +121,10 @@ void demo_page_head(FILE *file)
     fputs(style_of_parts, file);
 }
 
-void demo_page_foot(FILE *file)
+void demo_page_foot(FILE *file, const char *words)
 {
-    fprintf(file,
-            "</main>\n<footer>Made by the demo of kiln %s. Pictures are brought to the screen by "
-            "one exposure a section and a filmic curve; every number is computed from the linear "
-            "values.</footer>\n%s</body>\n</html>\n",
-            kiln_version(), script);
+    fprintf(file, "</main>\n<footer>Made by the demo of kiln %s. %s</footer>\n%s</body>\n</html>\n",
+            kiln_version(), words, script);
 }
 
 void demo_page_text(FILE *file, const char *text)

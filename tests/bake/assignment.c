@@ -261,15 +261,16 @@ static void averages_are_twice_the_mean(void **state)
     assert_int_equal(average.width, SIZE);
     assert_int_equal(average.height, SIZE);
     for (int y = 0; y < SIZE; y++) {
+        const float *row = average.pixels + (size_t)y * SIZE;
         double mean = 0;
         for (int x = 0; x < SIZE; x++) {
-            assert_true(average.pixels[y * SIZE + x] == average.pixels[y * SIZE]);
+            assert_true(row[x] == row[0]);
             mean += (double)e.pixels[y * SIZE + x] * (x + 0.5) / SIZE / SIZE;
         }
-        CHECK_NEAR((double)average.pixels[y * SIZE], 2 * mean, 1e-7);
+        CHECK_NEAR((double)row[0], 2 * mean, 1e-7);
         double exact =
             kiln_energy_average(&(kiln_model){.g = KILN_G_SCHLICK_K2}, (SIZE - y - 0.5) / SIZE);
-        CHECK_NEAR((double)average.pixels[y * SIZE], exact, 2e-3);
+        CHECK_NEAR((double)row[0], exact, 2e-3);
     }
     kiln_image_free(&average);
     // E = 1 gives 1, E = mu 2/3 - 1 / 6 n^2: the midpoint rule.
@@ -294,9 +295,8 @@ static void top_row_is_rough(void **state)
         def.unflipped = true;
         kiln_image down = make((kiln_assignment_method)m, &def);
         for (int y = 0; y < SIZE; y++)
-            assert_memory_equal(up.pixels + (size_t)(y * SIZE),
-                                down.pixels + (size_t)((SIZE - 1 - y) * SIZE),
-                                SIZE * sizeof(float));
+            assert_memory_equal(up.pixels + (size_t)y * SIZE,
+                                down.pixels + (size_t)(SIZE - 1 - y) * SIZE, SIZE * sizeof(float));
         // The corners: roughness near 1 at the top, mu near 0 at the left.
         kiln_model model = {.g = KILN_G_SCHLICK_K2};
         double r = (SIZE - 0.5) / SIZE, mu = 0.5 / SIZE;
@@ -318,10 +318,11 @@ static void bytes_are_cut(void **state)
     float values[COUNT] = {0};
     for (int i = 0; i < 256; i++) {
         float edge = (float)i / 255;
-        values[4 * i] = edge;
-        values[4 * i + 1] = nextafterf(edge, 2);
-        values[4 * i + 2] = nextafterf(edge, -2);
-        values[4 * i + 3] = ((float)i + 0.99F) / 255;
+        float *four = values + (size_t)i * 4;
+        four[0] = edge;
+        four[1] = nextafterf(edge, 2);
+        four[2] = nextafterf(edge, -2);
+        four[3] = ((float)i + 0.99F) / 255;
     }
     values[2] = -1;
     values[COUNT - 1] = 7; // noise exceeds 1
@@ -335,7 +336,7 @@ static void bytes_are_cut(void **state)
     for (int i = 0; i < COUNT; i++) {
         double x = fmin(fmax((double)values[i], 0), 1);
         unsigned char byte = (unsigned char)(x * 255);
-        assert_true(back.pixels[3 * i] == ki_linear_from_srgb((float)byte / 255));
+        assert_true(back.pixels[3 * (size_t)i] == ki_linear_from_srgb((float)byte / 255));
     }
     kiln_image_free(&back);
     kiln_image_free(&image);
@@ -388,7 +389,8 @@ static void colours_darken_evenly(void **state)
             off.pixels[i] = (float)(sign * pow(10, i / 10.0 - 4));
         CHECK_OK(kiln_assignment_compare(context, &off, &none, &d, &map, &error));
         for (int i = 1; i < COUNT; i++) {
-            double step = lightness(map.pixels + 3 * (i - 1)) - lightness(map.pixels + 3 * i);
+            double step =
+                lightness(map.pixels + 3 * (size_t)(i - 1)) - lightness(map.pixels + 3 * (size_t)i);
             CHECK_NEAR(step, 2, 0.9);
         }
         kiln_image_free(&map);
