@@ -43,11 +43,28 @@ void fdez_aguera(vec3 f0, float a, float b, out vec3 single, out vec3 multiple)
 
 // ------------------------------------------------------------------------------------------ tables
 
+// The numbers are kiln_axis's; the last is KILN_AXIS_GRAZING of a table for SCHLICK_TEXT.
+const int AXIS_LINEAR = 0, AXIS_SQRT = 1, AXIS_CBRT = 2, AXIS_GRAZING = 3, AXIS_GRAZING_TEXT = 4;
+
+// Where n.v lies along u, 0 to 1.
+float table_axis(int axis, float nov, float roughness)
+{
+    if (axis == AXIS_LINEAR)
+        return nov;
+    if (axis == AXIS_SQRT)
+        return sqrt(nov);
+    if (axis == AXIS_CBRT)
+        return pow(nov, 1.0 / 3.0);
+    float k = schlick_k_direct(roughness);
+    float c = axis == AXIS_GRAZING_TEXT ? k / (1.0 - k) : roughness * roughness;
+    return nov > 0.0 ? sqrt(nov * (1.0 + c) / (nov + c)) : 0.0;
+}
+
 // How a table lies: kiln_table_def's fields as numbers, vec4(axis, corners, complement, flip).
-// n.v runs along x on its axis (0 linear, 1 square root, 2 cube root), roughness along y.
+// n.v runs along x on its axis, roughness along y. Returns texels, whose centres are whole numbers.
 vec2 table_place(vec4 layout_, ivec2 size, float nov, float roughness)
 {
-    float u = layout_.x > 1.5 ? pow(nov, 1.0 / 3.0) : layout_.x > 0.5 ? sqrt(nov) : nov;
+    float u = table_axis(int(layout_.x), nov, roughness);
     float v = layout_.w > 0.5 ? 1.0 - roughness : roughness;
     vec2 last = vec2(size - 1);
     vec2 at = layout_.y > 0.5 ? vec2(u, v) * last : vec2(u, v) * vec2(size) - 0.5;

@@ -15,8 +15,8 @@ vec3 tone_neutral(vec3 c)
     float peak = max(c.r, max(c.g, c.b));
     if (peak <= 0.8)
         return c;
-    float bent = 1.0 - 0.04 / (peak - 0.6);
-    float white = 1.0 - 1.0 / (0.15 * (peak - bent) + 1.0);
+    float over = peak - 0.8, less = over * over / (peak - 0.6); // peak - bent
+    float bent = peak - less, white = 0.15 * less / (0.15 * less + 1.0);
     return mix(c * (bent / peak), vec3(bent), white);
 }
 

@@ -51,6 +51,8 @@ static void set_table(view_renderer *r, int place, const kiln_table *table)
     view_upload_image(&r->gl, TABLES + place, &r->texture[TABLES + place], image);
     float *layout = r->block.table_layout[place];
     layout[0] = (float)table->def.axis;
+    if (table->def.axis == KILN_AXIS_GRAZING && table->def.model.g == KILN_G_SCHLICK_TEXT)
+        layout[0]++; // AXIS_GRAZING_TEXT
     layout[1] = table->def.corners;
     layout[2] = table->def.complement;
     layout[3] = table->def.flip;

@@ -196,7 +196,8 @@ int view_balls(const view_options *o, view_ball balls[VIEW_MAX_BALLS])
 
 static double tone_bend(double c, double peak)
 {
-    double bent = 1 - 0.04 / (peak - 0.6), white = 1 - 1 / (0.15 * (peak - bent) + 1);
+    double less = (peak - 0.8) * (peak - 0.8) / (peak - 0.6);
+    double bent = peak - less, white = 0.15 * less / (0.15 * less + 1);
     return c * bent / peak * (1 - white) + bent * white;
 }
 

@@ -1,0 +1,398 @@
+// Every function of shaders/*.glsl against its C twin: random arguments in a float texture, results
+// rendered into another, to 1e-5 relative.
+#include "check.h"
+
+#include "gl.h"
+#include "headless.h"
+#include "parts.h"
+
+#include "brdf/brdf.h"
+
+extern const char test_all_glsl[];
+
+enum { COUNT = 2048, ARGUMENTS = 8 };
+
+static view_headless *headless;
+static view_gl gl;
+
+static uint64_t state = 88172645463325252u;
+
+static double uniform(void)
+{
+    state ^= state << 13;
+    state ^= state >> 7;
+    state ^= state << 17;
+    return (double)(state >> 11) / 9007199254740992.0;
+}
+
+// ------------------------------------------------------------------------------------------- render
+
+static int start(void **unused)
+{
+    (void)unused;
+    kiln_error error;
+    const char *missing = NULL;
+    if (view_headless_create(&headless, &error) != KILN_OK) {
+        fprintf(stderr, "%s\n", error.message);
+        return -1;
+    }
+    return view_gl_load(&gl, view_headless_lookup, &missing) ? 0 : -1;
+}
+
+static int stop(void **unused)
+{
+    (void)unused;
+    view_headless_destroy(headless);
+    return 0;
+}
+
+// Evaluates `expression`, a vec3 of float x[8], for every row of arguments.
+static void render(const char *expression, const float (*x)[ARGUMENTS], float (*result)[4])
+{
+    static char text[65536];
+    kiln_error error = {0};
+    GLuint program, texture = 0, frame = 0, target = 0, vertices = 0;
+    int length = snprintf(text, sizeof text,
+                          "%s\nuniform sampler2D arguments;\nout vec4 result;\nvoid main()\n{\n"
+                          "float x[8];\nivec2 at = ivec2(gl_FragCoord.xy);\n"
+                          "vec4 a = texelFetch(arguments, ivec2(0, at.x), 0);\n"
+                          "vec4 b = texelFetch(arguments, ivec2(1, at.x), 0);\n"
+                          "for (int i = 0; i < 4; i++) { x[i] = a[i]; x[i + 4] = b[i]; }\n"
+                          "vec3 r;\n%s\nresult = vec4(r, 1.0);\n}\n",
+                          test_all_glsl, expression);
+    assert_true(length > 0 && (size_t)length < sizeof text);
+    CHECK_OK(view_link(&gl, text, &program, &error));
+    kiln_image image = {.width = 2, .height = COUNT, .channels = 4};
+    image.pixels = (float *)(uintptr_t)x;
+    view_upload_image(&gl, 0, &texture, &image);
+    gl.GenRenderbuffers(1, &target);
+    gl.BindRenderbuffer(GL_RENDERBUFFER, target);
+    gl.RenderbufferStorage(GL_RENDERBUFFER, GL_RGBA32F, COUNT, 1);
+    gl.GenFramebuffers(1, &frame);
+    gl.BindFramebuffer(GL_FRAMEBUFFER, frame);
+    gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, target);
+    assert_int_equal(gl.CheckFramebufferStatus(GL_FRAMEBUFFER), GL_FRAMEBUFFER_COMPLETE);
+    gl.Viewport(0, 0, COUNT, 1);
+    gl.GenVertexArrays(1, &vertices);
+    gl.BindVertexArray(vertices);
+    gl.UseProgram(program);
+    gl.DrawArrays(GL_TRIANGLES, 0, 3);
+    gl.ReadPixels(0, 0, COUNT, 1, GL_RGBA, GL_FLOAT, result);
+    assert_int_equal(gl.GetError(), GL_NO_ERROR);
+    gl.DeleteVertexArrays(1, &vertices);
+    gl.DeleteFramebuffers(1, &frame);
+    gl.DeleteRenderbuffers(1, &target);
+    gl.DeleteTextures(1, &texture);
+    gl.DeleteProgram(program);
+}
+
+// ----------------------------------------------------------------------------------------- compare
+
+typedef void twin(const double x[ARGUMENTS], double r[3]);
+
+typedef struct function {
+    const char *name, *expression;
+    twin *twin;
+    double low[ARGUMENTS], high[ARGUMENTS]; ///< of the arguments
+} function;
+
+// Random arguments, with the ends of their ranges now and then.
+static void draw_arguments(const function *f, float x[ARGUMENTS])
+{
+    for (int i = 0; i < ARGUMENTS; i++) {
+        double u = uniform(), end = uniform();
+        u = end < 0.02 ? 0 : end > 0.98 ? 1 : u;
+        x[i] = (float)(f->low[i] + (f->high[i] - f->low[i]) * u);
+    }
+}
+
+static void compare(const function *f)
+{
+    static float x[COUNT][ARGUMENTS], result[COUNT][4];
+    double worst = 0;
+    for (int i = 0; i < COUNT; i++)
+        draw_arguments(f, x[i]);
+    render(f->expression, (const float(*)[ARGUMENTS])x, result);
+    for (int i = 0; i < COUNT; i++) {
+        double arguments[ARGUMENTS], wanted[3] = {0};
+        for (int k = 0; k < ARGUMENTS; k++)
+            arguments[k] = (double)x[i][k];
+        f->twin(arguments, wanted);
+        for (int c = 0; c < 3; c++) {
+            double got = (double)result[i][c], off = fabs(got - wanted[c]);
+            if (!(off <= 1e-5 * fabs(wanted[c])))
+                fail_msg("%s(%g, %g, %g, %g, %g, %g, %g, %g)[%d] is %.9g, C has %.9g (%.2g)",
+                         f->name, arguments[0], arguments[1], arguments[2], arguments[3],
+                         arguments[4], arguments[5], arguments[6], arguments[7], c, got, wanted[c],
+                         off / fabs(wanted[c]));
+            if (wanted[c] != 0)
+                worst = fmax(worst, off / fabs(wanted[c]));
+        }
+    }
+    print_message("%-32s %.1e\n", f->name, worst);
+}
+
+// ------------------------------------------------------------------------------------------- twins
+
+static void c_ggx_d(const double x[ARGUMENTS], double r[3])
+{
+    r[0] = ki_ggx_d(x[0], x[1]);
+}
+
+static void c_smith_g1_schlick(const double x[ARGUMENTS], double r[3])
+{
+    r[0] = ki_smith_g1_schlick(x[0], x[1]);
+    r[1] = ki_smith_g_schlick(x[0], x[1], x[2]);
+}
+
+static void c_schlick_k(const double x[ARGUMENTS], double r[3])
+{
+    r[0] = ki_schlick_k_ibl(x[0]);
+    r[1] = ki_schlick_k_direct(x[0]);
+}
+
+static void c_smith_g1_over_cosine(const double x[ARGUMENTS], double r[3])
+{
+    r[0] = ki_smith_g1_over_cosine(x[0], x[1]);
+}
+
+static void c_visibility(const double x[ARGUMENTS], double r[3])
+{
+    kiln_model model = {.g = (kiln_g)(int)x[3]};
+    r[0] = ki_visibility(&model, x[0], x[1], x[2]);
+}
+
+static void c_schlick_fresnel(const double x[ARGUMENTS], double r[3])
+{
+    r[0] = ki_schlick_fresnel(x[0]);
+}
+
+static void c_fresnel_dielectric(const double x[ARGUMENTS], double r[3])
+{
+    r[0] = ki_fresnel_dielectric(x[0], x[1]);
+}
+
+static void c_fresnel_conductor_average_fit(const double x[ARGUMENTS], double r[3])
+{
+    for (int c = 0; c < 3; c++)
+        r[c] = ki_fresnel_conductor_average_fit(x[c], x[3 + c]);
+}
+
+static void c_kulla_conty(const double x[ARGUMENTS], double r[3])
+{
+    r[0] = ki_kulla_conty(x[0], x[1], x[2]);
+    r[1] = ki_kulla_conty(1 - x[0], 1 - x[1], 1 - x[2]);
+}
+
+static void c_kulla_conty_fresnel(const double x[ARGUMENTS], double r[3])
+{
+    for (int c = 0; c < 3; c++)
+        r[c] = ki_kulla_conty_fresnel((kiln_f_add)(int)x[6], x[c], x[3 + c]);
+}
+
+static void c_turquin(const double x[ARGUMENTS], double r[3])
+{
+    for (int c = 0; c < 3; c++)
+        r[c] = ki_turquin(x[c], x[3]);
+}
+
+static void c_fdez_aguera_single(const double x[ARGUMENTS], double r[3])
+{
+    double multiple;
+    for (int c = 0; c < 3; c++)
+        ki_fdez_aguera(x[c], x[3], x[4], &r[c], &multiple);
+}
+
+static void c_fdez_aguera_multiple(const double x[ARGUMENTS], double r[3])
+{
+    double single;
+    for (int c = 0; c < 3; c++)
+        ki_fdez_aguera(x[c], x[3], x[4], &single, &r[c]);
+}
+
+static void c_table_axis(const double x[ARGUMENTS], double r[3])
+{
+    double k = ki_schlick_k_direct(x[1]), alpha = x[1] * x[1], c[2] = {alpha, k / (1 - k)};
+    int axis = (int)x[2];
+    r[0] = axis == 0 ? x[0] : axis == 1 ? sqrt(x[0]) : axis == 2 ? cbrt(x[0]) : 0;
+    if (axis > 2 && x[0] > 0)
+        r[0] = sqrt(x[0] * (1 + c[axis - 3]) / (x[0] + c[axis - 3]));
+}
+
+static void c_environment_level(const double x[ARGUMENTS], double r[3])
+{
+    // Levels of roughness 0, x1, x1 + x2, ..., 1: linear between them.
+    double rise[5] = {0, x[1], x[1] + x[2], x[1] + x[2] + x[3], 1};
+    for (int i = 1; i < 5; i++)
+        if (x[0] >= rise[i - 1])
+            r[0] = i - 1 + fmin((x[0] - rise[i - 1]) / (rise[i] - rise[i - 1]), 1);
+    r[0] += 1; // away from 0, where there is no relative error
+}
+
+// The form factor of a ball wholly above the horizon: cos theta sin^2 of its half angle.
+static void c_ball_occlusion(const double x[ARGUMENTS], double r[3])
+{
+    double d = 1 + x[1], sine = x[2] / d;
+    r[0] = 1 - x[0] * sine * sine;
+}
+
+static void c_specular_occlusion(const double x[ARGUMENTS], double r[3])
+{
+    double alpha = x[2] * x[2];
+    r[0] = 1 + fmin(fmax(pow(x[0] + x[1], exp2(-16 * alpha - 1)) - 1 + x[1], 0), 1);
+}
+
+static void c_tone_assignment(const double x[ARGUMENTS], double r[3])
+{
+    view_tone(VIEW_SCENE_ASSIGNMENT, x, r);
+}
+
+static void c_tone_neutral(const double x[ARGUMENTS], double r[3])
+{
+    view_tone(VIEW_SCENE_IBL, x, r);
+}
+
+#define TO_1 1, 1, 1, 1, 1, 1, 1, 1
+static const function functions[] = {
+    {"ggx_d", "r = vec3(ggx_d(x[0], x[1]), 0.0, 0.0);", c_ggx_d, {1e-4}, {TO_1}},
+    {"smith_g1_schlick, smith_g_schlick",
+     "r = vec3(smith_g1_schlick(x[0], x[1]), smith_g_schlick(x[0], x[1], x[2]), 0.0);",
+     c_smith_g1_schlick,
+     {1e-6},
+     {TO_1}},
+    {"schlick_k_ibl, schlick_k_direct",
+     "r = vec3(schlick_k_ibl(x[0]), schlick_k_direct(x[0]), 0.0);",
+     c_schlick_k,
+     {0},
+     {TO_1}},
+    {"smith_g1_over_cosine",
+     "r = vec3(smith_g1_over_cosine(x[0], x[1]), 0.0, 0.0);",
+     c_smith_g1_over_cosine,
+     {1e-4},
+     {TO_1}},
+    {"visibility",
+     "r = vec3(visibility(int(x[3]), x[0], x[1], x[2]), 0.0, 0.0);",
+     c_visibility,
+     {0.01, 1e-4},
+     {1, 1, 1, 3.99}},
+    {"schlick_fresnel",
+     "r = vec3(schlick_fresnel(x[0]), 0.0, 0.0);",
+     c_schlick_fresnel,
+     {0},
+     {TO_1}},
+    {"fresnel_dielectric",
+     "r = vec3(fresnel_dielectric(x[0], x[1]), 0.0, 0.0);",
+     c_fresnel_dielectric,
+     {1.05, 0},
+     {3, 1}},
+    {"fresnel_conductor_average_fit",
+     "r = fresnel_conductor_average_fit(vec3(x[0], x[1], x[2]), vec3(x[3], x[4], x[5]));",
+     c_fresnel_conductor_average_fit,
+     {0},
+     {TO_1}},
+    {"kulla_conty, kulla_conty_missing",
+     "r = vec3(kulla_conty(x[0], x[1], x[2]), kulla_conty_missing(x[0], x[1], x[2]), 0.0);",
+     c_kulla_conty,
+     {0, 0, 0.01},
+     {1, 1, 0.99}},
+    {"kulla_conty_fresnel",
+     "r = kulla_conty_fresnel(int(x[6]), vec3(x[0], x[1], x[2]), vec3(x[3], x[4], x[5]));",
+     c_kulla_conty_fresnel,
+     {0, 0, 0, 0.3, 0.3, 0.3},
+     {1, 1, 1, 1, 1, 1, 1.99}},
+    {"turquin", "r = turquin(vec3(x[0], x[1], x[2]), x[3]);", c_turquin, {0, 0, 0, 0.1}, {TO_1}},
+    {"fdez_aguera, single",
+     "vec3 m;\nfdez_aguera(vec3(x[0], x[1], x[2]), x[3], x[4], r, m);",
+     c_fdez_aguera_single,
+     {0, 0, 0, 0.1},
+     {1, 1, 1, 0.5, 0.4}},
+    {"fdez_aguera, multiple",
+     "vec3 s;\nfdez_aguera(vec3(x[0], x[1], x[2]), x[3], x[4], s, r);",
+     c_fdez_aguera_multiple,
+     {0, 0, 0, 0.1},
+     {1, 1, 1, 0.5, 0.4}},
+    {"table_axis",
+     "r = vec3(table_axis(int(x[2]), x[0], x[1]), 0.0, 0.0);",
+     c_table_axis,
+     {0, 0, 0},
+     {1, 0.99, 4.99}},
+    {"environment_level",
+     "vec4 of_level[4];\nof_level[0] = vec4(0.0, x[1], x[1] + x[2], x[1] + x[2] + x[3]);\n"
+     "of_level[1] = vec4(1.0);\nr = vec3(1.0 + environment_level(of_level, 5, x[0]), 0.0, 0.0);",
+     c_environment_level,
+     {0, 0.1, 0.1, 0.1},
+     {1, 0.3, 0.3, 0.3}},
+    {"ball_occlusion",
+     "float s = sqrt(1.0 - x[0] * x[0]);\n"
+     "r = vec3(ball_occlusion(vec3(0, 0, 1), (1.0 + x[1]) * vec3(s, 0.0, x[0]), x[2]), 0.0, 0.0);",
+     c_ball_occlusion,
+     {0, 0, 0},
+     {1, 10, 0.9}},
+    {"specular_occlusion",
+     "r = vec3(1.0 + specular_occlusion(x[0], x[1], x[2]), 0.0, 0.0);",
+     c_specular_occlusion,
+     {0.01, 0.01},
+     {TO_1}},
+    {"tone_assignment",
+     "r = tone_assignment(vec3(x[0], x[1], x[2]));",
+     c_tone_assignment,
+     {1e-4, 1e-4, 1e-4},
+     {10, 10, 10}},
+    {"tone_neutral, srgb_encode",
+     "r = srgb_encode(tone_neutral(vec3(x[0], x[1], x[2])));",
+     c_tone_neutral, // what white adds to a channel of 0 is all rounding near 0.8
+     {0.02, 0.02, 0.02},
+     {3, 3, 3}},
+};
+
+static void glsl_agrees_with_c(void **unused)
+{
+    (void)unused;
+    for (size_t i = 0; i < sizeof functions / sizeof *functions; i++)
+        compare(&functions[i]);
+}
+
+// The series has no relative error where it crosses 0: against its largest value.
+static void harmonics_agree_with_c(void **unused)
+{
+    (void)unused;
+    static float x[COUNT][ARGUMENTS], result[COUNT][4];
+    kiln_sh sh = {.bands = 3, .irradiance = true};
+    char expression[1024] = "vec3 c[9];\n";
+    static const double lobe[] = {1, 2.0 / 3, 2.0 / 3, 2.0 / 3, 0.25, 0.25, 0.25, 0.25, 0.25};
+    for (int i = 0; i < 9; i++) {
+        double c[3];
+        for (int k = 0; k < 3; k++) {
+            c[k] = (double)(float)(uniform() - 0.5);
+            sh.c[i][k] = lobe[i] * c[k];
+        }
+        size_t used = strlen(expression);
+        snprintf(expression + used, sizeof expression - used, "c[%d] = vec3(%.9f, %.9f, %.9f);\n",
+                 i, c[0], c[1], c[2]);
+    }
+    size_t used = strlen(expression);
+    snprintf(expression + used, sizeof expression - used,
+             "r = sh_irradiance(c, vec3(x[0], x[1], x[2]));");
+    for (int i = 0; i < COUNT; i++) {
+        double z = 2 * uniform() - 1, phi = 6.283185307 * uniform(), s = sqrt(1 - z * z);
+        x[i][0] = (float)(s * cos(phi));
+        x[i][1] = (float)(s * sin(phi));
+        x[i][2] = (float)z;
+    }
+    render(expression, (const float(*)[ARGUMENTS])x, result);
+    for (int i = 0; i < COUNT; i++) {
+        double direction[3] = {(double)x[i][0], (double)x[i][1], (double)x[i][2]}, value[3];
+        kiln_sh_evaluate(&sh, direction, value);
+        for (int c = 0; c < 3; c++)
+            CHECK_NEAR((double)result[i][c], value[c], 1e-6);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(glsl_agrees_with_c),
+        cmocka_unit_test(harmonics_agree_with_c),
+    };
+    return cmocka_run_group_tests_name("shaders", tests, start, stop);
+}
