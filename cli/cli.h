@@ -99,6 +99,8 @@ int cli_job_end(cli_job *job, int code);
 /// A signal asks to stop.
 bool cli_interrupted(void);
 void cli_clear_progress(cli_job *job);
+/// Draws the progress line of `user`, a job; false where a signal asks to stop.
+bool cli_progress(void *user, const char *stage, double fraction);
 /// "kiln: warning: SENTENCE" on standard error.
 void cli_warn(cli_job *job, const char *format, ...) __attribute__((format(printf, 2, 3)));
 

@@ -252,7 +252,7 @@ void cli_clear_progress(cli_job *job)
     job->drawn = 0;
 }
 
-static bool progress(void *user, const char *stage, double fraction)
+bool cli_progress(void *user, const char *stage, double fraction)
 {
     cli_job *job = user;
     double now = cli_seconds();
@@ -282,7 +282,7 @@ int cli_job_begin(cli_job *job, int threads, bool quiet)
     catch_signals();
     kiln_context_def def = {
         .thread_count = threads,
-        .progress = progress,
+        .progress = cli_progress,
         .progress_user = job,
         .memory_limit = physical_memory(),
     };

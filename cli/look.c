@@ -29,6 +29,8 @@ const struct poptOption look_options[] = {
     {"as-printed", 0, POPT_ARG_NONE, NULL, LOOK_AS_PRINTED,
      "assignment: with the mistake of the handout's figure 6", NULL},
     {"occlusion", 0, POPT_ARG_NONE, NULL, LOOK_OCCLUSION, "balls shade one another", NULL},
+    {"bent", 0, POPT_ARG_NONE, NULL, LOOK_BENT,
+     "rough balls look the environment up nearer to their normal", NULL},
     {"diffuse", 0, POPT_ARG_STRING, NULL, LOOK_DIFFUSE,
      "light of diffuse surfaces: sh (harmonics) or cube (sh)", "SOURCE"},
     {"bake-size", 0, POPT_ARG_STRING, NULL, LOOK_BAKE_SIZE,
@@ -124,6 +126,7 @@ int look_read(const cli_arguments *a, look *l)
     o->debug = (view_debug)debug;
     o->cube_diffuse = diffuse;
     o->as_printed = a->value[LOOK_AS_PRINTED];
+    o->bent = a->value[LOOK_BENT];
     o->occlusion = a->value[LOOK_OCCLUSION];
     return check(a, l);
 }

@@ -25,6 +25,7 @@ enum {
     LOOK_SPLIT,
     LOOK_AS_PRINTED,
     LOOK_OCCLUSION,
+    LOOK_BENT,
     LOOK_DIFFUSE,
     LOOK_BAKE_SIZE,
 };

@@ -3,24 +3,38 @@
 #include "look.h"
 
 #include "headless.h"
+#include "reference.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { OUTPUT = 1, THREADS, QUIET };
+enum { OUTPUT = 1, REFERENCE, ERRORS, NOISE, THREADS, QUIET };
 
 static const struct poptOption options[] = {
     {"output", 'o', POPT_ARG_STRING, NULL, OUTPUT,
      "the picture: .png as a screen shows it; .exr or .hdr, linear light", "FILE"},
     {NULL, 0, POPT_ARG_INCLUDE_TABLE, (void *)(uintptr_t)look_options, 0, "The view:", NULL},
+    {"reference", 0, POPT_ARG_NONE, NULL, REFERENCE,
+     "integrate the light on the CPU, without approximation", NULL},
+    {"error", 0, POPT_ARG_NONE, NULL, ERRORS,
+     "show the real-time picture's error against the reference", NULL},
+    {"noise", 0, POPT_ARG_STRING, NULL, NOISE,
+     "relative standard error at which the reference stops, 1e-4 to 1 (0.01)", "E"},
     {"threads", 0, POPT_ARG_STRING, NULL, THREADS, "1 to 256, one a core by default", "N"},
     {"quiet", 'q', POPT_ARG_NONE, NULL, QUIET, "print nothing but errors", NULL},
     CLI_HELP_OPTION,
     POPT_TABLEEND,
 };
 
-static int read_arguments(const cli_arguments *a, look *l, int *threads)
+typedef struct render {
+    look look;
+    int threads;
+    bool reference, errors;
+    double noise;
+} render;
+
+static int read_arguments(const cli_arguments *a, render *r)
 {
     if (!a->value[OUTPUT])
         return cli_wrong(&cli_render, "no output: name it by -o FILE");
@@ -28,32 +42,97 @@ static int read_arguments(const cli_arguments *a, look *l, int *threads)
     if (strcmp(ending, "png") != 0 && strcmp(ending, "exr") != 0 && strcmp(ending, "hdr") != 0)
         return cli_wrong(&cli_render, "--output %s: must end in .png, .exr or .hdr",
                          a->value[OUTPUT]);
-    int code = look_read(a, l);
-    if (code == CLI_GO)
-        code = cli_integer(a, THREADS, "--threads", 1, 256, threads);
-    return code == CLI_GO ? cli_check_folder(a->value[OUTPUT]) : code;
+    r->reference = a->value[REFERENCE];
+    r->errors = a->value[ERRORS];
+    int code = look_read(a, &r->look);
+    if (code != CLI_GO)
+        return code;
+    if (r->reference && r->errors)
+        return cli_wrong(&cli_render, "--reference and --error contradict each other");
+    if (a->value[NOISE] && !r->reference && !r->errors)
+        return cli_wrong(&cli_render, "--noise needs --reference or --error");
+    if ((r->reference || r->errors) && r->look.options.debug)
+        return cli_wrong(&cli_render, "--debug has no reference");
+    if (r->errors && !strcmp(ending, "hdr"))
+        return cli_wrong(&cli_render, "--output %s: .hdr cannot hold an error's sign",
+                         a->value[OUTPUT]);
+    if ((code = cli_integer(a, THREADS, "--threads", 1, 256, &r->threads)) != CLI_GO ||
+        (code = cli_number(a, NOISE, "--noise", 1e-4, 1, &r->noise)) != CLI_GO)
+        return code;
+    return cli_check_folder(a->value[OUTPUT]);
 }
 
-static int draw(cli_job *job, const look *l, bool linear, char name[128], kiln_image *image)
+static int draw(cli_job *job, const look *l, const kiln_map *source, bool linear, char name[128],
+                kiln_image *image)
 {
     view_headless *headless = NULL;
     view_renderer *renderer = NULL;
-    kiln_map source = {0};
     int code = CLI_FAILED;
     if (view_headless_create(&headless, &job->error) ||
         view_create(job->context, view_headless_lookup, &renderer, &job->error))
         goto done;
-    if (look_has_environment(l) &&
-        (look_load(job, l, &source) != CLI_GO || look_bake(job, l, &source, renderer) != CLI_GO))
+    if (look_has_environment(l) && look_bake(job, l, source, renderer) != CLI_GO)
         goto done;
     if (view_picture(renderer, &l->options, l->width, l->height, linear, image, &job->error))
         goto done;
     snprintf(name, 128, "%s", view_gl_name(renderer));
     code = CLI_GO;
 done:
-    kiln_map_free(&source);
     view_destroy(renderer);
     view_headless_destroy(headless);
+    return code;
+}
+
+static int integrate(cli_job *job, const render *r, const kiln_map *source, bool linear,
+                     kiln_image *image, view_reference_report *report)
+{
+    const view_options *o = &r->look.options;
+    view_reference_def def = {.noise = r->noise,
+                              .thread_count = r->threads,
+                              .progress = cli_progress,
+                              .progress_user = job};
+    if (view_reference(job->context, o, source->size ? source : NULL, r->look.width, r->look.height,
+                       &def, image, report, &job->error))
+        return CLI_FAILED;
+    size_t count = linear ? 0 : (size_t)image->width * (size_t)image->height;
+    for (size_t i = 0; i < count; i++) {
+        double c[3];
+        for (int k = 0; k < 3; k++)
+            c[k] = (double)image->pixels[3 * i + (size_t)k] * exp2(o->exposure);
+        view_tone(o->scene, c, c);
+        for (int k = 0; k < 3; k++)
+            image->pixels[3 * i + (size_t)k] = (float)c[k];
+    }
+    return CLI_GO;
+}
+
+// The picture that was asked for, and the words about it.
+static int make(cli_job *job, const render *r, bool linear, kiln_image *image, char words[256])
+{
+    kiln_map source = {0};
+    kiln_image truth = {0};
+    view_reference_report report = {0};
+    char name[128] = "";
+    int code = look_has_environment(&r->look) ? look_load(job, &r->look, &source) : CLI_GO;
+    if (code == CLI_GO && r->reference) {
+        code = integrate(job, r, &source, linear, image, &report);
+        snprintf(words, 256, "integrated to a noise of %.2g, %.0f samples a ray", report.noise,
+                 report.batches);
+    } else if (code == CLI_GO && r->errors) {
+        view_error e = {0};
+        code = draw(job, &r->look, &source, true, name, image);
+        if (code == CLI_GO)
+            code = integrate(job, r, &source, true, &truth, &report);
+        if (code == CLI_GO)
+            e = view_compare(&r->look.options, image, &truth, !linear);
+        snprintf(words, 256, "error RMS %.3g, largest %.3g, by row of balls %.3g %.3g; noise %.2g",
+                 e.rms, e.largest, e.upper, e.lower, report.noise);
+    } else if (code == CLI_GO) {
+        code = draw(job, &r->look, &source, linear, name, image);
+        snprintf(words, 256, "by %s", name);
+    }
+    kiln_image_free(&truth);
+    kiln_map_free(&source);
     return code;
 }
 
@@ -61,23 +140,24 @@ static int run(int argc, const char **argv)
 {
     cli_arguments a;
     cli_job job;
-    look l;
-    int threads = 0, code = cli_arguments_read(&a, &cli_render, argc, argv);
+    render r = {.noise = 0.01};
+    int code = cli_arguments_read(&a, &cli_render, argc, argv);
     if (code == CLI_GO)
-        code = read_arguments(&a, &l, &threads);
+        code = read_arguments(&a, &r);
     if (code == CLI_GO) {
         const char *path = a.value[OUTPUT];
-        char name[128] = "";
+        char words[256] = "";
         kiln_image image = {0};
-        code = cli_job_begin(&job, threads, a.value[QUIET]);
+        code = cli_job_begin(&job, r.threads, a.value[QUIET]);
         if (code == CLI_GO)
-            code = draw(&job, &l, strcmp(cli_ending(path), "png") != 0, name, &image);
+            code = make(&job, &r, strcmp(cli_ending(path), "png") != 0, &image, words);
         if (code == CLI_GO)
             code = kiln_image_save(job.context, &image, path, &job.error) ? CLI_FAILED : CLI_DONE;
         cli_clear_progress(&job);
         if (code == CLI_DONE && !a.value[QUIET])
-            printf("%s: %s, %d x %d, by %s, %.2f s\n", path, view_scene_name((int)l.options.scene),
-                   l.width, l.height, name, cli_seconds() - job.began);
+            printf("%s: %s, %d x %d, %s, %.2f s\n", path,
+                   view_scene_name((int)r.look.options.scene), r.look.width, r.look.height, words,
+                   cli_seconds() - job.began);
         kiln_image_free(&image);
         code = cli_job_end(&job, code);
     }
@@ -100,6 +180,8 @@ const cli_command cli_render = {
         "      gold in a city\n"
         "  kiln render city.exr -o compare.png --scene compare\n"
         "      the exact bake left, the textbook's right\n"
+        "  kiln render city.exr -o error.png --error --size 640x360\n"
+        "      what prefiltered levels and tables get wrong, and where\n"
         "  kiln render -o furnace.exr --scene furnace\n"
         "      where nothing may be seen, in linear light\n",
     .options = options,

@@ -25,6 +25,14 @@ float environment_level(vec4 of_level[4], int count, float roughness)
     return level;
 }
 
+// Where a rough surface's lobe leans to, between the mirror direction r and the normal: Lagarde and de
+// Rousiers 2014, section 4.9.3. Not normalised.
+vec3 bent_reflection(vec3 n, vec3 r, float roughness)
+{
+    float alpha = roughness * roughness;
+    return mix(n, r, (1.0 - alpha) * (sqrt(1.0 - alpha) + alpha));
+}
+
 // How much of the sky a ball of radius r at `offset` from the point leaves, seen from a surface with
 // normal n: one minus the form factor, exact while the ball is above the horizon.
 float ball_occlusion(vec3 n, vec3 offset, float r)

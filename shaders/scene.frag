@@ -23,7 +23,7 @@ layout(std140) uniform View
     vec4 back;                // w: what radiance is multiplied by
     vec4 light;               // where it comes from; w: its radiance
     vec4 turn;                // cosine and sine of the rotation; the handle; the background's roughness
-    vec4 screen;              // width, height
+    vec4 screen;              // width, height, 1 with bent reflections
     vec4 handout_average;     // what the handout's figure 6 reads for E_avg
     ivec4 mode;               // scene, debug, rays a side, balls
     ivec4 flags;              // tone, as printed, occlusion, diffuse light from the cube
@@ -133,7 +133,10 @@ vec3 lit_by_light(Ball ball, vec3 n, vec3 v, float nov)
 // as diffuse light; what is not reflected reaches the base.
 vec3 lit_by_environment(int slot, Ball ball, vec3 n, vec3 v, float nov, float open)
 {
-    vec3 mirrored = environment_seen(slot, 2.0 * nov * n - v, ball.roughness);
+    vec3 r = 2.0 * nov * n - v;
+    if (screen.z > 0.0)
+        r = bent_reflection(n, r, ball.roughness);
+    vec3 mirrored = environment_seen(slot, r, ball.roughness);
     vec3 around = irradiance_at(slot, n) * open;
     vec2 ab = table_read(split_sum, table_layout[5], nov, ball.roughness).rg;
     float missing = table_missing(e, table_layout[3], nov, ball.roughness);

@@ -10,9 +10,6 @@ void view_describe(kiln_error *error, kiln_result result, const char *format, ..
 /// The same, and is `result`.
 #define view_fail(error, result, ...) (view_describe((error), (result), __VA_ARGS__), (result))
 
-/// Radiance to what a screen shows, 0 to 1, as shaders/tone.glsl does it.
-void view_tone(view_scene scene, const double radiance[3], double shown[3]);
-
 /// A shader with its #includes in place, without version and precision lines; ends in NUL.
 extern const char view_shader_screen_vert[], view_shader_scene_frag[];
 

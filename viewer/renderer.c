@@ -100,50 +100,34 @@ kiln_result view_set_environment(view_renderer *r, view_slot slot, const kiln_ma
 
 // ------------------------------------------------------------------------------------------- tables
 
-// Exact E, E_avg and A, B, on the axis that resolves grazing angles.
-static kiln_result make_table(view_renderer *r, kiln_table_kind kind, kiln_g g, kiln_error *error)
+// Exact E and A, B of one model, and the E_avg that belongs to the table of E as it is looked up.
+static kiln_result make_model_tables(view_renderer *r, kiln_g g, kiln_error *error)
 {
-    enum { SIZE = 128 };
-    bool average = kind == KILN_TABLE_E_AVERAGE, split = kind == KILN_TABLE_DFG;
-    kiln_table table = {.def = {.kind = kind,
-                                .model = {.g = g},
-                                .width = average ? 1 : SIZE,
-                                .height = SIZE,
-                                .axis = KILN_AXIS_CBRT,
-                                .corners = true,
-                                .complement = !split}};
-    const kiln_table_def *def = &table.def;
-    kiln_result result =
-        kiln_image_create(r->context, def->width, def->height, split ? 2 : 1, &table.image, error);
-    if (result != KILN_OK)
-        return result;
-    for (int y = 0; y < SIZE; y++)
-        for (int x = 0; x < def->width; x++) {
-            double u = average ? 0 : (double)x / (SIZE - 1), rough = (double)y / (SIZE - 1);
-            double value[2] = {0};
-            if (split)
-                kiln_energy_split(&def->model, rough, u * u * u, value);
-            else
-                value[0] = 1 - (average ? kiln_energy_average(&def->model, rough)
-                                        : kiln_energy(&def->model, rough, u * u * u));
-            for (int c = 0; c <= split; c++)
-                table.image.pixels[(y * def->width + x) * (split ? 2 : 1) + c] = (float)value[c];
-        }
-    result = split     ? view_set_tables(r, NULL, NULL, &table, error)
-             : average ? view_set_tables(r, NULL, &table, NULL, error)
-                       : view_set_tables(r, &table, NULL, NULL, error);
-    kiln_image_free(&table.image);
+    kiln_table e = {0}, average = {0}, split = {0};
+    kiln_table_def def = {.kind = KILN_TABLE_E,
+                          .model = {.g = g},
+                          .axis = KILN_AXIS_GRAZING,
+                          .corners = true,
+                          .complement = true};
+    kiln_result result = kiln_table_create(r->context, &def, &e, error);
+    if (result == KILN_OK)
+        result = kiln_table_average(r->context, &e, 0, &average, error);
+    def.kind = KILN_TABLE_DFG;
+    def.complement = false;
+    if (result == KILN_OK)
+        result = kiln_table_create(r->context, &def, &split, error);
+    if (result == KILN_OK)
+        result = view_set_tables(r, &e, &average, &split, error);
+    kiln_table_free(&split);
+    kiln_table_free(&average);
+    kiln_table_free(&e);
     return result;
 }
 
 static kiln_result make_tables(view_renderer *r, kiln_error *error)
 {
-    static const kiln_g models[] = {KILN_G_SCHLICK_K2, KILN_G_SMITH};
-    static const kiln_table_kind kinds[] = {KILN_TABLE_E, KILN_TABLE_E_AVERAGE, KILN_TABLE_DFG};
-    kiln_result result = KILN_OK;
-    for (int i = 0; i < 6 && result == KILN_OK; i++)
-        result = make_table(r, kinds[i % 3], models[i / 3], error);
-    return result;
+    kiln_result result = make_model_tables(r, KILN_G_SCHLICK_K2, error);
+    return result == KILN_OK ? make_model_tables(r, KILN_G_SMITH, error) : result;
 }
 
 // Nothing but black, so that every sampler has something to read.
@@ -263,6 +247,7 @@ static void fill_block(block *b, const view_options *o, int width, int height, b
     b->turn[3] = (float)o->background;
     b->screen[0] = (float)width;
     b->screen[1] = (float)height;
+    b->screen[2] = o->bent;
     copy3(b->handout_average, view_handout_albedo);
     bool assignment = o->scene == VIEW_SCENE_ASSIGNMENT;
     b->mode[0] = (int32_t)o->scene;

@@ -76,6 +76,7 @@ typedef struct view_options {
     int samples;       ///< n x n rays a pixel on a regular grid, 1 to 8; their mean is tone-mapped
     bool as_printed;   ///< assignment: the handout's figure 6 with its mistake
     bool occlusion;    ///< balls shade one another's ambient light
+    bool bent;         ///< rough balls look the environment up nearer to their normal
     bool cube_diffuse; ///< diffuse light from the irradiance cube, else from spherical harmonics
 } view_options;
 
@@ -107,6 +108,10 @@ int view_balls(const view_options *options, view_ball balls[VIEW_MAX_BALLS]);
 /// Position of the camera and its axes: right, up, backwards. Unit and orthogonal.
 void view_camera_axes(const view_camera *camera, double eye[3], double right[3], double up[3],
                       double back[3]);
+
+/// Radiance, exposed, to what a screen shows, 0 to 1, as shaders/tone.glsl does it. The two may be
+/// the same.
+void view_tone(view_scene scene, const double radiance[3], double shown[3]);
 
 // ------------------------------------------------------------------------------------- environment
 

@@ -128,6 +128,11 @@ case $commands in
     expect 2 "for --scene compare" render -o out.png --split 0.5
     expect 2 "needs --debug level" render -o out.png --level 1
     expect 2 "has its own" render -o out.png --material gold
+    expect 2 "contradict" render -o out.png --reference --error
+    expect 2 "needs --reference or --error" render -o out.png --noise 0.1
+    expect 2 "from 0.0001 to 1" render -o out.png --reference --noise 0
+    expect 2 "has no reference" render -o out.png --reference --debug e
+    expect 2 "hold an error's sign" render -o out.hdr --error
     expect 1 "there is no folder nowhere" render -o nowhere/out.png
     for option in scene method material debug diffuse; do
         expect 2 "$option is 'frob', it must be .* or " render -o out.png --$option frob

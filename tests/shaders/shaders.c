@@ -14,6 +14,7 @@ enum { COUNT = 2048, ARGUMENTS = 8 };
 
 static view_headless *headless;
 static view_gl gl;
+static int table_unit; // of `table`, beside the arguments
 
 static uint64_t state = 88172645463325252u;
 
@@ -52,14 +53,15 @@ static void render(const char *expression, const float (*x)[ARGUMENTS], float (*
     static char text[65536];
     kiln_error error = {0};
     GLuint program, texture = 0, frame = 0, target = 0, vertices = 0;
-    int length = snprintf(text, sizeof text,
-                          "%s\nuniform sampler2D arguments;\nout vec4 result;\nvoid main()\n{\n"
-                          "float x[8];\nivec2 at = ivec2(gl_FragCoord.xy);\n"
-                          "vec4 a = texelFetch(arguments, ivec2(0, at.x), 0);\n"
-                          "vec4 b = texelFetch(arguments, ivec2(1, at.x), 0);\n"
-                          "for (int i = 0; i < 4; i++) { x[i] = a[i]; x[i + 4] = b[i]; }\n"
-                          "vec3 r;\n%s\nresult = vec4(r, 1.0);\n}\n",
-                          test_all_glsl, expression);
+    int length =
+        snprintf(text, sizeof text,
+                 "%s\nuniform sampler2D arguments, table;\nout vec4 result;\nvoid main()\n{\n"
+                 "float x[8];\nivec2 at = ivec2(gl_FragCoord.xy);\n"
+                 "vec4 a = texelFetch(arguments, ivec2(0, at.x), 0);\n"
+                 "vec4 b = texelFetch(arguments, ivec2(1, at.x), 0);\n"
+                 "for (int i = 0; i < 4; i++) { x[i] = a[i]; x[i + 4] = b[i]; }\n"
+                 "vec3 r;\n%s\nresult = vec4(r, 1.0);\n}\n",
+                 test_all_glsl, expression);
     assert_true(length > 0 && (size_t)length < sizeof text);
     CHECK_OK(view_link(&gl, text, &program, &error));
     kiln_image image = {.width = 2, .height = COUNT, .channels = 4};
@@ -76,6 +78,7 @@ static void render(const char *expression, const float (*x)[ARGUMENTS], float (*
     gl.GenVertexArrays(1, &vertices);
     gl.BindVertexArray(vertices);
     gl.UseProgram(program);
+    gl.Uniform1i(gl.GetUniformLocation(program, "table"), table_unit);
     gl.DrawArrays(GL_TRIANGLES, 0, 3);
     gl.ReadPixels(0, 0, COUNT, 1, GL_RGBA, GL_FLOAT, result);
     assert_int_equal(gl.GetError(), GL_NO_ERROR);
@@ -242,6 +245,13 @@ static void c_specular_occlusion(const double x[ARGUMENTS], double r[3])
     r[0] = 1 + fmin(fmax(pow(x[0] + x[1], exp2(-16 * alpha - 1)) - 1 + x[1], 0), 1);
 }
 
+static void c_bent_reflection(const double x[ARGUMENTS], double r[3])
+{
+    double alpha = x[6] * x[6], t = (1 - alpha) * (sqrt(1 - alpha) + alpha);
+    for (int c = 0; c < 3; c++)
+        r[c] = x[c] * (1 - t) + x[3 + c] * t;
+}
+
 static void c_tone_assignment(const double x[ARGUMENTS], double r[3])
 {
     view_tone(VIEW_SCENE_ASSIGNMENT, x, r);
@@ -333,6 +343,11 @@ static const function functions[] = {
      c_specular_occlusion,
      {0.01, 0.01},
      {TO_1}},
+    {"bent_reflection",
+     "r = bent_reflection(vec3(x[0], x[1], x[2]), vec3(x[3], x[4], x[5]), x[6]);",
+     c_bent_reflection,
+     {0.1, 0.1, 0.1, 0.1, 0.1, 0.1},
+     {1, 1, 1, 1, 1, 1, 0.99}},
     {"tone_assignment",
      "r = tone_assignment(vec3(x[0], x[1], x[2]));",
      c_tone_assignment,
@@ -388,11 +403,67 @@ static void harmonics_agree_with_c(void **unused)
     }
 }
 
+// table_read between texels, of every axis and both places of texels, against kiln_table_lookup.
+static void check_table(kiln_context *context, const kiln_table_def *def)
+{
+    static float x[COUNT][ARGUMENTS], result[COUNT][4];
+    kiln_error error = {0};
+    kiln_table table;
+    GLuint texture = 0;
+    char expression[256];
+    CHECK_OK(kiln_table_create(context, def, &table, &error));
+    for (int i = 0; i < COUNT; i++)
+        for (int k = 0; k < 2; k++)
+            x[i][k] = (float)(uniform() < 0.05 ? uniform() < 0.5 : uniform());
+    view_upload_image(&gl, 1, &texture, &table.image);
+    int axis = (int)def->axis;
+    axis += axis == KILN_AXIS_GRAZING && def->model.g == KILN_G_SCHLICK_TEXT;
+    snprintf(expression, sizeof expression,
+             "vec4 lies = vec4(%d.0, %d.0, %d.0, %d.0);\n"
+             "r = vec3(table_read(table, lies, x[0], x[1]), "
+             "1.0 - table_missing(table, lies, x[0], x[1]));",
+             axis, def->corners, def->complement, def->flip);
+    table_unit = 1;
+    render(expression, (const float(*)[ARGUMENTS])x, result);
+    table_unit = 0;
+    for (int i = 0; i < COUNT; i++) {
+        double value[4];
+        kiln_table_lookup(&table, (double)x[i][0], (double)x[i][1], 0, value);
+        if (table.image.channels == 1)
+            CHECK_NEAR((double)result[i][2], value[0], 4e-6);
+        for (int c = 0; c < 2 && table.image.channels == 2; c++)
+            CHECK_NEAR((double)result[i][c], value[c], 4e-6);
+    }
+    gl.DeleteTextures(1, &texture);
+    kiln_table_free(&table);
+}
+
+static void tables_are_read_as_c_reads_them(void **unused)
+{
+    (void)unused;
+    kiln_context *context;
+    kiln_error error = {0};
+    CHECK_OK(kiln_context_create(NULL, &context, &error));
+    for (int i = 0; i < 16; i++) {
+        kiln_table_def def = {.kind = i % 3 == 2 ? KILN_TABLE_DFG : KILN_TABLE_E,
+                              .model = {.g = i / 4 % 2 ? KILN_G_SCHLICK_TEXT : KILN_G_SMITH},
+                              .width = 32,
+                              .height = 24,
+                              .axis = (kiln_axis)(i % 4),
+                              .corners = i / 8,
+                              .complement = i % 3 == 1,
+                              .flip = i % 5 == 1};
+        check_table(context, &def);
+    }
+    kiln_context_destroy(context);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(glsl_agrees_with_c),
         cmocka_unit_test(harmonics_agree_with_c),
+        cmocka_unit_test(tables_are_read_as_c_reads_them),
     };
     return cmocka_run_group_tests_name("shaders", tests, start, stop);
 }

@@ -1,0 +1,156 @@
+// The environment as a light: where its power is, directions are drawn.
+#include "parts.h"
+#include "trace.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static const double pi = 3.14159265358979323846;
+
+// ----------------------------------------------------------------------------------- random numbers
+
+void view_random_start(view_random *random, uint64_t stream)
+{
+    *random = (view_random){.state = 0x853c49e6748fea9bu + stream * 0x9e3779b97f4a7c15u,
+                            .stream = stream << 1 | 1};
+    for (int i = 0; i < 4; i++)
+        view_random_next(random);
+}
+
+static uint32_t next(view_random *random)
+{
+    uint64_t old = random->state;
+    random->state = old * 6364136223846793005u + random->stream;
+    uint32_t mixed = (uint32_t)((old >> 18 ^ old) >> 27), turn = (uint32_t)(old >> 59);
+    return mixed >> turn | mixed << (-turn & 31);
+}
+
+double view_random_next(view_random *random)
+{
+    return (next(random) + 0.5) / 4294967296.0;
+}
+
+// ----------------------------------------------------------------------------------------- the light
+
+static double power(const float *texel)
+{
+    return (double)texel[0] + (double)texel[1] + (double)texel[2];
+}
+
+// The difference of the cosines of a row's borders.
+static double row_height(int size, int y)
+{
+    return cos(pi * y / size) - cos(pi * (y + 1) / size);
+}
+
+static void cumulate(view_light *light)
+{
+    int size = light->panorama.size, width = 2 * size;
+    const float *pixels = light->panorama.level[0];
+    for (int y = 0; y < size; y++) {
+        const float *row = pixels + (size_t)y * (size_t)width * 3;
+        double *sums = light->texel + (size_t)y * ((size_t)width + 1);
+        for (int x = 0; x < width; x++)
+            sums[x + 1] = sums[x] + power(row + 3 * (size_t)x);
+        double area = row_height(size, y) * 2 * pi / width;
+        light->row[y + 1] = light->row[y] + sums[width] * area;
+    }
+    light->total = light->row[size];
+    light->mean = light->total / (3 * 4 * pi);
+}
+
+kiln_result view_light_create(kiln_context *context, const kiln_map *source, double rotation,
+                              view_light *light, kiln_error *error)
+{
+    *light =
+        (view_light){.cos_turn = cos(rotation * pi / 180), .sin_turn = sin(rotation * pi / 180)};
+    kiln_map white = {0};
+    kiln_result result = KILN_OK;
+    if (!source) {
+        result = kiln_map_create(context, KILN_SHAPE_PANORAMA, 1, 1, &white, error);
+        for (int i = 0; i < 6 && result == KILN_OK; i++)
+            white.level[0][i] = 1;
+        source = &white;
+    }
+    int size = source->shape == KILN_SHAPE_PANORAMA ? source->size : 2 * source->size;
+    if (result == KILN_OK)
+        result = kiln_map_convert(context, source, KILN_SHAPE_PANORAMA, size, 0, &light->panorama,
+                                  error);
+    if (result == KILN_OK) {
+        light->row = calloc((size_t)size + 1, sizeof(double));
+        light->texel = calloc((size_t)size * (2 * (size_t)size + 1), sizeof(double));
+        if (light->row && light->texel)
+            cumulate(light);
+        else
+            result = view_fail(error, KILN_ERROR_MEMORY, "out of memory: an environment of %d rows",
+                               size);
+    }
+    kiln_map_free(&white);
+    if (result != KILN_OK)
+        view_light_free(light);
+    return result;
+}
+
+void view_light_free(view_light *light)
+{
+    kiln_map_free(&light->panorama);
+    free(light->row);
+    free(light->texel);
+    *light = (view_light){0};
+}
+
+static const float *texel_at(const view_light *light, const double d[3])
+{
+    int size = light->panorama.size, width = 2 * size;
+    double x = d[0] * light->cos_turn - d[2] * light->sin_turn;
+    double z = d[2] * light->cos_turn + d[0] * light->sin_turn;
+    double u = atan2(x, -z) / (2 * pi) + 0.5, v = acos(fmax(-1, fmin(1, d[1]))) / pi;
+    int column = (int)(u * width), row = (int)(v * size);
+    column = column < 0 ? 0 : column >= width ? width - 1 : column;
+    row = row < 0 ? 0 : row >= size ? size - 1 : row;
+    return light->panorama.level[0] + ((size_t)row * (size_t)width + (size_t)column) * 3;
+}
+
+void view_light_radiance(const view_light *light, const double d[3], double radiance[3])
+{
+    const float *texel = texel_at(light, d);
+    for (int c = 0; c < 3; c++)
+        radiance[c] = (double)texel[c];
+}
+
+double view_light_pdf(const view_light *light, const double d[3])
+{
+    return light->total > 0 ? power(texel_at(light, d)) / light->total : 0;
+}
+
+// The last place of sums[0 .. count] that is not above `value`, and how far beyond it.
+static int find(const double *sums, int count, double value, double *rest)
+{
+    int low = 0, high = count;
+    while (high - low > 1) {
+        int middle = (low + high) / 2;
+        if (sums[middle] <= value)
+            low = middle;
+        else
+            high = middle;
+    }
+    double step = sums[low + 1] - sums[low];
+    *rest = step > 0 ? fmin((value - sums[low]) / step, 1) : 0.5;
+    return low;
+}
+
+void view_light_sample(const view_light *light, const double xi[2], double d[3])
+{
+    int size = light->panorama.size, width = 2 * size;
+    double down, across;
+    int y = find(light->row, size, xi[1] * light->total, &down);
+    const double *sums = light->texel + (size_t)y * ((size_t)width + 1);
+    int x = find(sums, width, xi[0] * sums[width], &across);
+    double phi = 2 * pi * ((x + across) / width - 0.5);
+    double cosine = cos(pi * y / size) - down * row_height(size, y);
+    double sine = sqrt(fmax(0, 1 - cosine * cosine));
+    double ex = sine * sin(phi), ez = -sine * cos(phi);
+    d[0] = ex * light->cos_turn + ez * light->sin_turn;
+    d[1] = cosine;
+    d[2] = ez * light->cos_turn - ex * light->sin_turn;
+}

@@ -1,0 +1,384 @@
+// The integrator. A pixel is the mean over the same n x n rays as the real-time picture has; where
+// light comes from everywhere each of them is estimated by drawing light from the environment, from
+// the visible normals and from the cosine, one of each, weighted by the balance heuristic:
+//
+//     L(v) = int f(v, l) L(l) (n.l) dl  ~  sum over the three of  f L (n.l) / (p1 + p2 + p3)
+//
+// (Veach 1997, section 9.2.2). Batches of that are repeated until the pixel's standard error is what
+// was wanted. Balls do not light one another; with occlusion they are black to one another.
+#include "reference.h"
+
+#include "parts.h"
+#include "trace.h"
+
+#include <math.h>
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { MAX_RAYS = 64, FIRST_CHECK = 32, MAX_THREADS = 256 };
+
+typedef struct job {
+    const view_options *options;
+    int width, height, side;
+    double noise;
+    int batch_limit;
+    double eye[3], right[3], up[3], back[3], slope;
+    view_ball balls[VIEW_MAX_BALLS];
+    int ball_count;
+    view_light light;
+    view_energy energy;
+    kiln_image *image;
+    view_reference_report *rows; // of each row: sums, not means
+    atomic_int next;
+    atomic_bool stop;
+} job;
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+// -------------------------------------------------------------------------------------------- rays
+
+static void ray_at(const job *j, double x, double y, double d[3])
+{
+    double sx = 2 * x / j->width - 1, sy = 1 - 2 * y / j->height;
+    double wide = j->slope * j->width / j->height, size = 0;
+    for (int c = 0; c < 3; c++) {
+        d[c] = sx * wide * j->right[c] + sy * j->slope * j->up[c] - j->back[c];
+        size += d[c] * d[c];
+    }
+    for (int c = 0; c < 3; c++)
+        d[c] /= sqrt(size);
+}
+
+// How far the ball is along d from `from`; negative where it is not met. `closest` is the foot of
+// the perpendicular from the ball's centre, seen from there.
+static double meet(const view_ball *ball, const double from[3], const double d[3],
+                   double closest[3])
+{
+    double offset[3];
+    for (int c = 0; c < 3; c++)
+        offset[c] = from[c] - ball->centre[c];
+    double along = dot(offset, d);
+    for (int c = 0; c < 3; c++)
+        closest[c] = offset[c] - along * d[c];
+    double rest = ball->radius * ball->radius - dot(closest, closest);
+    return rest > 0 ? -along - sqrt(rest) : -1;
+}
+
+// Duff et al. 2017.
+static void tangents(const double n[3], double t[3], double b[3])
+{
+    double sign = copysign(1, n[2]), a = -1 / (sign + n[2]), c = n[0] * n[1] * a;
+    t[0] = 1 + sign * n[0] * n[0] * a;
+    t[1] = sign * c;
+    t[2] = -sign * n[0];
+    b[0] = c;
+    b[1] = sign + n[1] * n[1] * a;
+    b[2] = -n[1];
+}
+
+static void find_point(const job *j, const double d[3], view_point *p)
+{
+    double reach = 1e30, closest[3], found[3] = {0};
+    p->ball = -1;
+    memcpy(p->ray, d, sizeof p->ray);
+    for (int i = 0; i < j->ball_count; i++) {
+        double t = meet(&j->balls[i], j->eye, d, closest);
+        if (t > 0 && t < reach) {
+            reach = t;
+            p->ball = i;
+            memcpy(found, closest, sizeof found);
+        }
+    }
+    if (p->ball < 0)
+        return;
+    const view_ball *ball = &j->balls[p->ball];
+    double half_chord = sqrt(ball->radius * ball->radius - dot(found, found));
+    for (int c = 0; c < 3; c++) {
+        p->position[c] = ball->centre[c] + found[c] - half_chord * d[c];
+        p->n[c] = (found[c] - half_chord * d[c]) / ball->radius;
+    }
+    tangents(p->n, p->t, p->b);
+    p->v[0] = -dot(p->t, d);
+    p->v[1] = -dot(p->b, d);
+    p->v[2] = half_chord / ball->radius;
+    view_point_prepare(ball, &j->energy, p);
+}
+
+// ------------------------------------------------------------------------------------------- light
+
+static bool is_shaded(const job *j, const view_point *p, const double d[3])
+{
+    double closest[3];
+    if (j->options->occlusion)
+        for (int i = 0; i < j->ball_count; i++)
+            if (i != p->ball && meet(&j->balls[i], p->position, d, closest) > 0)
+                return true;
+    return false;
+}
+
+static void to_world(const view_point *p, const double l[3], double d[3])
+{
+    for (int c = 0; c < 3; c++)
+        d[c] = l[0] * p->t[c] + l[1] * p->b[c] + l[2] * p->n[c];
+}
+
+static double pdf_specular(const view_ball *ball, const view_point *p, const double l[3])
+{
+    double h[3], size = 0;
+    for (int c = 0; c < 3; c++) {
+        h[c] = l[c] + p->v[c];
+        size += h[c] * h[c];
+    }
+    size = sqrt(size);
+    if (ball->roughness <= 0 || l[2] <= 0)
+        return 0;
+    double voh = fmin(size / 2, 1), noh = fmin(h[2] / size, 1);
+    return kiln_pdf_reflection(kiln_pdf_visible(ball->roughness, p->v[2], noh, voh), voh);
+}
+
+// Adds what light from l brings, over the density of all three ways to draw it.
+static void add(const job *j, const view_point *p, const double l[3], double sum[3])
+{
+    const view_ball *ball = &j->balls[p->ball];
+    double f[3], radiance[3], d[3];
+    if (l[2] <= 0)
+        return;
+    to_world(p, l, d);
+    view_reflect(ball, &j->energy, p, l, f);
+    double pdf = view_light_pdf(&j->light, d) + pdf_specular(ball, p, l) + kiln_pdf_cosine(l[2]);
+    if (!(pdf > 0) || is_shaded(j, p, d))
+        return;
+    view_light_radiance(&j->light, d, radiance);
+    for (int c = 0; c < 3; c++)
+        sum[c] += f[c] * radiance[c] / pdf;
+}
+
+static void draw(view_random *random, double xi[2])
+{
+    xi[0] = view_random_next(random);
+    xi[1] = view_random_next(random);
+}
+
+static void reflect(const double v[3], const double h[3], double l[3])
+{
+    double voh = dot(v, h);
+    for (int c = 0; c < 3; c++)
+        l[c] = 2 * voh * h[c] - v[c];
+}
+
+static void estimate(const job *j, const view_point *p, view_random *random, double sum[3])
+{
+    const view_ball *ball = &j->balls[p->ball];
+    double xi[2], h[3], l[3], d[3];
+    draw(random, xi);
+    view_light_sample(&j->light, xi, d);
+    l[0] = dot(d, p->t);
+    l[1] = dot(d, p->b);
+    l[2] = dot(d, p->n);
+    add(j, p, l, sum);
+    draw(random, xi);
+    if (ball->roughness > 0) {
+        kiln_sample_visible(ball->roughness, p->v, xi, h);
+        reflect(p->v, h, l);
+        add(j, p, l, sum);
+    } else { // a perfect mirror: no draw finds its peak
+        double radiance[3], up[3] = {0, 0, 1};
+        reflect(p->v, up, l);
+        to_world(p, l, d);
+        view_light_radiance(&j->light, d, radiance);
+        for (int c = 0; c < 3 && !is_shaded(j, p, d); c++)
+            sum[c] += kiln_fresnel_schlick(ball->f0[c], p->v[2]) * radiance[c] * p->specular[c];
+    }
+    draw(random, xi);
+    kiln_sample_cosine(xi, l);
+    add(j, p, l, sum);
+}
+
+// ------------------------------------------------------------------------------------------ pixels
+
+// What the ray shows without integration: the sky, the assignment's light. False where it has to be
+// integrated.
+static bool shines(const job *j, const view_point *p, double radiance[3])
+{
+    radiance[0] = radiance[1] = radiance[2] = 0;
+    bool light = j->options->scene == VIEW_SCENE_ASSIGNMENT;
+    if (p->ball < 0 && !light)
+        view_light_radiance(&j->light, p->ray, radiance);
+    else if (p->ball >= 0 && light)
+        view_reflect_light(j->options, &j->balls[p->ball], &j->energy, p, radiance);
+    return p->ball < 0 || light;
+}
+
+typedef struct tally {
+    double mean[3], squares[3]; // Welford's
+    int count;
+} tally;
+
+static void note(tally *t, const double x[3])
+{
+    t->count++;
+    for (int c = 0; c < 3; c++) {
+        double from = x[c] - t->mean[c];
+        t->mean[c] += from / t->count;
+        t->squares[c] += from * (x[c] - t->mean[c]);
+    }
+}
+
+// The standard error of the mean, relative to it and a little of the whole environment.
+static double noise_of(const tally *t, double floor)
+{
+    double worst = 0;
+    for (int c = 0; c < 3; c++)
+        worst = fmax(worst, sqrt(t->squares[c] / (t->count - 1.0) / t->count) /
+                                (t->mean[c] + floor + 1e-30));
+    return worst;
+}
+
+static void pixel(job *j, int x, int y, view_reference_report *report, float *out)
+{
+    static const double small = 0.02;
+    view_point points[MAX_RAYS];
+    int rays = j->side * j->side, waiting = 0;
+    double fixed[3] = {0}, radiance[3];
+    for (int i = 0; i < rays; i++) {
+        double d[3];
+        ray_at(j, x + (i % j->side + 0.5) / j->side, y + (i / j->side + 0.5) / j->side, d);
+        find_point(j, d, &points[waiting]);
+        if (!shines(j, &points[waiting], radiance))
+            waiting++;
+        for (int c = 0; c < 3; c++)
+            fixed[c] += radiance[c] / rays;
+    }
+    tally t = {0};
+    view_random random;
+    view_random_start(&random, (uint64_t)y * (uint64_t)j->width + (uint64_t)x);
+    // Looked at after doubling counts only: stopping at the first lucky one would be a bias.
+    for (int until = FIRST_CHECK; waiting; until *= 2) {
+        until = until < j->batch_limit ? until : j->batch_limit;
+        while (t.count < until) {
+            double sum[3] = {0};
+            for (int i = 0; i < waiting; i++)
+                estimate(j, &points[i], &random, sum);
+            for (int c = 0; c < 3; c++)
+                sum[c] = sum[c] / rays + fixed[c];
+            note(&t, sum);
+        }
+        double noise = noise_of(&t, small * j->light.mean);
+        if (noise <= j->noise || until == j->batch_limit) {
+            report->noise += noise * noise;
+            report->batches += t.count;
+            report->pixel_count++;
+            report->noisy_count += noise > j->noise;
+            break;
+        }
+    }
+    for (int c = 0; c < 3; c++)
+        out[c] = (float)(waiting ? t.mean[c] : fixed[c]);
+}
+
+// ----------------------------------------------------------------------------------------- threads
+
+static bool take_row(job *j)
+{
+    int y = atomic_fetch_add(&j->next, 1);
+    if (y >= j->height || atomic_load(&j->stop))
+        return false;
+    float *row = j->image->pixels + (size_t)y * (size_t)j->width * 3;
+    for (int x = 0; x < j->width && !atomic_load(&j->stop); x++)
+        pixel(j, x, y, &j->rows[y], row + 3 * (size_t)x);
+    return true;
+}
+
+static void *help(void *data)
+{
+    while (take_row(data))
+        ;
+    return NULL;
+}
+
+// The caller works too, and reports.
+static bool run(job *j, const view_reference_def *def)
+{
+    pthread_t threads[MAX_THREADS];
+    int wanted = def->thread_count, count = 0;
+    if (wanted < 1)
+        wanted = (int)sysconf(_SC_NPROCESSORS_ONLN);
+    wanted = wanted > MAX_THREADS ? MAX_THREADS : wanted;
+    while (count < wanted - 1 && pthread_create(&threads[count], NULL, help, j) == 0)
+        count++;
+    do {
+        double part = fmin(1, (double)atomic_load(&j->next) / j->height);
+        if (def->progress && !def->progress(def->progress_user, "reference", part))
+            atomic_store(&j->stop, true);
+    } while (take_row(j));
+    for (int i = 0; i < count; i++)
+        pthread_join(threads[i], NULL);
+    return !atomic_load(&j->stop);
+}
+
+static void sum_up(const job *j, view_reference_report *report)
+{
+    view_reference_report all = {0};
+    for (int y = 0; y < j->height; y++) {
+        all.noise += j->rows[y].noise;
+        all.batches += j->rows[y].batches;
+        all.pixel_count += j->rows[y].pixel_count;
+        all.noisy_count += j->rows[y].noisy_count;
+    }
+    if (all.pixel_count) {
+        all.noise = sqrt(all.noise / (double)all.pixel_count);
+        all.batches /= (double)all.pixel_count;
+    }
+    *report = all;
+}
+
+kiln_result view_reference(kiln_context *context, const view_options *options,
+                           const kiln_map *source, int width, int height,
+                           const view_reference_def *def, kiln_image *image,
+                           view_reference_report *report, kiln_error *error)
+{
+    static const double degree = 0.017453292519943295;
+    const view_reference_def none = {0};
+    def = def ? def : &none;
+    *image = (kiln_image){0};
+    bool white = options->scene == VIEW_SCENE_FURNACE;
+    job j = {
+        .options = options,
+        .width = width,
+        .height = height,
+        .side = options->samples < 1   ? 1
+                : options->samples > 8 ? 8
+                                       : options->samples,
+        .noise = def->noise > 0 ? def->noise : 0.01,
+        .batch_limit = def->batch_limit > 1 ? def->batch_limit : 16384,
+        .slope = tan(options->camera.fov / 2 * degree),
+        .image = image,
+    };
+    view_camera_axes(&options->camera, j.eye, j.right, j.up, j.back);
+    j.ball_count = view_balls(options, j.balls);
+    kiln_result result = kiln_image_create(context, width, height, 3, image, error);
+    j.rows = result == KILN_OK ? calloc((size_t)height, sizeof *j.rows) : NULL;
+    if (result == KILN_OK && !j.rows)
+        result = view_fail(error, KILN_ERROR_MEMORY, "out of memory");
+    if (result == KILN_OK)
+        result =
+            view_light_create(context, white ? NULL : source, options->rotation, &j.light, error);
+    if (result == KILN_OK)
+        result = view_energy_create(context, options, &j.energy, error);
+    if (result == KILN_OK && !run(&j, def))
+        result = view_fail(error, KILN_ERROR_CANCELLED, "cancelled during reference");
+    if (result == KILN_OK && report)
+        sum_up(&j, report);
+    if (result != KILN_OK)
+        kiln_image_free(image);
+    view_energy_free(&j.energy);
+    view_light_free(&j.light);
+    free(j.rows);
+    return result;
+}

@@ -1,0 +1,136 @@
+// The reflection model in double precision: what scene.frag shades with, but exact.
+#include "parts.h"
+#include "trace.h"
+
+#include <math.h>
+
+static const double pi = 3.14159265358979323846;
+
+kiln_result view_energy_create(kiln_context *context, const view_options *options,
+                               view_energy *energy, kiln_error *error)
+{
+    bool light = options->scene == VIEW_SCENE_ASSIGNMENT;
+    *energy = (view_energy){.model = {.g = light ? KILN_G_SCHLICK_K2 : KILN_G_SMITH}};
+    view_ball balls[VIEW_MAX_BALLS];
+    int count = view_balls(options, balls);
+    for (int i = 0; i < count; i++)
+        energy->average[i] = kiln_energy_average(&energy->model, balls[i].roughness);
+    kiln_table_def def = {.kind = KILN_TABLE_E,
+                          .model = energy->model,
+                          .width = 512,
+                          .height = 512,
+                          .axis = KILN_AXIS_GRAZING,
+                          .corners = true,
+                          .complement = true};
+    kiln_result result = kiln_table_create(context, &def, &energy->e, error);
+    def.kind = KILN_TABLE_DFG;
+    def.complement = false;
+    if (result == KILN_OK && !light)
+        result = kiln_table_create(context, &def, &energy->split, error);
+    if (result != KILN_OK)
+        view_energy_free(energy);
+    return result;
+}
+
+void view_energy_free(view_energy *energy)
+{
+    kiln_table_free(&energy->e);
+    kiln_table_free(&energy->split);
+}
+
+static bool is_kulla_conty(view_method method)
+{
+    return method == VIEW_METHOD_KULLA_CONTY || method == VIEW_METHOD_KULLA_CONTY_HANDOUT;
+}
+
+static kiln_f_add form_of(view_method method)
+{
+    return method == VIEW_METHOD_KULLA_CONTY_HANDOUT ? KILN_F_ADD_ASSIGNMENT : KILN_F_ADD_SECOND;
+}
+
+void view_point_prepare(const view_ball *ball, const view_energy *energy, view_point *point)
+{
+    double ab[2], average = energy->average[point->ball];
+    if (!energy->split.image.pixels) // one light: view_reflect_light needs none of it
+        return;
+    kiln_table_lookup(&energy->split, point->v[2], ball->roughness, 0, ab);
+    double e = ab[0] + ab[1];
+    for (int c = 0; c < 3; c++) {
+        double f0 = ball->f0[c], single = f0 * ab[0] + ab[1], multiple = 0;
+        point->specular[c] = 1;
+        point->lobe[c] = 0;
+        if (is_kulla_conty(ball->method)) {
+            double factor =
+                kiln_kulla_conty_fresnel(form_of(ball->method), ball->f_average[c], average);
+            point->lobe[c] = average < 1 ? factor * (1 - e) / (1 - average) : 0;
+            multiple = factor * (1 - e);
+        } else if (ball->method == VIEW_METHOD_FDEZ_AGUERA) {
+            kiln_fdez_aguera(f0, ab[0], ab[1], &single, &multiple);
+        } else if (ball->method == VIEW_METHOD_TURQUIN) {
+            point->specular[c] = kiln_turquin(f0, e);
+        }
+        single *= point->specular[c];
+        // Fdez-Aguera's bounces are diffuse light; Kulla and Conty's have a lobe of their own.
+        point->diffuse[c] = ball->albedo[c] * (1 - single - multiple) +
+                            (ball->method == VIEW_METHOD_FDEZ_AGUERA ? multiple : 0);
+    }
+}
+
+void view_reflect(const view_ball *ball, const view_energy *energy, const view_point *point,
+                  const double l[3], double f[3])
+{
+    double nol = l[2], nov = point->v[2], h[3], size = 0;
+    f[0] = f[1] = f[2] = 0;
+    if (nol <= 0)
+        return;
+    for (int c = 0; c < 3; c++) {
+        h[c] = l[c] + point->v[c];
+        size += h[c] * h[c];
+    }
+    size = sqrt(size);
+    double voh = fmin(size / 2, 1); // |l + v| = 2 v.h
+    double specular = 0, lobe = 0;
+    if (ball->roughness > 0)
+        specular =
+            kiln_brdf_specular(&energy->model, ball->roughness, nov, nol, fmin(h[2] / size, 1));
+    if (is_kulla_conty(ball->method)) {
+        double e;
+        kiln_table_lookup(&energy->e, nol, ball->roughness, 0, &e);
+        lobe = (1 - e) / pi;
+    }
+    for (int c = 0; c < 3; c++) {
+        double fresnel = kiln_fresnel_schlick(ball->f0[c], voh);
+        f[c] = nol * (specular * fresnel * point->specular[c] + lobe * point->lobe[c] +
+                      point->diffuse[c] / pi);
+    }
+}
+
+// As the assignment has it: the denominator is not let below 0.001.
+void view_reflect_light(const view_options *o, const view_ball *ball, const view_energy *energy,
+                        const view_point *point, double radiance[3])
+{
+    double nov = point->v[2], nol = fmax(point->n[2], 0), r = ball->roughness;
+    // l = (0, 0, 1); the half vector in the world.
+    double h[3], size = 0, noh = 0;
+    for (int c = 0; c < 3; c++) {
+        h[c] = (c == 2) - point->ray[c];
+        size += h[c] * h[c];
+    }
+    size = sqrt(size);
+    for (int c = 0; c < 3; c++)
+        noh += point->n[c] * h[c] / size;
+    double d = kiln_brdf_d(KILN_D_GGX, r, fmax(fmin(noh, 1), 0));
+    double lobe = d * kiln_brdf_g(&energy->model, r, nov, nol) / fmax(4 * nol * nov, 0.001);
+    double e_o, e_i, average = energy->average[point->ball];
+    kiln_table_lookup(&energy->e, nov, r, 0, &e_o);
+    kiln_table_lookup(&energy->e, nol, r, 0, &e_i);
+    for (int c = 0; c < 3; c++) {
+        double f = lobe * kiln_fresnel_schlick(ball->f0[c], fmin(size / 2, 1));
+        // The handout's figure 6 has the albedo where E_avg should be.
+        double e = o->as_printed ? view_handout_albedo[c] : average;
+        if (is_kulla_conty(ball->method))
+            f += kiln_kulla_conty(e_o, e_i, e) *
+                 kiln_kulla_conty_fresnel(form_of(ball->method), ball->f_average[c], e);
+        radiance[c] = f * nol;
+    }
+}
