@@ -576,6 +576,7 @@ typedef enum kiln_axis {
 typedef struct kiln_table_def {
     kiln_table_kind kind;
     kiln_model model;
+    kiln_sheen sheen;         ///< KILN_TABLE_SHEEN only
     int width, height, depth; ///< 1 or 2 to KILN_MAX_TABLE; 0 for 128, 128 and (w) 32
     kiln_axis axis;
     bool corners;    ///< texel i stands at i / (n - 1), else at (i + 1/2) / n, of each axis

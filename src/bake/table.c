@@ -1,7 +1,9 @@
 #include "bake/table.h"
 
 #include "bake/table_axis.h"
+#include "brdf/dielectric.h"
 #include "brdf/energy.h"
+#include "brdf/sheen.h"
 #include "brdf/surface.h"
 #include "brdf/walk.h"
 
@@ -63,10 +65,52 @@ static void fill_dfg(const fill_job *job, double roughness, double third, const 
     ki_energy_values(job->context, &job->def->model, roughness, nov, count, true, out);
 }
 
+// Filament's order, and the cloth's albedo with Ashikhmin's masking.
+static void fill_multiscatter(const fill_job *job, double roughness, double third,
+                              const double *nov, int count, double *out)
+{
+    double ab[2 * CHUNK];
+    (void)third;
+    ki_energy_values(job->context, &job->def->model, roughness, nov, count, true, ab);
+    for (int i = 0; i < count; i++) {
+        out[3 * i] = ab[2 * i + 1];
+        out[3 * i + 1] = ab[2 * i] + ab[2 * i + 1];
+        out[3 * i + 2] = ki_sheen_albedo(KILN_SHEEN_ASHIKHMIN, roughness, nov[i]);
+    }
+}
+
+static void fill_sheen(const fill_job *job, double roughness, double third, const double *nov,
+                       int count, double *out)
+{
+    (void)third;
+    for (int i = 0; i < count; i++)
+        out[i] = ki_sheen_albedo(job->def->sheen, roughness, nov[i]);
+}
+
+static void fill_dielectric(const fill_job *job, double roughness, double third, const double *nov,
+                            int count, double *out)
+{
+    for (int i = 0; i < count; i++)
+        out[i] = ki_dielectric_reflection(&job->def->model, roughness, third, nov[i]);
+}
+
+static void fill_glass(const fill_job *job, double roughness, double third, const double *nov,
+                       int count, double *out)
+{
+    for (int i = 0; i < count; i++) {
+        ki_dielectric(&job->def->model, roughness, third, nov[i], out + 4 * i);
+        ki_dielectric(&job->def->model, roughness, 1 / third, nov[i], out + 4 * i + 2);
+    }
+}
+
 static fill_chunk *const fill_of[KILN_TABLE_E_WALK + 1] = {
     [KILN_TABLE_E] = fill_e,
     [KILN_TABLE_E_AVERAGE] = fill_average,
     [KILN_TABLE_DFG] = fill_dfg,
+    [KILN_TABLE_DFG_MULTISCATTER] = fill_multiscatter,
+    [KILN_TABLE_SHEEN] = fill_sheen,
+    [KILN_TABLE_E_DIELECTRIC] = fill_dielectric,
+    [KILN_TABLE_GLASS] = fill_glass,
 };
 
 // ------------------------------------------------------------------------------------------ checks
@@ -102,6 +146,9 @@ static kiln_result check_choices(const kiln_table_def *def, kiln_error *error)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
                        "the model is (%d, %d), there are 0 to %d and 0 to %d", (int)def->model.d,
                        (int)def->model.g, KILN_D_BECKMANN, KILN_G_SCHLICK_TEXT);
+    if ((unsigned)def->sheen > KILN_SHEEN_ESTEVEZ)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "sheen is %d, there are 0 to %d",
+                       (int)def->sheen, KILN_SHEEN_ESTEVEZ);
     if ((unsigned)def->axis > KILN_AXIS_GRAZING)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "axis of the table is %d, there are 0 to %d",
                        (int)def->axis, KILN_AXIS_GRAZING);
