@@ -73,9 +73,10 @@ static void fill_multiscatter(const fill_job *job, double roughness, double thir
     (void)third;
     ki_energy_values(job->context, &job->def->model, roughness, nov, count, true, ab);
     for (int i = 0; i < count; i++) {
-        out[3 * i] = ab[2 * i + 1];
-        out[3 * i + 1] = ab[2 * i] + ab[2 * i + 1];
-        out[3 * i + 2] = ki_sheen_albedo(KILN_SHEEN_ASHIKHMIN, roughness, nov[i]);
+        const double *a = ab + 2 * (size_t)i;
+        *out++ = a[1];
+        *out++ = a[0] + a[1];
+        *out++ = ki_sheen_albedo(KILN_SHEEN_ASHIKHMIN, roughness, nov[i]);
     }
 }
 
@@ -97,19 +98,16 @@ static void fill_dielectric(const fill_job *job, double roughness, double third,
 static void fill_glass(const fill_job *job, double roughness, double third, const double *nov,
                        int count, double *out)
 {
-    for (int i = 0; i < count; i++) {
-        ki_dielectric(&job->def->model, roughness, third, nov[i], out + 4 * i);
-        ki_dielectric(&job->def->model, roughness, 1 / third, nov[i], out + 4 * i + 2);
+    for (int i = 0; i < count; i++, out += 4) {
+        ki_dielectric(&job->def->model, roughness, third, nov[i], out);
+        ki_dielectric(&job->def->model, roughness, 1 / third, nov[i], out + 2);
     }
 }
 
 static fill_chunk *const fill_of[KILN_TABLE_E_WALK + 1] = {
-    [KILN_TABLE_E] = fill_e,
-    [KILN_TABLE_E_AVERAGE] = fill_average,
-    [KILN_TABLE_DFG] = fill_dfg,
-    [KILN_TABLE_DFG_MULTISCATTER] = fill_multiscatter,
-    [KILN_TABLE_SHEEN] = fill_sheen,
-    [KILN_TABLE_E_DIELECTRIC] = fill_dielectric,
+    [KILN_TABLE_E] = fill_e,         [KILN_TABLE_E_AVERAGE] = fill_average,
+    [KILN_TABLE_DFG] = fill_dfg,     [KILN_TABLE_DFG_MULTISCATTER] = fill_multiscatter,
+    [KILN_TABLE_SHEEN] = fill_sheen, [KILN_TABLE_E_DIELECTRIC] = fill_dielectric,
     [KILN_TABLE_GLASS] = fill_glass,
 };
 

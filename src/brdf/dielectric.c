@@ -32,6 +32,7 @@ typedef struct boundary {
     double critical; // c of total reflection, 0 from outside
     double lambda_v; // Smith's, for transmission
     double pole;     // G has one at about n.l = -pole
+    double most;     // of G(v, l) / (n.v)
 } boundary;
 
 static double lambda(const boundary *s, double cosine)
@@ -86,20 +87,23 @@ static double arc_margin(double y, double reach, double more)
 }
 
 enum { NODES = 16 };
+#define LIGHT 1e-2
 
 // The arc phi < reach, in logarithmic steps of the distance from its end plus `margin`; `root` where
 // the end has a square root's singularity.
 static double integrate_arc(const boundary *s, part what, const double h[2], double reach,
-                            double margin, bool root)
+                            double margin, bool root, bool light)
 {
     if (!(reach > 0))
         return 0;
     double length = ki_log(1 + reach / margin), sum = 0;
-    int panels = 1 + (int)(length / 2.5);
-    for (int i = 0; i < NODES * panels; i++) {
-        int panel = i / NODES;
-        double x = (panel + (1 + ki_gauss16_nodes[i % NODES]) / 2) / panels;
-        double weight = ki_gauss16_weights[i % NODES] / (2 * panels);
+    const double *nodes = light ? ki_gauss8_nodes : ki_gauss16_nodes;
+    const double *weights = light ? ki_gauss8_weights : ki_gauss16_weights;
+    int panels = 1 + (int)(length / 2.5), count = light ? NODES / 2 : NODES;
+    for (int i = 0; i < count * panels; i++) {
+        int panel = i / count;
+        double x = (panel + (1 + nodes[i % count]) / 2) / panels;
+        double weight = weights[i % count] / (2 * panels);
         if (root) {
             weight *= 2 * x;
             x *= x;
@@ -111,8 +115,8 @@ static double integrate_arc(const boundary *s, part what, const double h[2], dou
     return 2 * length * sum;
 }
 
-// One theta, h its sine and cosine.
-static double ring(const boundary *s, part what, const double h[2])
+// One theta, h its sine and cosine; half of the nodes where it weighs little.
+static double ring(const boundary *s, part what, const double h[2], bool light)
 {
     double k = s->sin_v * h[0], least = h[1] * s->mu; // c = least + k cos phi
     double critical = (s->critical - least) / k, y, pole;
@@ -129,16 +133,16 @@ static double ring(const boundary *s, part what, const double h[2])
     }
     if (!(s->critical > 0)) {
         double reach = arc_end(y);
-        return integrate_arc(s, what, h, reach, arc_margin(y, reach, pole), false);
+        return integrate_arc(s, what, h, reach, arc_margin(y, reach, pole), false, light);
     }
     // The root of total reflection is the arc's end, or beyond it.
     if (y <= critical) {
         double reach = arc_end(critical);
         double margin = fmax(arc_margin(critical, reach, 0), reach / 20);
-        return integrate_arc(s, what, h, reach, margin, true);
+        return integrate_arc(s, what, h, reach, margin, true, light);
     }
     double reach = arc_end(y), margin = fmax(reach / 20, arc_margin(y, reach, y - critical));
-    return integrate_arc(s, what, h, reach, fmin(margin, arc_margin(y, reach, pole)), true);
+    return integrate_arc(s, what, h, reach, fmin(margin, arc_margin(y, reach, pole)), true, light);
 }
 
 // D sin theta.
@@ -168,7 +172,10 @@ static double integrate_rings(const boundary *s, part what, double from, double 
         x = from > 0 ? x * x * (3 - 2 * x) : x * (2 - x);
         double e = ki_exp(a + (b - a) * x), h[2];
         ki_sincos(width * (e - 1 / e) / 2, &h[0], &h[1]);
-        sum += weight * (e + 1 / e) * density(s, h) * ring(s, what, h);
+        weight *= (e + 1 / e) * density(s, h);
+        double most = weight * 2 * KI_PI * (h[1] * s->mu + h[0] * s->sin_v) * s->most;
+        if (most > 1e-10)
+            sum += weight * ring(s, what, h, most < LIGHT);
     }
     return sum;
 }
@@ -234,6 +241,7 @@ static bool prepare(const kiln_model *model, double roughness, double ior, doubl
     s->theta_v = ki_acos(s->mu);
     s->critical = s->ior < 1 ? sqrt((1 - s->ior) * (1 + s->ior)) : 0;
     s->lambda_v = lambda(s, s->mu);
+    s->most = 1 / fmax(s->mu, s->alpha / 8);
     s->pole = s->alpha;
     if (model->g == KILN_G_SMITH)
         s->pole = fmin(s->alpha, s->mu);

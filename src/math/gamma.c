@@ -13,8 +13,10 @@ static double stirling(double x)
 static double log_gamma(double x)
 {
     double product = 1;
-    for (; x < 9; x++)
+    while (x < 9) {
         product *= x;
+        x += 1;
+    }
     return (x - 0.5) * ki_log(x) - x + 0.91893853320467274178 + stirling(x) - ki_log(product);
 }
 

@@ -30,7 +30,8 @@ double ki_beta(double a, double b);
 /// Gauss-Legendre nodes, increasing, and weights on [-1, 1]; exact to degree 2 count - 1. Error
 /// of nodes and weights below 4e-16 for count <= 4096.
 void ki_gauss_legendre(int count, double *nodes, double *weights);
-/// The same for count = 16, for composite rules.
+/// The same for count = 8 and 16, for composite rules.
+extern const double ki_gauss8_nodes[8], ki_gauss8_weights[8];
 extern const double ki_gauss16_nodes[16], ki_gauss16_weights[16];
 /// The double exponential rule on [0, 1], count odd: nodes crowd at both ends, whose singularities
 /// are then no trouble, down to exp(-pi sinh reach) of the length: 4e-17 for reach = 3.2, 8e-11 for

@@ -208,7 +208,8 @@ static void no_energy_is_made(void **unused)
     static const double ior[] = {1, 1.33, 1.8, 3, 0.9, 0.6, 1 / 3.0};
     for (int i = 0; i < 7 * 4 * 6 * 7; i++) {
         kiln_model model = {KILN_D_GGX, (kiln_g)(i / 7 % 4)};
-        double roughness = i / 28 % 6 / 5.0, nov = i / 168 / 6.0, rt[2];
+        int row = i / 28 % 6, column = i / 168;
+        double roughness = row / 5.0, nov = column / 6.0, rt[2];
         ki_dielectric(&model, roughness, ior[i % 7], nov, rt);
         assert_true(rt[0] >= -1e-6 && rt[1] >= 0);
         CHECK_BELOW(rt[0] + rt[1], 1 + 2e-6);
@@ -224,7 +225,8 @@ static void smooth_glass_is_fresnel(void **unused)
     static const double ior[] = {1.2, 1.5, 3, 1 / 1.2, 1 / 1.5, 1 / 3.0};
     for (int i = 0; i < 6 * 9; i++) {
         kiln_model model = {0};
-        double n = ior[i % 6], nov = i / 6 / 8.0, rt[2], f = kiln_fresnel_dielectric(n, nov);
+        int column = i / 6;
+        double n = ior[i % 6], nov = column / 8.0, rt[2], f = kiln_fresnel_dielectric(n, nov);
         ki_dielectric(&model, 0, n, nov, rt);
         CHECK_NEAR(rt[0], f, 1e-15);
         CHECK_NEAR(rt[1], 1 - f, 1e-15);
@@ -244,7 +246,8 @@ static void both_sides_are_reciprocal(void **unused)
     (void)unused;
     for (int i = 0; i < 4 * 5; i++) {
         kiln_model model = {KILN_D_GGX, (kiln_g)(i % 4)};
-        double n = 1.1 + 0.3 * (i / 4), roughness = 0.2 + 0.2 * (i % 5), out[2], in[2];
+        int step = i / 4;
+        double n = 1.1 + 0.3 * step, roughness = 0.2 + 0.2 * (i % 5), out[2], in[2];
         ki_dielectric_average(&model, roughness, n, out);
         ki_dielectric_average(&model, roughness, 1 / n, in);
         CHECK_NEAR(out[1], n * n * in[1], 2e-6);

@@ -146,6 +146,11 @@ static void gauss_legendre_is_exact_to_its_degree(void **unused)
             CHECK_NEAR(sum, power % 2 ? 0 : 2.0 / (power + 1), 3e-15);
         }
     }
+    ki_gauss_legendre(8, nodes, weights);
+    for (int i = 0; i < 8; i++) {
+        CHECK_NEAR(ki_gauss8_nodes[i], nodes[i], 4e-16);
+        CHECK_NEAR(ki_gauss8_weights[i], weights[i], 1e-15);
+    }
     ki_gauss_legendre(16, nodes, weights);
     for (int i = 0; i < 16; i++) {
         CHECK_NEAR(ki_gauss16_nodes[i], nodes[i], 4e-16);
