@@ -33,6 +33,7 @@ typedef struct boundary {
     double lambda_v; // Smith's, for transmission
     double pole;     // G has one at about n.l = -pole
     double most;     // of G(v, l) / (n.v)
+    double light;    // share of a ring below which half of the nodes do; Gaussians are harder
 } boundary;
 
 static double lambda(const boundary *s, double cosine)
@@ -87,7 +88,6 @@ static double arc_margin(double y, double reach, double more)
 }
 
 enum { NODES = 16 };
-#define LIGHT 1e-2
 
 // The arc phi < reach, in logarithmic steps of the distance from its end plus `margin`; `root` where
 // the end has a square root's singularity.
@@ -175,7 +175,7 @@ static double integrate_rings(const boundary *s, part what, double from, double 
         weight *= (e + 1 / e) * density(s, h);
         double most = weight * 2 * KI_PI * (h[1] * s->mu + h[0] * s->sin_v) * s->most;
         if (most > 1e-10)
-            sum += weight * ring(s, what, h, most < LIGHT);
+            sum += weight * ring(s, what, h, most < s->light);
     }
     return sum;
 }
@@ -242,6 +242,7 @@ static bool prepare(const kiln_model *model, double roughness, double ior, doubl
     s->critical = s->ior < 1 ? sqrt((1 - s->ior) * (1 + s->ior)) : 0;
     s->lambda_v = lambda(s, s->mu);
     s->most = 1 / fmax(s->mu, s->alpha / 8);
+    s->light = model->d == KILN_D_BECKMANN ? 0 : 2e-3;
     s->pole = s->alpha;
     if (model->g == KILN_G_SMITH)
         s->pole = fmin(s->alpha, s->mu);
