@@ -525,7 +525,7 @@ typedef struct kiln_walk_def {
     kiln_walk_fresnel fresnel;
     double f0;      ///< 0 to 1
     double n, k;    ///< as for kiln_fresnel_conductor
-    int path_count; ///< rounded up to 16 times a power of 2, 16 to 2^24; 0 for 65536
+    int path_count; ///< rounded up to a power of 2, 32 to 2^24; 0 for 65536
     uint32_t seed;  ///< other paths; their difference is as the standard error says
 } kiln_walk_def;
 

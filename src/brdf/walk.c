@@ -115,10 +115,10 @@ static double coordinate(const lattice *l, uint32_t index, int d)
     return ((double)x + 0.5) * (1.0 / 4294967296.0);
 }
 
-// log2 of the points of a replicate.
+// log2 of the points of a replicate, 1 to 20.
 static int lattice_bits(int path_count)
 {
-    int bits = 0;
+    int bits = 1;
     while (bits < 20 && (REPLICATES << bits) < path_count)
         bits++;
     return bits;

@@ -136,6 +136,8 @@ static void albedo_grows_with_f0(void **state)
     kiln_walk w = walk((kiln_walk_def){.f0 = 0.3}, 0, 0.5);
     CHECK_NEAR(w.albedo, kiln_fresnel_schlick(0.3, 0.5), 0);
     assert_true(w.standard_error == 0 && w.bounce[1] == 0);
+    assert_int_equal(walk((kiln_walk_def){.path_count = 1}, 0.5, 0.5).path_count, 32);
+    assert_int_equal(walk((kiln_walk_def){.path_count = 1025}, 0.5, 0.5).path_count, 2048);
 }
 
 // Light goes from one band of cosines to another as it comes back, by any number of bounces. n.v is
