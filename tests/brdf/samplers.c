@@ -1,6 +1,8 @@
 // Samples have the densities that the pdfs say: both are counted in the same bins.
 #include "brdf_test.h"
 
+#include "brdf/brdf.h"
+
 enum { ROWS = 12, COLUMNS = 16, BINS = ROWS * COLUMNS, SAMPLES = 200000, CELLS = 64 };
 
 typedef struct sampler {
@@ -11,6 +13,7 @@ typedef struct sampler {
     // Bins lie on the whole sphere, uniform in z; else on the upper half, with
     // tan^2 theta = alpha^2 (1 / t - 1), t = (1 - y)^2.
     bool sphere;
+    double area; // that the density is divided by
 } sampler;
 
 static double dot(const double a[3], const double b[3])
@@ -187,6 +190,39 @@ static void visible_normals(void **state)
         }
 }
 
+// Seen from below, as by rays that go up inside the microsurface: normals have the density
+// max(v.h, 0) D(h) over its own integral.
+static void sample_below(const sampler *s, const double xi[2], double w[3])
+{
+    ki_sample_visible(s->roughness * s->roughness, s->v, xi, w);
+}
+
+static double pdf_below(const sampler *s, const double w[3])
+{
+    return fmax(dot(s->v, w), 0) * kiln_brdf_d(KILN_D_GGX, s->roughness, w[2]) / s->area;
+}
+
+static void normals_seen_from_below(void **state)
+{
+    (void)state;
+    static const double cosines[] = {0, -0.1, -0.5, -0.9};
+    static double share[BINS];
+    for (int i = 0; i < 4; i++)
+        for (int r = 3; r <= 5; r++) {
+            double z = cosines[i], sine = sqrt(1 - z * z);
+            sampler s = {.sample = sample_below,
+                         .pdf = pdf_below,
+                         .roughness = r / 5.0,
+                         .v = {0.6 * sine, -0.8 * sine, z},
+                         .area = 1};
+            s.area = expected_shares(&s, share);
+            // The projected area is cos theta (1 + Lambda), Lambda(v) + Lambda(-v) = -1.
+            double a2 = pow(s.roughness, 4);
+            CHECK_NEAR(s.area, (z + sqrt(z * z + a2 * (1 - z * z))) / 2, 1e-3 * s.area);
+            check_sampler(&s, 1e-12);
+        }
+}
+
 // The mirror has one normal.
 static void mirrors(void **state)
 {
@@ -204,9 +240,8 @@ static void mirrors(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(cosine),
-        cmocka_unit_test(half_vectors),
-        cmocka_unit_test(visible_normals),
+        cmocka_unit_test(cosine),          cmocka_unit_test(half_vectors),
+        cmocka_unit_test(visible_normals), cmocka_unit_test(normals_seen_from_below),
         cmocka_unit_test(mirrors),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

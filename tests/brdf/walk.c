@@ -178,6 +178,21 @@ static void walks_are_reciprocal(void **state)
     }
 }
 
+// The same bits from gcc and clang, with every instruction set.
+static void bits_are_the_same_everywhere(void **state)
+{
+    (void)state;
+    kiln_walk_def def = {.f0 = 0.4, .path_count = 8192, .seed = 3};
+    kiln_walk w = walk(def, 0.8, 0.3);
+    CHECK_NEAR(w.albedo, 0.34402024545172366, 0);
+    CHECK_NEAR(w.standard_error, 0.00023440542660087366, 0);
+    CHECK_NEAR(w.bounce[3], 0.00037945916449243347, 0);
+    def.fresnel = KILN_WALK_CONDUCTOR;
+    def.n = 0.2;
+    def.k = 3;
+    CHECK_NEAR(walk(def, 0.3, 0.05).albedo, 0.9415966679090807, 0);
+}
+
 // A column is the walks of its f0, one by one.
 static void columns_agree_with_walks(void **state)
 {
@@ -208,6 +223,7 @@ int main(void)
         cmocka_unit_test(bounces_scale_with_constant_f),
         cmocka_unit_test(albedo_grows_with_f0),
         cmocka_unit_test(walks_are_reciprocal),
+        cmocka_unit_test(bits_are_the_same_everywhere),
         cmocka_unit_test(columns_agree_with_walks),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
