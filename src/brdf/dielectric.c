@@ -31,6 +31,7 @@ typedef struct boundary {
     double mu, sin_v, theta_v;
     double critical; // c of total reflection, 0 from outside
     double lambda_v; // Smith's, for transmission
+    double root_v;   // n.v (1 + 2 Lambda(v)) for GGX with Smith's G, else 0
     double pole;     // G has one at about n.l = -pole
     double most;     // of G(v, l) / (n.v)
     double light;    // share of a ring below which half of the nodes do; Gaussians are harder
@@ -54,21 +55,37 @@ static double transmitted_masking(const boundary *s, double nol)
     return nol * ki_visibility(&s->model, s->roughness, s->mu, nol);
 }
 
+// F of ki_fresnel_dielectric with one division; `beyond` is ior g.
+static double fresnel(double contrast, double c, double beyond)
+{
+    double s2 = (1 - c) * (1 + c), product = c * beyond, sum2 = (c + beyond) * (c + beyond);
+    double below = sum2 * (product + s2);
+    return fmin(1, contrast * contrast * (product * product + s2 * s2) / (below * below));
+}
+
+// (n.l) G / ((n.v) (n.l)), Smith's for GGX written out.
+static double reflected_masking(const boundary *s, double nol)
+{
+    if (s->root_v > 0) {
+        double root = sqrt(nol * nol + s->alpha * s->alpha * ((1 - nol) * (1 + nol)));
+        return 2 * nol / (nol * s->root_v + s->mu * root);
+    }
+    return nol * ki_visibility(&s->model, s->roughness, s->mu, nol);
+}
+
 // The integrand less D, for one half vector.
 static double facet(const boundary *s, part what, double cos_h, double c)
 {
-    if (!(c > s->critical))
+    double contrast = (1 - s->ior) * (1 + s->ior), g2 = c * c - contrast;
+    if (!(c > s->critical && g2 > 0))
         return 0;
-    double f = ki_fresnel_dielectric(s->ior, fmin(c, 1));
+    c = fmin(c, 1);
+    double beyond = sqrt(g2), f = fresnel(contrast, c, beyond);
     if (what == REFLECTED) {
         double nol = fmin(1, 2 * c * cos_h - s->mu);
-        if (!(nol > 0))
-            return 0;
-        return (s->critical > 0 ? 1 - f : f) * c * nol *
-               ki_visibility(&s->model, s->roughness, s->mu, nol);
+        return nol > 0 ? (s->critical > 0 ? 1 - f : f) * c * reflected_masking(s, nol) : 0;
     }
-    double g2 = 1 - s->eta * s->eta * ((1 - c) * (1 + c)), g = sqrt(fmax(0, g2));
-    double nol = fmin(1, s->eta * s->mu - (s->eta * c - g) * cos_h);
+    double nol = fmin(1, s->eta * (s->mu - (c - beyond) * cos_h));
     return nol > 0 ? (1 - f) * c * transmitted_masking(s, nol) : 0;
 }
 
@@ -89,30 +106,47 @@ static double arc_margin(double y, double reach, double more)
 
 enum { NODES = 16 };
 
-// The arc phi < reach, in logarithmic steps of the distance from its end plus `margin`; `root` where
-// the end has a square root's singularity.
+// cos x for x in [0, pi], to 1e-13, from the sine of its half.
+static double arc_cosine(double x)
+{
+    double half = x / 2, y = half * half, p = 1.0 / 355687428096000;
+    p = p * y - 1.0 / 1307674368000;
+    p = p * y + 1.0 / 6227020800;
+    p = p * y - 1.0 / 39916800;
+    p = p * y + 1.0 / 362880;
+    p = p * y - 1.0 / 5040;
+    p = p * y + 1.0 / 120;
+    p = p * y - 1.0 / 6;
+    double sine = half + half * (y * p);
+    return 1 - 2 * sine * sine;
+}
+
+// The arc phi < reach. Steps grow with the distance from its end plus `margin`, which is to be the
+// 16th power of a linear function, nearly an exponential; `root` where the end has a square root's
+// singularity.
 static double integrate_arc(const boundary *s, part what, const double h[2], double reach,
                             double margin, bool root, bool light)
 {
     if (!(reach > 0))
         return 0;
-    double length = ki_log(1 + reach / margin), sum = 0;
+    double slope = sqrt(sqrt(sqrt(sqrt(1 + reach / margin)))) - 1, sum = 0;
     const double *nodes = light ? ki_gauss8_nodes : ki_gauss16_nodes;
     const double *weights = light ? ki_gauss8_weights : ki_gauss16_weights;
-    int panels = 1 + (int)(length / 2.5), count = light ? NODES / 2 : NODES;
+    int panels = 1 + (int)(slope / 0.17), count = light ? NODES / 2 : NODES;
     for (int i = 0; i < count * panels; i++) {
         int panel = i / count;
         double x = (panel + (1 + nodes[i % count]) / 2) / panels;
-        double weight = weights[i % count] / (2 * panels);
+        double weight = weights[i % count];
         if (root) {
             weight *= 2 * x;
             x *= x;
         }
-        double from_end = margin * ki_exp(length * x);
-        double c = h[1] * s->mu + h[0] * s->sin_v * ki_cos(reach + margin - from_end);
-        sum += weight * from_end * facet(s, what, h[1], c);
+        double step = 1 + slope * x, p2 = step * step, p4 = p2 * p2, p8 = p4 * p4;
+        double from_end = margin * (p8 * p8);
+        double c = h[1] * s->mu + h[0] * s->sin_v * arc_cosine(reach + margin - from_end);
+        sum += weight * from_end / step * facet(s, what, h[1], c);
     }
-    return 2 * length * sum;
+    return 16 * slope / panels * sum;
 }
 
 // One theta, h its sine and cosine; half of the nodes where it weighs little.
@@ -241,6 +275,8 @@ static bool prepare(const kiln_model *model, double roughness, double ior, doubl
     s->theta_v = ki_acos(s->mu);
     s->critical = s->ior < 1 ? sqrt((1 - s->ior) * (1 + s->ior)) : 0;
     s->lambda_v = lambda(s, s->mu);
+    if (model->d == KILN_D_GGX && model->g == KILN_G_SMITH)
+        s->root_v = s->mu * (1 + 2 * s->lambda_v);
     s->most = 1 / fmax(s->mu, s->alpha / 8);
     s->light = model->d == KILN_D_BECKMANN ? 0 : 2e-3;
     s->pole = s->alpha;
