@@ -1,23 +1,22 @@
 // Euler's beta function.
 #include "math/math.h"
 
-// Stirling's series for log Gamma(x) - ((x - 1/2) log x - x + log(2 pi) / 2); error below 1e-13 for
-// x >= 9. Abramowitz and Stegun 6.1.41.
-static double stirling(double x)
+// Binet's function, log Gamma(x) - ((x - 1/2) log x - x + log(2 pi) / 2), for x >= 1. x times it is
+// smooth in 1/x on [0, 1]: a polynomial in 2/x - 1, whose first term left out is below 3e-14. The
+// coefficients were computed to 30 digits.
+static double binet(double x)
 {
-    double y = 1 / (x * x);
-    return (1.0 / 12 - y * (1.0 / 360 - y * (1.0 / 1260 - y * (1.0 / 1680 - y / 1188)))) / x;
-}
-
-// log Gamma(x) by raising x to 9 and more.
-static double log_gamma(double x)
-{
-    double product = 1;
-    while (x < 9) {
-        product *= x;
-        x += 1;
-    }
-    return (x - 0.5) * ki_log(x) - x + 0.91893853320467274178 + stirling(x) - ki_log(product);
+    static const double c[] = {
+        8.2681391910841402154e-2, -1.2300100650651827823e-3, -4.8510439094108148963e-4,
+        1.0076830694492548908e-4, -1.2621068436334965023e-6, -6.404146964602199871e-6,
+        2.5469299604863833003e-6, -4.2676248472418756946e-7, -1.155882068492140135e-7,
+        1.2789824091736661762e-7, -6.2854570757513566984e-8, 1.9134562340890036993e-8,
+        3.941582997671098106e-9,  -7.8447632522827586016e-9, 2.2225348793411953039e-9,
+        2.1051680399081272779e-10};
+    double y = 1 / x, t = 2 * y - 1, sum = 0;
+    for (int k = (int)(sizeof c / sizeof *c) - 1; k >= 0; k--)
+        sum = sum * t + c[k];
+    return sum * y;
 }
 
 // log(1 + x), x >= 0.
@@ -27,6 +26,7 @@ static double log1p_positive(double x)
     return u > 1 ? ki_log(u) - ((u - 1) - x) / u : x;
 }
 
+// log Gamma(a) + log Gamma(b) - log Gamma(a + b) with the greater a's great terms taken together.
 double ki_beta(double a, double b)
 {
     if (a < b) {
@@ -34,9 +34,7 @@ double ki_beta(double a, double b)
         a = b;
         b = swap;
     }
-    if (a < 9)
-        return ki_exp(log_gamma(a) + log_gamma(b) - log_gamma(a + b));
-    // log Gamma(a) - log Gamma(a + b) without the difference of two great numbers.
-    double rise = (a - 0.5) * log1p_positive(b / a) + b * (ki_log(a + b) - 1);
-    return ki_exp(log_gamma(b) - rise + stirling(a) - stirling(a + b));
+    double log_a = ki_log(a), rise = (a + b - 0.5) * log1p_positive(b / a) + b * log_a;
+    double log_b = (b - 0.5) * ki_log(b) + 0.91893853320467274178;
+    return ki_exp(log_b - rise + binet(a) + binet(b) - binet(a + b));
 }
