@@ -78,7 +78,8 @@ static int check(const cli_arguments *a, const look *l)
 {
     const view_options *o = &l->options;
     const char *scene = view_scene_name((int)o->scene);
-    if (l->input && !look_has_environment(l))
+    bool window = a->command == &cli_view; // where the scene can change
+    if (l->input && !window && !look_has_environment(l))
         return cli_wrong(a->command, "%s: the scene %s has no environment", l->input, scene);
     if (a->value[LOOK_AS_PRINTED] && o->scene != VIEW_SCENE_ASSIGNMENT)
         return cli_wrong(a->command, "--as-printed is for --scene assignment, not %s", scene);

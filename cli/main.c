@@ -8,7 +8,7 @@
 static const cli_command *const commands[] = {
     &cli_bake,   &cli_info, &cli_sky, &cli_tables, &cli_eval,
 #ifdef KILN_VIEWER
-    &cli_render,
+    &cli_render, &cli_view,
 #endif
 };
 enum { COMMANDS = sizeof commands / sizeof *commands };

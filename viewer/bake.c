@@ -64,7 +64,8 @@ kiln_result view_bake(kiln_context *context, const kiln_map *source, int size, b
         return view_fail(error, KILN_ERROR_ARGUMENT, "a cube of %d, it must be from 16 to 2048",
                          size);
     kiln_spectrum *spectrum = NULL;
-    const kiln_lobe lambert = kiln_lobe_lambert();
+    const kiln_prefilter_def lambert = {
+        .size = IRRADIANCE_SIZE, .level_count = 1, .lobe = KILN_LOBE_LAMBERT};
     kiln_map *irradiance = &environment->irradiance;
     kiln_result result = make_levels(context, source, size, textbook, &environment->levels, error);
     if (result == KILN_OK)
@@ -72,9 +73,7 @@ kiln_result view_bake(kiln_context *context, const kiln_map *source, int size, b
     if (result == KILN_OK)
         result = kiln_spectrum_sh(spectrum, BANDS, false, 0, 0, &environment->sh, error);
     if (result == KILN_OK)
-        result = kiln_map_create(context, KILN_SHAPE_CUBE, IRRADIANCE_SIZE, 1, irradiance, error);
-    if (result == KILN_OK)
-        result = kiln_spectrum_filter(context, spectrum, &lambert, 0, irradiance, 0, error);
+        result = kiln_prefilter(context, source, &lambert, irradiance, error);
     kiln_spectrum_destroy(spectrum);
     if (result != KILN_OK)
         view_environment_free(environment);

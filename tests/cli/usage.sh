@@ -14,7 +14,7 @@ grep -q 'kiln bake' log/out || die "help without the commands"
 expect 0 "" --version
 grep -qx 'kiln [0-9]*\.[0-9]*\.[0-9]*' log/out || die "version"
 commands="bake eval info sky tables"
-! "$KILN" --help | grep -q 'kiln render' || commands="$commands render"
+! "$KILN" --help | grep -q 'kiln render' || commands="$commands render view"
 for command in $commands; do
     expect 0 "" help $command
     cp log/out log/help
@@ -128,6 +128,10 @@ case $commands in
     expect 2 "for --scene compare" render -o out.png --split 0.5
     expect 2 "needs --debug level" render -o out.png --level 1
     expect 2 "has its own" render -o out.png --material gold
+    expect 2 "2 inputs" view a.exr b.exr
+    expect 2 "for --scene compare" view --split 0.5
+    expect 1 "there is no folder nowhere" view --screenshot nowhere/out.png
+    expect 2 "must end in .png" view --screenshot out.exr
     expect 2 "contradict" render -o out.png --reference --error
     expect 2 "needs --reference or --error" render -o out.png --noise 0.1
     expect 2 "from 0.0001 to 1" render -o out.png --reference --noise 0

@@ -1,0 +1,246 @@
+// The integrator against a sum over every texel, and its parts against their laws.
+#include "check.h"
+
+#include "reference.h"
+#include "trace.h"
+
+static kiln_context *context;
+
+enum { ROWS = 16 };
+
+// Smooth, with one bright texel.
+static void make_environment(kiln_map *map)
+{
+    kiln_error error = {0};
+    CHECK_OK(kiln_map_create(context, KILN_SHAPE_PANORAMA, ROWS, 1, map, &error));
+    for (size_t i = 0; i < kiln_map_texels(map, 0); i++) {
+        double d[3];
+        kiln_map_direction(map, 0, i, d);
+        map->level[0][3 * i] = (float)(1 + d[0]);
+        map->level[0][3 * i + 1] = (float)(1 + 0.5 * d[1]);
+        map->level[0][3 * i + 2] = (float)(i == 77 ? 40 : 1 - 0.5 * d[2]);
+    }
+}
+
+// The mean of 1 / pdf is the sphere, of radiance / pdf the total, of d radiance / pdf the first moment.
+static void light_is_drawn_where_it_is(void **unused)
+{
+    (void)unused;
+    enum { COUNT = 400000 };
+    kiln_map map;
+    view_light light;
+    kiln_error error = {0};
+    view_random random;
+    double sphere = 0, blue = 0, moment = 0, texels = 0, first = 0;
+    make_environment(&map);
+    CHECK_OK(view_light_create(context, &map, 30, &light, &error));
+    view_random_start(&random, 1);
+    for (int i = 0; i < COUNT; i++) {
+        double xi[2] = {view_random_next(&random), view_random_next(&random)}, d[3], c[3];
+        view_light_sample(&light, xi, d);
+        view_light_radiance(&light, d, c);
+        double pdf = view_light_pdf(&light, d);
+        sphere += 1 / pdf / COUNT;
+        blue += c[2] / pdf / COUNT;
+        moment += d[0] * c[2] / pdf / COUNT;
+        CHECK_NEAR(d[0] * d[0] + d[1] * d[1] + d[2] * d[2], 1, 1e-12);
+    }
+    // By a fine grid, turned as the light is: azimuth a is seen where the source has a + 30 degrees.
+    enum { FINE = 512 };
+    for (int y = 0; y < FINE; y++)
+        for (int x = 0; x < 2 * FINE; x++) {
+            double theta = 3.14159265358979 * (y + 0.5) / FINE;
+            double phi = 3.14159265358979 * (x + 0.5) / FINE;
+            double seen = fmod(phi / 6.28318530717959 + 0.5 + 30.0 / 360, 1);
+            int texel = y * ROWS / FINE * 2 * ROWS + (int)(seen * 2 * ROWS);
+            double w = sin(theta) * pow(3.14159265358979 / FINE, 2);
+            double c = (double)map.level[0][3 * texel + 2];
+            texels += w * c;
+            first += w * c * sin(theta) * sin(phi);
+        }
+    CHECK_NEAR(sphere, 4 * 3.14159265358979, 0.03);
+    CHECK_NEAR(blue, texels, 0.003 * texels);
+    CHECK_NEAR(moment, first, 0.01 * texels);
+    view_light_free(&light);
+    kiln_map_free(&map);
+}
+
+// Energy of the reflection model in uniform light, by the integrator: F = 1 gives all of it back.
+static void white_balls_vanish_in_the_furnace(void **unused)
+{
+    (void)unused;
+    view_options o = view_defaults(VIEW_SCENE_FURNACE);
+    view_reference_def def = {.noise = 0.004};
+    view_reference_report report;
+    kiln_image image;
+    kiln_error error = {0};
+    double sum = 0, squares = 0;
+    o.samples = 1;
+    CHECK_OK(view_reference(context, &o, NULL, 48, 27, &def, &image, &report, &error));
+    size_t half = 48 * 13 * 3, seen = 0;
+    for (size_t i = 0; i < half; i++)
+        if (image.pixels[i] != 1.0f) {
+            sum += (double)image.pixels[i] - 1;
+            squares += pow((double)image.pixels[i] - 1, 2);
+            seen++;
+        }
+    assert_true(seen > 100 && report.pixel_count > 100);
+    CHECK_BELOW(fabs(sum / (double)seen), 0.001);
+    CHECK_BELOW(sqrt(squares / (double)seen), 1.5 * def.noise);
+    CHECK_BELOW(report.noise, def.noise);
+    assert_int_equal(report.noisy_count, 0);
+    kiln_image_free(&image);
+}
+
+// ---------------------------------------------------------------------------------------- brute force
+
+static void normalize(double a[3])
+{
+    double size = sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+    for (int c = 0; c < 3; c++)
+        a[c] /= size;
+}
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+// Single bounce of a metal plus, for Kulla and Conty, the lobe, summed over a grid of directions.
+static void sum_all(const kiln_map *map, const view_ball *ball, const double n[3],
+                    const double v[3], double total[3])
+{
+    enum { FINE = 256 };
+    const kiln_model model = {0};
+    double r = ball->roughness, average = kiln_energy_average(&model, r), nov = dot(n, v);
+    double e_o = kiln_energy(&model, r, nov), e[FINE + 1];
+    for (int i = 0; i <= FINE; i++)
+        e[i] = kiln_energy(&model, r, (double)i / FINE);
+    for (int y = 0; y < FINE; y++)
+        for (int x = 0; x < 2 * FINE; x++) {
+            double theta = 3.14159265358979 * (y + 0.5) / FINE;
+            double phi = 3.14159265358979 * ((x + 0.5) / FINE - 1);
+            double l[3] = {sin(theta) * sin(phi), cos(theta), -sin(theta) * cos(phi)};
+            double nol = dot(n, l), h[3];
+            int texel = y * ROWS / FINE * 2 * ROWS + x * ROWS / FINE;
+            if (nol <= 0)
+                continue;
+            for (int c = 0; c < 3; c++)
+                h[c] = l[c] + v[c];
+            normalize(h);
+            double w = sin(theta) * pow(3.14159265358979 / FINE, 2) * nol;
+            double lobe = kiln_brdf_specular(&model, r, nov, nol, fmin(dot(n, h), 1));
+            int i = (int)(nol * FINE) < FINE ? (int)(nol * FINE) : FINE - 1;
+            double e_i = e[i] + (e[i + 1] - e[i]) * (nol * FINE - i);
+            for (int c = 0; c < 3; c++) {
+                double f = lobe * kiln_fresnel_schlick(ball->f0[c], dot(v, h));
+                if (ball->method == VIEW_METHOD_KULLA_CONTY)
+                    f += kiln_kulla_conty(e_o, e_i, average) *
+                         kiln_kulla_conty_fresnel(KILN_F_ADD_SECOND, ball->f_average[c], average);
+                total[c] += w * f * (double)map->level[0][3 * texel + c];
+            }
+        }
+}
+
+static void the_integral_is_the_sum(void **unused)
+{
+    (void)unused;
+    enum { WIDTH = 16, HEIGHT = 9 };
+    view_options o = view_defaults(VIEW_SCENE_IBL);
+    view_reference_def def = {.noise = 0.003, .batch_limit = 65536};
+    kiln_map map;
+    kiln_image image;
+    kiln_error error = {0};
+    view_ball balls[VIEW_MAX_BALLS];
+    double eye[3], right[3], up[3], back[3], slope = tan(o.camera.fov / 2 * 3.14159265358979 / 180);
+    int count = view_balls(&o, balls), seen = 0;
+    o.samples = 1;
+    make_environment(&map);
+    view_camera_axes(&o.camera, eye, right, up, back);
+    CHECK_OK(view_reference(context, &o, &map, WIDTH, HEIGHT, &def, &image, NULL, &error));
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        double sx = (2 * (i % WIDTH + 0.5) / WIDTH - 1) * slope * WIDTH / HEIGHT;
+        double sy = (1 - 2 * (i / WIDTH + 0.5) / HEIGHT) * slope, d[3];
+        for (int c = 0; c < 3; c++)
+            d[c] = sx * right[c] + sy * up[c] - back[c];
+        normalize(d);
+        for (int k = 0; k < count; k++) {
+            // Rough ones: the grid is too coarse for the others.
+            double from[3], n[3], v[3], wanted[3] = {0};
+            for (int c = 0; c < 3; c++)
+                from[c] = eye[c] - balls[k].centre[c];
+            double b = dot(from, d), rest = b * b - dot(from, from) + 36 * 36;
+            if (rest <= 0 || balls[k].roughness < 0.5)
+                continue;
+            for (int c = 0; c < 3; c++) {
+                n[c] = (from[c] + (-b - sqrt(rest)) * d[c]) / 36;
+                v[c] = -d[c];
+            }
+            sum_all(&map, &balls[k], n, v, wanted);
+            for (int c = 0; c < 3; c++)
+                CHECK_NEAR((double)image.pixels[3 * i + c], wanted[c], 0.016 * (wanted[c] + 0.02));
+            seen++;
+        }
+    }
+    print_message("%d pixels\n", seen);
+    assert_true(seen >= 8);
+    kiln_image_free(&image);
+    kiln_map_free(&map);
+}
+
+// Threads share the rows, not the random numbers.
+static void threads_do_not_matter(void **unused)
+{
+    (void)unused;
+    view_options o = view_defaults(VIEW_SCENE_IBL);
+    kiln_map map;
+    kiln_error error = {0};
+    kiln_image image[2];
+    make_environment(&map);
+    o.samples = 2;
+    o.occlusion = true;
+    for (int i = 0; i < 2; i++) {
+        view_reference_def def = {.noise = 0.2, .thread_count = i ? 5 : 1};
+        CHECK_OK(view_reference(context, &o, &map, 40, 20, &def, &image[i], NULL, &error));
+    }
+    assert_memory_equal(image[0].pixels, image[1].pixels, 40 * 20 * 3 * sizeof(float));
+    kiln_image_free(&image[0]);
+    kiln_image_free(&image[1]);
+    kiln_map_free(&map);
+}
+
+static bool stop_at_once(void *user, const char *stage, double fraction)
+{
+    (void)user;
+    (void)stage;
+    (void)fraction;
+    return false;
+}
+
+static void it_can_be_stopped(void **unused)
+{
+    (void)unused;
+    view_options o = view_defaults(VIEW_SCENE_FURNACE);
+    view_reference_def def = {.noise = 1e-4, .progress = stop_at_once};
+    kiln_image image;
+    kiln_error error = {0};
+    assert_int_equal(view_reference(context, &o, NULL, 640, 360, &def, &image, NULL, &error),
+                     KILN_ERROR_CANCELLED);
+    assert_null(image.pixels);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(light_is_drawn_where_it_is),
+        cmocka_unit_test(white_balls_vanish_in_the_furnace),
+        cmocka_unit_test(the_integral_is_the_sum),
+        cmocka_unit_test(threads_do_not_matter),
+        cmocka_unit_test(it_can_be_stopped),
+    };
+    if (kiln_context_create(NULL, &context, NULL))
+        return 1;
+    int failed = cmocka_run_group_tests_name("reference_picture", tests, NULL, NULL);
+    kiln_context_destroy(context);
+    return failed;
+}
