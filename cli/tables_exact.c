@@ -1,0 +1,205 @@
+// kiln tables --table KIND -o FILE
+#include "tables.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char *const kinds[] = {"e",     "eavg",         "dfg",   "dfg-multiscatter",
+                                    "sheen", "e-dielectric", "glass", "e-walk",
+                                    NULL};
+static const char *const axes[] = {"linear", "sqrt", "cbrt", "grazing", NULL};
+static const char *const formats[] = {"auto", "f32", "f16", "u16", "u8", NULL};
+static const char *const endings[] = {"ktx2", "exr", "hdr", "png", "raw", "bin", "h", "glsl", NULL};
+
+typedef struct exact_job {
+    const cli_arguments *a;
+    kiln_table_def def;
+    kiln_table_save_def save;
+    int threads;
+    char lookup[2][4096]; // the names of the code's files
+} exact_job;
+
+// "N", "WxH" or "WxHxD".
+static int read_size(const cli_arguments *a, kiln_table_def *def)
+{
+    const char *text = a->value[TABLES_SIZE];
+    if (!text)
+        return CLI_GO;
+    long side[3] = {0};
+    int count = 0;
+    const char *at = text;
+    for (; count < 3; at++) {
+        char *end;
+        side[count] = strtol(at, &end, 10);
+        if (end == at || side[count] < 1 || side[count] > KILN_MAX_TABLE)
+            break;
+        count++;
+        at = end;
+        if (*at != 'x')
+            break;
+    }
+    if (!count || *at)
+        return cli_wrong(a->command, "--size is '%s', it must be N, WxH or WxHxD, each 1 to %d",
+                         text, KILN_MAX_TABLE);
+    def->width = (int)side[0];
+    def->height = (int)(count > 1 ? side[1] : side[0]);
+    def->depth = (int)side[2];
+    return CLI_GO;
+}
+
+static int check_output(const cli_arguments *a, int option, const char *name)
+{
+    const char *path = a->value[option], *ending = cli_ending(path);
+    for (int i = 0; endings[i]; i++)
+        if (!strcmp(ending, endings[i]))
+            return cli_check_folder(path);
+    return cli_wrong(a->command, "%s %s: must end in .ktx2, .exr, .hdr, .png, .raw, .bin, .h or .glsl",
+                     name, path);
+}
+
+// NAME_lookup.h and NAME_lookup.glsl.
+static int name_lookup(exact_job *job)
+{
+    const char *path = job->a->value[TABLES_OUTPUT];
+    size_t length = strlen(path) - strlen(cli_ending(path)) - 1;
+    if (length + sizeof "_lookup.glsl" > sizeof job->lookup[0])
+        return cli_fail("%.60s...: the name is too long", path);
+    snprintf(job->lookup[0], sizeof job->lookup[0], "%.*s_lookup.h", (int)length, path);
+    snprintf(job->lookup[1], sizeof job->lookup[1], "%.*s_lookup.glsl", (int)length, path);
+    return CLI_GO;
+}
+
+static int read_choices(exact_job *job)
+{
+    const cli_arguments *a = job->a;
+    int kind = 0, axis = 0, format = 0, code;
+    if ((code = cli_choice(a, TABLES_TABLE, "--table", kinds, &kind)) != CLI_GO ||
+        (code = cli_choice(a, TABLES_AXIS, "--axis", axes, &axis)) != CLI_GO ||
+        (code = cli_choice(a, TABLES_FORMAT, "--format", formats, &format)) != CLI_GO ||
+        (code = cli_model(a, TABLES_D, TABLES_G, &job->def.model)) != CLI_GO ||
+        (code = read_size(a, &job->def)) != CLI_GO)
+        return code;
+    job->def.kind = (kiln_table_kind)kind;
+    job->def.axis = (kiln_axis)axis;
+    job->def.corners = a->value[TABLES_CORNERS];
+    job->def.complement = a->value[TABLES_COMPLEMENT];
+    job->def.flip = a->value[TABLES_FLIP];
+    job->save.format = (kiln_table_format)format;
+    job->save.name = a->value[TABLES_NAME];
+    return CLI_GO;
+}
+
+static int read_arguments(exact_job *job)
+{
+    const cli_arguments *a = job->a;
+    int code;
+    if (a->rest_count)
+        return cli_wrong(a->command, "%s: tables takes no input; name the output by -o FILE",
+                         a->rest[0]);
+    if (!a->value[TABLES_OUTPUT])
+        return cli_wrong(a->command, "no output: name it by -o FILE");
+    if (a->value[TABLES_SAMPLES])
+        return cli_wrong(a->command, "--samples is for --assignment and --method textbook: what "
+                                     "--table makes is not sampled");
+    if ((code = read_choices(job)) != CLI_GO ||
+        (code = check_output(a, TABLES_OUTPUT, "--output")) != CLI_GO ||
+        (code = cli_integer(a, TABLES_ZSTD, "--zstd", 1, 22, &job->save.zstd)) != CLI_GO ||
+        (code = cli_integer(a, TABLES_PATHS, "--paths", 16, 1 << 24, &job->def.path_count)) !=
+            CLI_GO ||
+        (code = cli_integer(a, TABLES_THREADS, "--threads", 1, 256, &job->threads)) != CLI_GO)
+        return code;
+    if (a->value[TABLES_AVERAGE] && job->def.kind != KILN_TABLE_E)
+        return cli_wrong(a->command, "--average is for --table e, this is --table %s",
+                         kinds[job->def.kind]);
+    if (a->value[TABLES_AVERAGE] &&
+        (code = check_output(a, TABLES_AVERAGE, "--average")) != CLI_GO)
+        return code;
+    return a->value[TABLES_LOOKUP] ? name_lookup(job) : CLI_GO;
+}
+
+static void report(const cli_job *run, const exact_job *job, const kiln_table *table)
+{
+    const kiln_table_def *def = &table->def;
+    const cli_arguments *a = job->a;
+    char size[64], model[64] = "";
+    snprintf(size, sizeof size, def->depth > 1 ? "%d x %d x %d" : "%d x %d", def->width,
+             def->height, def->depth);
+    if (def->kind != KILN_TABLE_SHEEN)
+        snprintf(model, sizeof model, "%s, %s, ", cli_d_names[def->model.d],
+                 cli_g_names[def->model.g]);
+    printf("%s: %s, %s%s, %s axis, texels at %s, %.2f s\n", a->value[TABLES_OUTPUT],
+           kinds[def->kind], model, size, axes[def->axis], def->corners ? "corners" : "centres",
+           cli_seconds() - run->began);
+    if (a->value[TABLES_AVERAGE])
+        printf("%s: the mean of that table, 1024 texels\n", a->value[TABLES_AVERAGE]);
+    if (a->value[TABLES_LOOKUP])
+        printf("%s, %s: how to look it up\n", job->lookup[0], job->lookup[1]);
+}
+
+static int report_json(const cli_job *run, const exact_job *job, const kiln_table *table)
+{
+    const kiln_table_def *def = &table->def;
+    const cli_arguments *a = job->a;
+    cJSON *json = cJSON_CreateObject();
+    cJSON_AddStringToObject(json, "output", a->value[TABLES_OUTPUT]);
+    cJSON_AddStringToObject(json, "table", kinds[def->kind]);
+    cJSON_AddStringToObject(json, "d", cli_d_names[def->model.d]);
+    cJSON_AddStringToObject(json, "g", cli_g_names[def->model.g]);
+    cJSON_AddNumberToObject(json, "width", def->width);
+    cJSON_AddNumberToObject(json, "height", def->height);
+    cJSON_AddNumberToObject(json, "depth", def->depth);
+    cJSON_AddNumberToObject(json, "channels", table->image.channels);
+    cJSON_AddStringToObject(json, "axis", axes[def->axis]);
+    cJSON_AddBoolToObject(json, "corners", def->corners);
+    cJSON_AddBoolToObject(json, "complement", def->complement);
+    cJSON_AddBoolToObject(json, "flip", def->flip);
+    if (a->value[TABLES_AVERAGE])
+        cJSON_AddStringToObject(json, "average", a->value[TABLES_AVERAGE]);
+    if (a->value[TABLES_LOOKUP]) {
+        cJSON *lookup = cJSON_AddArrayToObject(json, "lookup");
+        for (int i = 0; i < 2; i++)
+            cJSON_AddItemToArray(lookup, cJSON_CreateString(job->lookup[i]));
+    }
+    cJSON_AddNumberToObject(json, "seconds", cli_seconds() - run->began);
+    return cli_print_json(json);
+}
+
+// Everything is computed before the first file is written.
+static kiln_result make(cli_job *run, const exact_job *job, kiln_table *table, kiln_table *average)
+{
+    const cli_arguments *a = job->a;
+    const char *path = a->value[TABLES_OUTPUT], *mean = a->value[TABLES_AVERAGE];
+    kiln_result result = kiln_table_create(run->context, &job->def, table, &run->error);
+    if (!result && mean)
+        result = kiln_table_average(run->context, table, 0, average, &run->error);
+    if (!result)
+        result = kiln_table_save(run->context, table, path, &job->save, &run->error);
+    if (!result && mean)
+        result = kiln_table_save(run->context, average, mean, &job->save, &run->error);
+    for (int i = 0; i < 2 && !result && a->value[TABLES_LOOKUP]; i++)
+        result = kiln_table_lookup_save(run->context, &table->def, job->lookup[i], job->save.name,
+                                        &run->error);
+    return result;
+}
+
+int tables_exact(const cli_arguments *a)
+{
+    exact_job job = {.a = a};
+    int code = read_arguments(&job);
+    if (code != CLI_GO)
+        return code;
+    cli_job run;
+    kiln_table table = {0}, average = {0};
+    code = cli_job_begin(&run, job.threads, a->value[TABLES_QUIET]);
+    if (code == CLI_GO)
+        code = make(&run, &job, &table, &average) ? CLI_FAILED : CLI_DONE;
+    cli_clear_progress(&run);
+    if (code == CLI_DONE && a->value[TABLES_JSON])
+        code = report_json(&run, &job, &table);
+    else if (code == CLI_DONE && !a->value[TABLES_QUIET])
+        report(&run, &job, &table);
+    kiln_table_free(&average);
+    kiln_table_free(&table);
+    return cli_job_end(&run, code);
+}
