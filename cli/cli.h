@@ -51,6 +51,8 @@ typedef struct cli_arguments {
 int cli_arguments_read(cli_arguments *arguments, const cli_command *command, int argc,
                        const char **argv);
 void cli_arguments_free(cli_arguments *arguments);
+/// The long name of an option, without dashes.
+const char *cli_option_name(const cli_command *command, int option);
 
 /// Prints "kiln: SENTENCE" and a hint to --help; returns CLI_WRONG. `command` may be NULL.
 int cli_wrong(const cli_command *command, const char *format, ...)

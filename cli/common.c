@@ -67,6 +67,11 @@ static const char *option_name(const struct poptOption *table, int option)
     return name;
 }
 
+const char *cli_option_name(const cli_command *command, int option)
+{
+    return option_name(command->options, option);
+}
+
 int cli_arguments_read(cli_arguments *a, const cli_command *command, int argc, const char **argv)
 {
     *a = (cli_arguments){.command = command};
@@ -80,7 +85,7 @@ int cli_arguments_read(cli_arguments *a, const cli_command *command, int argc, c
         char *text = poptGetOptArg(a->popt);
         if (a->value[option]) {
             free(text);
-            return cli_wrong(command, "--%s is given twice", option_name(command->options, option));
+            return cli_wrong(command, "--%s is given twice", cli_option_name(command, option));
         }
         a->value[option] = text ? text : strdup("");
         if (!a->value[option])

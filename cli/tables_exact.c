@@ -5,9 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const kinds[] = {"e",     "eavg",         "dfg",   "dfg-multiscatter",
-                                    "sheen", "e-dielectric", "glass", "e-walk",
-                                    NULL};
+static const char *const kinds[] = {
+    "e", "eavg", "dfg", "dfg-multiscatter", "sheen", "e-dielectric", "glass", "e-walk", NULL};
 static const char *const axes[] = {"linear", "sqrt", "cbrt", "grazing", NULL};
 static const char *const formats[] = {"auto", "f32", "f16", "u16", "u8", NULL};
 static const char *const endings[] = {"ktx2", "exr", "hdr", "png", "raw", "bin", "h", "glsl", NULL};
@@ -29,17 +28,16 @@ static int read_size(const cli_arguments *a, kiln_table_def *def)
     long side[3] = {0};
     int count = 0;
     const char *at = text;
-    for (; count < 3; at++) {
+    bool more = true;
+    for (; more && count < 3; count++) {
         char *end;
         side[count] = strtol(at, &end, 10);
         if (end == at || side[count] < 1 || side[count] > KILN_MAX_TABLE)
             break;
-        count++;
-        at = end;
-        if (*at != 'x')
-            break;
+        more = *end == 'x';
+        at = end + more;
     }
-    if (!count || *at)
+    if (more || *at)
         return cli_wrong(a->command, "--size is '%s', it must be N, WxH or WxHxD, each 1 to %d",
                          text, KILN_MAX_TABLE);
     def->width = (int)side[0];
@@ -54,8 +52,9 @@ static int check_output(const cli_arguments *a, int option, const char *name)
     for (int i = 0; endings[i]; i++)
         if (!strcmp(ending, endings[i]))
             return cli_check_folder(path);
-    return cli_wrong(a->command, "%s %s: must end in .ktx2, .exr, .hdr, .png, .raw, .bin, .h or .glsl",
-                     name, path);
+    return cli_wrong(a->command,
+                     "%s %s: must end in .ktx2, .exr, .hdr, .png, .raw, .bin, .h or .glsl", name,
+                     path);
 }
 
 // NAME_lookup.h and NAME_lookup.glsl.
@@ -73,20 +72,45 @@ static int name_lookup(exact_job *job)
 static int read_choices(exact_job *job)
 {
     const cli_arguments *a = job->a;
-    int kind = 0, axis = 0, format = 0, code;
+    int kind = 0, axis = 0, format = 0, sheen = 0, code;
     if ((code = cli_choice(a, TABLES_TABLE, "--table", kinds, &kind)) != CLI_GO ||
         (code = cli_choice(a, TABLES_AXIS, "--axis", axes, &axis)) != CLI_GO ||
         (code = cli_choice(a, TABLES_FORMAT, "--format", formats, &format)) != CLI_GO ||
+        (code = cli_choice(a, TABLES_SHEEN, "--sheen", cli_sheen_names, &sheen)) != CLI_GO ||
         (code = cli_model(a, TABLES_D, TABLES_G, &job->def.model)) != CLI_GO ||
         (code = read_size(a, &job->def)) != CLI_GO)
         return code;
     job->def.kind = (kiln_table_kind)kind;
+    job->def.sheen = (kiln_sheen)sheen;
     job->def.axis = (kiln_axis)axis;
     job->def.corners = a->value[TABLES_CORNERS];
     job->def.complement = a->value[TABLES_COMPLEMENT];
     job->def.flip = a->value[TABLES_FLIP];
     job->save.format = (kiln_table_format)format;
     job->save.name = a->value[TABLES_NAME];
+    return CLI_GO;
+}
+
+// Options that not every kind has.
+static int check_kind(const exact_job *job)
+{
+    static const struct {
+        int option;
+        unsigned kinds; // a bit each
+    } only[] = {
+        {TABLES_AVERAGE, 1U << KILN_TABLE_E},
+        {TABLES_SHEEN, 1U << KILN_TABLE_SHEEN},
+        {TABLES_PATHS, 1U << KILN_TABLE_E_WALK},
+        {TABLES_G, ~(1U << KILN_TABLE_SHEEN | 1U << KILN_TABLE_E_WALK)},
+        {TABLES_D, ~(1U << KILN_TABLE_SHEEN | 1U << KILN_TABLE_E_WALK)},
+        {TABLES_COMPLEMENT,
+         ~(1U << KILN_TABLE_DFG | 1U << KILN_TABLE_DFG_MULTISCATTER | 1U << KILN_TABLE_GLASS)},
+    };
+    for (size_t i = 0; i < sizeof only / sizeof *only; i++)
+        if (job->a->value[only[i].option] && !(only[i].kinds >> job->def.kind & 1))
+            return cli_wrong(job->a->command, "--%s is not for --table %s",
+                             cli_option_name(job->a->command, only[i].option),
+                             kinds[job->def.kind]);
     return CLI_GO;
 }
 
@@ -109,11 +133,9 @@ static int read_arguments(exact_job *job)
             CLI_GO ||
         (code = cli_integer(a, TABLES_THREADS, "--threads", 1, 256, &job->threads)) != CLI_GO)
         return code;
-    if (a->value[TABLES_AVERAGE] && job->def.kind != KILN_TABLE_E)
-        return cli_wrong(a->command, "--average is for --table e, this is --table %s",
-                         kinds[job->def.kind]);
-    if (a->value[TABLES_AVERAGE] &&
-        (code = check_output(a, TABLES_AVERAGE, "--average")) != CLI_GO)
+    if ((code = check_kind(job)) != CLI_GO)
+        return code;
+    if (a->value[TABLES_AVERAGE] && (code = check_output(a, TABLES_AVERAGE, "--average")) != CLI_GO)
         return code;
     return a->value[TABLES_LOOKUP] ? name_lookup(job) : CLI_GO;
 }
@@ -125,7 +147,9 @@ static void report(const cli_job *run, const exact_job *job, const kiln_table *t
     char size[64], model[64] = "";
     snprintf(size, sizeof size, def->depth > 1 ? "%d x %d x %d" : "%d x %d", def->width,
              def->height, def->depth);
-    if (def->kind != KILN_TABLE_SHEEN)
+    if (def->kind == KILN_TABLE_SHEEN)
+        snprintf(model, sizeof model, "%s, ", cli_sheen_names[def->sheen]);
+    else
         snprintf(model, sizeof model, "%s, %s, ", cli_d_names[def->model.d],
                  cli_g_names[def->model.g]);
     printf("%s: %s, %s%s, %s axis, texels at %s, %.2f s\n", a->value[TABLES_OUTPUT],

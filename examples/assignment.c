@@ -1,9 +1,7 @@
 // The page of the assignment: its figures as its methods give them, beside the integrals.
 #include "demo.h"
 
-#include <errno.h>
 #include <math.h>
-#include <string.h>
 
 enum { SIZE = 128, MC = 0, FREE, IS, SPLIT, EXACT, TABLES };
 
@@ -96,33 +94,6 @@ static kiln_result show_error(assignment *a, int t)
             "<figcaption>its error: <b>%.*g</b> at most, <b>%.2g</b> rms, %+.1g on the mean"
             "</figcaption></figure>\n",
             digits(d.max), d.max, d.rms, d.mean);
-    return result;
-}
-
-static kiln_result show_legend(assignment *a)
-{
-    enum { HALF = 260, HEIGHT = 8 };
-    kiln_image off = {0}, none = {0}, map = {0};
-    kiln_difference d;
-    kiln_result result = kiln_image_create(a->page.context, 2 * HALF, HEIGHT, 1, &off, a->error);
-    if (!result)
-        result = kiln_image_create(a->page.context, 2 * HALF, HEIGHT, 1, &none, a->error);
-    for (int i = 0; i < 2 * HALF * HEIGHT && !result; i++) {
-        double x = (i % (2 * HALF) + 0.5) / HALF - 1;
-        off.pixels[i] = (float)(copysign(1e-4, x) * pow(10, 4 * fabs(x)));
-    }
-    if (!result)
-        result = kiln_assignment_compare(a->page.context, &off, &none, &d, &map, a->error);
-    fputs("<div class=\"legend\">", a->page.file);
-    if (!result)
-        result = demo_page_picture(&a->page, &map, "wide", "Colours of the errors", a->error);
-    fputs("<div><span>&minus;1</span><span>&minus;0.1</span><span>&minus;0.01</span>"
-          "<span>&minus;0.001</span><span>0</span><span>0.001</span><span>0.01</span>"
-          "<span>0.1</span><span>1</span></div></div>\n"
-          "<p class=\"note\">Blue is too dark, red too bright; white is within 0.0001.</p>\n",
-          a->page.file);
-    kiln_image_free(&none);
-    kiln_image_free(&off);
     return result;
 }
 
@@ -285,7 +256,7 @@ static kiln_result show(assignment all[2])
             "roughness (0 at the bottom, 1 at the top). Each picture is the very bytes that "
             "<code>kiln tables --assignment</code> writes: 128 &times; 128, 1024 samples a "
             "texel.</p>\n");
-    kiln_result result = show_legend(all);
+    kiln_result result = demo_signed_legend(&all->page, all->error);
     if (!result)
         result =
             show_tables(&all[0], "k = roughness&sup2; / 2, as in the assignment&rsquo;s figures");
@@ -302,16 +273,11 @@ static kiln_result show(assignment all[2])
 kiln_result demo_assignment_page(kiln_context *context, const char *folder, const char *scratch,
                                  kiln_error *error)
 {
-    char path[1024];
     assignment all[2] = {{.g = KILN_G_SCHLICK_K2}, {.g = KILN_G_SCHLICK_TEXT}};
     printf("the assignment\n");
-    snprintf(path, sizeof path, "%s/assignment.html", folder);
-    FILE *f = fopen(path, "wb");
-    if (!f) {
-        snprintf(error->message, sizeof error->message, "%.400s: cannot be written: %s", path,
-                 strerror(errno));
-        return error->result = KILN_ERROR_IO;
-    }
+    FILE *f = demo_page_open(folder, "assignment.html", error);
+    if (!f)
+        return error->result;
     kiln_result result = KILN_OK;
     for (int i = 0; i < 2 && !result; i++) {
         all[i].page = (demo_page){f, scratch, context};
@@ -320,15 +286,8 @@ kiln_result demo_assignment_page(kiln_context *context, const char *folder, cons
     }
     if (!result)
         result = show(all);
-    bool failed = ferror(f);
-    failed |= fclose(f) != 0;
-    if (failed && !result) {
-        snprintf(error->message, sizeof error->message, "%.400s: cannot be written", path);
-        result = error->result = KILN_ERROR_IO;
-    }
+    result = demo_page_close(f, folder, "assignment.html", result, error);
     release(&all[0]);
     release(&all[1]);
-    if (!result)
-        printf("wrote %s\n", path);
     return result;
 }

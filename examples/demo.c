@@ -657,6 +657,7 @@ static kiln_result write_page(demo *d, const char *path, const char *sections, c
     }
     fprintf(f,
             "<a href=\"#table\">The split-sum table</a>"
+            "<a href=\"tables.html\">Exact tables</a>"
             "<a href=\"assignment.html\">The assignment</a></nav>\n</div></header>\n<main>\n%s",
             sections);
     demo_page_foot(f, "Pictures are brought to the screen by one exposure a section and a filmic "
@@ -692,6 +693,8 @@ static kiln_result make_page(demo *d, const char *folder, char **names, int coun
     fclose(d->page.file);
     if (!result)
         result = demo_assignment_page(d->context, folder, d->scratch, &d->error);
+    if (!result)
+        result = demo_tables_page(d->context, folder, d->scratch, &d->error);
     if (!result)
         result = write_page(d, path, sections, names, count);
     free(sections);

@@ -77,8 +77,18 @@ kiln_result demo_page_picture(demo_page *page, kiln_image *image, const char *st
 /// The scale of the error maps.
 void demo_page_legend(FILE *file);
 
-/// assignment.html in `folder`; `scratch` as in demo_page.
+/// The scale of kiln_assignment_compare's maps.
+kiln_result demo_signed_legend(demo_page *page, kiln_error *error);
+/// A page of its own; NULL where it cannot be written. Closing says what it wrote and returns `result`,
+/// or the failure to write.
+FILE *demo_page_open(const char *folder, const char *name, kiln_error *error);
+kiln_result demo_page_close(FILE *file, const char *folder, const char *name, kiln_result result,
+                            kiln_error *error);
+
+/// assignment.html and tables.html in `folder`; `scratch` as in demo_page.
 kiln_result demo_assignment_page(kiln_context *context, const char *folder, const char *scratch,
                                  kiln_error *error);
+kiln_result demo_tables_page(kiln_context *context, const char *folder, const char *scratch,
+                             kiln_error *error);
 
 #endif

@@ -1,6 +1,7 @@
 // The page: style, words that never change, and pictures inside the HTML.
 #include "demo.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -205,5 +206,63 @@ kiln_result demo_page_picture(demo_page *page, kiln_image *image, const char *st
     if (png)
         fclose(png);
     remove(page->scratch);
+    return result;
+}
+
+kiln_result demo_signed_legend(demo_page *page, kiln_error *error)
+{
+    enum { HALF = 260, HEIGHT = 8 };
+    kiln_image off = {0}, none = {0}, map = {0};
+    kiln_difference d;
+    kiln_result result = kiln_image_create(page->context, 2 * HALF, HEIGHT, 1, &off, error);
+    if (!result)
+        result = kiln_image_create(page->context, 2 * HALF, HEIGHT, 1, &none, error);
+    for (int i = 0; i < 2 * HALF * HEIGHT && !result; i++) {
+        double x = (i % (2 * HALF) + 0.5) / HALF - 1;
+        off.pixels[i] = (float)(copysign(1e-4, x) * pow(10, 4 * fabs(x)));
+    }
+    if (!result)
+        result = kiln_assignment_compare(page->context, &off, &none, &d, &map, error);
+    fputs("<div class=\"legend\">", page->file);
+    if (!result)
+        result = demo_page_picture(page, &map, "wide", "Colours of the errors", error);
+    fputs("<div><span>&minus;1</span><span>&minus;0.1</span><span>&minus;0.01</span>"
+          "<span>&minus;0.001</span><span>0</span><span>0.001</span><span>0.01</span>"
+          "<span>0.1</span><span>1</span></div></div>\n"
+          "<p class=\"note\">Blue is too dark, red too bright; white is within 0.0001.</p>\n",
+          page->file);
+    kiln_image_free(&none);
+    kiln_image_free(&off);
+    return result;
+}
+
+// ------------------------------------------------------------------------------------------- files
+
+static kiln_result fail(const char *folder, const char *name, const char *why, kiln_error *error)
+{
+    snprintf(error->message, sizeof error->message, "%.300s/%s: cannot be written%s", folder, name,
+             why);
+    return error->result = KILN_ERROR_IO;
+}
+
+FILE *demo_page_open(const char *folder, const char *name, kiln_error *error)
+{
+    char path[1024];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *file = fopen(path, "wb");
+    if (!file)
+        fail(folder, name, "", error);
+    return file;
+}
+
+kiln_result demo_page_close(FILE *file, const char *folder, const char *name, kiln_result result,
+                            kiln_error *error)
+{
+    bool failed = ferror(file);
+    failed |= fclose(file) != 0;
+    if (failed && !result)
+        return fail(folder, name, " whole", error);
+    if (!result)
+        printf("wrote %s/%s\n", folder, name);
     return result;
 }

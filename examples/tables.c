@@ -60,11 +60,12 @@ static kiln_result show_kinds(tables *t)
         {{.model.g = KILN_G_SCHLICK_TEXT, .flip = true}, "<b>E</b> with the text&rsquo;s k"},
     };
     kiln_result result = KILN_OK;
-    fputs("<h2 id=\"tables\">What the tables hold</h2>\n"
-          "<p>n&middot;v runs from grazing at the left to straight on at the right, roughness from 0 "
-          "at the bottom to 1 at the top. Every texel is an integral, to seven digits: there is no "
-          "noise to look for.</p>\n<div class=\"pair\">\n",
-          t->page.file);
+    fputs(
+        "<h2 id=\"tables\">What the tables hold</h2>\n"
+        "<p>n&middot;v runs from grazing at the left to straight on at the right, roughness from 0 "
+        "at the bottom to 1 at the top. Every texel is an integral, to seven digits: there is no "
+        "noise to look for.</p>\n<div class=\"pair\">\n",
+        t->page.file);
     for (size_t i = 0; i < sizeof shown / sizeof *shown && !result; i++)
         result = show_table(t, &shown[i].def, shown[i].caption);
     fputs("</div>\n", t->page.file);
@@ -155,15 +156,16 @@ static kiln_result show_furnace(tables *t)
     kiln_result result = kiln_image_create(t->page.context, MAP, MAP, 1, &white, t->error);
     for (int i = 0; i < MAP * MAP && !result; i++)
         white.pixels[i] = 1;
-    fputs("<h2 id=\"furnace\">Where the lookup errs</h2>\n"
-          "<p>A white surface in white light, lit by its single bounce and Kulla and Conty&rsquo;s "
-          "lobe, must be white. With the functions it is, to twelve digits. With a table of 128 "
-          "&times; 128 it is the lookup between texels that errs, all of it at grazing angles: that "
-          "layer is as wide as roughness&sup2;. So n&middot;v is stored on a curved axis. The best "
-          "is &radic;(n&middot;v (1 + &alpha;) / (n&middot;v + &alpha;)), on which the layer is as "
-          "wide at every roughness. In the maps n&middot;v is on a cubic scale: the left half is "
-          "n&middot;v below 1/8.</p>\n",
-          t->page.file);
+    fputs(
+        "<h2 id=\"furnace\">Where the lookup errs</h2>\n"
+        "<p>A white surface in white light, lit by its single bounce and Kulla and Conty&rsquo;s "
+        "lobe, must be white. With the functions it is, to twelve digits. With a table of 128 "
+        "&times; 128 it is the lookup between texels that errs, all of it at grazing angles: that "
+        "layer is as wide as roughness&sup2;. So n&middot;v is stored on a curved axis. The best "
+        "is &radic;(n&middot;v (1 + &alpha;) / (n&middot;v + &alpha;)), on which the layer is as "
+        "wide at every roughness. In the maps n&middot;v is on a cubic scale: the left half is "
+        "n&middot;v below 1/8.</p>\n",
+        t->page.file);
     if (!result)
         result = demo_signed_legend(&t->page, t->error);
     for (int g = 0; g < 2 && !result; g++) {

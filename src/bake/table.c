@@ -179,7 +179,10 @@ kiln_result ki_table_complete(kiln_table_def *def, kiln_error *error)
     def->width = def->width ? def->width : has_depth ? 32 : 128;
     def->height = def->height ? def->height : has_depth ? 32 : 128;
     def->depth = def->depth ? def->depth : has_depth ? 32 : 1;
-    def->path_count = def->path_count ? def->path_count : 1 << 16;
+    if (def->kind != KILN_TABLE_E_WALK)
+        def->path_count = 0;
+    else if (!def->path_count)
+        def->path_count = 1 << 16;
     result = check_size("width", def->width, KILN_MAX_TABLE, error);
     if (!result)
         result = check_size("height", def->height, KILN_MAX_TABLE, error);
