@@ -151,8 +151,8 @@ static kiln_result compute(assignment *a)
 
 // ------------------------------------------------------------------------------------------ writing
 
-static kiln_result save(assignment *a, const kiln_image *image, const char *before,
-                        const char *name)
+kiln_result assignment_save(assignment *a, const kiln_image *image, const char *before,
+                            const char *name)
 {
     char path[4400];
     snprintf(path, sizeof path, "%s/%s%s.png", a->def->folder, before, name);
@@ -176,7 +176,7 @@ static kiln_result save_table(assignment *a, const kiln_image *table, const char
                 rgb.pixels[3 * y * width + i] = figure3 ? 1 - e : e;
             }
         kiln_assignment_truncate(&rgb);
-        result = save(a, &rgb, "", name);
+        result = assignment_save(a, &rgb, "", name);
     }
     kiln_image_free(&rgb);
     return result;
@@ -201,7 +201,7 @@ static kiln_result save_legend(assignment *a)
     if (!result)
         result = kiln_assignment_compare(context, &off, &none, &difference, &map, error);
     if (!result)
-        result = save(a, &map, "", "error_legend");
+        result = assignment_save(a, &map, "", "error_legend");
     kiln_image_free(&map);
     kiln_image_free(&none);
     kiln_image_free(&off);
@@ -215,7 +215,7 @@ static kiln_result write_pictures(assignment *a)
         if (t != ASSIGNMENT_AVERAGE_BYTES) // differs by a byte: in the report only
             result = save_table(a, &a->table[t], assignment_names[t], false);
         if (!result && a->map[t].pixels)
-            result = save(a, &a->map[t], "error_", assignment_names[t]);
+            result = assignment_save(a, &a->map[t], "error_", assignment_names[t]);
     }
     if (!result)
         result = save_table(a, &a->table[ASSIGNMENT_IS], "one_minus_Emu_IS", true);
@@ -247,7 +247,7 @@ int assignment_write(cli_job *job, const assignment_def *def)
         code = cli_fail("%s: cannot be made: %s", def->folder, strerror(errno));
         goto done;
     }
-    if (!write_pictures(&a)) {
+    if (!write_pictures(&a) && (!def->draw || !def->draw(&a))) {
         a.file_count++;
         code = assignment_write_report(&a);
     }

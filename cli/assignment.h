@@ -4,11 +4,19 @@
 
 #include "cli.h"
 
+#include <stdio.h>
+
+struct assignment;
+
 typedef struct assignment_def {
     const char *folder; ///< made where missing
     int size, samples;
     kiln_g g; ///< one of Schlick's two
     bool json, quiet;
+    /// More pictures beside the tables, and their part of the report. May be NULL.
+    kiln_result (*draw)(struct assignment *a);
+    void (*describe)(const struct assignment *a, FILE *report);
+    void *user;
 } assignment_def;
 
 /// CLI_GO, or the exit code: the folder's name cannot be one.
@@ -46,6 +54,9 @@ extern const char *const assignment_words[ASSIGNMENT_TABLES];
 /// The exact table has no error.
 bool assignment_is_exact(int table);
 
+/// Writes NAME.png into the folder; `before` stands before the name.
+kiln_result assignment_save(assignment *a, const kiln_image *image, const char *before,
+                            const char *name);
 /// report.md, written whole or not at all.
 int assignment_write_report(const assignment *a);
 int assignment_print_json(const assignment *a);

@@ -150,6 +150,8 @@ static void write_text(const assignment *a, FILE *f)
     write_errors(a, f);
     write_band(a, f);
     write_contradictions(a, f);
+    if (a->def->describe)
+        a->def->describe(a, f);
 }
 
 int assignment_write_report(const assignment *a)

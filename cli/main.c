@@ -6,9 +6,9 @@
 #include <string.h>
 
 static const cli_command *const commands[] = {
-    &cli_bake,   &cli_info, &cli_sky, &cli_tables, &cli_eval,
+    &cli_bake,   &cli_info, &cli_sky,     &cli_tables, &cli_eval,
 #ifdef KILN_VIEWER
-    &cli_render, &cli_view,
+    &cli_render, &cli_view, &cli_hand_in,
 #endif
 };
 enum { COMMANDS = sizeof commands / sizeof *commands };
@@ -19,7 +19,7 @@ static void print_help(FILE *file)
           "Usage: kiln COMMAND [OPTION...]\n\n",
           file);
     for (int i = 0; i < COMMANDS; i++)
-        fprintf(file, "  kiln %-7s  %s\n", commands[i]->name, commands[i]->summary);
+        fprintf(file, "  kiln %-10s  %s\n", commands[i]->name, commands[i]->summary);
     fputs("\n  kiln help COMMAND  all options of a command, with examples\n"
           "  kiln --version     the version\n\n"
           "Examples:\n"

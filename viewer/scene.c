@@ -135,17 +135,18 @@ static void set_substance(view_ball *ball, view_material material)
 static int make_rows(const view_options *o, view_material material, view_ball *balls)
 {
     enum { COLUMNS = 5 };
-    for (int i = 0; i < 2 * COLUMNS; i++) {
+    int count = 0;
+    for (int i = o->one_row ? COLUMNS : 0; i < 2 * COLUMNS; i++) {
         int column = i % COLUMNS;
-        balls[i] = (view_ball){
+        balls[count] = (view_ball){
             .centre = {180 - 80.0 * column, i < COLUMNS ? 60 : -60, 0},
             .radius = 36,
             .roughness = 0.15 + 0.2 * column,
             .method = i < COLUMNS ? o->method : VIEW_METHOD_SINGLE,
         };
-        set_substance(&balls[i], material);
+        set_substance(&balls[count++], material);
     }
-    return 2 * COLUMNS;
+    return count;
 }
 
 // Roughness 0 to 1 from left to right, metallic 0 to 1 upwards: F0 and albedo between a dielectric's

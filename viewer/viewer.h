@@ -75,6 +75,7 @@ typedef struct view_options {
     double background; ///< roughness at which the environment is seen behind the balls, 0 to 1
     int samples;       ///< n x n rays a pixel on a regular grid, 1 to 8; their mean is tone-mapped
     bool as_printed;   ///< assignment: the handout's figure 6 with its mistake
+    bool one_row;      ///< without the upper row, as the handout's figure 5
     bool occlusion;    ///< balls shade one another's ambient light
     bool bent;         ///< rough balls look the environment up nearer to their normal
     bool cube_diffuse; ///< diffuse light from the irradiance cube, else from spherical harmonics

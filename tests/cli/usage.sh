@@ -14,7 +14,7 @@ grep -q 'kiln bake' log/out || die "help without the commands"
 expect 0 "" --version
 grep -qx 'kiln [0-9]*\.[0-9]*\.[0-9]*' log/out || die "version"
 commands="bake eval info sky tables"
-! "$KILN" --help | grep -q 'kiln render' || commands="$commands render view"
+! "$KILN" --help | grep -q 'kiln render' || commands="$commands render view assignment"
 for command in $commands; do
     expect 0 "" help $command
     cp log/out log/help

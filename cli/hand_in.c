@@ -1,0 +1,220 @@
+// kiln assignment: everything that GAMES202's fourth assignment asks to hand in: its tables, the
+// balls drawn with them, and the report.
+#include "assignment.h"
+
+#include "headless.h"
+#include "reference.h"
+#include "viewer.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { OUTPUT = 1, QUIET };
+enum { WIDTH = 1280, HEIGHT = 720 };
+
+static const struct poptOption options[] = {
+    {"output", 'o', POPT_ARG_STRING, NULL, OUTPUT, "the folder, made where missing", "DIR"},
+    {"quiet", 'q', POPT_ARG_NONE, NULL, QUIET, "print nothing but errors", NULL},
+    CLI_HELP_OPTION,
+    POPT_TABLEEND,
+};
+
+typedef struct pictures {
+    char by[128];   ///< what drew them
+    bool by_light;  ///< no GL: integrated
+    double largest; ///< steps of 255 that the assignment's bytes differ from exact tables
+    double rms;
+} pictures;
+
+// The table of bytes as the framework loads it.
+static kiln_result load_bytes(const assignment *a, int table, kiln_table *to)
+{
+    const kiln_image *from = &a->table[table];
+    to->def = (kiln_table_def){
+        .model = {.g = a->def->g}, .width = from->width, .height = from->height, .flip = true};
+    kiln_result result = kiln_image_create(a->job->context, from->width, from->height, 1,
+                                           &to->image, &a->job->error);
+    if (result == KILN_OK) {
+        memcpy(to->image.pixels, from->pixels,
+               (size_t)from->width * (size_t)from->height * sizeof *from->pixels);
+        kiln_assignment_truncate(&to->image);
+    }
+    return result;
+}
+
+static kiln_result use_bytes(const assignment *a, view_renderer *renderer)
+{
+    kiln_table e = {0}, average = {0};
+    kiln_result result = load_bytes(a, ASSIGNMENT_IS, &e);
+    if (result == KILN_OK)
+        result = load_bytes(a, ASSIGNMENT_AVERAGE_BYTES, &average);
+    if (result == KILN_OK)
+        result = view_set_tables(renderer, &e, &average, NULL, &a->job->error);
+    kiln_image_free(&e.image);
+    kiln_image_free(&average.image);
+    return result;
+}
+
+// Without GL the same rays are shaded on the CPU, with exact E.
+static kiln_result shade(assignment *a, const view_options *o, kiln_image *image)
+{
+    kiln_result result =
+        view_reference(a->job->context, o, NULL, WIDTH, HEIGHT, NULL, image, NULL, &a->job->error);
+    for (size_t i = 0; result == KILN_OK && i < WIDTH * HEIGHT; i++) {
+        double c[3];
+        for (size_t k = 0; k < 3; k++)
+            c[k] = (double)image->pixels[3 * i + k];
+        view_tone(o->scene, c, c);
+        for (size_t k = 0; k < 3; k++)
+            image->pixels[3 * i + k] = (float)c[k];
+    }
+    return result;
+}
+
+static kiln_result picture(assignment *a, view_renderer *renderer, const view_options *o,
+                           kiln_image *image)
+{
+    return renderer ? view_picture(renderer, o, WIDTH, HEIGHT, false, image, &a->job->error)
+                    : shade(a, o, image);
+}
+
+static void compare(const kiln_image *a, const kiln_image *b, pictures *p)
+{
+    double squares = 0;
+    size_t count = WIDTH * HEIGHT * 3;
+    for (size_t i = 0; i < count; i++) {
+        double off = 255 * fabs((double)a->pixels[i] - (double)b->pixels[i]);
+        squares += off * off;
+        p->largest = fmax(p->largest, off);
+    }
+    p->rms = sqrt(squares / (double)count);
+}
+
+static kiln_result draw_all(assignment *a, view_renderer *renderer)
+{
+    static const char *const names[] = {"balls_exact", "balls", "balls_microfacet",
+                                        "balls_as_printed"};
+    kiln_image image[4] = {{0}};
+    kiln_result result = KILN_OK;
+    for (int i = 0; i < 4 && result == KILN_OK; i++) {
+        view_options o = view_defaults(VIEW_SCENE_ASSIGNMENT);
+        o.one_row = i == 2;
+        o.as_printed = i == 3;
+        if (i == 1 && renderer)
+            result = use_bytes(a, renderer);
+        if (result == KILN_OK)
+            result = picture(a, renderer, &o, &image[i]);
+        if (result == KILN_OK && i > 0)
+            result = assignment_save(a, &image[i], "", names[i]);
+    }
+    if (result == KILN_OK)
+        compare(&image[1], &image[0], a->def->user);
+    for (int i = 0; i < 4; i++)
+        kiln_image_free(&image[i]);
+    return result;
+}
+
+static kiln_result draw(assignment *a)
+{
+    pictures *p = a->def->user;
+    view_headless *headless = NULL;
+    view_renderer *renderer = NULL;
+    kiln_error why = {0};
+    kiln_result result = view_headless_create(&headless, &why);
+    if (result == KILN_OK) {
+        result = view_create(a->job->context, view_headless_lookup, &renderer, &a->job->error);
+        if (result == KILN_OK)
+            snprintf(p->by, sizeof p->by, "%s", view_gl_name(renderer));
+    } else {
+        cli_warn(a->job, "%s; the balls are shaded on the CPU instead", why.message);
+        p->by_light = true;
+        result = KILN_OK;
+    }
+    if (result == KILN_OK)
+        result = draw_all(a, renderer);
+    view_destroy(renderer);
+    view_headless_destroy(headless);
+    return result;
+}
+
+// ------------------------------------------------------------------------------------------- report
+
+static void describe(const assignment *a, FILE *f)
+{
+    const pictures *p = a->def->user;
+    fprintf(
+        f,
+        "\n## Real time\n\n"
+        "Section 2.3: two rows of five balls, Kulla-Conty above, microfacet below, roughness "
+        "0.95 to 0.15 from left to right. One directional light along (0, 0, -1), radiance 1; "
+        "camera at (0, 80, 300), vertical field 75 degrees; c / (c + 1), then the power 1 / 2.2. "
+        "The balls are spheres of radius 36, met by 4 x 4 rays a pixel. ");
+    if (p->by_light)
+        fputs("Shaded on the CPU in double precision with exact E, since there was no EGL.\n\n", f);
+    else
+        fprintf(f,
+                "Drawn by %s from `Emu_IS.png` and `Eavg_from_bytes`, as the framework reads them. "
+                "With exact tables the picture differs by %.2f of 255 RMS, %.1f at most.\n\n",
+                p->by, p->rms, p->largest);
+    fputs(
+        "| picture | what it is |\n|---|---|\n"
+        "| ![](balls.png)<br>`balls.png` | both rows: figure 6 as it should be |\n"
+        "| ![](balls_microfacet.png)<br>`balls_microfacet.png` | the microfacet row: figure 5 |\n"
+        "| ![](balls_as_printed.png)<br>`balls_as_printed.png` | figure 6 as printed |\n\n"
+        "**Figure 6 has a mistake.** The framework's material names its table of E_avg "
+        "`uEavgFLut`, but the shader reads `uEavgLut`: bound to nothing, that sampler reads "
+        "texture unit 0, which is the albedo. So E_avg is (0.72, 0.45, 0.2) at every roughness, "
+        "the factor f_add / (1 - E_avg) differs by channel, and rough balls turn orange: linear "
+        "red over green is 5.2 on the roughest one, where the model has 2.6.\n\n"
+        "**f_add counts the single bounce twice.** F E / (1 - F (1 - E)) is the sum of all "
+        "bounces from the first one on; the microfacet lobe has that one already. From the second "
+        "one on it is F^2 E / (1 - F (1 - E)). These pictures have the assignment's; "
+        "`kiln render --method kulla-conty` has the other.\n",
+        f);
+}
+
+static int run(int argc, const char **argv)
+{
+    cli_arguments a;
+    cli_job job;
+    pictures p = {.rms = 0};
+    int code = cli_arguments_read(&a, &cli_hand_in, argc, argv);
+    assignment_def def = {.folder = a.value[OUTPUT],
+                          .size = 128,
+                          .samples = 1024,
+                          .g = KILN_G_SCHLICK_K2,
+                          .quiet = a.value[QUIET],
+                          .draw = draw,
+                          .describe = describe,
+                          .user = &p};
+    if (code == CLI_GO && a.rest_count)
+        code = cli_wrong(&cli_hand_in, "%s: assignment takes no input; name the output by -o DIR",
+                         a.rest[0]);
+    if (code == CLI_GO && !def.folder)
+        code = cli_wrong(&cli_hand_in, "no output: name a folder by -o DIR");
+    if (code == CLI_GO)
+        code = assignment_check_folder(def.folder);
+    if (code == CLI_GO) {
+        code = cli_job_begin(&job, 0, def.quiet);
+        if (code == CLI_GO)
+            code = assignment_write(&job, &def);
+        code = cli_job_end(&job, code);
+    }
+    cli_arguments_free(&a);
+    return code;
+}
+
+const cli_command cli_hand_in = {
+    .name = "assignment",
+    .arguments = "-o DIR",
+    .summary = "Makes all that GAMES202's assignment 4 asks for: tables, renders, report.",
+    .details =
+        "The tables are those of `kiln tables --assignment`; the balls are drawn with them,\n"
+        "and report.md says what was done and where the handout errs.\n"
+        "\n"
+        "Examples:\n"
+        "  kiln assignment -o images/\n",
+    .options = options,
+    .run = run,
+};

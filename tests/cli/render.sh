@@ -1,0 +1,53 @@
+#!/bin/sh
+# kiln render, assignment and view: what is written, what a picture holds, what is said without a
+# driver or a screen.
+# shellcheck source=lib.sh
+. "$(dirname "$0")/lib.sh"
+
+# The assignment, all of it.
+expect 0 "" assignment -o images
+for name in balls balls_microfacet balls_as_printed Emu_MC Emu_IS Eavg; do
+    [ -s "images/$name.png" ] || die "no images/$name.png"
+done
+grep -q 'balls_as_printed.png' images/report.md || die "the report does not show the renders"
+expect 2 "no output: name a folder" assignment
+expect 2 "takes no input" assignment in.exr -o d
+
+# Every scene; the same bits twice.
+expect 0 "" sky -o sky.exr --size 32
+for scene in assignment ibl furnace grid compare; do
+    env=sky.exr
+    case $scene in assignment | furnace) env= ;; esac
+    # shellcheck disable=SC2086 # none or one
+    expect 0 "" render $env -o a.png --scene $scene --size 64x36 --samples 1 --bake-size 16 --exposure -4
+    # shellcheck disable=SC2086
+    expect 0 "" render $env -o b.png --scene $scene --size 64x36 --samples 1 --bake-size 16 --exposure -4
+    same a.png b.png
+done
+expect 0 "" render -o a.exr --size 64x36
+"$KILN" info a.exr | grep -q '64 x 36' || die "the picture's size"
+
+# A baked cube is used as it is.
+expect 0 "" bake sky.exr -o sky.ktx2 --size 16 --levels 3
+expect 0 "" render sky.ktx2 -o a.png --size 64x36 --samples 1
+expect 1 "nowhere.exr" render nowhere.exr -o a.png
+
+# The reference stops at its noise, and the error is told.
+expect 0 "" render sky.exr -o a.exr --reference --size 32x18 --samples 1 --noise 0.3
+grep -q 'integrated to a noise of' log/out || die "no noise is told"
+expect 0 "" render sky.exr -o a.png --error --size 32x18 --samples 1 --noise 0.3 --bake-size 16
+grep -q 'error RMS' log/out || die "no error is told"
+expect 0 "" render -o a.png --reference --size 32x18
+
+# No screen.
+unset DISPLAY WAYLAND_DISPLAY
+expect 1 "GLFW" view
+# No driver: the loader finds none in an empty folder.
+mkdir none
+__EGL_VENDOR_LIBRARY_DIRS="$PWD/none"
+export __EGL_VENDOR_LIBRARY_DIRS
+expect 1 "EGL offers no display" render -o c.png
+[ ! -e c.png ] || die "a picture without a driver"
+"$KILN" assignment -o shaded -q 2>log/err || die "the assignment without a driver"
+grep -q 'shaded on the CPU' log/err && [ -s shaded/balls.png ] || die "no balls without a driver"
+passed
