@@ -1,4 +1,4 @@
-// Reads KTX2 cubes written by write.c with ktx-parse and compares every field with what the
+// Reads KTX2 cubes and tables written by write.c with ktx-parse and compares every field with what the
 // specification asks of such a file: node check.mjs FOLDER
 import assert from "node:assert/strict";
 import { readFileSync, readdirSync } from "node:fs";
@@ -25,16 +25,7 @@ const formats = {
 
 const text = (value) => typeof value === "string" ? value : Buffer.from(value).toString().replace(/\0$/, "");
 
-function check(path, format, zstd, size, levels) {
-    const file = ktx.read(readFileSync(path));
-    assert.equal(file.vkFormat, format.vk);
-    assert.equal(file.typeSize, format.type);
-    assert.deepEqual([file.pixelWidth, file.pixelHeight, file.pixelDepth], [size, size, 0]);
-    assert.deepEqual([file.layerCount, file.faceCount], [0, 6]);
-    assert.equal(file.supercompressionScheme,
-                 zstd ? ktx.KHR_SUPERCOMPRESSION_ZSTD : ktx.KHR_SUPERCOMPRESSION_NONE);
-    assert.equal(file.globalData, null);
-
+function checkDescriptor(file, format) {
     assert.equal(file.dataFormatDescriptor.length, 1);
     const block = file.dataFormatDescriptor[0];
     assert.equal(block.vendorId, ktx.KHR_DF_VENDORID_KHRONOS);
@@ -50,6 +41,19 @@ function check(path, format, zstd, size, levels) {
                      format.samples);
     for (const sample of block.samples)
         assert.deepEqual([...sample.samplePosition], [0, 0, 0, 0]);
+}
+
+function check(path, format, zstd, size, levels) {
+    const file = ktx.read(readFileSync(path));
+    assert.equal(file.vkFormat, format.vk);
+    assert.equal(file.typeSize, format.type);
+    assert.deepEqual([file.pixelWidth, file.pixelHeight, file.pixelDepth], [size, size, 0]);
+    assert.deepEqual([file.layerCount, file.faceCount], [0, 6]);
+    assert.equal(file.supercompressionScheme,
+                 zstd ? ktx.KHR_SUPERCOMPRESSION_ZSTD : ktx.KHR_SUPERCOMPRESSION_NONE);
+    assert.equal(file.globalData, null);
+
+    checkDescriptor(file, format);
 
     assert.equal(file.levels.length, levels);
     file.levels.forEach((level, k) => {
@@ -84,12 +88,70 @@ function check(path, format, zstd, size, levels) {
     assert.deepEqual(Object.keys(again.keyValue), keys);
 }
 
+// Tables: vkFormat of 1, 2 and 4 channels; a whole number's range is 0 to all ones.
+const numbers = {
+    f32: { vk: [ktx.VK_FORMAT_R32_SFLOAT, ktx.VK_FORMAT_R32G32_SFLOAT, , ktx.VK_FORMAT_R32G32B32A32_SFLOAT],
+           bits: 32, array: Float32Array, value: (x) => x },
+    f16: { vk: [ktx.VK_FORMAT_R16_SFLOAT, ktx.VK_FORMAT_R16G16_SFLOAT, , ktx.VK_FORMAT_R16G16B16A16_SFLOAT],
+           bits: 16, array: Uint16Array, value: (x) => {
+               const e = x >> 10, m = x & 1023;
+               return e ? (1 + m / 1024) * 2 ** (e - 15) : m / 1024 * 2 ** -14;
+           } },
+    u16: { vk: [ktx.VK_FORMAT_R16_UNORM, ktx.VK_FORMAT_R16G16_UNORM, , ktx.VK_FORMAT_R16G16B16A16_UNORM],
+           bits: 16, whole: true, array: Uint16Array, value: (x) => x / 65535 },
+    u8: { vk: [ktx.VK_FORMAT_R8_UNORM, ktx.VK_FORMAT_R8G8_UNORM, , ktx.VK_FORMAT_R8G8B8A8_UNORM],
+          bits: 8, whole: true, array: Uint8Array, value: (x) => x / 255 },
+};
+const kinds = { e: "e", dfg: "dfg", glass: "glass", multi: "dfg-multiscatter", walk: "e-walk" };
+
+function checkTable(path, kind, number, zstd, channels, depth) {
+    const file = ktx.read(readFileSync(path));
+    const stored = channels === 3 ? 4 : channels, bits = number.bits, count = 7 * 3 * depth * stored;
+    assert.equal(file.vkFormat, number.vk[stored - 1]);
+    assert.equal(file.typeSize, bits / 8);
+    assert.deepEqual([file.pixelWidth, file.pixelHeight, file.pixelDepth], [7, 3, depth > 1 ? depth : 0]);
+    assert.deepEqual([file.layerCount, file.faceCount], [0, 1]);
+    assert.equal(file.supercompressionScheme,
+                 zstd ? ktx.KHR_SUPERCOMPRESSION_ZSTD : ktx.KHR_SUPERCOMPRESSION_NONE);
+    checkDescriptor(file, { bytes: stored * bits / 8, samples: [RED, GREEN, BLUE, ALPHA].slice(0, stored).map(
+        (channel, i) => number.whole ? [i * bits, bits, channel, 0, 2 ** bits - 1]
+                                     : [i * bits, bits, channel | FLOAT | SIGNED, minusOne, one]) });
+    assert.equal(file.levels.length, 1);
+    const level = file.levels[0];
+    assert.equal(level.uncompressedByteLength, count * bits / 8);
+    if (zstd) { // whose texels tests/files/tables.c reads
+        assert.deepEqual([...level.levelData.subarray(0, 4)], [0x28, 0xb5, 0x2f, 0xfd]);
+    } else {
+        assert.equal(level.levelData.byteLength, count * bits / 8);
+        new number.array(level.levelData.slice().buffer).forEach((x, i) => {
+            const channel = i % stored, texel = Math.floor(i / stored);
+            const wanted = channel < channels ? (texel * channels + channel) / 1024 : 1;
+            const off = Math.abs(number.value(x) - wanted);
+            assert.ok(off <= (number.whole ? 0.5000001 / (2 ** bits - 1) : 0), `number ${i} is off by ${off}`);
+        });
+    }
+    const keys = Object.keys(file.keyValue);
+    assert.deepEqual(keys, ["KTXorientation", "KTXwriter", "kiln:table"]);
+    assert.equal(text(file.keyValue.KTXorientation), depth > 1 ? "rdi" : "rd");
+    assert.match(text(file.keyValue.KTXwriter), /^kiln \d+\.\d+\.\d+$/);
+    assert.equal(text(file.keyValue["kiln:table"]), `kind=${kinds[kind]} d=ggx g=smith axis=cbrt ` +
+                 `corners=1 complement=0 flip=0 size=7x3x${depth} paths=0`);
+    const again = ktx.read(ktx.write(file, { keepWriter: true }));
+    assert.deepEqual([again.pixelDepth, again.vkFormat], [file.pixelDepth, file.vkFormat]);
+}
+
 const folder = process.argv[2];
 const names = readdirSync(folder).filter((name) => name.endsWith(".ktx2"));
-assert.equal(names.length, 16);
+assert.equal(names.length, 76);
 for (const name of names) {
     const [format, coding, size, levels] = name.replace(".ktx2", "").split("-");
+    const [, kind, number, packing, channels, depth] = name.replace(".ktx2", "").split("-");
     try {
+        if (format === "table") {
+            checkTable(join(folder, name), kind, numbers[number === "auto" ? "f16" : number], packing === "zstd",
+                       Number(channels), Number(depth));
+            continue;
+        }
         check(join(folder, name), formats[format], coding === "zstd", Number(size), Number(levels));
     } catch (error) {
         console.error(`${name}: ${error.message}`);

@@ -1,9 +1,42 @@
-// Writes a KTX2 cube of every format, with and without zstd, for check.mjs.
+// Writes KTX2 cubes and tables of every format, with and without zstd, for check.mjs.
 #include <kiln/kiln.h>
 
 #include <stdio.h>
 
 static const char *const names[] = {"rgba16f", "rgba32f", "rgb9e5", "b10g11r11"};
+
+// Number i of a table is i / 1024.
+static kiln_result write_table(kiln_context *context, const char *folder, int index,
+                               kiln_error *error)
+{
+    static const struct {
+        kiln_table_kind kind;
+        const char *name;
+        int channels, depth;
+    } kinds[] = {{KILN_TABLE_E, "e", 1, 1},         {KILN_TABLE_DFG, "dfg", 2, 1},
+                 {KILN_TABLE_GLASS, "glass", 4, 1}, {KILN_TABLE_DFG_MULTISCATTER, "multi", 3, 1},
+                 {KILN_TABLE_GLASS, "glass", 4, 5}, {KILN_TABLE_E_WALK, "walk", 1, 5}};
+    static const char *const formats[] = {"auto", "f32", "f16", "u16", "u8"};
+    int kind = index / 10, format = index % 5, zstd = index / 5 % 2;
+    int channels = kinds[kind].channels, depth = kinds[kind].depth;
+    kiln_table table = {.def = {.kind = kinds[kind].kind,
+                                .width = 7,
+                                .height = 3,
+                                .depth = depth,
+                                .axis = KILN_AXIS_CBRT,
+                                .corners = true}};
+    kiln_result result = kiln_image_create(context, 7, 3 * depth, channels, &table.image, error);
+    for (int i = 0; result == KILN_OK && i < 21 * depth * channels; i++)
+        table.image.pixels[i] = (float)i / 1024;
+    char path[512];
+    snprintf(path, sizeof path, "%s/table-%s-%s-%s-%d-%d.ktx2", folder, kinds[kind].name,
+             formats[format], zstd ? "zstd" : "plain", channels, depth);
+    kiln_table_save_def def = {.format = (kiln_table_format)format, .zstd = zstd ? 5 : 0};
+    if (result == KILN_OK)
+        result = kiln_table_save(context, &table, path, &def, error);
+    kiln_table_free(&table);
+    return result;
+}
 
 int main(int argc, char **argv)
 {
@@ -37,6 +70,9 @@ int main(int argc, char **argv)
         if (result)
             break;
     }
+    for (int i = 0; i < 60 && error.result == KILN_OK; i++)
+        if (write_table(context, argv[1], i, &error))
+            break;
     kiln_context_destroy(context);
     if (error.result)
         fprintf(stderr, "%s\n", error.message);
