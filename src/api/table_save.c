@@ -14,10 +14,12 @@
 static kiln_result check_def(const kiln_table_def *def, kiln_error *error)
 {
     if ((unsigned)def->kind > KILN_TABLE_E_WALK || (unsigned)def->model.d > KILN_D_BECKMANN ||
-        (unsigned)def->model.g > KILN_G_SCHLICK_TEXT || (unsigned)def->axis > KILN_AXIS_GRAZING)
+        (unsigned)def->model.g > KILN_G_SCHLICK_TEXT || (unsigned)def->axis > KILN_AXIS_GRAZING ||
+        (unsigned)def->sheen > KILN_SHEEN_ESTEVEZ)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
-                       "the table's kind, D, G and axis are %d, %d, %d and %d", (int)def->kind,
-                       (int)def->model.d, (int)def->model.g, (int)def->axis);
+                       "the table's kind, D, G, axis and sheen are %d, %d, %d, %d and %d",
+                       (int)def->kind, (int)def->model.d, (int)def->model.g, (int)def->axis,
+                       (int)def->sheen);
     if (def->width < 1 || def->width > KILN_MAX_TABLE || def->height < 1 ||
         def->height > KILN_MAX_TABLE || def->depth < 1 || def->depth > KILN_MAX_TABLE ||
         def->path_count < 0)

@@ -9,15 +9,17 @@ static const char *const kinds[] = {
 static const char *const distributions[] = {"ggx", "beckmann", NULL};
 static const char *const maskings[] = {"smith", "smith-uncorrelated", "schlick-k2", "schlick-text",
                                        NULL};
+static const char *const sheens[] = {"ashikhmin", "estevez", NULL};
 static const char *const axes[] = {"linear", "sqrt", "cbrt", "grazing", NULL};
 
 void ki_table_describe(const kiln_table_def *def, char text[KI_TABLE_TEXT])
 {
     snprintf(text, KI_TABLE_TEXT,
-             "kind=%s d=%s g=%s axis=%s corners=%d complement=%d flip=%d size=%dx%dx%d paths=%d",
-             kinds[def->kind], distributions[def->model.d], maskings[def->model.g], axes[def->axis],
-             def->corners, def->complement, def->flip, def->width, def->height, def->depth,
-             def->path_count);
+             "kind=%s d=%s g=%s sheen=%s axis=%s corners=%d complement=%d flip=%d size=%dx%dx%d "
+             "paths=%d",
+             kinds[def->kind], distributions[def->model.d], maskings[def->model.g],
+             sheens[def->sheen], axes[def->axis], def->corners, def->complement, def->flip,
+             def->width, def->height, def->depth, def->path_count);
 }
 
 // What follows "KEY=WORD" and a space, with the word's place in `words`; NULL where it is not so.
@@ -69,11 +71,12 @@ static const char *parse_size(const char *text, kiln_table_def *def)
 bool ki_table_parse(const char *text, kiln_table_def *def)
 {
     static const char *const answers[] = {"0", "1", NULL};
-    int kind = 0, d = 0, g = 0, axis = 0, corners = 0, complement = 0, flip = 0;
+    int kind = 0, d = 0, g = 0, sheen = 0, axis = 0, corners = 0, complement = 0, flip = 0;
     *def = (kiln_table_def){0};
     text = parse_word(text, "kind", kinds, &kind);
     text = parse_word(text, "d", distributions, &d);
     text = parse_word(text, "g", maskings, &g);
+    text = parse_word(text, "sheen", sheens, &sheen);
     text = parse_word(text, "axis", axes, &axis);
     text = parse_word(text, "corners", answers, &corners);
     text = parse_word(text, "complement", answers, &complement);
@@ -87,6 +90,7 @@ bool ki_table_parse(const char *text, kiln_table_def *def)
     }
     def->kind = (kiln_table_kind)kind;
     def->model = (kiln_model){(kiln_d)d, (kiln_g)g};
+    def->sheen = (kiln_sheen)sheen;
     def->axis = (kiln_axis)axis;
     def->corners = corners;
     def->complement = complement;

@@ -1,5 +1,5 @@
 // What a table is, in one line of text, as files and source code keep it:
-//   kind=e d=ggx g=smith axis=grazing corners=1 complement=0 flip=0 size=128x128x1 paths=0
+//   kind=e d=ggx g=smith sheen=ashikhmin axis=grazing corners=1 complement=0 flip=0 size=128x128x1 paths=0
 #ifndef KI_TABLE_TEXT_H
 #define KI_TABLE_TEXT_H
 

@@ -283,7 +283,7 @@ static void what_cannot_be_saved_is_said(void **state)
     table.def.kind = KILN_TABLE_DFG;
     refused(&table, "a.exr", NULL, "is 7 x 5 with 1 channels, it must be 7 x 5 with 2");
     table.def.kind = (kiln_table_kind)9;
-    refused(&table, "a.exr", NULL, "kind, D, G and axis are 9, 0, 0 and 0");
+    refused(&table, "a.exr", NULL, "kind, D, G, axis and sheen are 9, 0, 0, 0 and 0");
     kiln_table_free(&table);
 
     CHECK_OK(kiln_image_create(context, 256, 65, 1, &large.image, &error));
@@ -358,19 +358,28 @@ static void texts_are_parsed_strictly(void **state)
                            .height = 4096,
                            .depth = 4096,
                            .axis = KILN_AXIS_GRAZING,
+                           .sheen = KILN_SHEEN_ASHIKHMIN,
                            .path_count = 2147483647};
     ki_table_describe(&def, text);
     assert_true(ki_table_parse(text, &back));
     check_def(&back, &def);
     static const char *const wrong[] = {
-        "kind=x d=ggx g=smith axis=sqrt corners=0 complement=0 flip=0 size=1x1x1 paths=0",
-        "kind=e d=ggx g=smith axis=sqrt corners=2 complement=0 flip=0 size=1x1x1 paths=0",
-        "kind=e d=ggx g=smith axis=sqrt corners=0 complement=0 flip=0 size=0x1x1 paths=0",
-        "kind=e d=ggx g=smith axis=sqrt corners=0 complement=0 flip=0 size=1x4097x1 paths=0",
-        "kind=e d=ggx g=smith axis=sqrt corners=0 complement=0 flip=0 size=1x1x1 paths=2147483648",
-        "kind=e d=ggx g=smith axis=sqrt corners=0 complement=0 flip=0 size=1x1x1 paths=-1",
-        "kind=e d=ggx g=smith axis=sqrt corners=0 complement=0 flip=0 size=1x1x1 paths=1 ",
-        "kind=e g=smith d=ggx axis=sqrt corners=0 complement=0 flip=0 size=1x1x1 paths=1",
+        "kind=x d=ggx g=smith sheen=estevez axis=sqrt corners=0 complement=0 flip=0 size=1x1x1 "
+        "paths=0",
+        "kind=e d=ggx g=smith sheen=estevez axis=sqrt corners=2 complement=0 flip=0 size=1x1x1 "
+        "paths=0",
+        "kind=e d=ggx g=smith sheen=estevez axis=sqrt corners=0 complement=0 flip=0 size=0x1x1 "
+        "paths=0",
+        "kind=e d=ggx g=smith sheen=estevez axis=sqrt corners=0 complement=0 flip=0 size=1x4097x1 "
+        "paths=0",
+        "kind=e d=ggx g=smith sheen=estevez axis=sqrt corners=0 complement=0 flip=0 size=1x1x1 "
+        "paths=2147483648",
+        "kind=e d=ggx g=smith sheen=estevez axis=sqrt corners=0 complement=0 flip=0 size=1x1x1 "
+        "paths=-1",
+        "kind=e d=ggx g=smith sheen=estevez axis=sqrt corners=0 complement=0 flip=0 size=1x1x1 "
+        "paths=1 ",
+        "kind=e g=smith d=ggx sheen=estevez axis=sqrt corners=0 complement=0 flip=0 size=1x1x1 "
+        "paths=1",
     };
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         assert_false(ki_table_parse(wrong[i], &back));
@@ -418,9 +427,11 @@ static void wrong_texts_are_refused(void **state)
         const char *sentence;
     } wrong[] = {
         {"kind=e d=ggx", "says of its table \"kind=e d=ggx\""},
-        {"kind=e d=ggx g=smith axis=sqrt corners=0 complement=0 flip=0 size=6x5x1 paths=0",
+        {"kind=e d=ggx g=smith sheen=estevez axis=sqrt corners=0 complement=0 flip=0 size=6x5x1 "
+         "paths=0",
          "is 7 x 5 x 1 texels and says that its table is 6 x 5 x 1"},
-        {"kind=dfg d=ggx g=smith axis=sqrt corners=0 complement=0 flip=0 size=7x5x1 paths=0",
+        {"kind=dfg d=ggx g=smith sheen=estevez axis=sqrt corners=0 complement=0 flip=0 size=7x5x1 "
+         "paths=0",
          "has 1 channels, its kind of table 2"},
         {"\033[31m", "says of its table \"\""},
     };

@@ -134,7 +134,7 @@ function checkTable(path, kind, number, zstd, channels, depth) {
     assert.deepEqual(keys, ["KTXorientation", "KTXwriter", "kiln:table"]);
     assert.equal(text(file.keyValue.KTXorientation), depth > 1 ? "rdi" : "rd");
     assert.match(text(file.keyValue.KTXwriter), /^kiln \d+\.\d+\.\d+$/);
-    assert.equal(text(file.keyValue["kiln:table"]), `kind=${kinds[kind]} d=ggx g=smith axis=cbrt ` +
+    assert.equal(text(file.keyValue["kiln:table"]), `kind=${kinds[kind]} d=ggx g=smith sheen=ashikhmin axis=cbrt ` +
                  `corners=1 complement=0 flip=0 size=7x3x${depth} paths=0`);
     const again = ktx.read(ktx.write(file, { keepWriter: true }));
     assert.deepEqual([again.pixelDepth, again.vkFormat], [file.pixelDepth, file.vkFormat]);

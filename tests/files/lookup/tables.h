@@ -22,6 +22,7 @@ static inline kiln_result lookup_table(kiln_context *context, int index, kiln_ta
     bool slices = kind >= KILN_TABLE_E_DIELECTRIC;
     *table = (kiln_table){.def = {.kind = (kiln_table_kind)kind,
                                   .model = {.g = (kiln_g)((turn + kind) % 4)},
+                                  .sheen = (kiln_sheen)(turn % 2),
                                   .width = kind == KILN_TABLE_E_AVERAGE ? 1 : 7,
                                   .height = 5,
                                   .depth = slices ? 3 : 1,
