@@ -7,7 +7,7 @@
 
 enum { KI_TABLE_TEXT = 160 };
 
-/// For a def whose choices are in range.
+/// For a def whose choices are in range. Paths are those of KILN_TABLE_E_WALK.
 void ki_table_describe(const kiln_table_def *def, char text[KI_TABLE_TEXT]);
 /// The inverse; false, and `def` zeroed, where it is none. Choices are in range then, sizes from 1 to
 /// KILN_MAX_TABLE.

@@ -352,7 +352,7 @@ static void texts_are_parsed_strictly(void **state)
         }
         kiln_table_free(&table);
     }
-    def = (kiln_table_def){.kind = KILN_TABLE_DFG_MULTISCATTER,
+    def = (kiln_table_def){.kind = KILN_TABLE_E_WALK,
                            .model = {KILN_D_BECKMANN, KILN_G_SMITH_UNCORRELATED},
                            .width = 4096,
                            .height = 4096,
