@@ -611,6 +611,76 @@ KILN_API void kiln_table_texel(const kiln_table *table, int x, int y, int slice,
 KILN_API void kiln_table_lookup(const kiln_table *table, double nov, double roughness, double third,
                                 double *values);
 
+// ------------------------------------------------------------------------------------ closed forms
+
+/// What a closed form stands for, in n.v and roughness.
+typedef enum kiln_fit_kind {
+    KILN_FIT_E,         ///< E
+    KILN_FIT_E_AVERAGE, ///< E_avg, of roughness alone
+    KILN_FIT_DFG,       ///< A and B of the split sum
+    KILN_FIT_SHEEN      ///< albedo of Charlie sheen, KILN_SHEEN_ASHIKHMIN
+} kiln_fit_kind;
+
+typedef enum kiln_fit_form {
+    KILN_FIT_AUTO, ///< whichever has fewer coefficients
+    KILN_FIT_POLYNOMIAL,
+    KILN_FIT_RATIONAL
+} kiln_fit_form;
+
+/// {0} is a good default: E of the default model to 1e-3.
+typedef struct kiln_fit_def {
+    kiln_fit_kind kind;
+    kiln_model model;
+    kiln_fit_form form;
+    double error;         ///< largest wanted anywhere, 1e-6 to 0.5; 0 for 1e-3
+    double roughness_min; ///< 0 to 0.9, below which the form is not asked for and its argument
+                          ///< clamped; sheen at least 0.1
+    int max_coefficients; ///< of a part, 1 to KILN_MAX_FIT; 0 for KILN_MAX_FIT
+} kiln_fit_def;
+
+enum { KILN_MAX_FIT = 160, KILN_MAX_FIT_TERMS = 12 };
+
+/// x of a part, scaled to [-1, 1]: t = n.v (1 + c) / (n.v + c), with c as on KILN_AXIS_GRAZING.
+typedef enum kiln_fit_axis {
+    KILN_FIT_AXIS_NONE,
+    KILN_FIT_AXIS_T,
+    KILN_FIT_AXIS_SQRT_T,
+    KILN_FIT_AXIS_NOV,
+    KILN_FIT_AXIS_SQRT_NOV
+} kiln_fit_axis;
+
+/// P(x, y) / Q(x, y), y the roughness scaled to [-1, 1]; the coefficient of x^i y^j is
+/// p[j * x_count + i]. Q has the same powers, q[0] = 1 and no zero on the square, which is proven;
+/// a polynomial has no q.
+typedef struct kiln_fit_part {
+    kiln_fit_axis axis;
+    bool rational;
+    int x_count, y_count;
+    float p[KILN_MAX_FIT], q[KILN_MAX_FIT];
+} kiln_fit_part;
+
+/// A closed form: its one part; or for KILN_FIT_DFG, with F5 = (1 - n.v)^5, B = F5 part[0] + part[1]
+/// and A = part[0] - B, so that part[0] is E.
+typedef struct kiln_fit {
+    kiln_fit_def def; ///< as made: nothing is left 0 for a default
+    int part_count;
+    kiln_fit_part part[2];
+    int coefficient_count;
+    double max_error, rms_error; ///< measured in floats against the integrals
+} kiln_fit;
+
+/// Finds the form with the fewest coefficients that errs by def->error at most at some 40000 points,
+/// evaluated in floats as the code that kiln_fit_save writes does. `def` may be NULL.
+KILN_API KILN_CHECKED kiln_result kiln_fit_create(kiln_context *context, const kiln_fit_def *def,
+                                                  kiln_fit *fit, kiln_error *error);
+/// `values` receives two numbers, A and B, for KILN_FIT_DFG, else one.
+KILN_API void kiln_fit_evaluate(const kiln_fit *fit, float nov, float roughness, float *values);
+/// Writes a function of that name, as C (.h) or GLSL ES 3.00 (.glsl). `name` is an identifier; NULL
+/// for kiln_e, kiln_e_average, kiln_dfg or kiln_sheen.
+KILN_API KILN_CHECKED kiln_result kiln_fit_save(kiln_context *context, const kiln_fit *fit,
+                                                const char *name, const char *path,
+                                                kiln_error *error);
+
 // ------------------------------------------------------------------------- the textbook, by its name
 
 /// The methods that courses teach, with their defaults and their errors, to learn from and to

@@ -3,6 +3,9 @@
 #ifndef KI_MATH_H
 #define KI_MATH_H
 
+#include <stdbool.h>
+#include <stddef.h>
+
 #define KI_PI 3.14159265358979323846
 
 /// Error below 2 ulp for |x| < 1e5, absolute below 1e-16 near the zeros.
@@ -37,5 +40,9 @@ extern const double ki_gauss16_nodes[16], ki_gauss16_weights[16];
 /// are then no trouble, down to exp(-pi sinh reach) of the length: 4e-17 for reach = 3.2, 8e-11 for
 /// 2.7. nodes[count - 1 - i] is the distance of node i from 1 without rounding.
 void ki_double_exponential(int count, double reach, double *nodes, double *weights);
+
+/// x that makes |A x - b| least, rows >= columns. A is stored column after column; A and b are
+/// overwritten. False where the columns are dependent to 14 digits.
+bool ki_least_squares(double *a, double *b, int rows, int columns, double *x);
 
 #endif

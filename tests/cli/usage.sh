@@ -13,7 +13,7 @@ expect 0 "" --help
 grep -q 'kiln bake' log/out || die "help without the commands"
 expect 0 "" --version
 grep -qx 'kiln [0-9]*\.[0-9]*\.[0-9]*' log/out || die "version"
-commands="bake eval info sky tables"
+commands="bake eval fit info sky tables"
 ! "$KILN" --help | grep -q 'kiln render' || commands="$commands render view assignment"
 for command in $commands; do
     expect 0 "" help $command
@@ -114,6 +114,18 @@ expect 2 "eavg does not depend on --mu" eval eavg --roughness 1 --mu 1
 expect 2 "d is 'frob', it must be ggx or beckmann" eval e --d frob
 expect 2 "g is 'frob', it must be smith, .* or schlick-text" eval e --g frob
 expect 2 "sheen is 'frob'" eval sheen --sheen frob
+expect 2 "no quantity: name e, eavg" fit -o e.h
+expect 2 "no such quantity, it must be e, eavg, dfg or sheen" fit a -o e.h
+expect 2 "one quantity at a time" fit e eavg -o e.h
+expect 2 "no output" fit e
+expect 2 "must end in .h or .glsl" fit e -o e.c
+expect 2 "error is 1e-7, it must be from 1e-06 to 0.5" fit e -o e.h --error 1e-7
+expect 2 "from 0 to 0.9" fit e -o e.h --roughness-min 1
+expect 2 "from 1 to 160" fit e -o e.h --max-coefficients 161
+expect 2 "form is 'frob', it must be auto, polynomial or rational" fit e -o e.h --form frob
+expect 2 "name is '2e', it must be letters" fit e -o e.h --name 2e
+expect 2 "name is 'e;', it must be letters" fit e -o e.h --name 'e;'
+expect 2 "a model of its own" fit sheen -o e.h --g smith
 
 case $commands in
 *render*)

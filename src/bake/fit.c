@@ -1,0 +1,264 @@
+#include "bake/fit.h"
+
+#include "bake/table_axis.h"
+
+#include <math.h>
+
+// ------------------------------------------------------------------------------------------ checks
+
+kiln_result ki_fit_complete(kiln_fit_def *def, kiln_error *error)
+{
+    if ((unsigned)def->kind > KILN_FIT_SHEEN)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "kind of the fit is %d, there are 0 to %d",
+                       (int)def->kind, KILN_FIT_SHEEN);
+    if ((unsigned)def->form > KILN_FIT_RATIONAL)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "form of the fit is %d, there are 0 to %d",
+                       (int)def->form, KILN_FIT_RATIONAL);
+    if ((unsigned)def->model.d > KILN_D_BECKMANN || (unsigned)def->model.g > KILN_G_SCHLICK_TEXT)
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "the model is (%d, %d), there are 0 to %d and 0 to %d", (int)def->model.d,
+                       (int)def->model.g, KILN_D_BECKMANN, KILN_G_SCHLICK_TEXT);
+    def->error = def->error != 0 ? def->error : 1e-3;
+    if (!(def->error >= 1e-6 && def->error <= 0.5))
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "error of the fit is %g, it must be 1e-06 to 0.5", def->error);
+    if (!(def->roughness_min >= 0 && def->roughness_min <= 0.9))
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "roughness_min is %g, it must be 0 to 0.9",
+                       def->roughness_min);
+    if (def->kind == KILN_FIT_SHEEN && def->roughness_min < 0.1)
+        def->roughness_min = 0.1;
+    def->roughness_min = (double)(float)def->roughness_min;
+    def->max_coefficients = def->max_coefficients ? def->max_coefficients : KILN_MAX_FIT;
+    if (def->max_coefficients < 1 || def->max_coefficients > KILN_MAX_FIT)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "max_coefficients is %d, it must be 1 to %d",
+                       def->max_coefficients, KILN_MAX_FIT);
+    return KILN_OK;
+}
+
+// -------------------------------------------------------------------------------------- evaluation
+
+static float clamp(float x, float low)
+{
+    return x > low ? x < 1 ? x : 1 : low;
+}
+
+static float axis_t(const kiln_fit_def *def, float nov, float roughness)
+{
+    float c = roughness * roughness;
+    if (def->model.g == KILN_G_SCHLICK_TEXT) {
+        float k = (roughness + 1) * (roughness + 1) * 0.125f;
+        c = k / (1 - k);
+    }
+    float s = nov + c;
+    return s > 0 ? nov * (1 + c) / s : 1;
+}
+
+static float axis_x(const kiln_fit_def *def, kiln_fit_axis axis, float nov, float roughness)
+{
+    switch (axis) {
+    case KILN_FIT_AXIS_T:
+        return 2 * axis_t(def, nov, roughness) - 1;
+    case KILN_FIT_AXIS_SQRT_T:
+        return 2 * sqrtf(axis_t(def, nov, roughness)) - 1;
+    case KILN_FIT_AXIS_NOV:
+        return 2 * nov - 1;
+    case KILN_FIT_AXIS_SQRT_NOV:
+        return 2 * sqrtf(nov) - 1;
+    default:
+        return 0;
+    }
+}
+
+// Horner's rule along x in every row, then along y.
+static float horner(const kiln_fit_part *part, const float *c, float x, float y)
+{
+    float value = 0;
+    for (int j = part->y_count - 1; j >= 0; j--) {
+        const float *row = c + j * part->x_count;
+        float sum = row[part->x_count - 1];
+        for (int i = part->x_count - 2; i >= 0; i--)
+            sum = row[i] + x * sum;
+        value = j == part->y_count - 1 ? sum : sum + y * value;
+    }
+    return value;
+}
+
+float ki_fit_evaluate_part(const kiln_fit_def *def, const kiln_fit_part *part, float nov,
+                           float roughness)
+{
+    float low = (float)def->roughness_min;
+    float r = clamp(roughness, low), x = axis_x(def, part->axis, clamp(nov, 0), r);
+    float y = low > 0 ? (r - low) * (2 / (1 - low)) - 1 : 2 * r - 1;
+    float value = horner(part, part->p, x, y);
+    return part->rational ? value / horner(part, part->q, x, y) : value;
+}
+
+void ki_fit_evaluate(const kiln_fit *fit, float nov, float roughness, float *values)
+{
+    values[0] = ki_fit_evaluate_part(&fit->def, &fit->part[0], nov, roughness);
+    if (fit->part_count == 1)
+        return;
+    float g = 1 - clamp(nov, 0), g2 = g * g;
+    values[1] =
+        values[0] * (g2 * g2 * g) + ki_fit_evaluate_part(&fit->def, &fit->part[1], nov, roughness);
+    values[0] -= values[1];
+}
+
+// ------------------------------------------------------------------------------------------ search
+
+typedef struct candidate {
+    kiln_fit_axis axis;
+    bool rational;
+    int x_count, y_count, coefficients;
+} candidate;
+
+enum { AXES = 2, MAX_CANDIDATES = 2 * AXES * KILN_MAX_FIT_TERMS * KILN_MAX_FIT_TERMS };
+
+static int axes_of(ki_fit_target target, kiln_fit_axis axes[AXES])
+{
+    switch (target) {
+    case KI_FIT_E_AVERAGE:
+        axes[0] = KILN_FIT_AXIS_NONE;
+        return 1;
+    case KI_FIT_E:
+    case KI_FIT_REST:
+        axes[0] = KILN_FIT_AXIS_T;
+        axes[1] = KILN_FIT_AXIS_SQRT_T;
+        return 2;
+    default:
+        axes[0] = KILN_FIT_AXIS_NOV;
+        axes[1] = KILN_FIT_AXIS_SQRT_NOV;
+        return 2;
+    }
+}
+
+// Every shape, by the number of its coefficients.
+static int list_candidates(const kiln_fit_def *def, ki_fit_target target, candidate *list)
+{
+    kiln_fit_axis axes[AXES];
+    int axis_count = axes_of(target, axes), count = 0;
+    for (int k = 0; k < axis_count * 2; k++) {
+        bool rational = k % 2;
+        if (def->form && rational != (def->form == KILN_FIT_RATIONAL))
+            continue;
+        for (int y = 1; y <= KILN_MAX_FIT_TERMS; y++)
+            for (int x = 1; x <= KILN_MAX_FIT_TERMS; x++) {
+                int coefficients = rational ? 2 * x * y - 1 : x * y;
+                if (coefficients > def->max_coefficients || (rational && coefficients == 1) ||
+                    (axes[k / 2] == KILN_FIT_AXIS_NONE && x > 1))
+                    continue;
+                candidate c = {axes[k / 2], rational, x, y, coefficients};
+                int at = count++;
+                for (; at > 0 && list[at - 1].coefficients > coefficients; at--)
+                    list[at] = list[at - 1];
+                list[at] = c;
+            }
+    }
+    return count;
+}
+
+typedef struct search {
+    ki_fit_points nodes[AXES], checks;
+    double *scratch;
+    candidate list[MAX_CANDIDATES];
+} search;
+
+// Least squares tells whether a shape is near enough to be worth the rounds toward the least largest
+// error.
+static bool try_candidate(search *s, const kiln_fit *fit, const candidate *c, double wanted,
+                          kiln_fit_part *part, double *reached)
+{
+    enum { ROUNDS = 40 };
+    static const double hopeful = 4;
+    const ki_fit_points *nodes =
+        &s->nodes[c->axis == KILN_FIT_AXIS_T || c->axis == KILN_FIT_AXIS_NOV ? 0 : 1];
+    if (c->axis == KILN_FIT_AXIS_NONE)
+        nodes = &s->nodes[0];
+    *part = (kiln_fit_part){
+        .axis = c->axis, .rational = c->rational, .x_count = c->x_count, .y_count = c->y_count};
+    *reached = HUGE_VAL;
+    if (!(ki_fit_solve(nodes, 0, wanted, s->scratch, part) < hopeful * wanted))
+        return false;
+    (void)ki_fit_solve(nodes, ROUNDS, wanted, s->scratch, part);
+    if (!ki_fit_positive(part))
+        return false;
+    *reached = ki_fit_measure_part(&fit->def, part, &s->checks);
+    return *reached <= wanted;
+}
+
+static kiln_result begin(kiln_context *context, const kiln_fit *fit, ki_fit_target target,
+                         search *s, kiln_error *error)
+{
+    kiln_fit_axis axes[AXES];
+    int axis_count = axes_of(target, axes);
+    size_t numbers = (size_t)(KI_FIT_GRID * KI_FIT_GRID) * (2 * KILN_MAX_FIT + 4) +
+                     (size_t)KILN_MAX_FIT * (KILN_MAX_FIT + 1);
+    s->scratch = ki_alloc_raw(context, numbers, sizeof *s->scratch);
+    if (!s->scratch)
+        return ki_fail_memory(context, error, "fit", numbers * sizeof *s->scratch);
+    kiln_result result = KILN_OK;
+    for (int i = 0; i < axis_count && !result; i++)
+        result = ki_fit_nodes(context, &fit->def, target, axes[i], &s->nodes[i], error);
+    if (!result)
+        result = ki_fit_checks(context, &fit->def, target, &s->checks, error);
+    return result;
+}
+
+static kiln_result find_part(kiln_context *context, const kiln_fit *fit, ki_fit_target target,
+                             double wanted, search *s, kiln_fit_part *part, double *reached,
+                             kiln_error *error)
+{
+    double best = HUGE_VAL;
+    int best_count = 0;
+    kiln_result result = begin(context, fit, target, s, error);
+    if (result)
+        return result;
+    int count = list_candidates(&fit->def, target, s->list);
+    for (int i = 0; i < count; i++) {
+        if (try_candidate(s, fit, &s->list[i], wanted, part, reached))
+            return KILN_OK;
+        if (*reached < best) {
+            best = *reached;
+            best_count = s->list[i].coefficients;
+        }
+        if (!ki_progress(context, "fit", (double)i / count))
+            return ki_fail_cancelled(error, "fit");
+    }
+    if (!best_count)
+        return ki_fail(error, KILN_ERROR_UNSUPPORTED,
+                       "no form with up to %d coefficients comes near an error of %g",
+                       fit->def.max_coefficients, wanted);
+    return ki_fail(error, KILN_ERROR_UNSUPPORTED,
+                   "no form with up to %d coefficients errs by %g or less; the best errs by %.3g "
+                   "with %d",
+                   fit->def.max_coefficients, wanted, best, best_count);
+}
+
+kiln_result ki_fit_make(kiln_context *context, kiln_fit *fit, kiln_error *error)
+{
+    ki_fit_target target[2];
+    fit->part_count = ki_fit_targets(fit->def.kind, target);
+    search *s = ki_alloc(context, 2, sizeof *s);
+    if (!s)
+        return ki_fail_memory(context, error, "fit", 2 * sizeof *s);
+    kiln_result result = KILN_OK;
+    double left = fit->def.error; // what is not used up by the parts before
+    for (int k = 0; k < fit->part_count && !result; k++) {
+        kiln_fit_part *part = &fit->part[k];
+        double wanted = k < fit->part_count - 1 ? left / 2 : left, reached = 0;
+        result = find_part(context, fit, target[k], wanted, &s[k], part, &reached, error);
+        left -= reached;
+        fit->coefficient_count +=
+            part->x_count * part->y_count * (part->rational ? 2 : 1) - part->rational;
+    }
+    if (!result)
+        ki_fit_measure(fit, (ki_fit_points[2]){s[0].checks, s[1].checks});
+    for (int k = 0; k < 2; k++) {
+        for (int i = 0; i < AXES; i++)
+            ki_fit_points_free(&s[k].nodes[i]);
+        ki_fit_points_free(&s[k].checks);
+        ki_free(s[k].scratch);
+    }
+    ki_free(s);
+    return result;
+}

@@ -1,0 +1,212 @@
+// One closed form of given degrees.
+#include "bake/fit.h"
+#include "math/math.h"
+
+#include <math.h>
+
+enum { MAX_TERMS = KILN_MAX_FIT_TERMS };
+
+// Q is 1 on average.
+static const double LEAST_Q = 0.01;
+
+// T_0 .. T_{count-1} of x.
+static void chebyshev(double x, int count, double *t)
+{
+    for (int i = 0; i < count; i++)
+        t[i] = i == 0 ? 1 : i == 1 ? x : 2 * x * t[i - 1] - t[i - 2];
+}
+
+// Powers' coefficients of sum c[i * stride] T_i, in place: Clenshaw's recurrence on polynomials.
+static void to_powers(double *c, int count, int stride)
+{
+    double b1[MAX_TERMS + 1] = {0}, b2[MAX_TERMS + 1] = {0}; // b_{k+1}, b_{k+2}
+    for (int k = count - 1; k >= 0; k--) {
+        double b[MAX_TERMS + 1] = {0};
+        for (int i = 0; i < count; i++)
+            b[i] = (i ? (k ? 2 : 1) * b1[i - 1] : 0) - b2[i];
+        b[0] += c[k * stride];
+        for (int i = 0; i < count; i++) {
+            b2[i] = b1[i];
+            b1[i] = b[i];
+        }
+    }
+    for (int i = 0; i < count; i++)
+        c[i * stride] = b1[i];
+}
+
+static void round_powers(const kiln_fit_part *part, double *c, float *rounded, double scale)
+{
+    for (int j = 0; j < part->y_count; j++)
+        to_powers(c + j * part->x_count, part->x_count, 1);
+    for (int i = 0; i < part->x_count; i++)
+        to_powers(c + i, part->y_count, part->x_count);
+    for (int i = 0; i < part->x_count * part->y_count; i++)
+        rounded[i] = (float)(c[i] * scale);
+}
+
+typedef struct equations {
+    const ki_fit_points *nodes;
+    int terms, columns, rows; // a row a node, and one a coefficient of Q
+    double *matrix, *right;
+    double *weight;      // of the nodes, sum 1
+    double *denominator; // Q of the last round
+    double *basis;       // terms products of Chebyshev polynomials a node
+    double ridge;        // weight of Q's coefficients, which keeps it positive
+} equations;
+
+// Rows sqrt(w) / Q_last (P - f Q), with Q = 1 + ...: Sanathanan and Koerner's iteration makes it the
+// true residual.
+static void fill(const equations *s)
+{
+    const ki_fit_points *nodes = s->nodes;
+    for (int i = 0; i < nodes->count; i++) {
+        double w = sqrt(s->weight[i]) / s->denominator[i];
+        const double *t = s->basis + i * s->terms;
+        for (int k = 0; k < s->terms; k++)
+            s->matrix[k * s->rows + i] = w * t[k];
+        for (int k = s->terms; k < s->columns; k++)
+            s->matrix[k * s->rows + i] = -w * nodes->value[i] * t[k - s->terms + 1];
+        s->right[i] = w * nodes->value[i];
+    }
+    for (int i = nodes->count; i < s->rows; i++) {
+        for (int k = 0; k < s->columns; k++)
+            s->matrix[k * s->rows + i] = k - s->terms == i - nodes->count ? s->ridge : 0;
+        s->right[i] = 0;
+    }
+}
+
+// Evaluates at the nodes; errors go to `right`, Q to `denominator`. The largest error, or infinity
+// where Q is not positive everywhere, and then Q stays as it was.
+static double judge(const equations *s, const double *x)
+{
+    const ki_fit_points *nodes = s->nodes;
+    double largest = 0;
+    for (int pass = 0; pass < 2; pass++)
+        for (int i = 0; i < nodes->count; i++) {
+            const double *t = s->basis + i * s->terms;
+            double p = 0, q = 1;
+            for (int k = s->terms; k < s->columns; k++)
+                q += x[k] * t[k - s->terms + 1];
+            if (!(q > 2 * LEAST_Q))
+                return HUGE_VAL;
+            if (pass == 0)
+                continue;
+            for (int k = 0; k < s->terms; k++)
+                p += x[k] * t[k];
+            s->denominator[i] = q;
+            s->right[i] = fabs(p / q - nodes->value[i]);
+            largest = s->right[i] > largest ? s->right[i] : largest;
+        }
+    return largest;
+}
+
+// Lawson's rule: each node's weight is multiplied by its error.
+static void reweight(const equations *s)
+{
+    double sum = 0;
+    for (int i = 0; i < s->nodes->count; i++)
+        sum += s->weight[i] * s->right[i];
+    double all = 0;
+    for (int i = 0; i < s->nodes->count && sum > 0; i++)
+        s->weight[i] *= sqrt(s->right[i] / sum), all += s->weight[i];
+    for (int i = 0; i < s->nodes->count && sum > 0; i++)
+        s->weight[i] /= all;
+}
+
+enum { PATIENCE = 12 }; // rounds after which a hopeless form is given up
+
+double ki_fit_solve(const ki_fit_points *nodes, int rounds, double wanted, double *scratch,
+                    kiln_fit_part *part)
+{
+    int count = nodes->count, terms = part->x_count * part->y_count;
+    int columns = part->rational ? 2 * terms - 1 : terms;
+    equations s = {.nodes = nodes,
+                   .terms = terms,
+                   .columns = columns,
+                   .rows = count + columns - terms,
+                   .basis = scratch};
+    s.matrix = s.basis + (size_t)terms * (size_t)count;
+    s.right = s.matrix + (size_t)columns * (size_t)s.rows;
+    s.weight = s.right + s.rows;
+    s.denominator = s.weight + count;
+    for (int i = 0; i < count; i++) {
+        double tx[MAX_TERMS], ty[MAX_TERMS];
+        chebyshev(nodes->x[i], part->x_count, tx);
+        chebyshev(nodes->y[i], part->y_count, ty);
+        for (int k = 0; k < terms; k++)
+            s.basis[i * terms + k] = tx[k % part->x_count] * ty[k / part->x_count];
+        s.weight[i] = 1.0 / count;
+        s.denominator[i] = 1;
+    }
+    double x[2 * KILN_MAX_FIT], best[2 * KILN_MAX_FIT], least = HUGE_VAL, floor = 0;
+    int first = part->rational ? 6 : 1; // rounds until Q is steady
+    for (int round = 0; round < first + rounds; round++) {
+        if (round == first + PATIENCE && least > 1.7 * wanted)
+            break;
+        fill(&s);
+        if (!ki_least_squares(s.matrix, s.right, s.rows, columns, x))
+            break;
+        double largest = judge(&s, x);
+        if (largest == HUGE_VAL) {
+            floor = s.ridge * 1.5;
+            s.ridge = s.ridge > 0 ? 3 * s.ridge : 1e-4;
+            continue;
+        }
+        s.ridge = 0.9 * s.ridge > floor ? 0.9 * s.ridge : floor;
+        if (round >= first - 1)
+            reweight(&s);
+        if (largest < least) {
+            least = largest;
+            for (int k = 0; k < columns; k++)
+                best[k] = x[k];
+        }
+    }
+    if (!(least < HUGE_VAL))
+        return HUGE_VAL;
+    double q[KILN_MAX_FIT] = {1}, scale = 1;
+    for (int k = 1; part->rational && k < terms; k++)
+        q[k] = best[terms + k - 1];
+    if (part->rational) {
+        round_powers(part, q, part->q, 1);
+        scale = 1 / q[0];
+        for (int k = 0; k < terms; k++)
+            part->q[k] = (float)(q[k] * scale);
+    }
+    round_powers(part, best, part->p, scale);
+    return least;
+}
+
+// ---------------------------------------------------------------------------------------- no poles
+
+enum { DEPTH = 12 };
+
+// On the box of half width h about (x, y); |dq| <= slope everywhere.
+static bool proven(const kiln_fit_part *part, double slope, double x, double y, double h, int depth)
+{
+    double q = 0;
+    for (int j = part->y_count - 1; j >= 0; j--) {
+        double row = 0;
+        for (int i = part->x_count - 1; i >= 0; i--)
+            row = row * x + (double)part->q[j * part->x_count + i];
+        q = q * y + row;
+    }
+    if (q - slope * h > LEAST_Q)
+        return true;
+    if (depth == 0 || !(q > LEAST_Q))
+        return false;
+    double k = h / 2;
+    return proven(part, slope, x - k, y - k, k, depth - 1) &&
+           proven(part, slope, x + k, y - k, k, depth - 1) &&
+           proven(part, slope, x - k, y + k, k, depth - 1) &&
+           proven(part, slope, x + k, y + k, k, depth - 1);
+}
+
+bool ki_fit_positive(const kiln_fit_part *part)
+{
+    if (!part->rational)
+        return true;
+    double slope = 0; // of x and y added, for |x|, |y| <= 1
+    for (int k = 0; k < part->x_count * part->y_count; k++)
+        slope += (k % part->x_count + k / part->x_count) * fabs((double)part->q[k]);
+    return proven(part, slope, 0, 0, 1, DEPTH);
+}

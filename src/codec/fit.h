@@ -1,0 +1,11 @@
+// Closed forms as source text.
+#ifndef KI_CODEC_FIT_H
+#define KI_CODEC_FIT_H
+
+#include "base/bytes.h"
+
+/// The function `name` of n.v (mu) and roughness in C (static inline) or GLSL ES 3.00, operation by
+/// operation what kiln_fit_evaluate does.
+void ki_fit_encode(const kiln_fit *fit, const char *name, bool glsl, ki_writer *w);
+
+#endif
