@@ -45,7 +45,7 @@ void ki_numbers_pack(kiln_table_format format, const float *texels, size_t count
     enum { STRETCH = 64 };
     for (size_t done = 0; done < count; done += STRETCH) {
         size_t n = count - done < STRETCH ? count - done : STRETCH;
-        float values[4 * STRETCH];
+        float values[4 * STRETCH] = {0};
         for (size_t i = 0; i < n; i++)
             for (int c = 0; c < stored; c++)
                 values[i * (size_t)stored + (size_t)c] =
