@@ -121,7 +121,7 @@ static int run(int argc, const char **argv)
     if (code == CLI_GO)
         code = read_arguments(&a, &def);
     if (code == CLI_GO) {
-        kiln_fit fit;
+        kiln_fit fit = {0};
         code = cli_job_begin(&job, 0, a.value[QUIET]);
         if (code == CLI_GO)
             code =

@@ -74,7 +74,7 @@ static float horner(const kiln_fit_part *part, const float *c, float x, float y)
 {
     float value = 0;
     for (int j = part->y_count - 1; j >= 0; j--) {
-        const float *row = c + j * part->x_count;
+        const float *row = c + (size_t)j * (size_t)part->x_count;
         float sum = row[part->x_count - 1];
         for (int i = part->x_count - 2; i >= 0; i--)
             sum = row[i] + x * sum;

@@ -66,16 +66,17 @@ static kiln_result fill(kiln_context *context, const kiln_fit_def *def, ki_fit_t
 static kiln_result allocate(kiln_context *context, int count, ki_fit_points *points,
                             kiln_error *error)
 {
-    double *numbers = ki_alloc(context, 5 * (size_t)count, sizeof *numbers);
+    size_t n = (size_t)count;
+    double *numbers = ki_alloc(context, 5 * n, sizeof *numbers);
     *points = (ki_fit_points){0};
     if (!numbers)
-        return ki_fail_memory(context, error, "fit", 5 * (size_t)count * sizeof *numbers);
+        return ki_fail_memory(context, error, "fit", 5 * n * sizeof *numbers);
     *points = (ki_fit_points){.count = count,
                               .x = numbers,
                               .y = numbers + count,
-                              .nov = numbers + 2 * count,
-                              .roughness = numbers + 3 * count,
-                              .value = numbers + 4 * count};
+                              .nov = numbers + 2 * n,
+                              .roughness = numbers + 3 * n,
+                              .value = numbers + 4 * n};
     return KILN_OK;
 }
 
@@ -183,14 +184,14 @@ double ki_fit_measure_part(const kiln_fit_def *def, const kiln_fit_part *part,
 void ki_fit_measure(kiln_fit *fit, const ki_fit_points points[2])
 {
     double sum = 0, largest = 0;
-    int channels = fit->part_count;
+    int channels = fit->part_count > 1 ? 2 : 1;
     for (int i = 0; i < points->count; i++) {
         double nov = points->nov[i], exact[2] = {points->value[i], 0};
         if (channels == 2) {
             exact[1] = exact[0] * ki_schlick_fresnel(nov) + points[1].value[i];
             exact[0] -= exact[1];
         }
-        float values[2];
+        float values[2] = {0};
         ki_fit_evaluate(fit, (float)nov, (float)points->roughness[i], values);
         for (int k = 0; k < channels; k++) {
             double e = fabs((double)values[k] - exact[k]);

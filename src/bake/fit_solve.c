@@ -17,29 +17,30 @@ static void chebyshev(double x, int count, double *t)
 }
 
 // Powers' coefficients of sum c[i * stride] T_i, in place: Clenshaw's recurrence on polynomials.
-static void to_powers(double *c, int count, int stride)
+static void to_powers(double *c, int count, size_t stride)
 {
     double b1[MAX_TERMS + 1] = {0}, b2[MAX_TERMS + 1] = {0}; // b_{k+1}, b_{k+2}
     for (int k = count - 1; k >= 0; k--) {
-        double b[MAX_TERMS + 1] = {0};
-        for (int i = 0; i < count; i++)
+        double b[MAX_TERMS + 1];
+        for (int i = 0; i <= MAX_TERMS; i++)
             b[i] = (i ? (k ? 2 : 1) * b1[i - 1] : 0) - b2[i];
-        b[0] += c[k * stride];
-        for (int i = 0; i < count; i++) {
+        b[0] += c[(size_t)k * stride];
+        for (int i = 0; i <= MAX_TERMS; i++) {
             b2[i] = b1[i];
             b1[i] = b[i];
         }
     }
     for (int i = 0; i < count; i++)
-        c[i * stride] = b1[i];
+        c[(size_t)i * stride] = b1[i];
 }
 
 static void round_powers(const kiln_fit_part *part, double *c, float *rounded, double scale)
 {
+    size_t stride = (size_t)part->x_count;
     for (int j = 0; j < part->y_count; j++)
-        to_powers(c + j * part->x_count, part->x_count, 1);
+        to_powers(c + (size_t)j * stride, part->x_count, 1);
     for (int i = 0; i < part->x_count; i++)
-        to_powers(c + i, part->y_count, part->x_count);
+        to_powers(c + i, part->y_count, stride);
     for (int i = 0; i < part->x_count * part->y_count; i++)
         rounded[i] = (float)(c[i] * scale);
 }
@@ -61,7 +62,7 @@ static void fill(const equations *s)
     const ki_fit_points *nodes = s->nodes;
     for (int i = 0; i < nodes->count; i++) {
         double w = sqrt(s->weight[i]) / s->denominator[i];
-        const double *t = s->basis + i * s->terms;
+        const double *t = s->basis + (size_t)i * (size_t)s->terms;
         for (int k = 0; k < s->terms; k++)
             s->matrix[k * s->rows + i] = w * t[k];
         for (int k = s->terms; k < s->columns; k++)
@@ -83,7 +84,7 @@ static double judge(const equations *s, const double *x)
     double largest = 0;
     for (int pass = 0; pass < 2; pass++)
         for (int i = 0; i < nodes->count; i++) {
-            const double *t = s->basis + i * s->terms;
+            const double *t = s->basis + (size_t)i * (size_t)s->terms;
             double p = 0, q = 1;
             for (int k = s->terms; k < s->columns; k++)
                 q += x[k] * t[k - s->terms + 1];
@@ -130,7 +131,7 @@ double ki_fit_solve(const ki_fit_points *nodes, int rounds, double wanted, doubl
     s.weight = s.right + s.rows;
     s.denominator = s.weight + count;
     for (int i = 0; i < count; i++) {
-        double tx[MAX_TERMS], ty[MAX_TERMS];
+        double tx[MAX_TERMS] = {0}, ty[MAX_TERMS] = {0};
         chebyshev(nodes->x[i], part->x_count, tx);
         chebyshev(nodes->y[i], part->y_count, ty);
         for (int k = 0; k < terms; k++)
@@ -138,7 +139,7 @@ double ki_fit_solve(const ki_fit_points *nodes, int rounds, double wanted, doubl
         s.weight[i] = 1.0 / count;
         s.denominator[i] = 1;
     }
-    double x[2 * KILN_MAX_FIT], best[2 * KILN_MAX_FIT], least = HUGE_VAL, floor = 0;
+    double x[2 * KILN_MAX_FIT] = {0}, best[2 * KILN_MAX_FIT] = {0}, least = HUGE_VAL, floor = 0;
     int first = part->rational ? 6 : 1; // rounds until Q is steady
     for (int round = 0; round < first + rounds; round++) {
         if (round == first + PATIENCE && least > 1.7 * wanted)
@@ -206,7 +207,9 @@ bool ki_fit_positive(const kiln_fit_part *part)
     if (!part->rational)
         return true;
     double slope = 0; // of x and y added, for |x|, |y| <= 1
-    for (int k = 0; k < part->x_count * part->y_count; k++)
-        slope += (k % part->x_count + k / part->x_count) * fabs((double)part->q[k]);
+    for (int k = 0; k < part->x_count * part->y_count; k++) {
+        int degrees = k % part->x_count + k / part->x_count;
+        slope += degrees * fabs((double)part->q[k]);
+    }
     return proven(part, slope, 0, 0, 1, DEPTH);
 }

@@ -159,7 +159,7 @@ static void write_polynomial(ki_writer *w, const language *l, const kiln_fit_par
     }
     for (int j = 0; j < part->y_count; j++) {
         ki_write_text(w, "        %s %s%d = ", l->number, name, j);
-        write_horner(w, l, c + j * part->x_count, part->x_count, "x", NULL);
+        write_horner(w, l, c + (size_t)j * (size_t)part->x_count, part->x_count, "x", NULL);
     }
     ki_write_text(w, "        %s %s = ", l->number, name);
     write_horner(w, l, NULL, part->y_count, "y", name);
@@ -186,7 +186,8 @@ void ki_fit_encode(const kiln_fit *fit, const char *name, bool glsl, ki_writer *
         ki_write_text(w, "highp vec2 %s(", name);
     else
         ki_write_text(w, "%s%s %s(", l->prefix, two ? "void" : l->number, name);
-    ki_write_text(w, average ? "" : "%s mu, ", l->number);
+    if (!average)
+        ki_write_text(w, "%s mu, ", l->number);
     ki_write_text(w, "%s roughness%s)\n{\n", l->number, two && !glsl ? ", float ab[2]" : "");
     write_arguments(w, fit, l);
     write_part(w, &fit->part[0], l, "e");

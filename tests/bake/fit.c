@@ -82,9 +82,10 @@ static double largest_error(const kiln_fit *fit, int count)
     double largest = 0, low = fit->def.roughness_min;
     uint64_t seed = 20;
     for (int i = 0; i < count; i++) {
-        double u = random_number(&seed), v = random_number(&seed), wanted[2];
+        double u = random_number(&seed), v = random_number(&seed), wanted[2] = {0};
         double nov = i % 3 == 0 ? u : i % 3 == 1 ? u * u * u : u * u * u * v * v;
-        float n = (float)nov, r = (float)(low + (1 - low) * (i % 3 == 2 ? v * v : v)), values[2];
+        float n = (float)nov, r = (float)(low + (1 - low) * (i % 3 == 2 ? v * v : v));
+        float values[2] = {0};
         kiln_fit_evaluate(fit, n, r, values);
         exact(&fit->def, (double)n, (double)r, wanted);
         for (int k = 0; k < fit->part_count; k++)
