@@ -458,7 +458,7 @@ const cli_command cli_eval = {
         "\n"
         "Examples:\n"
         "  kiln eval e --roughness 0.5 --mu 0.5\n"
-        "      0.857263435564\n"
+        "      0.857263435582\n"
         "  kiln eval eavg --g schlick-k2 --roughness 0.5 --json\n"
         "      the same quantity of another model, for a program\n"
         "  seq 0 0.01 1 | kiln eval e --roughness 0.25\n"

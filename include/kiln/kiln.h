@@ -576,13 +576,15 @@ typedef enum kiln_axis {
 typedef struct kiln_table_def {
     kiln_table_kind kind;
     kiln_model model;
-    kiln_sheen sheen;         ///< KILN_TABLE_SHEEN only
-    int width, height, depth; ///< 1 or 2 to KILN_MAX_TABLE; 0 for 128, 128 and (w) 32
+    kiln_sheen sheen; ///< KILN_TABLE_SHEEN only
+    int width, height,
+        depth; ///< 1 to KILN_MAX_TABLE; 0 for 128 x 128, 32 x 32 x 32 where there is w,
+               ///< 48 x 64 x 24 of the walk
     kiln_axis axis;
     bool corners;    ///< texel i stands at i / (n - 1), else at (i + 1/2) / n, of each axis
     bool complement; ///< 1 - value: 1 - E keeps its precision where E is near 1
     bool flip;       ///< row 0 holds roughness 1, for loaders that turn pictures over
-    int path_count;  ///< random walks a texel, KILN_TABLE_E_WALK only; 0 for 65536
+    int path_count; ///< random walks a texel, KILN_TABLE_E_WALK only, as in kiln_walk_def; 0 for 8192
 } kiln_table_def;
 
 /// A table, its slices one below the other in `image`: width x (height * depth).

@@ -174,15 +174,17 @@ kiln_result ki_table_complete(kiln_table_def *def, kiln_error *error)
         return ki_fail(error, KILN_ERROR_UNSUPPORTED, "tables of kind %d are not made yet",
                        (int)def->kind);
     bool has_depth = ki_table_third(def->kind) != KI_THIRD_NONE;
+    bool walks = def->kind == KILN_TABLE_E_WALK;
     if (def->kind == KILN_TABLE_E_AVERAGE)
         def->width = 1;
-    def->width = def->width ? def->width : has_depth ? 32 : 128;
-    def->height = def->height ? def->height : has_depth ? 32 : 128;
-    def->depth = def->depth ? def->depth : has_depth ? 32 : 1;
-    if (def->kind != KILN_TABLE_E_WALK)
+    // The walk's are what holds 2e-3 between texels: docs/theory/walk.md.
+    def->width = def->width ? def->width : walks ? 48 : has_depth ? 32 : 128;
+    def->height = def->height ? def->height : walks ? 64 : has_depth ? 32 : 128;
+    def->depth = def->depth ? def->depth : walks ? 24 : has_depth ? 32 : 1;
+    if (!walks)
         def->path_count = 0;
     else if (!def->path_count)
-        def->path_count = 1 << 16;
+        def->path_count = 8192;
     result = check_size("width", def->width, KILN_MAX_TABLE, error);
     if (!result)
         result = check_size("height", def->height, KILN_MAX_TABLE, error);
