@@ -9,7 +9,7 @@ expect 0 "" tables -o e.ktx2 --size 16x8 --axis grazing --corners --g schlick-k2
 grep -q '^e.ktx2: e, ggx, schlick-k2, 16 x 8, grazing axis, texels at corners' log/out ||
     die "the line is another"
 expect 0 "" info e.ktx2
-grep -q 'kind=e d=ggx g=schlick-k2 axis=grazing corners=1 complement=0 flip=0 size=16x8' log/out ||
+grep -q 'kind=e d=ggx g=schlick-k2 .*axis=grazing corners=1 complement=0 flip=0 size=16x8' log/out ||
     die "kiln info does not say what the table is"
 only e.ktx2
 
