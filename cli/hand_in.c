@@ -61,7 +61,7 @@ static kiln_result shade(assignment *a, const view_options *o, kiln_image *image
 {
     kiln_result result =
         view_reference(a->job->context, o, NULL, WIDTH, HEIGHT, NULL, image, NULL, &a->job->error);
-    for (size_t i = 0; result == KILN_OK && i < WIDTH * HEIGHT; i++) {
+    for (size_t i = 0; result == KILN_OK && i < (size_t)WIDTH * HEIGHT; i++) {
         double c[3];
         for (size_t k = 0; k < 3; k++)
             c[k] = (double)image->pixels[3 * i + k];
@@ -82,7 +82,7 @@ static kiln_result picture(assignment *a, view_renderer *renderer, const view_op
 static void compare(const kiln_image *a, const kiln_image *b, pictures *p)
 {
     double squares = 0;
-    size_t count = WIDTH * HEIGHT * 3;
+    size_t count = (size_t)WIDTH * HEIGHT * 3;
     for (size_t i = 0; i < count; i++) {
         double off = 255 * fabs((double)a->pixels[i] - (double)b->pixels[i]);
         squares += off * off;

@@ -29,8 +29,8 @@ const struct poptOption look_options[] = {
     {"as-printed", 0, POPT_ARG_NONE, NULL, LOOK_AS_PRINTED,
      "assignment: with the mistake of the handout's figure 6", NULL},
     {"occlusion", 0, POPT_ARG_NONE, NULL, LOOK_OCCLUSION, "balls shade one another", NULL},
-    {"bent", 0, POPT_ARG_NONE, NULL, LOOK_BENT,
-     "rough balls look the environment up nearer to their normal", NULL},
+    {"straight", 0, POPT_ARG_NONE, NULL, LOOK_STRAIGHT,
+     "reflections of rough balls are not bent towards the normal", NULL},
     {"diffuse", 0, POPT_ARG_STRING, NULL, LOOK_DIFFUSE,
      "light of diffuse surfaces: sh (harmonics) or cube (sh)", "SOURCE"},
     {"bake-size", 0, POPT_ARG_STRING, NULL, LOOK_BAKE_SIZE,
@@ -127,7 +127,7 @@ int look_read(const cli_arguments *a, look *l)
     o->debug = (view_debug)debug;
     o->cube_diffuse = diffuse;
     o->as_printed = a->value[LOOK_AS_PRINTED];
-    o->bent = a->value[LOOK_BENT];
+    o->bent = !a->value[LOOK_STRAIGHT];
     o->occlusion = a->value[LOOK_OCCLUSION];
     return check(a, l);
 }
@@ -139,8 +139,10 @@ bool look_has_environment(const look *l)
 
 int look_load(cli_job *job, const look *l, kiln_map *source)
 {
-    if (l->input)
-        return cli_load(job, (const char **)(uintptr_t)&l->input, 1, KILN_LAYOUT_AUTO, source);
+    if (l->input) {
+        const char *names[] = {l->input};
+        return cli_load(job, names, 1, KILN_LAYOUT_AUTO, source);
+    }
     // kcd/m2 to something near 1.
     kiln_sky_def def = {0};
     if (kiln_sky(job->context, &def, source, &job->error) != KILN_OK)

@@ -14,7 +14,7 @@ enum { OUTPUT = 1, REFERENCE, ERRORS, NOISE, THREADS, QUIET };
 static const struct poptOption options[] = {
     {"output", 'o', POPT_ARG_STRING, NULL, OUTPUT,
      "the picture: .png as a screen shows it; .exr or .hdr, linear light", "FILE"},
-    {NULL, 0, POPT_ARG_INCLUDE_TABLE, (void *)(uintptr_t)look_options, 0, "The view:", NULL},
+    {NULL, 0, POPT_ARG_INCLUDE_TABLE, (void *)look_options, 0, "The view:", NULL},
     {"reference", 0, POPT_ARG_NONE, NULL, REFERENCE,
      "integrate the light on the CPU, without approximation", NULL},
     {"error", 0, POPT_ARG_NONE, NULL, ERRORS,
@@ -107,7 +107,8 @@ static int integrate(cli_job *job, const render *r, const kiln_map *source, bool
 }
 
 // The picture that was asked for, and the words about it.
-static int make(cli_job *job, const render *r, bool linear, kiln_image *image, char words[256])
+static int make(cli_job *job, const render *r, bool linear, kiln_image *image, char words[256],
+                view_error *errors)
 {
     kiln_map source = {0};
     kiln_image truth = {0};
@@ -125,8 +126,10 @@ static int make(cli_job *job, const render *r, bool linear, kiln_image *image, c
             code = integrate(job, r, &source, true, &truth, &report);
         if (code == CLI_GO)
             e = view_compare(&r->look.options, image, &truth, !linear);
-        snprintf(words, 256, "error RMS %.3g, largest %.3g, by row of balls %.3g %.3g; noise %.2g",
-                 e.rms, e.largest, e.upper, e.lower, report.noise);
+        snprintf(words, 256, "error RMS %.3g, largest %.3g, on screen %.2f of 255, noise %.2g",
+                 e.rms, e.largest, e.screen, report.noise);
+        if (code == CLI_GO)
+            *errors = e;
     } else if (code == CLI_GO) {
         code = draw(job, &r->look, &source, linear, name, image);
         snprintf(words, 256, "by %s", name);
@@ -134,6 +137,17 @@ static int make(cli_job *job, const render *r, bool linear, kiln_image *image, c
     kiln_image_free(&truth);
     kiln_map_free(&source);
     return code;
+}
+
+static void print_errors(const view_options *o, const view_error *e)
+{
+    view_ball balls[VIEW_MAX_BALLS];
+    view_balls(o, balls);
+    if (e->ball_count)
+        printf("  %9s %8s  %-12s %8s %9s\n", "roughness", "metallic", "method", "RMS", "of 255");
+    for (int i = 0; i < e->ball_count; i++)
+        printf("  %9.3g %8.3g  %-12s %8.3g %9.2f\n", balls[i].roughness, balls[i].metallic,
+               view_method_name((int)balls[i].method), e->ball[i], e->ball_screen[i]);
 }
 
 static int run(int argc, const char **argv)
@@ -148,9 +162,10 @@ static int run(int argc, const char **argv)
         const char *path = a.value[OUTPUT];
         char words[256] = "";
         kiln_image image = {0};
+        view_error errors = {.rms = 0};
         code = cli_job_begin(&job, r.threads, a.value[QUIET]);
         if (code == CLI_GO)
-            code = make(&job, &r, strcmp(cli_ending(path), "png") != 0, &image, words);
+            code = make(&job, &r, strcmp(cli_ending(path), "png") != 0, &image, words, &errors);
         if (code == CLI_GO)
             code = kiln_image_save(job.context, &image, path, &job.error) ? CLI_FAILED : CLI_DONE;
         cli_clear_progress(&job);
@@ -158,6 +173,8 @@ static int run(int argc, const char **argv)
             printf("%s: %s, %d x %d, %s, %.2f s\n", path,
                    view_scene_name((int)r.look.options.scene), r.look.width, r.look.height, words,
                    cli_seconds() - job.began);
+        if (code == CLI_DONE && !a.value[QUIET])
+            print_errors(&r.look.options, &errors);
         kiln_image_free(&image);
         code = cli_job_end(&job, code);
     }

@@ -11,7 +11,7 @@
 enum { SCREENSHOT = 1, THREADS };
 
 static const struct poptOption options[] = {
-    {NULL, 0, POPT_ARG_INCLUDE_TABLE, (void *)(uintptr_t)look_options, 0, "The view:", NULL},
+    {NULL, 0, POPT_ARG_INCLUDE_TABLE, (void *)look_options, 0, "The view:", NULL},
     {"screenshot", 0, POPT_ARG_STRING, NULL, SCREENSHOT,
      "draw once, write what the window holds as .png and leave", "FILE"},
     {"threads", 0, POPT_ARG_STRING, NULL, THREADS, "1 to 256, one a core by default", "N"},

@@ -3,28 +3,32 @@
 
 #include <math.h>
 
-static bool shows_ball(const view_options *o, double x, double y, int width, int height)
+// The ball that a pixel's centre shows, or -1.
+static int ball_at(const view_ball *balls, int count, const view_camera *camera, double sx,
+                   double sy)
 {
-    view_ball balls[VIEW_MAX_BALLS];
-    double eye[3], right[3], up[3], back[3], d[3], size = 0;
-    int count = view_balls(o, balls);
-    view_camera_axes(&o->camera, eye, right, up, back);
-    double slope = tan(o->camera.fov / 2 * 0.017453292519943295);
+    double eye[3], right[3], up[3], back[3], d[3], size = 0, nearest = 1e30;
+    int found = -1;
+    view_camera_axes(camera, eye, right, up, back);
     for (int c = 0; c < 3; c++) {
-        d[c] = (2 * x / width - 1) * slope * width / height * right[c] +
-               (1 - 2 * y / height) * slope * up[c] - back[c];
+        d[c] = sx * right[c] + sy * up[c] - back[c];
         size += d[c] * d[c];
     }
     for (int i = 0; i < count; i++) {
         double along = 0, away = 0;
         for (int c = 0; c < 3; c++) {
-            along += (balls[i].centre[c] - eye[c]) * d[c];
-            away += (balls[i].centre[c] - eye[c]) * (balls[i].centre[c] - eye[c]);
+            double to = balls[i].centre[c] - eye[c];
+            along += to * d[c];
+            away += to * to;
         }
-        if (along > 0 && away - along * along / size < balls[i].radius * balls[i].radius)
-            return true;
+        double rest = balls[i].radius * balls[i].radius - away + along * along / size;
+        double t = along / sqrt(size) - sqrt(fmax(rest, 0));
+        if (rest > 0 && t > 0 && t < nearest) {
+            nearest = t;
+            found = i;
+        }
     }
-    return false;
+    return found;
 }
 
 // White where there is no error, red where the picture is too bright, blue where it is too dark.
@@ -37,32 +41,72 @@ static void colour(float pixel[3])
     pixel[2] = (float)(mean < 0 ? 1 : 1 - strength);
 }
 
+// Sums over the pixels of one ball, of three channels each.
+typedef struct sums {
+    double count, truth, squares, screen;
+} sums;
+
+static void add(const view_options *o, const float a[3], const float b[3], sums *to)
+{
+    double x[3], y[3], stops = exp2(o->exposure);
+    for (int c = 0; c < 3; c++) {
+        double off = (double)a[c] - (double)b[c];
+        to->count += 1;
+        to->truth += (double)b[c];
+        to->squares += off * off;
+        x[c] = (double)a[c] * stops;
+        y[c] = (double)b[c] * stops;
+    }
+    view_tone(o->scene, x, x);
+    view_tone(o->scene, y, y);
+    for (int c = 0; c < 3; c++)
+        to->screen += 255.0 * 255 * (x[c] - y[c]) * (x[c] - y[c]);
+}
+
+static void finish(const sums *of, int count, view_error *e, double *mean)
+{
+    sums all = {0};
+    e->ball_count = count;
+    for (int i = 0; i < count; i++) {
+        all.count += of[i].count;
+        all.truth += of[i].truth;
+        all.squares += of[i].squares;
+        all.screen += of[i].screen;
+        if (of[i].count > 0 && of[i].truth > 0) {
+            e->ball[i] = sqrt(of[i].squares * of[i].count) / of[i].truth;
+            e->ball_screen[i] = sqrt(of[i].screen / of[i].count);
+        }
+    }
+    *mean = all.truth > 0 ? all.truth / all.count : 1;
+    e->rms = all.count > 0 ? sqrt(all.squares / all.count) / *mean : 0;
+    e->screen = all.count > 0 ? sqrt(all.screen / all.count) : 0;
+}
+
 view_error view_compare(const view_options *o, kiln_image *image, const kiln_image *truth,
                         bool colours)
 {
     int width = image->width, height = image->height;
-    size_t count[2] = {0};
-    double squares[2] = {0}, sum = 0;
-    view_error e = {0};
+    view_ball balls[VIEW_MAX_BALLS];
+    int count = view_balls(o, balls);
+    double slope = tan(o->camera.fov / 2 * 0.017453292519943295), mean;
+    sums of[VIEW_MAX_BALLS] = {{.count = 0}};
+    view_error e = {.rms = 0};
     for (int i = 0; i < width * height; i++) {
+        int x = i % width, y = i / width;
         float *a = image->pixels + 3 * (size_t)i;
         const float *b = truth->pixels + 3 * (size_t)i;
-        int half = i / width >= height / 2;
-        bool shows = shows_ball(o, i % width + 0.5, i / width + 0.5, width, height);
-        count[half] += shows;
+        int ball =
+            ball_at(balls, count, &o->camera, (2 * (x + 0.5) / width - 1) * slope * width / height,
+                    (1 - 2 * (y + 0.5) / height) * slope);
+        if (ball >= 0)
+            add(o, a, b, &of[ball]);
         for (int c = 0; c < 3; c++) {
-            sum += shows ? (double)b[c] / 3 : 0;
-            a[c] = shows ? a[c] - b[c] : 0;
-            squares[half] += (double)a[c] * (double)a[c] / 3;
+            a[c] = ball >= 0 ? a[c] - b[c] : 0;
             e.largest = fmax(e.largest, fabs((double)a[c]));
         }
     }
-    size_t all = count[0] + count[1];
-    double mean = all && sum > 0 ? sum / (double)all : 1;
+    finish(of, count, &e, &mean);
     e.largest /= mean;
-    e.rms = all ? sqrt((squares[0] + squares[1]) / (double)all) / mean : 0;
-    e.upper = count[0] ? sqrt(squares[0] / (double)count[0]) / mean : 0;
-    e.lower = count[1] ? sqrt(squares[1] / (double)count[1]) / mean : 0;
     for (int i = 0; i < width * height; i++) {
         float *a = image->pixels + 3 * (size_t)i;
         for (int c = 0; c < 3; c++)

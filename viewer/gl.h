@@ -61,7 +61,7 @@
     X(Viewport)
 
 typedef struct view_gl {
-#define VIEW_GL_MEMBER(name) __typeof__(&gl##name) name;
+#define VIEW_GL_MEMBER(name) __typeof__(&gl##name) name; // NOLINT(bugprone-macro-parentheses)
     VIEW_GL_FUNCTIONS(VIEW_GL_MEMBER)
 #undef VIEW_GL_MEMBER
 } view_gl;

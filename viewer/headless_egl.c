@@ -22,7 +22,7 @@
     X(Terminate)
 
 typedef struct egl_functions {
-#define MEMBER(name) __typeof__(&egl##name) name;
+#define MEMBER(name) __typeof__(&egl##name) name; // NOLINT(bugprone-macro-parentheses)
     EGL_FUNCTIONS(MEMBER)
 #undef MEMBER
 } egl_functions;

@@ -248,7 +248,8 @@ static void pixel(job *j, int x, int y, view_reference_report *report, float *ou
     double fixed[3] = {0}, radiance[3];
     for (int i = 0; i < rays; i++) {
         double d[3];
-        ray_at(j, x + (i % j->side + 0.5) / j->side, y + (i / j->side + 0.5) / j->side, d);
+        int across = i % j->side, down = i / j->side;
+        ray_at(j, x + (across + 0.5) / j->side, y + (down + 0.5) / j->side, d);
         find_point(j, d, &points[waiting]);
         if (!shines(j, &points[waiting], radiance))
             waiting++;

@@ -30,10 +30,13 @@ KILN_CHECKED kiln_result view_reference(kiln_context *context, const view_option
                                         const view_reference_def *def, kiln_image *image,
                                         view_reference_report *report, kiln_error *error);
 
-/// How two linear pictures of a view differ over the pixels whose centre shows a ball: relative to
-/// the truth's mean over these, in all and of the upper and the lower half of the picture.
+/// How two linear pictures of a view differ over the pixels whose centre shows a ball.
 typedef struct view_error {
-    double rms, largest, upper, lower;
+    double rms, largest; ///< relative to the truth's mean over these pixels
+    double screen;       ///< RMS of what a screen shows, of 255
+    int ball_count;
+    double ball[VIEW_MAX_BALLS];        ///< RMS of each ball, relative to its own mean
+    double ball_screen[VIEW_MAX_BALLS]; ///< as `screen`
 } view_error;
 
 /// Leaves image - truth in `image`, over that mean, or as colours: blue too dark, red too bright,

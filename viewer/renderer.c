@@ -16,9 +16,9 @@ typedef struct block {
     float balls[VIEW_MAX_BALLS][4][4];
 } block;
 
-_Static_assert(offsetof(block, mode) == 8 * 16, "std140");
-_Static_assert(offsetof(block, table_layout) == 11 * 16, "std140");
-_Static_assert(offsetof(block, balls) == (11 + 6 + 8 + 18) * 16, "std140");
+_Static_assert(offsetof(block, mode) == 128, "std140");
+_Static_assert(offsetof(block, table_layout) == 176, "std140");
+_Static_assert(offsetof(block, balls) == 688, "std140");
 
 enum { TONE_LINEAR, TONE_NEUTRAL, TONE_ASSIGNMENT };
 

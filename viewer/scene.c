@@ -60,6 +60,7 @@ view_options view_defaults(view_scene scene)
         .camera = {.target = {20, 0, 0}, .elevation = 8, .distance = 330, .fov = 45},
         .split = 0.5,
         .samples = 4,
+        .bent = true,
     };
     if (scene == VIEW_SCENE_ASSIGNMENT) {
         // At (0, 80, 300), looking at the origin.

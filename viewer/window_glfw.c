@@ -41,7 +41,7 @@
     X(WindowShouldClose)
 
 typedef struct glfw_functions {
-#define MEMBER(name) __typeof__(&glfw##name) name;
+#define MEMBER(name) __typeof__(&glfw##name) name; // NOLINT(bugprone-macro-parentheses)
     GLFW_FUNCTIONS(MEMBER)
 #undef MEMBER
 } glfw_functions;

@@ -77,7 +77,7 @@ static void white_balls_vanish_in_the_furnace(void **unused)
     double sum = 0, squares = 0;
     o.samples = 1;
     CHECK_OK(view_reference(context, &o, NULL, 48, 27, &def, &image, &report, &error));
-    size_t half = 48 * 13 * 3, seen = 0;
+    size_t half = (size_t)48 * 13 * 3, seen = 0;
     for (size_t i = 0; i < half; i++)
         if (image.pixels[i] != 1.0f) {
             sum += (double)image.pixels[i] - 1;
@@ -159,8 +159,9 @@ static void the_integral_is_the_sum(void **unused)
     view_camera_axes(&o.camera, eye, right, up, back);
     CHECK_OK(view_reference(context, &o, &map, WIDTH, HEIGHT, &def, &image, NULL, &error));
     for (int i = 0; i < WIDTH * HEIGHT; i++) {
-        double sx = (2 * (i % WIDTH + 0.5) / WIDTH - 1) * slope * WIDTH / HEIGHT;
-        double sy = (1 - 2 * (i / WIDTH + 0.5) / HEIGHT) * slope, d[3];
+        int x = i % WIDTH, y = i / WIDTH;
+        double sx = (2 * (x + 0.5) / WIDTH - 1) * slope * WIDTH / HEIGHT;
+        double sy = (1 - 2 * (y + 0.5) / HEIGHT) * slope, d[3];
         for (int c = 0; c < 3; c++)
             d[c] = sx * right[c] + sy * up[c] - back[c];
         normalize(d);
@@ -203,7 +204,7 @@ static void threads_do_not_matter(void **unused)
         view_reference_def def = {.noise = 0.2, .thread_count = i ? 5 : 1};
         CHECK_OK(view_reference(context, &o, &map, 40, 20, &def, &image[i], NULL, &error));
     }
-    assert_memory_equal(image[0].pixels, image[1].pixels, 40 * 20 * 3 * sizeof(float));
+    assert_memory_equal(image[0].pixels, image[1].pixels, sizeof(float) * 40 * 20 * 3);
     kiln_image_free(&image[0]);
     kiln_image_free(&image[1]);
     kiln_map_free(&map);

@@ -218,7 +218,7 @@ static void the_same_view_has_the_same_bits(void **unused)
         kiln_image a, b;
         CHECK_OK(view_picture(renderer, &o, 160, 90, false, &a, &error));
         CHECK_OK(view_picture(renderer, &o, 160, 90, false, &b, &error));
-        assert_memory_equal(a.pixels, b.pixels, 160 * 90 * 3 * sizeof(float));
+        assert_memory_equal(a.pixels, b.pixels, sizeof(float) * 160 * 90 * 3);
         kiln_image_free(&a);
         kiln_image_free(&b);
     }

@@ -65,7 +65,7 @@ static void render(const char *expression, const float (*x)[ARGUMENTS], float (*
     assert_true(length > 0 && (size_t)length < sizeof text);
     CHECK_OK(view_link(&gl, text, &program, &error));
     kiln_image image = {.width = 2, .height = COUNT, .channels = 4};
-    image.pixels = (float *)(uintptr_t)x;
+    image.pixels = (float *)x;
     view_upload_image(&gl, 0, &texture, &image);
     gl.GenRenderbuffers(1, &target);
     gl.BindRenderbuffer(GL_RENDERBUFFER, target);

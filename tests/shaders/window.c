@@ -117,7 +117,7 @@ static void the_window_shows_the_headless_picture(void **unused)
         assert_int_equal(seen.height, HEIGHT);
         draw_headless(&o, &wanted);
         double squares = 0, largest = 0;
-        for (size_t i = 0; i < WIDTH * HEIGHT * 3; i++) {
+        for (size_t i = 0; i < (size_t)WIDTH * HEIGHT * 3; i++) {
             double off = 255 * fabs((double)seen.pixels[i] - (double)wanted.pixels[i]);
             squares += off * off;
             largest = fmax(largest, off);
