@@ -1,6 +1,6 @@
 #include "baker.h"
 
-#include <kiln/kiln.h>
+#include "viewer.h"
 
 #include <emscripten.h>
 #include <stdio.h>
@@ -12,6 +12,7 @@ struct baker {
     kiln_error error;
     kiln_map source, baked;
     kiln_sh sh;
+    view_environment scenery;
 };
 
 EM_JS(void, tell, (const char *stage, double fraction), {
@@ -183,6 +184,37 @@ const float *baker_texels(const baker *b, int level)
 const double *baker_harmonics(const baker *b)
 {
     return &b->sh.c[0][0];
+}
+
+bool baker_scenery(baker *b, int size, bool textbook)
+{
+    view_environment_free(&b->scenery);
+    return !view_bake(b->context, &b->source, size, textbook, &b->scenery, &b->error);
+}
+
+int baker_scenery_levels(const baker *b)
+{
+    return b->scenery.levels.level_count;
+}
+
+int baker_scenery_size(const baker *b, int level)
+{
+    return level < 0 ? b->scenery.irradiance.size : kiln_map_level_size(&b->scenery.levels, level);
+}
+
+double baker_scenery_roughness(const baker *b, int level)
+{
+    return (double)b->scenery.levels.roughness[level];
+}
+
+const float *baker_scenery_texels(const baker *b, int level)
+{
+    return level < 0 ? b->scenery.irradiance.level[0] : b->scenery.levels.level[level];
+}
+
+const double *baker_scenery_harmonics(const baker *b)
+{
+    return &b->scenery.sh.c[0][0];
 }
 
 bool baker_save(baker *b, const char *path, int format)

@@ -47,11 +47,16 @@ export class Baker {
         return { shape, width: shape === 'panorama' ? 2 * size : size, height: size };
     }
 
-    // Returns what was baked, copied: of each level its size, roughness and six faces of RGB floats.
+    // Six faces of RGB floats, copied.
+    texels(at, size) {
+        return this.module.HEAPF32.slice(at >>> 2, (at >>> 2) + 18 * size * size);
+    }
+
+    // Returns what was baked: of each level its size, roughness and texels.
     bake({ size = 256, levels = 0, rotation = 0, exposure = 0 } = {}) {
         const { module, self } = this, began = performance.now();
         this.call('baker_bake', size, levels, rotation, exposure);
-        const seconds = (performance.now() - began) / 1000, floats = module.HEAPF32;
+        const seconds = (performance.now() - began) / 1000;
         const sh = module._baker_harmonics(self) >>> 3;
         return {
             seconds,
@@ -59,10 +64,28 @@ export class Baker {
             harmonics: module.HEAPF64.slice(sh, sh + 27),
             levels: Array.from({ length: module._baker_level_count(self) }, (_, k) => {
                 const side = module._baker_level_size(self, k);
-                const at = module._baker_texels(self, k) >>> 2;
                 return { size: side, roughness: module._baker_roughness(self, k),
-                         texels: floats.slice(at, at + 18 * side * side) };
+                         texels: this.texels(module._baker_texels(self, k), side) };
             }),
+        };
+    }
+
+    // Returns what the view is lit by, as Stage.light takes it.
+    scenery({ size = 256, textbook = false } = {}) {
+        const { module, self } = this, began = performance.now();
+        this.call('baker_scenery', size, textbook);
+        const seconds = (performance.now() - began) / 1000;
+        const sh = module._baker_scenery_harmonics(self) >>> 3;
+        const level = (k) => {
+            const side = module._baker_scenery_size(self, k);
+            return { size: side, roughness: k < 0 ? 1 : module._baker_scenery_roughness(self, k),
+                     texels: this.texels(module._baker_scenery_texels(self, k), side) };
+        };
+        return {
+            seconds,
+            harmonics: module.HEAPF64.slice(sh, sh + 27),
+            irradiance: level(-1),
+            levels: Array.from({ length: module._baker_scenery_levels(self) }, (_, k) => level(k)),
         };
     }
 

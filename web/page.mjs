@@ -1,33 +1,20 @@
 // The page: takes a panorama, has it baked, shows and hands out what comes of it.
-import GUI from './lil-gui.mjs';
+import { makeControls } from './controls.mjs';
 import { Engine } from './engine.mjs';
-import { flag, fromHash, number, text, toHash, word } from './state.mjs';
+import { Stage } from './stage.mjs';
+import { bounded, flag, fromHash, number, text, toHash, word } from './state.mjs';
+import makeStageModule from './stage.js';
 import { middleGrey, unroll } from './unroll.mjs';
-
-const KINDS = {
-    source: text('sky'),
-    elevation: number(30, -5, 90),
-    azimuth: number(0, -180, 180),
-    turbidity: number(3, 1.7, 10),
-    size: number(256, 16, 1024, 0),
-    turn: number(0, -180, 180),
-    stops: number(0, -16, 16),
-    level: number(0, 0, 15, 0),
-};
+import { KEYS, View } from './view.mjs';
 
 const get = (id) => document.getElementById(id);
 const status = get('status'), bar = get('progress'), error = get('error');
+const canvas = get('view'), flat = get('flat');
 
-const state = fromHash(KINDS, location.hash);
-let opened = null; // the file's own bytes and name; null for the sky
-let baked = null;
-
-function say(sentence) {
-    status.textContent = sentence;
-}
+const say = (sentence) => { status.textContent = sentence; };
 
 function complain(sentence) {
-    error.textContent = sentence;
+    error.textContent = /[.!]$/.test(sentence) ? sentence : `${sentence}.`;
     error.hidden = false;
 }
 
@@ -38,11 +25,55 @@ const engine = new Engine({
         say(`${stage[0].toUpperCase()}${stage.slice(1)}, ${Math.round(100 * fraction)} %.`);
     },
 });
+const stage = await Stage.make(makeStageModule, '#view');
+
+// ------------------------------------------------------------------------------------------- state
+
+// What an address may hold. A scene has its own camera, material and method.
+function kindsOf(scene) {
+    const own = stage.defaults(scene), { words } = stage;
+    return {
+        source: text('sky'),
+        sun: number(30, -5, 90),
+        bearing: number(0, -180, 180),
+        haze: number(3, 1.7, 10),
+        size: number(256, 16, 1024, 0),
+        turn: number(0, -180, 180),
+        stops: number(0, -16, 16),
+        shown: number(-1, -1, 15, 0), // a level instead of the balls
+        scene: word('ibl', ...words.scene),
+        method: word(own.method, ...words.method),
+        material: word(own.material, ...words.material),
+        debug: word('none', ...words.debug),
+        azimuth: number(own.azimuth, -3600, 3600),
+        elevation: number(own.elevation, -89, 89),
+        distance: number(own.distance, 60, 3000, 1),
+        split: number(own.split, 0, 1),
+        background: number(own.background, 0, 1),
+        occlusion: flag(Boolean(own.occlusion)),
+        cubeDiffuse: flag(Boolean(own.cubeDiffuse)),
+        asPrinted: flag(Boolean(own.asPrinted)),
+        auto: flag(true),
+        samples: number(own.samples, 1, 8, 0),
+    };
+}
+
+function readAddress() {
+    const { scene } = fromHash({ scene: word('ibl', ...stage.words.scene) }, location.hash);
+    return fromHash(kindsOf(scene), location.hash);
+}
+
+const state = readAddress();
+let opened = null; // the file's own bytes and name; null for the sky
+let baked = null, lit = '', litByTextbook = '';
+
+function remember() {
+    history.replaceState(null, '', toHash(kindsOf(state.scene), state) || location.pathname);
+}
 
 // ------------------------------------------------------------------------------------------ baking
 
 const stem = () => (opened ? opened.name.replace(/\.[^.]*$/, '') : 'sky');
-const bakeOptions = () => ({ size: state.size, rotation: state.turn, exposure: state.stops });
 
 function describe(source) {
     const from = `a ${source.shape} of ${source.width} x ${source.height}`;
@@ -53,50 +84,71 @@ function describe(source) {
 
 function setBusy(busy) {
     document.body.setAttribute('aria-busy', String(busy));
+    bar.hidden = true;
     for (const button of get('downloads').children)
         button.disabled = busy || !baked;
 }
 
-// Takes a file, or the sky where there is none, and bakes it. What was shown before stays where
-// that fails. Of several wishes at once the last counts.
+// Work in the order of the wishes. Of wishes that wait only the last is done.
 let wish = 0, running = Promise.resolve();
-function bakeSoon(file) {
+function soon(work) {
     const mine = ++wish;
-    running = running.then(() => (mine === wish ? bakeNow(file) : undefined));
+    document.body.setAttribute('aria-busy', 'true');
+    running = running.then(async () => {
+        if (mine !== wish)
+            return;
+        setBusy(true);
+        error.hidden = true;
+        try {
+            await work();
+        } catch (problem) {
+            complain(problem.message);
+            say(baked ? `${opened ? opened.name : 'The sky'} is still here.` : 'Nothing is baked yet.');
+        }
+        if (mine === wish)
+            setBusy(false);
+        refresh();
+    });
     return running;
 }
 
-async function bakeNow(file) {
-    error.hidden = true;
-    setBusy(true);
-    try {
-        say(`Reading ${file ? file.name : 'the sky'}.`);
-        const source = file ? await engine.open(file.bytes, file.name)
-                            : await engine.sky({ elevation: state.elevation, azimuth: state.azimuth,
-                                                 turbidity: state.turbidity });
-        baked = await engine.bake(bakeOptions());
-        opened = file;
-        state.source = file ? file.name : 'sky';
-        say(describe(source));
-        showLevels();
-        remember();
-    } catch (problem) {
-        complain(`${problem.message}${/[.!]$/.test(problem.message) ? '' : '.'}`);
-        say(baked ? `${stem()} is still here.` : 'Nothing is baked yet.');
+// Takes a file, or the sky where there is none, and bakes it. What was there stays where that fails.
+const bake = (file) => soon(async () => {
+    say(`Reading ${file ? file.name : 'the sky'}.`);
+    const { size, sun, bearing, haze } = state;
+    const source = file ? await engine.open(file.bytes, file.name)
+                        : await engine.sky({ elevation: sun, azimuth: bearing, turbidity: haze });
+    const made = await engine.bake({ size, rotation: state.turn, exposure: state.stops });
+    const key = [file ? file.stamp : [sun, bearing, haze], size].join();
+    if (stage.ready && key !== lit) {
+        stage.light(await engine.scenery({ size }));
+        lit = key;
     }
-    bar.hidden = true;
-    setBusy(false);
-    refresh();
-}
+    if (stage.ready && state.scene === 'compare' && key !== litByTextbook) {
+        say('Baking as the textbook does, by 1024 samples a texel.');
+        stage.light(await engine.scenery({ size, textbook: true }), true);
+        litByTextbook = key;
+    }
+    baked = made;
+    opened = file;
+    state.source = file ? file.name : 'sky';
+    say(describe(source));
+    showLevels();
+    remember();
+});
 
+let stamps = 0;
 async function take(file) {
     if (!file)
         return;
+    let bytes;
     try {
-        await bakeSoon({ name: file.name, bytes: new Uint8Array(await file.arrayBuffer()) });
+        bytes = new Uint8Array(await file.arrayBuffer());
     } catch (problem) {
-        complain(`${file.name}: cannot be read: ${problem.message}.`);
+        complain(`${file.name}: cannot be read: ${problem.message}`);
+        return;
     }
+    await bake({ name: file.name, bytes, stamp: `file ${++stamps}` });
 }
 
 // ----------------------------------------------------------------------------------------- showing
@@ -106,50 +158,125 @@ function showLevels() {
     list.replaceChildren(...baked.levels.map((level, k) => {
         const item = document.createElement('li'), button = document.createElement('button');
         const picture = document.createElement('canvas'), words = document.createElement('span');
+        const roughness = Number(level.roughness.toFixed(3));
         unroll(level, exposure, picture, 112, 56);
-        words.textContent = `${level.size} · roughness ${Number(level.roughness.toFixed(3))}`;
+        words.textContent = `${level.size} · r ${roughness}`;
         button.type = 'button';
         button.append(picture, words);
-        button.setAttribute('aria-label', `Level ${k}: size ${level.size}, roughness ` +
-                                          `${Number(level.roughness.toFixed(3))}`);
-        button.onclick = () => {
-            state.level = k;
-            refresh();
-            remember();
-        };
+        button.setAttribute('aria-label', `Level ${k}: size ${level.size}, roughness ${roughness}`);
+        button.onclick = () => change('shown', state.shown === k ? -1 : k);
         item.append(button);
         return item;
     }));
 }
 
+// What the renderer is told: the state, and the brightness that fits.
+function viewOf() {
+    const fit = state.auto && baked && state.scene !== 'furnace' && state.scene !== 'assignment';
+    const exposure = fit ? Math.log2(middleGrey(baked.harmonics)) + FIT : state.stops;
+    return { ...stage.defaults(state.scene), ...state, level: 0, rotation: state.turn, exposure };
+}
+const FIT = 1.5; // stops, from the level strip's middle grey to the renderer's tone mapping
+
+function noteOf() {
+    if (!stage.ready)
+        return stage.problem;
+    if (state.scene === 'furnace') {
+        const { largest, rms } = stage.furnace(viewOf(), 512, 256);
+        return `Furnace: what is left of the balls is ${largest.toExponential(1)} at most, ` +
+               `${rms.toExponential(1)} RMS`;
+    }
+    return state.scene === 'compare' ? 'Exact left of the handle, the textbook right of it' : '';
+}
+
 function refresh() {
-    if (!baked)
-        return;
-    const k = Math.min(state.level, baked.levels.length - 1);
+    const k = baked ? Math.min(state.shown, baked.levels.length - 1) : -1;
+    const showsLevel = baked && (k >= 0 || !stage.ready);
+    flat.hidden = !showsLevel;
+    canvas.hidden = Boolean(showsLevel);
     [...get('levels').children].forEach((item, i) => {
         item.firstChild.setAttribute('aria-pressed', String(i === k));
     });
-    unroll(baked.levels[k], middleGrey(baked.harmonics), get('view'), 1024, 512);
-    get('view').setAttribute('aria-label', `Level ${k} of ${stem()}, unrolled as a panorama`);
+    get('handle').hidden = showsLevel || state.scene !== 'compare';
+    get('handle').setAttribute('aria-valuenow', String(Math.round(100 * state.split)));
+    try {
+        get('note').textContent = showsLevel && stage.ready ? `Level ${k}, unrolled` : noteOf();
+    } catch (problem) {
+        get('note').textContent = problem.message;
+    }
+    if (showsLevel)
+        unroll(baked.levels[Math.max(k, 0)], middleGrey(baked.harmonics), flat, 1024, 512);
+    canvas.setAttribute('aria-label', `Scene ${state.scene}, ${state.material}, ${state.method}, ` +
+                                      `in ${stem()}`);
+    controls.update();
+    view.change();
 }
 
-function remember() {
-    history.replaceState(null, '', toHash(KINDS, state) || location.pathname);
+// ----------------------------------------------------------------------------------------- changing
+
+const BAKES = ['sun', 'bearing', 'haze', 'size', 'turn', 'stops'];
+
+// After the state has changed: is there anything to bake?
+function changed(name) {
+    if (name === 'scene')
+        Object.assign(state, ownOf(state.scene));
+    remember();
+    clearTimeout(changed.timer);
+    if (BAKES.includes(name)) {
+        const sky = ['sun', 'bearing', 'haze'].includes(name);
+        changed.timer = setTimeout(() => bake(sky ? null : opened), 150);
+        document.body.setAttribute('aria-busy', 'true');
+    } else if (name === 'scene' && state.scene === 'compare') {
+        bake(opened);
+    }
+    refresh();
 }
+
+// A scene's own camera, material and method.
+function ownOf(scene) {
+    const { method, material, azimuth, elevation, distance, split } = stage.defaults(scene);
+    return { method, material, azimuth, elevation, distance, split, debug: 'none', shown: -1 };
+}
+
+function change(name, value) {
+    const kind = kindsOf(state.scene)[name];
+    state[name] = bounded(kind, value);
+    changed(name);
+}
+
+function next(name) {
+    const words = stage.words[name];
+    change(name, words[(words.indexOf(state[name]) + 1) % words.length]);
+}
+
+const controls = makeControls(get('controls'), state, stage.ready ? stage.words : null, changed);
+const view = new View({
+    canvas, stage, read: viewOf, onChange: change, onNext: next, handle: get('handle'),
+    onScene: (index) => change('scene', stage.words.scene[index]),
+    onReset: () => change('scene', state.scene),
+    onKeys: () => { get('keys').hidden = !get('keys').hidden; },
+});
+
+get('keys').append(...KEYS.map(([keys, words]) => {
+    const line = document.createElement('div'), key = document.createElement('kbd');
+    key.textContent = keys;
+    line.append(key, words);
+    return line;
+}));
 
 // ----------------------------------------------------------------------------------------- handing out
 
-function addDownload(label, name, format) {
+function addDownload(label, ending, format) {
     const button = document.createElement('button');
     button.type = 'button';
     button.disabled = true;
     button.textContent = label;
     button.onclick = async () => {
         try {
-            const bytes = await engine.file(`${stem()}${name}`, format);
+            const name = `${stem()}${ending}`, bytes = await engine.file(name, format);
             const link = document.createElement('a');
             link.href = URL.createObjectURL(new Blob([bytes]));
-            link.download = `${stem()}${name}`;
+            link.download = name;
             link.click();
             setTimeout(() => URL.revokeObjectURL(link.href), 10000);
         } catch (problem) {
@@ -165,36 +292,14 @@ addDownload('Cube, DDS', '.dds', 'rgba16f');
 addDownload('Harmonics, JSON', '.json');
 addDownload('Harmonics, C', '.h');
 
-// ---------------------------------------------------------------------------------------- controls
-
-const gui = new GUI({ container: get('controls'), title: 'Controls', injectStyles: false });
-const sky = gui.addFolder('Sky'), cube = gui.addFolder('Bake');
-
-function again() {
-    remember();
-    clearTimeout(again.timer);
-    again.timer = setTimeout(() => bakeSoon(opened), 150);
-}
-
-function skyAgain() {
-    opened = null;
-    again();
-}
-
-sky.add(state, 'elevation', -5, 90, 0.5).name('sun, degrees up').onChange(skyAgain);
-sky.add(state, 'azimuth', -180, 180, 1).name('sun, degrees right').onChange(skyAgain);
-sky.add(state, 'turbidity', 1.7, 10, 0.1).name('haze').onChange(skyAgain);
-cube.add(state, 'size', [16, 32, 64, 128, 256, 512, 1024]).name('face, texels').onChange(again);
-cube.add(state, 'turn', -180, 180, 1).name('turn, degrees').onChange(again);
-cube.add(state, 'stops', -16, 16, 0.5).name('exposure, stops').onChange(again);
+// ----------------------------------------------------------------------------------------- taking in
 
 get('choose').onclick = () => get('file').click();
 get('file').onchange = async () => {
     await take(get('file').files[0]);
     get('file').value = '';
 };
-get('sky').onclick = () => bakeSoon(null);
-
+get('sky').onclick = () => bake(null);
 document.addEventListener('dragover', (event) => {
     event.preventDefault();
     document.body.classList.add('dropping');
@@ -209,16 +314,15 @@ document.addEventListener('drop', (event) => {
     if (event.dataTransfer.files.length)
         take(event.dataTransfer.files[0]);
     else
-        complain('What was dropped is no file.');
+        complain('What was dropped is no file');
 });
 window.addEventListener('hashchange', () => {
-    Object.assign(state, fromHash(KINDS, location.hash));
-    gui.controllersRecursive().forEach((controller) => controller.updateDisplay());
-    bakeSoon(state.source === 'sky' ? null : opened);
+    Object.assign(state, readAddress());
+    bake(state.source === 'sky' ? null : opened);
 });
 
 // An address cannot hold a file: it says which one to drop.
 const wanted = state.source;
-await bakeSoon(null);
+await bake(null);
 if (wanted !== 'sky')
-    complain(`This address shows ${wanted}, which is on somebody's disk: drop it here.`);
+    complain(`This address shows ${wanted}, which is on somebody's disk: drop it here`);

@@ -5,15 +5,23 @@ export const word = (value, ...words) => ({ value, words });
 export const flag = (value) => ({ value, flag: true });
 export const text = (value) => ({ value, text: true });
 
+// A value as its kind allows it.
+export function bounded(kind, value) {
+    if (kind.flag)
+        return Boolean(value);
+    if (kind.words)
+        return kind.words.includes(value) ? value : kind.value;
+    if (kind.text)
+        return String(value).slice(0, 200);
+    return Number.isFinite(value) ? Math.min(Math.max(value, kind.low), kind.high) : kind.value;
+}
+
 function read(kind, given) {
     if (kind.flag)
         return given !== '0';
-    if (kind.words)
-        return kind.words.includes(given) ? given : kind.value;
-    if (kind.text)
-        return given.slice(0, 200);
-    const value = given.trim() === '' ? NaN : Number(given);
-    return Number.isFinite(value) ? Math.min(Math.max(value, kind.low), kind.high) : kind.value;
+    return bounded(kind, kind.words || kind.text ? given
+                         : given.trim() === ''   ? NaN
+                                                 : Number(given));
 }
 
 function write(kind, value) {

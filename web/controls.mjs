@@ -1,0 +1,44 @@
+// The controls at the right, by lil-gui.
+import GUI from './lil-gui.mjs';
+
+const SIZES = [16, 32, 64, 128, 256, 512, 1024];
+
+// changed(name) is called after the state has changed.
+export function makeControls(container, state, words, changed) {
+    const gui = new GUI({ container, title: 'Controls', injectStyles: false });
+    const folders = { sky: gui.addFolder('Sky'), bake: gui.addFolder('Bake'),
+                      see: gui.addFolder('See') };
+    const add = (folder, name, label, ...range) =>
+        folders[folder].add(state, name, ...range).name(label).onChange(() => changed(name));
+    add('sky', 'sun', 'sun, degrees up', -5, 90, 0.5);
+    add('sky', 'bearing', 'sun, degrees right', -180, 180, 1);
+    add('sky', 'haze', 'haze', 1.7, 10, 0.1);
+    add('bake', 'size', 'face, texels', SIZES);
+    add('bake', 'turn', 'turn, degrees', -180, 180, 1);
+    add('bake', 'stops', 'exposure, stops', -16, 16, 0.5);
+    if (words) {
+        add('see', 'scene', 'scene', words.scene);
+        add('see', 'material', 'material', words.material);
+        add('see', 'method', 'second bounce by', words.method);
+        add('see', 'background', 'blur behind', 0, 1, 0.01);
+        add('see', 'split', 'handle', 0, 1, 0.01);
+        add('see', 'occlusion', 'balls shade balls');
+        add('see', 'cubeDiffuse', 'diffuse from the cube');
+        add('see', 'asPrinted', 'as the handout prints it');
+        add('see', 'auto', 'fit the brightness');
+        add('see', 'samples', 'rays a pixel, squared', 1, 8, 1);
+        add('see', 'debug', 'show instead', words.debug.filter((word) => word !== 'level'));
+    }
+    const only = { split: 'compare', asPrinted: 'assignment', method: null };
+    return {
+        // After changes from elsewhere; what means nothing in the scene is not shown.
+        update() {
+            for (const controller of gui.controllersRecursive()) {
+                controller.updateDisplay();
+                const scene = only[controller.property];
+                if (scene)
+                    controller.show(state.scene === scene);
+            }
+        },
+    };
+}

@@ -1,0 +1,170 @@
+#include "stage.h"
+
+#include "viewer.h"
+
+#include <emscripten/html5.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+struct stage {
+    kiln_context *context;
+    kiln_error error;
+    view_renderer *renderer;
+    view_environment coming;
+    double numbers[STAGE_NUMBERS];
+};
+
+static bool start(stage *s, const char *canvas)
+{
+    kiln_context_def def = {.thread_count = 1};
+    EmscriptenWebGLContextAttributes wanted;
+    emscripten_webgl_init_context_attributes(&wanted);
+    wanted.majorVersion = 2;
+    wanted.alpha = wanted.depth = wanted.antialias = false;
+    wanted.preserveDrawingBuffer = true;
+    if (kiln_context_create(&def, &s->context, &s->error))
+        return false;
+    EMSCRIPTEN_WEBGL_CONTEXT_HANDLE gl = emscripten_webgl_create_context(canvas, &wanted);
+    if (gl <= 0 || emscripten_webgl_make_context_current(gl)) {
+        snprintf(s->error.message, sizeof s->error.message,
+                 "this browser offers no WebGL 2, which the balls are drawn by");
+        return false;
+    }
+    return view_create(s->context, NULL, &s->renderer, &s->error) == KILN_OK;
+}
+
+stage *stage_create(const char *canvas)
+{
+    stage *s = calloc(1, sizeof *s);
+    if (s)
+        start(s, canvas);
+    return s;
+}
+
+bool stage_ready(const stage *s)
+{
+    return s->renderer != NULL;
+}
+
+const char *stage_message(const stage *s)
+{
+    return s->error.message;
+}
+
+const char *stage_gl_name(const stage *s)
+{
+    return s->renderer ? view_gl_name(s->renderer) : "";
+}
+
+double *stage_numbers(stage *s)
+{
+    return s->numbers;
+}
+
+const char *stage_word(int kind, int index)
+{
+    static const char *(*const names[4])(int) = {view_scene_name, view_method_name,
+                                                 view_material_name, view_debug_name};
+    return kind < 0 || kind > 3 ? NULL : names[kind](index);
+}
+
+// ------------------------------------------------------------------------------------------- views
+
+void stage_defaults(stage *s, int scene)
+{
+    view_options o = view_defaults((view_scene)scene);
+    double *n = s->numbers;
+    n[STAGE_SCENE] = (double)o.scene;
+    n[STAGE_METHOD] = (double)o.method;
+    n[STAGE_MATERIAL] = (double)o.material;
+    n[STAGE_TARGET_X] = o.camera.target[0];
+    n[STAGE_TARGET_Y] = o.camera.target[1];
+    n[STAGE_TARGET_Z] = o.camera.target[2];
+    n[STAGE_AZIMUTH] = o.camera.azimuth;
+    n[STAGE_ELEVATION] = o.camera.elevation;
+    n[STAGE_DISTANCE] = o.camera.distance;
+    n[STAGE_FOV] = o.camera.fov;
+    n[STAGE_ROTATION] = o.rotation;
+    n[STAGE_EXPOSURE] = o.exposure;
+    n[STAGE_DEBUG] = (double)o.debug;
+    n[STAGE_LEVEL] = o.debug_level;
+    n[STAGE_SPLIT] = o.split;
+    n[STAGE_BACKGROUND] = o.background;
+    n[STAGE_SAMPLES] = o.samples;
+    n[STAGE_AS_PRINTED] = o.as_printed;
+    n[STAGE_OCCLUSION] = o.occlusion;
+    n[STAGE_CUBE_DIFFUSE] = o.cube_diffuse;
+}
+
+static view_options options_of(const stage *s)
+{
+    const double *n = s->numbers;
+    return (view_options){
+        .scene = (view_scene)n[STAGE_SCENE],
+        .method = (view_method)n[STAGE_METHOD],
+        .material = (view_material)n[STAGE_MATERIAL],
+        .camera = {.target = {n[STAGE_TARGET_X], n[STAGE_TARGET_Y], n[STAGE_TARGET_Z]},
+                   .azimuth = n[STAGE_AZIMUTH],
+                   .elevation = n[STAGE_ELEVATION],
+                   .distance = n[STAGE_DISTANCE],
+                   .fov = n[STAGE_FOV]},
+        .rotation = n[STAGE_ROTATION],
+        .exposure = n[STAGE_EXPOSURE],
+        .debug = (view_debug)n[STAGE_DEBUG],
+        .debug_level = (int)n[STAGE_LEVEL],
+        .split = n[STAGE_SPLIT],
+        .background = n[STAGE_BACKGROUND],
+        .samples = (int)n[STAGE_SAMPLES],
+        .as_printed = n[STAGE_AS_PRINTED] != 0,
+        .occlusion = n[STAGE_OCCLUSION] != 0,
+        .cube_diffuse = n[STAGE_CUBE_DIFFUSE] != 0,
+    };
+}
+
+void stage_draw(stage *s, int width, int height)
+{
+    view_options options = options_of(s);
+    view_draw(s->renderer, &options, width, height);
+}
+
+bool stage_furnace(stage *s, int width, int height, double *off)
+{
+    view_options options = options_of(s);
+    return !view_furnace_residual(s->renderer, &options, width, height, &off[0], &off[1],
+                                  &s->error);
+}
+
+// ------------------------------------------------------------------------------------- environment
+
+bool stage_room(stage *s, int size, int levels, int irradiance_size)
+{
+    view_environment_free(&s->coming);
+    return !kiln_map_create(s->context, KILN_SHAPE_CUBE, size, levels, &s->coming.levels,
+                            &s->error) &&
+           !kiln_map_create(s->context, KILN_SHAPE_CUBE, irradiance_size, 1, &s->coming.irradiance,
+                            &s->error);
+}
+
+float *stage_texels(stage *s, int level)
+{
+    return level < 0 ? s->coming.irradiance.level[0] : s->coming.levels.level[level];
+}
+
+double *stage_harmonics(stage *s)
+{
+    return &s->coming.sh.c[0][0];
+}
+
+void stage_roughness(stage *s, int level, double roughness)
+{
+    s->coming.levels.roughness[level] = (float)roughness;
+}
+
+bool stage_light(stage *s, int slot)
+{
+    s->coming.sh.bands = 3;
+    bool good = !view_set_environment(s->renderer, (view_slot)slot, &s->coming.levels,
+                                      &s->coming.sh, &s->coming.irradiance, &s->error);
+    view_environment_free(&s->coming);
+    return good;
+}
