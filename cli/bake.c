@@ -386,9 +386,9 @@ static int load(bake *b)
     return CLI_GO;
 }
 
-// Degree of the analysis for harmonics and irradiance where the filter needed none or less: the
-// cosine's terms fall below 1e-7 of the whole by then.
-enum { BESIDE_DEGREE = 256 };
+// Degree of the analysis for an irradiance map where the filter needed none or less: the cosine
+// is filtered up to 303, where its terms are below 1e-7 of the whole.
+enum { BESIDE_DEGREE = 320 };
 
 static int take_beside(bake *b, const kiln_spectrum *spectrum)
 {
@@ -397,11 +397,11 @@ static int take_beside(bake *b, const kiln_spectrum *spectrum)
     if (!b->stores_sh && !b->sh_path && !wants_map)
         return CLI_GO;
     kiln_spectrum *own = NULL;
-    int wanted = wants_map ? BESIDE_DEGREE : KILN_MAX_BANDS;
-    if (wanted > 2 * b->source.size)
-        wanted = 2 * b->source.size;
+    int wanted = wants_map                             ? BESIDE_DEGREE
+                 : 2 * b->source.size < KILN_MAX_BANDS ? 2 * b->source.size
+                                                       : KILN_MAX_BANDS;
     kiln_result result = KILN_OK;
-    if (!spectrum || kiln_spectrum_degree(spectrum) < (wants_map ? wanted / 2 : wanted)) {
+    if (!spectrum || kiln_spectrum_degree(spectrum) < wanted) {
         result = kiln_spectrum_analyze(job->context, &b->source, wanted, &own, &job->error);
         spectrum = own;
     }

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+// The cosine is filtered up to degree 303.
 enum { SIZE = 256, SMALLEST = 8, IRRADIANCE_SIZE = 32, BANDS = 3, DEGREE = 320 };
 
 // Down to SMALLEST texels: a level of one texel has six values for the whole sphere.
@@ -68,10 +69,8 @@ kiln_result view_bake(kiln_context *context, const kiln_map *source, int size, b
         .size = IRRADIANCE_SIZE, .level_count = 1, .lobe = KILN_LOBE_LAMBERT};
     kiln_map *irradiance = &environment->irradiance;
     kiln_result result = make_levels(context, source, size, textbook, &environment->levels, error);
-    // The cosine's terms fall below 1e-7 of the whole by DEGREE.
-    int degree = 2 * source->size < DEGREE ? 2 * source->size : DEGREE;
     if (result == KILN_OK)
-        result = kiln_spectrum_analyze(context, source, degree, &spectrum, error);
+        result = kiln_spectrum_analyze(context, source, DEGREE, &spectrum, error);
     if (result == KILN_OK)
         result = kiln_spectrum_sh(spectrum, BANDS, false, 0, 0, &environment->sh, error);
     if (result == KILN_OK)

@@ -35,7 +35,7 @@ function kindsOf(scene) {
     return {
         source: text('sky'),
         sun: number(30, -5, 90),
-        bearing: number(0, -180, 180),
+        bearing: number(150, -180, 180),
         haze: number(3, 1.7, 10),
         size: number(256, 16, 1024, 0),
         turn: number(0, -180, 180),

@@ -53,7 +53,10 @@ export small="--size 16 --exposure -8"
         process.exit(good ? 0 : 1);' || die "info"
     expect 0 "" info a.ktx2
     grep -q '5 levels' log/out || die "info in words"
-    rm a.ktx2 d.ktx2 sh.json
+    # Irradiance of a cube, and beside a level that needs fewer degrees than the cosine.
+    expect 0 "" bake a.ktx2 -o e.ktx2 -q --size 16 --irradiance d.ktx2
+    expect 0 "" bake sky.exr -o e.ktx2 -q --size 16 --roughness 0.5 --irradiance d.ktx2
+    rm a.ktx2 d.ktx2 e.ktx2 sh.json
 
     # Six faces, by pattern, as a folder, in any order: the same cube.
     expect 0 "" bake sky.exr -o 'face_%s.exr' $small --levels 1 --format rgba32f -q

@@ -14,7 +14,7 @@ export async function withPage(site, work) {
     const browser = await chromium.launch({ executablePath: '/usr/bin/chromium', args: FLAGS });
     const faults = [];
     try {
-        const page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
+        const page = await browser.newPage({ viewport: { width: 900, height: 640 } });
         page.on('pageerror', (error) => faults.push(`error: ${error.message}`));
         page.on('console', (line) => {
             if (line.type() === 'error')
@@ -38,6 +38,10 @@ export async function withPage(site, work) {
 
 export const idle = (page) => page.waitForFunction(
     () => document.body.getAttribute('aria-busy') === 'false', null, { timeout: 60000 });
+
+// The view has been drawn finely since the last change.
+export const drawn = (page) => page.waitForFunction(
+    () => document.getElementById('view').dataset.drawn === 'finely', null, { timeout: 60000 });
 
 // Drops bytes on the page as a file.
 export async function drop(page, name, bytes) {

@@ -1,6 +1,6 @@
 // The page as a visitor meets it: drop a file, bake, see, download; by keyboard; by address; and what
 // a broken file does.
-import { downloaded, drop, idle, withPage } from './browser.mjs';
+import { downloaded, drawn, drop, idle, withPage } from './browser.mjs';
 import { check, checkSame, kiln, read, site } from './lib.mjs';
 
 const text = (page, id) => page.textContent(`#${id}`);
@@ -15,22 +15,25 @@ function bakeByCommand(source, ...args) {
 
 // What the view shows, as the mean of its picture's bytes.
 const brightness = (page) => page.evaluate(() => {
-    const view = document.getElementById('view'), small = document.createElement('canvas');
+    const view = document.querySelector('#stage canvas:not([hidden])'), small = document.createElement('canvas');
     small.width = small.height = 16;
     const pen = small.getContext('2d');
     pen.drawImage(view, 0, 0, 16, 16);
     return pen.getImageData(0, 0, 16, 16).data.reduce((sum, v) => sum + v, 0) / 1024;
 });
 
+const look = (page) => page.evaluate(() => document.getElementById('view').toDataURL());
+
 async function theSkyIsBakedAtOnce(page, address) {
-    await page.goto(address);
+    await page.goto(`${address}#samples=1`);
     await idle(page);
     check(/^The sky: .* 9 levels baked in .* Nothing left this machine\.$/.test(await text(page, 'status')),
           `status says "${await text(page, 'status')}"`);
-    kiln('sky', '-o', 'sky.exr');
+    kiln('sky', '-o', 'sky.exr', '--azimuth', '150');
     const { name, bytes } = await cube(page);
     check(name === 'sky.ktx2', `the download is called ${name}`);
     checkSame(bytes, bakeByCommand('sky.exr'), name);
+    await drawn(page);
     check(await brightness(page) > 70, `the view is dark: ${await brightness(page)}`);
 }
 
@@ -64,7 +67,7 @@ async function aBrokenFileGivesASentence(page) {
 
 async function theKeyboardSuffices(page, address) {
     await page.goto('about:blank');
-    await page.goto(address);
+    await page.goto(`${address}#samples=1`);
     await idle(page);
     const focus = () => page.evaluate(() => document.activeElement.textContent ||
                                             document.activeElement.id);
@@ -74,11 +77,23 @@ async function theKeyboardSuffices(page, address) {
         check(await focus() === name, `${name} cannot be reached by Tab`);
     };
     await tabTo('Choose a panorama');
-    const [chooser] = await Promise.all([page.waitForEvent('filechooser'),
-                                         page.keyboard.press('Enter')]);
-    await chooser.setFiles({ name: 'low.hdr', mimeType: '', buffer: read('low.hdr') });
+    const chooser = page.waitForEvent('filechooser');
+    await page.evaluate(() => {}); // the browser knows by now that somebody waits
+    await page.keyboard.press('Enter');
+    await (await chooser).setFiles({ name: 'low.hdr', mimeType: '', buffer: read('low.hdr') });
     await page.waitForFunction(() => /^low/.test(document.getElementById('status').textContent));
     await idle(page);
+    await page.locator('#view').focus();
+    const seen = [await look(page)];
+    for (const key of ['ArrowRight', '+', 'm', '4']) {
+        await page.keyboard.press(key);
+        await drawn(page);
+        seen.push(await look(page));
+    }
+    check(new Set(seen).size === seen.length, 'a key changes nothing that is seen');
+    check(/scene=grid/.test(page.url()), `after 4 the address is ${page.url()}`);
+    await page.keyboard.press('h');
+    check(await page.isVisible('#keys'), 'h shows no keys');
     await tabTo('Cube, KTX2');
     const { name, bytes } = await downloaded(page, () => page.keyboard.press('Enter'));
     checkSame(bytes, bakeByCommand('low.hdr'), name);
@@ -86,7 +101,7 @@ async function theKeyboardSuffices(page, address) {
 
 async function theAddressHoldsTheState(page, address) {
     await page.goto('about:blank');
-    await page.goto(`${address}#elevation=8&azimuth=40&size=64&turn=33.5&stops=-2.5&level=2&size2=x`);
+    await page.goto(`${address}#sun=8&bearing=40&size=64&turn=33.5&stops=-2.5&shown=2&samples=1&size2=x`);
     await idle(page);
     kiln('sky', '-o', 'low.exr', '--elevation', '8', '--azimuth', '40');
     const wanted = bakeByCommand('low.exr', '--size', '64', '--rotate', '33.5', '--exposure', '-2.5');
@@ -95,7 +110,7 @@ async function theAddressHoldsTheState(page, address) {
           'level 2 is not the chosen one');
     await page.locator('#levels li:nth-child(5) button').click();
     const url = new URL(page.url());
-    check(/level=4/.test(url.hash) && /elevation=8/.test(url.hash) && !/size2/.test(url.hash),
+    check(/shown=4/.test(url.hash) && /sun=8/.test(url.hash) && !/size2/.test(url.hash),
           `the address is ${url.hash}`);
     await page.goto('about:blank');
     await page.goto(url.href);
@@ -105,9 +120,9 @@ async function theAddressHoldsTheState(page, address) {
     checkSame((await cube(page)).bytes, wanted, 'the restored cube');
     // Nonsense in an address is no reason to fail.
     await page.goto('about:blank');
-    await page.goto(`${address}#elevation=high&size=1e9&turn=&level=-3&source=mine.exr`);
+    await page.goto(`${address}#sun=high&size=512.3&turn=&shown=-30&scene=moon&source=mine.exr`);
     await idle(page);
-    check(await levels(page) === 11, `${await levels(page)} levels of the largest size`);
+    check(await levels(page) === 10, `${await levels(page)} levels of 512`);
     check(/mine\.exr/.test(await text(page, 'error')), 'the missing file is not named');
 }
 
