@@ -17,7 +17,6 @@ export class View {
     // onChange(name, value) is asked for every change; onKeys() to show the keys.
     constructor({ canvas, handle, stage, read, onChange, onScene, onNext, onReset, onKeys }) {
         Object.assign(this, { canvas, handle, stage, read, onChange, onScene, onNext, onReset, onKeys });
-        this.moved = 0;
         new ResizeObserver(() => this.change()).observe(canvas);
         canvas.addEventListener('keydown', (event) => this.key(event));
         canvas.addEventListener('pointerdown', (event) => canvas.setPointerCapture(event.pointerId));
@@ -30,9 +29,7 @@ export class View {
 
     // Draws soon; finely once nothing has changed for a while.
     change() {
-        this.moved = performance.now();
         this.canvas.dataset.drawn = '';
-        this.canvas.dispatchEvent(new Event('change'));
         if (!this.asked)
             this.asked = requestAnimationFrame(() => this.frame(false));
         clearTimeout(this.timer);
@@ -40,8 +37,8 @@ export class View {
     }
 
     frame(fine) {
-        if (!fine)
-            this.asked = 0;
+        cancelAnimationFrame(this.asked); // a late coarse frame must not follow the fine one
+        this.asked = 0;
         const { canvas, stage } = this;
         const scale = Math.min(window.devicePixelRatio || 1, 2);
         const width = Math.max(1, Math.round(canvas.clientWidth * scale));
