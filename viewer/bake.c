@@ -3,8 +3,7 @@
 
 #include <string.h>
 
-// The cosine is filtered up to degree 303.
-enum { SIZE = 256, SMALLEST = 8, IRRADIANCE_SIZE = 32, BANDS = 3, DEGREE = 320 };
+enum { SIZE = 256, SMALLEST = 8, IRRADIANCE_SIZE = 32, BANDS = 3 };
 
 // Down to SMALLEST texels: a level of one texel has six values for the whole sphere.
 static int count_levels(int size)
@@ -70,7 +69,7 @@ kiln_result view_bake(kiln_context *context, const kiln_map *source, int size, b
     kiln_map *irradiance = &environment->irradiance;
     kiln_result result = make_levels(context, source, size, textbook, &environment->levels, error);
     if (result == KILN_OK)
-        result = kiln_spectrum_analyze(context, source, DEGREE, &spectrum, error);
+        result = kiln_spectrum_analyze(context, source, BANDS, &spectrum, error);
     if (result == KILN_OK)
         result = kiln_spectrum_sh(spectrum, BANDS, false, 0, 0, &environment->sh, error);
     if (result == KILN_OK)
