@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { OUTPUT = 1, REFERENCE, ERRORS, NOISE, THREADS, QUIET };
+enum { OUTPUT = 1, REFERENCE, ERRORS, WALK, NOISE, THREADS, QUIET };
 
 static const struct poptOption options[] = {
     {"output", 'o', POPT_ARG_STRING, NULL, OUTPUT,
@@ -19,6 +19,8 @@ static const struct poptOption options[] = {
      "integrate the light on the CPU, without approximation", NULL},
     {"error", 0, POPT_ARG_NONE, NULL, ERRORS,
      "show the real-time picture's error against the reference", NULL},
+    {"walk", 0, POPT_ARG_NONE, NULL, WALK,
+     "reference: further bounces by random walk, not by --method", NULL},
     {"noise", 0, POPT_ARG_STRING, NULL, NOISE,
      "relative standard error at which the reference stops, 1e-4 to 1 (0.01)", "E"},
     {"threads", 0, POPT_ARG_STRING, NULL, THREADS, "1 to 256, one a core by default", "N"},
@@ -30,7 +32,7 @@ static const struct poptOption options[] = {
 typedef struct render {
     look look;
     int threads;
-    bool reference, errors;
+    bool reference, errors, walk;
     double noise;
 } render;
 
@@ -44,6 +46,7 @@ static int read_arguments(const cli_arguments *a, render *r)
                          a->value[OUTPUT]);
     r->reference = a->value[REFERENCE];
     r->errors = a->value[ERRORS];
+    r->walk = a->value[WALK];
     int code = look_read(a, &r->look);
     if (code != CLI_GO)
         return code;
@@ -51,6 +54,10 @@ static int read_arguments(const cli_arguments *a, render *r)
         return cli_wrong(&cli_render, "--reference and --error contradict each other");
     if (a->value[NOISE] && !r->reference && !r->errors)
         return cli_wrong(&cli_render, "--noise needs --reference or --error");
+    if (r->walk && !r->reference && !r->errors)
+        return cli_wrong(&cli_render, "--walk needs --reference or --error");
+    if (r->walk && r->look.options.scene == VIEW_SCENE_ASSIGNMENT)
+        return cli_wrong(&cli_render, "--walk: the scene assignment has a light of no size");
     if ((r->reference || r->errors) && r->look.options.debug)
         return cli_wrong(&cli_render, "--debug has no reference");
     if (r->errors && !strcmp(ending, "hdr"))
@@ -88,6 +95,7 @@ static int integrate(cli_job *job, const render *r, const kiln_map *source, bool
 {
     const view_options *o = &r->look.options;
     view_reference_def def = {.noise = r->noise,
+                              .walk = r->walk,
                               .thread_count = r->threads,
                               .progress = cli_progress,
                               .progress_user = job};

@@ -25,6 +25,7 @@ typedef struct job {
     int width, height, side;
     double noise;
     int batch_limit;
+    bool walks[VIEW_MAX_BALLS]; // its further bounces are walked
     double eye[3], right[3], up[3], back[3], slope;
     view_ball balls[VIEW_MAX_BALLS];
     int ball_count;
@@ -198,6 +199,10 @@ static void estimate(const job *j, const view_point *p, view_random *random, dou
     draw(random, xi);
     kiln_sample_cosine(xi, l);
     add(j, p, l, sum);
+    if (j->walks[p->ball]) {
+        view_walk walk = {ball, &j->light};
+        view_walk_add(&walk, p, random, sum);
+    }
 }
 
 // ------------------------------------------------------------------------------------------ pixels
@@ -363,6 +368,10 @@ kiln_result view_reference(kiln_context *context, const view_options *options,
     };
     view_camera_axes(&options->camera, j.eye, j.right, j.up, j.back);
     j.ball_count = view_balls(options, j.balls);
+    for (int i = 0; i < j.ball_count && def->walk; i++) {
+        j.walks[i] = j.balls[i].method != VIEW_METHOD_SINGLE;
+        j.balls[i].method = VIEW_METHOD_SINGLE;
+    }
     kiln_result result = kiln_image_create(context, width, height, 3, image, error);
     j.rows = result == KILN_OK ? calloc((size_t)height, sizeof *j.rows) : NULL;
     if (result == KILN_OK && !j.rows)

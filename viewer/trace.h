@@ -64,6 +64,15 @@ void view_point_prepare(const view_ball *ball, const view_energy *energy, view_p
 /// is left out.
 void view_reflect(const view_ball *ball, const view_energy *energy, const view_point *point,
                   const double l[3], double f[3]);
+/// Adds what bounces at least twice between the ball's microfacets, estimated by one walk.
+typedef struct view_walk {
+    const view_ball *ball;
+    const view_light *light;
+} view_walk;
+
+void view_walk_add(const view_walk *walk, const view_point *point, view_random *random,
+                   double sum[3]);
+
 /// Radiance towards the camera from the assignment's light.
 void view_reflect_light(const view_options *options, const view_ball *ball,
                         const view_energy *energy, const view_point *point, double radiance[3]);

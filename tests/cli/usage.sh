@@ -146,6 +146,8 @@ case $commands in
     expect 2 "must end in .png" view --screenshot out.exr
     expect 2 "contradict" render -o out.png --reference --error
     expect 2 "needs --reference or --error" render -o out.png --noise 0.1
+    expect 2 "\-\-walk needs" render -o out.png --walk
+    expect 2 "light of no size" render -o out.png --walk --reference
     expect 2 "from 0.0001 to 1" render -o out.png --reference --noise 0
     expect 2 "has no reference" render -o out.png --reference --debug e
     expect 2 "hold an error's sign" render -o out.hdr --error

@@ -92,6 +92,37 @@ static void white_balls_vanish_in_the_furnace(void **unused)
     kiln_image_free(&image);
 }
 
+// The same with the walk in place of Kulla and Conty's lobe, for each ball and in the mean; and with a
+// metal, whose albedo is the library's own walk's.
+static void walks_lose_nothing(void **unused)
+{
+    (void)unused;
+    static const double f0[] = {1, 0.6};
+    static const double r[] = {0.3, 0.7, 1}, cosines[] = {0.15, 0.5, 0.95};
+    enum { COUNT = 200000 };
+    view_light white;
+    kiln_error error = {0};
+    view_random random;
+    view_random_start(&random, 7);
+    CHECK_OK(view_light_create(context, NULL, 0, &white, &error));
+    for (int i = 0; i < 2 * 3 * 3; i++) {
+        double nov = cosines[i / 3 % 3], sum[3] = {0};
+        view_ball ball = {.roughness = r[i % 3], .f0 = {f0[i / 9], 1, 0}};
+        view_point p = {.n = {0, 0, 1}, .t = {1, 0, 0}, .b = {0, 1, 0}};
+        p.v[0] = sqrt(1 - nov * nov);
+        p.v[2] = nov;
+        view_walk walk = {&ball, &white};
+        for (int k = 0; k < COUNT; k++)
+            view_walk_add(&walk, &p, &random, sum);
+        kiln_walk_def def = {.f0 = f0[i / 9]};
+        kiln_walk truth;
+        kiln_walk_albedo(&def, ball.roughness, nov, &truth);
+        CHECK_NEAR(sum[0] / COUNT, truth.albedo - truth.bounce[0], 0.003);
+        CHECK_NEAR(sum[1] / COUNT, 1 - kiln_energy(&(kiln_model){0}, ball.roughness, nov), 0.003);
+    }
+    view_light_free(&white);
+}
+
 // ---------------------------------------------------------------------------------------- brute force
 
 static void normalize(double a[3])
@@ -235,6 +266,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(light_is_drawn_where_it_is),
         cmocka_unit_test(white_balls_vanish_in_the_furnace),
+        cmocka_unit_test(walks_lose_nothing),
         cmocka_unit_test(the_integral_is_the_sum),
         cmocka_unit_test(threads_do_not_matter),
         cmocka_unit_test(it_can_be_stopped),

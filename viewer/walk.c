@@ -1,0 +1,145 @@
+// Light that bounces more than once between the microfacets, by a random walk in GGX's microsurface:
+// Heitz, Hanika, d'Eon and Dachsbacher 2016. Every method of compensation stands for this.
+//
+// A ray is a direction, a height, given by the share c of heights below it, and a weight. A ray that
+// travels along w leaves the microsurface with the probability c^Lambda(w); otherwise it meets a
+// microfacet at the share c / (1 - u (1 - c^Lambda(w)))^(1 / Lambda(w)), u uniform (their eq. 13 and
+// appendix). Its normal is one of those visible from -w, it turns w into its mirror image, and F of
+// the weight remains. At each bounce what leaves is counted by its expectation, both where the ray was
+// turned to and in a direction drawn from the environment, weighted by the balance heuristic.
+#include "parts.h"
+#include "trace.h"
+
+#include <math.h>
+
+enum { MAX_BOUNCES = 64 };
+
+typedef struct ray {
+    double w[3];  // where it travels
+    double below; // the share of heights below it
+    double weight[3];
+} ray;
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+// sqrt(cos^2 + alpha^2 sin^2), Heitz 2014, eq. 72.
+static double root(double alpha, double cosine)
+{
+    return sqrt(cosine * cosine + alpha * alpha * (1 - cosine) * (1 + cosine));
+}
+
+// Of a direction that may point down, where it is below -1.
+static double lambda(double alpha, double cosine)
+{
+    return (root(alpha, cosine) / cosine - 1) / 2;
+}
+
+// The share of a ray along w that leaves without another bounce.
+static double leaving(double alpha, double below, double cosine)
+{
+    return cosine > 0 ? pow(below, lambda(alpha, cosine)) : 0;
+}
+
+// Visible normals of any direction v: Dupuy and Benyoub 2023.
+static void draw_normal(double alpha, const double v[3], view_random *random, double h[3])
+{
+    double s[3] = {alpha * v[0], alpha * v[1], v[2]}, size = sqrt(dot(s, s));
+    double phi = 6.283185307179586 * view_random_next(random);
+    double z = (1 - view_random_next(random)) * (1 + s[2] / size) - s[2] / size;
+    double sine = sqrt(fmax(0, 1 - z * z));
+    h[0] = alpha * (sine * cos(phi) + s[0] / size);
+    h[1] = alpha * (sine * sin(phi) + s[1] / size);
+    h[2] = z + s[2] / size;
+    size = sqrt(dot(h, h));
+    for (int c = 0; c < 3; c++)
+        h[c] /= size;
+}
+
+// On to the next microfacet; false where the ray has as good as left.
+static bool advance(double alpha, view_random *random, ray *r)
+{
+    double cosine = fmin(fmax(r->w[2], -1 + 1e-12), 1 - 1e-12);
+    if (fabs(cosine) < 1e-9)
+        return true; // level: it stays at its height
+    double l = lambda(alpha, cosine), out = leaving(alpha, r->below, cosine);
+    for (int c = 0; c < 3; c++)
+        r->weight[c] *= 1 - out;
+    r->below /= pow(1 - view_random_next(random) * (1 - out), 1 / l);
+    r->below = fmin(r->below, 1);
+    return out < 1;
+}
+
+// The density of the mirror image l of -w among visible normals, per steradian, and v.h.
+static double phase(double roughness, const double w[3], const double l[3], double *voh)
+{
+    double h[3], size = 0, alpha = roughness * roughness;
+    for (int c = 0; c < 3; c++) {
+        h[c] = l[c] - w[c];
+        size += h[c] * h[c];
+    }
+    size = sqrt(size);
+    *voh = size / 2;
+    if (!(size > 0) || h[2] <= 0)
+        return 0;
+    // What the microsurface shows to -w: (1 + Lambda) cos.
+    double shown = (-w[2] + root(alpha, -w[2])) / 2;
+    return shown > 0 ? kiln_brdf_d(KILN_D_GGX, roughness, fmin(h[2] / size, 1)) / (4 * shown) : 0;
+}
+
+// What leaves along l after a bounce, over the densities of both ways to draw it.
+static void count(const view_walk *walk, const view_point *p, const ray *before, const double l[3],
+                  double sum[3])
+{
+    double d[3], radiance[3], voh, r = walk->ball->roughness;
+    double out = leaving(r * r, before->below, l[2]);
+    double density = out > 0 ? phase(r, before->w, l, &voh) : 0;
+    if (!(density > 0))
+        return;
+    for (int c = 0; c < 3; c++)
+        d[c] = l[0] * p->t[c] + l[1] * p->b[c] + l[2] * p->n[c];
+    double share = density * out / (density + view_light_pdf(walk->light, d));
+    view_light_radiance(walk->light, d, radiance);
+    for (int c = 0; c < 3; c++)
+        sum[c] += before->weight[c] * kiln_fresnel_schlick(walk->ball->f0[c], fmin(voh, 1)) *
+                  share * radiance[c];
+}
+
+void view_walk_add(const view_walk *walk, const view_point *p, view_random *random, double sum[3])
+{
+    const view_ball *ball = walk->ball;
+    double alpha = ball->roughness * ball->roughness;
+    ray r = {.w = {-p->v[0], -p->v[1], -p->v[2]}, .below = 1, .weight = {1, 1, 1}};
+    if (alpha <= 0)
+        return;
+    advance(alpha, random, &r);
+    for (int bounce = 1; bounce <= MAX_BOUNCES; bounce++) {
+        double v[3] = {-r.w[0], -r.w[1], -r.w[2]}, h[3], l[3];
+        draw_normal(alpha, v, random, h);
+        double voh = dot(v, h);
+        for (int c = 0; c < 3; c++)
+            l[c] = 2 * voh * h[c] - v[c];
+        if (bounce > 1) { // the first one is the lobe, which is known
+            double xi[2] = {view_random_next(random), view_random_next(random)}, d[3];
+            view_light_sample(walk->light, xi, d);
+            const double drawn[3] = {dot(d, p->t), dot(d, p->b), dot(d, p->n)};
+            count(walk, p, &r, drawn, sum);
+            count(walk, p, &r, l, sum);
+        }
+        for (int c = 0; c < 3; c++) {
+            r.w[c] = l[c];
+            r.weight[c] *= kiln_fresnel_schlick(ball->f0[c], fmin(voh, 1));
+        }
+        if (!advance(alpha, random, &r))
+            return;
+        // Those that carry little go on with a fair chance.
+        double most = fmax(r.weight[0], fmax(r.weight[1], r.weight[2]));
+        double chance = fmin(1, 4 * most);
+        if (view_random_next(random) >= chance)
+            return;
+        for (int c = 0; c < 3; c++)
+            r.weight[c] /= chance;
+    }
+}
