@@ -59,6 +59,8 @@ static int open_window(cli_job *job, const look *l, const char *screenshot)
     int code = look_load(job, l, &source);
     if (code == CLI_GO)
         code = view_window(job->context, &def, &job->error) ? CLI_FAILED : CLI_DONE;
+    if (code == CLI_DONE && cli_interrupted())
+        code = CLI_FAILED; // closed by a signal, as the exit code will say
     if (code == CLI_DONE && screenshot)
         code =
             kiln_image_save(job->context, &image, screenshot, &job->error) ? CLI_FAILED : CLI_DONE;

@@ -93,7 +93,7 @@ static double phase(double roughness, const double w[3], const double l[3], doub
 static void count(const view_walk *walk, const view_point *p, const ray *before, const double l[3],
                   double sum[3])
 {
-    double d[3], radiance[3], voh, r = walk->ball->roughness;
+    double d[3], radiance[3], voh = 0, r = walk->ball->roughness;
     double out = leaving(r * r, before->below, l[2]);
     double density = out > 0 ? phase(r, before->w, l, &voh) : 0;
     if (!(density > 0))
