@@ -703,31 +703,17 @@ static kiln_result make_page(demo *d, const char *folder, char **names, int coun
     return result;
 }
 
-static kiln_result make_picture(demo *d, const char *path)
-{
-    kiln_result result = make_sky(d);
-    if (!result)
-        result = bake(d);
-    if (!result)
-        result = demo_picture_row(d->context, d->balls, 8, 1280, 264, &d->view, &d->row, &d->error);
-    if (!result)
-        result = kiln_image_save(d->context, &d->row, path, &d->error);
-    release(d);
-    return result;
-}
-
 int main(int argc, char **argv)
 {
-    bool picture = argc == 3 && !strcmp(argv[1], "--picture");
-    if (argc < 2 || (argv[1][0] == '-' && !picture)) {
-        fputs("usage: demo OUTDIR [PANORAMA...]\n       demo --picture FILE.png\n", stderr);
+    if (argc < 2 || argv[1][0] == '-') {
+        fputs("usage: demo OUTDIR [PANORAMA...]\n", stderr);
         return 2;
     }
     setvbuf(stdout, NULL, _IOLBF, 0);
     demo d = {0};
     kiln_result result = kiln_context_create(NULL, &d.context, &d.error);
     if (!result)
-        result = picture ? make_picture(&d, argv[2]) : make_page(&d, argv[1], argv + 2, argc - 2);
+        result = make_page(&d, argv[1], argv + 2, argc - 2);
     if (result)
         fprintf(stderr, "demo: %s\n", d.error.message);
     kiln_image_free(&d.row);
