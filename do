@@ -120,7 +120,7 @@ build)
 test)
     need_all "$build_needs $test_needs $web_needs"
     panoramas
-    npm_packages web tests/web tests/files/ktx
+    npm_packages web tests/web tests/files/ktx tests/engines
     build release
     build wasm
     run_tests release

@@ -10,6 +10,7 @@
 
 enum {
     OUTPUT = 1,
+    ENGINE,
     SIZE,
     LEVELS,
     SHAPE,
@@ -56,6 +57,8 @@ static struct poptOption output_options[] = {
      "what to write, by its ending: .ktx2 .dds; faces or panoramas as .exr .hdr .png, or in "
      "FOLDER/",
      "OUT"},
+    VALUE("for", ENGINE,
+          "what an engine loads: its levels, its axes, its files; see 'kiln engines'", "ENGINE"),
     VALUE("size", SIZE, "texels along a face, rows of a panorama (256)", "N"),
     VALUE("levels", LEVELS, "levels of the chain (all, down to 1 texel)", "N"),
     VALUE("shape", SHAPE, "cube, panorama or octahedron (cube)", "SHAPE"),
@@ -113,6 +116,7 @@ static const char *const formats[] = {"auto", "rgba16f", "rgba32f", "rgb9e5", "b
 typedef struct bake {
     cli_arguments arguments;
     const char *output, *irradiance_path, *sh_path;
+    const kiln_engine *engine; // NULL without --for
     int size, level_count, shape, format, zstd, lobe, textbook;
     int samples, phi_steps, theta_steps;
     int irradiance_size, sh_bands, layout, threads;
@@ -291,6 +295,36 @@ static int check_combinations(const bake *b)
     return CLI_GO;
 }
 
+// --for decides the lobe, the format and each level's roughness.
+static int take_engine(bake *b)
+{
+    static const int decided[] = {SHAPE, FORMAT, ZSTD, ROUGHNESS, LOBE, METHOD};
+    const cli_arguments *a = &b->arguments;
+    const char *name = a->value[ENGINE];
+    if (!name)
+        return CLI_GO;
+    b->engine = kiln_engine_find(name);
+    if (!b->engine)
+        return cli_wrong(&cli_bake, "--for is '%s', which is no engine; 'kiln engines' lists them",
+                         name);
+    for (size_t i = 0; i < sizeof decided / sizeof *decided; i++)
+        if (a->value[decided[i]])
+            return cli_wrong(&cli_bake, "--for %s decides what --%s is, leave one of them out",
+                             name, cli_option_name(&cli_bake, decided[i]));
+    if (b->engine->ending[0] && strcmp(cli_ending(b->output), b->engine->ending) != 0)
+        return cli_wrong(&cli_bake, "--output %s: --for %s writes .%s", b->output, name,
+                         b->engine->ending);
+    kiln_prefilter_def def;
+    if (kiln_engine_levels(b->engine, a->value[SIZE] ? b->size : 0, b->level_count, b->roughness,
+                           &def, &b->job.error))
+        return cli_wrong(&cli_bake, "--for %s", b->job.error.message);
+    b->size = def.size;
+    b->level_count = def.level_count;
+    b->has_roughness = true;
+    b->stores_sh = true;
+    return CLI_GO;
+}
+
 static int check_paths(const bake *b)
 {
     const char *paths[] = {b->output, b->irradiance_path, b->sh_path};
@@ -306,7 +340,7 @@ static int check_paths(const bake *b)
         if (strcmp(ending, "json") != 0 && strcmp(ending, "txt") != 0 && strcmp(ending, "h") != 0)
             return cli_wrong(&cli_bake, "--sh %s: must end in .json, .txt or .h", b->sh_path);
     }
-    if ((code = check_output(b, "--output", b->output)) != CLI_GO ||
+    if ((!b->engine && (code = check_output(b, "--output", b->output)) != CLI_GO) ||
         (b->irradiance_path &&
          (code = check_output(b, "--irradiance", b->irradiance_path)) != CLI_GO))
         return code;
@@ -354,7 +388,8 @@ static int read_arguments(bake *b, int argc, const char **argv)
     if (!b->output)
         return cli_wrong(&cli_bake, "no output: name it by -o OUT");
     b->stores_sh = !strcmp(cli_ending(b->output), "ktx2");
-    if ((code = read_numbers(b)) != CLI_GO || (code = check_combinations(b)) != CLI_GO)
+    if ((code = read_numbers(b)) != CLI_GO || (code = take_engine(b)) != CLI_GO ||
+        (code = check_combinations(b)) != CLI_GO)
         return code;
     if (b->lobe == KILN_LOBE_LAMBERT)
         b->level_count = 1;
@@ -406,8 +441,8 @@ static int take_beside(bake *b, const kiln_spectrum *spectrum)
         spectrum = own;
     }
     if (!result && b->stores_sh)
-        result = kiln_spectrum_sh(spectrum, b->sh_bands, false, 0, b->rotation, &b->stored_sh,
-                                  &job->error);
+        result = kiln_spectrum_sh(spectrum, b->engine ? 3 : b->sh_bands, false, 0, b->rotation,
+                                  &b->stored_sh, &job->error);
     if (!result && b->sh_path)
         result = kiln_spectrum_sh(spectrum, b->sh_bands, b->sh_irradiance, b->sh_window,
                                   b->rotation, &b->sh, &job->error);
@@ -550,7 +585,9 @@ static int save(bake *b)
     };
     int count = 0;
     kiln_map_free(&b->source);
-    if (kiln_map_save(job->context, &b->map, b->output, &def, &count, &job->error))
+    if (b->engine ? kiln_engine_save(job->context, b->engine, &b->map, &b->stored_sh, b->output,
+                                     &count, &job->error)
+                  : kiln_map_save(job->context, &b->map, b->output, &def, &count, &job->error))
         return CLI_FAILED;
     b->file_count = b->main_count = count;
     if (b->irradiance_path) {
@@ -717,6 +754,8 @@ const cli_command cli_bake = {
         "      compressed, with an irradiance cube and spherical harmonics\n"
         "  kiln bake 'face_%s.png' -o out.dds --format b10g11r11 --roughness 0,0.25,0.5,1\n"
         "      six faces in, four levels of chosen roughness out\n"
+        "  kiln bake city.exr --for three -o city.ktx2\n"
+        "      what three.js loads\n"
         "  kiln bake city.exr -o 'level_%d.hdr' --shape panorama --method textbook\n"
         "      what courses teach, on panoramas, to compare with\n",
     .options = options,

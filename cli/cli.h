@@ -25,7 +25,7 @@ typedef struct cli_command {
     int (*run)(int argc, const char **argv);
 } cli_command;
 
-extern const cli_command cli_bake, cli_eval, cli_fit, cli_info, cli_sky, cli_tables;
+extern const cli_command cli_bake, cli_engines, cli_eval, cli_fit, cli_info, cli_sky, cli_tables;
 extern const cli_command cli_hand_in, cli_render, cli_view; // with KILN_VIEWER
 
 // ----------------------------------------------------------------------------------------- options

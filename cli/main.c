@@ -6,9 +6,9 @@
 #include <string.h>
 
 static const cli_command *const commands[] = {
-    &cli_bake,   &cli_info, &cli_sky,     &cli_tables, &cli_eval, &cli_fit,
+    &cli_bake,   &cli_engines, &cli_info,    &cli_sky, &cli_tables, &cli_eval, &cli_fit,
 #ifdef KILN_VIEWER
-    &cli_render, &cli_view, &cli_hand_in,
+    &cli_render, &cli_view,    &cli_hand_in,
 #endif
 };
 enum { COMMANDS = sizeof commands / sizeof *commands };

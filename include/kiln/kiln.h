@@ -850,6 +850,38 @@ KILN_API KILN_CHECKED kiln_result kiln_table_lookup_save(kiln_context *context,
 KILN_API KILN_CHECKED kiln_result kiln_sh_save(kiln_context *context, const kiln_sh *sh,
                                                const char *path, kiln_error *error);
 
+// ----------------------------------------------------------------------------------------- engines
+
+/// What an engine wants of an environment. docs/engines/NAME.md says how it is loaded there, and
+/// what was shown by its pixels.
+typedef struct kiln_engine {
+    const char *name;    ///< "three"
+    const char *title;   ///< "three.js from r187 on"
+    const char *files;   ///< what is written: "NAME.ktx2"
+    const char *ending;  ///< of the path to kiln_engine_save, "ktx2"; "" where names begin with it
+    const char *mapping; ///< of level k of n, of a size of w texels, to roughness r
+    int size;            ///< of a face, where nothing else is asked for
+    int level_count;     ///< then
+} kiln_engine;
+
+/// The engines in the order of their table; NULL where the index is none.
+KILN_API const kiln_engine *kiln_engine_at(int index);
+/// By name; NULL where there is none.
+KILN_API const kiln_engine *kiln_engine_find(const char *name);
+/// The levels that an engine wants, for kiln_prefilter: `def` points to `roughness`. `size` and
+/// `level_count` 0 for the engine's own; powers of two within the range that the error names.
+KILN_API KILN_CHECKED kiln_result kiln_engine_levels(const kiln_engine *engine, int size,
+                                                     int level_count,
+                                                     float roughness[KILN_MAX_LEVELS],
+                                                     kiln_prefilter_def *def, kiln_error *error);
+/// Writes such a cube, given in kiln's directions, as the engine reads it: turned so that it shows a
+/// panorama where its own loader would. `sh`, of three bands or more, is the environment's radiance,
+/// which some engines take their diffuse light from. Files appear together or not at all.
+KILN_API KILN_CHECKED kiln_result kiln_engine_save(kiln_context *context, const kiln_engine *engine,
+                                                   const kiln_map *map, const kiln_sh *sh,
+                                                   const char *path, int *file_count,
+                                                   kiln_error *error);
+
 #ifdef __cplusplus
 }
 #endif

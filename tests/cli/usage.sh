@@ -13,7 +13,7 @@ expect 0 "" --help
 grep -q 'kiln bake' log/out || die "help without the commands"
 expect 0 "" --version
 grep -qx 'kiln [0-9]*\.[0-9]*\.[0-9]*' log/out || die "version"
-commands="bake eval fit info sky tables"
+commands="bake engines eval fit info sky tables"
 ! "$KILN" --help | grep -q 'kiln render' || commands="$commands render view assignment"
 for command in $commands; do
     expect 0 "" help $command
@@ -40,6 +40,16 @@ expect 2 "same file" bake in.exr -o out.exr --irradiance out.exr
 expect 2 "must end in .json" bake in.exr -o out.ktx2 --sh sh.xml
 expect 1 "there is no folder nowhere" bake in.exr -o nowhere/out.ktx2
 expect 1 "there is no folder nowhere" bake in.exr -o out.ktx2 --sh nowhere/sh.json
+
+# Engines.
+expect 2 "is 'frob', which is no engine" bake in.exr -o out.ktx2 --for frob
+expect 2 "out.dds: --for three writes .ktx2" bake in.exr -o out.dds --for three
+expect 2 "decides what --lobe is" bake in.exr -o out.ktx2 --for three --lobe ggx
+expect 2 "three: size is 100, it must be a power of two from 16 to 4096" \
+    bake in.exr -o out.ktx2 --for three --size 100
+expect 2 "three: 1 levels, a size of 32 may have 2 to 6" \
+    bake in.exr -o out.ktx2 --for three --size 32 --levels 1
+expect 2 "nothing but options" engines three
 
 # Values out of their range, with the range.
 expect 2 "size is 0, it must be from 1 to 32768" bake in.exr -o out.ktx2 --size 0

@@ -1,0 +1,130 @@
+// Engines: their levels, and their files.
+#include "engine/engine.h"
+
+#include "image/image.h"
+
+#include <string.h>
+
+const kiln_engine *kiln_engine_at(int index)
+{
+    const ki_recipe *recipe = ki_recipe_at(index);
+    return recipe ? &recipe->about : NULL;
+}
+
+const kiln_engine *kiln_engine_find(const char *name)
+{
+    const kiln_engine *engine = NULL;
+    for (int i = 0; (engine = kiln_engine_at(i)) != NULL; i++)
+        if (!strcmp(engine->name, name))
+            break;
+    return engine;
+}
+
+static kiln_result check_levels(const ki_recipe *recipe, int size, int level_count,
+                                kiln_error *error)
+{
+    const char *name = recipe->about.name;
+    int all = ki_recipe_levels(recipe, size);
+    if (size < recipe->size_min || size > recipe->size_max || (size & (size - 1)))
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "%s: size is %d, it must be a power of two from %d to %d", name, size,
+                       recipe->size_min, recipe->size_max);
+    if (!recipe->level_count_min && level_count != all)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: %d levels, a size of %d must have %d", name,
+                       level_count, size, all);
+    int most = 1;
+    while (size >> most && most < KILN_MAX_LEVELS)
+        most++;
+    if (level_count < recipe->level_count_min || level_count > most)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: %d levels, a size of %d may have %d to %d",
+                       name, level_count, size, recipe->level_count_min, most);
+    return KILN_OK;
+}
+
+static kiln_result find_recipe(const kiln_engine *engine, const ki_recipe **recipe,
+                               kiln_error *error)
+{
+    *recipe = ki_recipe_of(engine);
+    return *recipe ? KILN_OK
+                   : ki_fail(error, KILN_ERROR_ARGUMENT,
+                             "the engine is none of kiln's: take it from kiln_engine_find");
+}
+
+kiln_result kiln_engine_levels(const kiln_engine *engine, int size, int level_count,
+                               float roughness[KILN_MAX_LEVELS], kiln_prefilter_def *def,
+                               kiln_error *error)
+{
+    *def = (kiln_prefilter_def){0};
+    const ki_recipe *recipe;
+    kiln_result result = find_recipe(engine, &recipe, error);
+    if (result != KILN_OK)
+        return result;
+    size = size ? size : recipe->about.size;
+    level_count = level_count ? level_count : ki_recipe_levels(recipe, size);
+    result = check_levels(recipe, size, level_count, error);
+    if (result != KILN_OK)
+        return result;
+    for (int k = 0; k < level_count; k++)
+        roughness[k] = (float)recipe->roughness(k, level_count, size);
+    *def = (kiln_prefilter_def){.size = size, .level_count = level_count, .roughness = roughness};
+    return KILN_OK;
+}
+
+// The path must end as the recipe says.
+static kiln_result check_path(const ki_recipe *recipe, const char *path, kiln_error *error)
+{
+    const char *dot = strrchr(path, '.'), *wanted = recipe->about.ending;
+    bool good = path[0] && (!wanted[0] || (dot && !strcmp(dot + 1, wanted)));
+    return good ? KILN_OK
+                : ki_fail(error, KILN_ERROR_ARGUMENT, "%s: %s's file must end in .%s", path,
+                          recipe->about.name, wanted);
+}
+
+static kiln_result check_map(const ki_recipe *recipe, const kiln_map *map, const kiln_sh *sh,
+                             kiln_error *error)
+{
+    kiln_result result = ki_map_check(map, error);
+    if (result != KILN_OK)
+        return result;
+    if (map->shape != KILN_SHAPE_CUBE)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: takes a cube, the map has shape %d",
+                       recipe->about.name, (int)map->shape);
+    if (!sh || sh->bands < 3 || sh->bands > KILN_MAX_BANDS || sh->irradiance)
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "%s: takes harmonics of radiance, of 3 to %d bands", recipe->about.name,
+                       KILN_MAX_BANDS);
+    return check_levels(recipe, map->size, map->level_count, error);
+}
+
+kiln_result kiln_engine_save(kiln_context *context, const kiln_engine *engine, const kiln_map *map,
+                             const kiln_sh *sh, const char *path, int *file_count,
+                             kiln_error *error)
+{
+    if (file_count)
+        *file_count = 0;
+    const ki_recipe *recipe;
+    kiln_result result = find_recipe(engine, &recipe, error);
+    if (result != KILN_OK || (result = check_path(recipe, path, error)) != KILN_OK ||
+        (result = check_map(recipe, map, sh, error)) != KILN_OK)
+        return result;
+    kiln_map turned = {
+        .shape = KILN_SHAPE_CUBE, .size = map->size, .level_count = map->level_count};
+    kiln_sh few = *sh, turned_sh;
+    few.bands = 3;
+    if (!ki_progress(context, "writing", 0))
+        return ki_fail_cancelled(error, "writing");
+    if ((result = ki_map_allocate(context, &turned, error)) != KILN_OK)
+        return result;
+    ki_turn_cube(map, &recipe->axes, &turned);
+    ki_turn_sh(&few, &recipe->axes, &turned_sh);
+    ki_export to = {context, &turned, &turned_sh, path, ki_file_set_begin(context), 0};
+    result = to.set ? recipe->write(&to, error) : ki_fail_memory(context, error, path, 64);
+    if (result == KILN_OK)
+        result = ki_file_set_commit(to.set, error);
+    else
+        ki_file_set_abandon(to.set);
+    if (result == KILN_OK && file_count)
+        *file_count = to.file_count;
+    kiln_map_free(&turned);
+    return result;
+}

@@ -1,0 +1,121 @@
+// The table of recipes, and a cube turned to an engine's axes.
+#include "engine/engine.h"
+
+#include "image/image.h"
+#include "math/math.h"
+#include "sphere/sh.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { RECIPES = 1 };
+static const ki_recipe *const recipes[RECIPES] = {&ki_three};
+
+const ki_recipe *ki_recipe_at(int index)
+{
+    return index >= 0 && index < RECIPES ? recipes[index] : NULL;
+}
+
+const ki_recipe *ki_recipe_of(const kiln_engine *engine)
+{
+    for (int i = 0; i < RECIPES; i++)
+        if (engine == &recipes[i]->about)
+            return recipes[i];
+    return NULL;
+}
+
+int ki_recipe_levels(const ki_recipe *recipe, int size)
+{
+    int count = 1;
+    while (size >> count >= recipe->last_size && count < KILN_MAX_LEVELS)
+        count++;
+    return count;
+}
+
+static void turn(const ki_axes *axes, const double direction[3], double turned[3])
+{
+    for (int i = 0; i < 3; i++)
+        turned[i] = axes->sign[i] * direction[axes->axis[i]];
+}
+
+void ki_turn_cube(const kiln_map *source, const ki_axes *axes, kiln_map *turned)
+{
+    for (int k = 0; k < source->level_count; k++) {
+        int n = kiln_map_level_size(source, k);
+        float *to = turned->level[k];
+        turned->roughness[k] = source->roughness[k];
+        for (int i = 0; i < 6 * n * n; i++, to += 3) {
+            int face = i / (n * n), y = i / n % n, x = i % n;
+            double at[3], from[3], s, t;
+            ki_face_direction(face, (2 * x + 1.0) / n - 1, (2 * y + 1.0) / n - 1, at);
+            turn(axes, at, from);
+            int other = ki_direction_face(from, &s, &t);
+            int column = (int)floor((s + 1) / 2 * n), row = (int)floor((t + 1) / 2 * n);
+            size_t texel = ((size_t)other * (size_t)n + (size_t)row) * (size_t)n + (size_t)column;
+            memcpy(to, source->level[k] + 3 * texel, 3 * sizeof *to);
+        }
+    }
+}
+
+// Products of two harmonics of degree 2 are integrated exactly by 4 Gauss nodes times 8 angles.
+void ki_turn_sh(const kiln_sh *source, const ki_axes *axes, kiln_sh *turned)
+{
+    double nodes[4], weights[4];
+    int count = source->bands * source->bands;
+    ki_gauss_legendre(4, nodes, weights);
+    *turned = *source;
+    memset(turned->c, 0, sizeof turned->c);
+    for (int i = 0; i < 32; i++) {
+        double sine, cosine, from[3], value[3], basis[KILN_MAX_BANDS * KILN_MAX_BANDS];
+        double z = nodes[i / 8], r = sqrt(1 - z * z);
+        ki_sincos(i % 8 * (KI_PI / 4), &sine, &cosine);
+        const double at[3] = {r * cosine, r * sine, z};
+        turn(axes, at, from);
+        ki_sh_evaluate(source, from, value);
+        ki_sh_basis(at, basis);
+        for (int j = 0; j < count; j++)
+            for (int c = 0; c < 3; c++)
+                turned->c[j][c] += weights[i / 8] * (KI_PI / 4) * basis[j] * value[c];
+    }
+}
+
+// Texel (x, y) of a face, which may lie one beyond its edge: then it is the neighbour's that is
+// nearest.
+static const float *texel_at(const kiln_map *cube, int level, int face, int x, int y)
+{
+    int n = kiln_map_level_size(cube, level);
+    if (x < 0 || y < 0 || x >= n || y >= n) {
+        double direction[3], s, t;
+        ki_face_direction(face, (2 * x + 1.0) / n - 1, (2 * y + 1.0) / n - 1, direction);
+        face = ki_direction_face(direction, &s, &t);
+        x = (int)ki_clamp(floor((s + 1) / 2 * n), 0, n - 1);
+        y = (int)ki_clamp(floor((t + 1) / 2 * n), 0, n - 1);
+    }
+    size_t texel = ((size_t)face * (size_t)n + (size_t)y) * (size_t)n + (size_t)x;
+    return cube->level[level] + 3 * texel;
+}
+
+void ki_cube_read(const kiln_map *cube, int level, const double direction[3], double rgb[3])
+{
+    double s, t;
+    int n = kiln_map_level_size(cube, level), face = ki_direction_face(direction, &s, &t);
+    double u = (s + 1) / 2 * n - 0.5, v = (t + 1) / 2 * n - 0.5;
+    int x = (int)floor(u), y = (int)floor(v);
+    u -= x;
+    v -= y;
+    const float *at[4] = {texel_at(cube, level, face, x, y), texel_at(cube, level, face, x + 1, y),
+                          texel_at(cube, level, face, x, y + 1),
+                          texel_at(cube, level, face, x + 1, y + 1)};
+    for (int c = 0; c < 3; c++)
+        rgb[c] = (1 - v) * ((1 - u) * (double)at[0][c] + u * (double)at[1][c]) +
+                 v * ((1 - u) * (double)at[2][c] + u * (double)at[3][c]);
+}
+
+kiln_result ki_export_add(ki_export *to, const char *path, const ki_writer *bytes,
+                          kiln_error *error)
+{
+    if (bytes->failed)
+        return ki_fail_memory(to->context, error, path, bytes->size);
+    to->file_count++;
+    return ki_file_set_add(to->set, path, bytes->bytes, bytes->size, error);
+}

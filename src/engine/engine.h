@@ -1,0 +1,55 @@
+// What each engine wants: one recipe a file, one table of them.
+#ifndef KI_ENGINE_H
+#define KI_ENGINE_H
+
+#include "base/bytes.h"
+#include "base/file.h"
+
+/// A signed permutation of axes. An engine that samples in direction e shall show what arrives from d:
+/// d[i] = sign[i] e[axis[i]]. It makes the engine show a panorama where its own loader shows it.
+typedef struct ki_axes {
+    int axis[3], sign[3];
+} ki_axes;
+
+/// What a recipe writes. Map and harmonics (three bands, radiance) are in the engine's directions.
+typedef struct ki_export {
+    kiln_context *context;
+    const kiln_map *map;
+    const kiln_sh *sh;
+    const char *path;
+    ki_file_set *set;
+    int file_count;
+} ki_export;
+
+typedef struct ki_recipe {
+    kiln_engine about;
+    ki_axes axes;
+    int size_min, size_max;
+    int last_size;       ///< of the last level, which gives the default number of levels
+    int level_count_min; ///< where the number may be chosen; 0 where it may not
+    double (*roughness)(int level, int level_count, int size);
+    kiln_result (*write)(ki_export *to, kiln_error *error);
+} ki_recipe;
+
+extern const ki_recipe ki_three, ki_three_cubeuv, ki_babylon, ki_babylon_dds, ki_filament,
+    ki_playcanvas;
+
+/// The table of all; NULL behind the last.
+const ki_recipe *ki_recipe_at(int index);
+const ki_recipe *ki_recipe_of(const kiln_engine *engine);
+/// Levels of a chain from `size` to the recipe's last size.
+int ki_recipe_levels(const ki_recipe *recipe, int size);
+
+/// Moves a cube's texels to the engine's directions. `turned` has the source's shape and sizes.
+void ki_turn_cube(const kiln_map *source, const ki_axes *axes, kiln_map *turned);
+/// The same for harmonics of at most three bands.
+void ki_turn_sh(const kiln_sh *source, const ki_axes *axes, kiln_sh *turned);
+
+/// The radiance of a cube's level in a direction that is not 0, bilinear across faces.
+void ki_cube_read(const kiln_map *cube, int level, const double direction[3], double rgb[3]);
+
+/// Adds a file to the set that `to` writes.
+kiln_result ki_export_add(ki_export *to, const char *path, const ki_writer *bytes,
+                          kiln_error *error);
+
+#endif

@@ -1,0 +1,44 @@
+// three.js from r187 on: a cube whose level l of 0 to M holds the roughness that
+// PMREMGenerator.lodToRoughness gives, r = 1 - sqrt(1 - l / M); the shader inverts it. Diffuse light is
+// the last level, which should not be so coarse that its few texels show.
+//
+// Its panoramas have +X in the centre and +Z to the right of it.
+#include "engine/engine.h"
+
+#include "codec/codec.h"
+
+#include <math.h>
+
+static double roughness(int level, int level_count, int size)
+{
+    (void)size;
+    return level_count > 1 ? 1 - sqrt(1 - (double)level / (level_count - 1)) : 0;
+}
+
+static kiln_result write(ki_export *to, kiln_error *error)
+{
+    ki_writer bytes = {.context = to->context};
+    kiln_save_def def = {.format = KILN_FORMAT_RGBA16F, .sh = to->sh, .lobe = "ggx"};
+    kiln_result result = ki_ktx2_encode(to->map, &def, &bytes, error);
+    if (result == KILN_OK)
+        result = ki_export_add(to, to->path, &bytes, error);
+    ki_writer_free(&bytes);
+    return result;
+}
+
+const ki_recipe ki_three = {
+    .about = {.name = "three",
+              .title = "three.js from r187 on",
+              .files = "NAME.ktx2",
+              .ending = "ktx2",
+              .mapping = "r = 1 - sqrt(1 - k / (n - 1))",
+              .size = 256,
+              .level_count = 6},
+    .axes = {{2, 1, 0}, {1, 1, -1}},
+    .size_min = 16,
+    .size_max = 4096,
+    .last_size = 8,
+    .level_count_min = 2,
+    .roughness = roughness,
+    .write = write,
+};
