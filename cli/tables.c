@@ -16,9 +16,10 @@ static const struct poptOption options[] = {
     {"sheen", 0, POPT_ARG_STRING, NULL, TABLES_SHEEN,
      "masking of --table sheen: ashikhmin (the default) or estevez", "MASKING"},
     {"size", 0, POPT_ARG_STRING, NULL, TABLES_SIZE,
-     "texels, N, WxH or WxHxD to 4096 each (128; with a third axis 32, e-walk 48x64x24)", "SIZE"},
+     "texels, N, WxH or WxHxD to 4096 each (128; with a third axis 32, e-walk 40x32x20)", "SIZE"},
     {"axis", 0, POPT_ARG_STRING, NULL, TABLES_AXIS,
-     "of n.v: linear (the default), sqrt, cbrt, or grazing, which is best for e", "AXIS"},
+     "of n.v: linear (the default), sqrt, cbrt, or grazing, best for e and all that e-walk has",
+     "AXIS"},
     {"corners", 0, POPT_ARG_NONE, NULL, TABLES_CORNERS,
      "the outermost texels stand on the edges, not half a texel inside", NULL},
     {"complement", 0, POPT_ARG_NONE, NULL, TABLES_COMPLEMENT, "1 - value", NULL},
@@ -193,6 +194,8 @@ const cli_command cli_tables = {
         "      the split sum, as three.js, glTF viewers and most engines look it up\n"
         "  kiln tables -o dfg.exr --table dfg-multiscatter --g smith --size 128\n"
         "      Filament's\n"
+        "  kiln tables -o walk.ktx2 --table e-walk --lookup\n"
+        "      what later bounces add to A and B, grazing axis and corners; 2 s\n"
         "  kiln tables -o e.h --table e --size 32 --axis grazing --corners\n"
         "      an array for those who want no texture\n"
         "  kiln tables --assignment -o images\n"

@@ -111,6 +111,11 @@ static int check_kind(const exact_job *job)
             return cli_wrong(job->a->command, "--%s is not for --table %s",
                              cli_option_name(job->a->command, only[i].option),
                              kinds[job->def.kind]);
+    if (job->def.kind == KILN_TABLE_E_WALK && job->a->value[TABLES_AXIS] &&
+        job->def.axis != KILN_AXIS_GRAZING)
+        return cli_wrong(job->a->command,
+                         "--axis %s is not for --table e-walk: its axis is grazing",
+                         axes[job->def.axis]);
     return CLI_GO;
 }
 

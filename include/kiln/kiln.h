@@ -509,9 +509,10 @@ KILN_API double kiln_turquin(double f0, double e);
 /// Fdez-Aguera 2019 for image-based light: prefiltered radiance is multiplied by `single`,
 /// irradiance / pi by `multiple`, where f0 a + b is the split sum's albedo and e = a + b.
 KILN_API void kiln_fdez_aguera(double f0, double a, double b, double *single, double *multiple);
-/// The factor to the specular lobe that brings its albedo to the random walk's: e_walk / e_single,
-/// where e_single = f0 a + b and e_walk is a texel of KILN_TABLE_E_WALK or kiln_walk_albedo's.
-KILN_API double kiln_compensate_walk(double e_single, double e_walk);
+/// The factor to the specular lobe that brings its albedo to the random walk's: 1 + added / e_single,
+/// where e_single = f0 a + b and `added` is what KILN_TABLE_E_WALK shows, or kiln_walk_albedo's
+/// albedo - bounce[0].
+KILN_API double kiln_compensate_walk(double e_single, double added);
 
 /// The F of a walk's microfacets.
 typedef enum kiln_walk_fresnel {
@@ -560,7 +561,8 @@ typedef enum kiln_table_kind {
     KILN_TABLE_SHEEN,            ///< directional albedo of Charlie sheen, one channel
     KILN_TABLE_E_DIELECTRIC,     ///< E of a rough dielectric's reflection, w along the ior
     KILN_TABLE_GLASS,            ///< reflected, transmitted from outside, the same from inside
-    KILN_TABLE_E_WALK            ///< albedo with all bounces by random walk, w along F0
+    KILN_TABLE_E_WALK ///< what later bounces add by random walk, w along F0: the albedo with all
+                      ///< bounces E(n.v, roughness, F0) is F0 A + B + this, to 2e-3
 } kiln_table_kind;
 
 /// How n.v runs along u: the warped axes resolve the grazing layer, where E changes fast.
@@ -578,9 +580,9 @@ typedef struct kiln_table_def {
     kiln_model model;
     kiln_sheen sheen; ///< KILN_TABLE_SHEEN only
     int width, height,
-        depth; ///< 1 to KILN_MAX_TABLE; 0 for 128 x 128, 32 x 32 x 32 where there is w,
-               ///< 48 x 64 x 24 of the walk
-    kiln_axis axis;
+        depth;       ///< 1 to KILN_MAX_TABLE; 0 for 128 x 128, 32 x 32 x 32 where there is w,
+                     ///< 40 x 32 x 20 of the walk
+    kiln_axis axis;  ///< KILN_TABLE_E_WALK has the grazing one and corners, without being asked
     bool corners;    ///< texel i stands at i / (n - 1), else at (i + 1/2) / n, of each axis
     bool complement; ///< 1 - value: 1 - E keeps its precision where E is near 1
     bool flip;       ///< row 0 holds roughness 1, for loaders that turn pictures over

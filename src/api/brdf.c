@@ -164,9 +164,9 @@ void kiln_fdez_aguera(double f0, double a, double b, double *single, double *mul
     ki_fdez_aguera(unit(f0), a1, b1 < 1 - a1 ? b1 : 1 - a1, single, multiple);
 }
 
-double kiln_compensate_walk(double e_single, double e_walk)
+double kiln_compensate_walk(double e_single, double added)
 {
-    return unit(e_walk) / ki_clamp(e_single, 1e-6, 1);
+    return 1 + unit(added) / ki_clamp(e_single, 1e-6, 1);
 }
 
 void kiln_walk_albedo(const kiln_walk_def *def, double roughness, double nov, kiln_walk *walk)

@@ -150,6 +150,11 @@ static kiln_result check_choices(const kiln_table_def *def, kiln_error *error)
     if ((unsigned)def->axis > KILN_AXIS_GRAZING)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "axis of the table is %d, there are 0 to %d",
                        (int)def->axis, KILN_AXIS_GRAZING);
+    if (def->kind == KILN_TABLE_E_WALK && def->axis != KILN_AXIS_LINEAR &&
+        def->axis != KILN_AXIS_GRAZING)
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "axis of the table is %d, for a table of walks it must be %d, or 0",
+                       (int)def->axis, KILN_AXIS_GRAZING);
     if (def->kind == KILN_TABLE_E_WALK &&
         (def->model.d != KILN_D_GGX || def->model.g != KILN_G_SMITH))
         return ki_fail(error, KILN_ERROR_ARGUMENT,
@@ -177,14 +182,16 @@ kiln_result ki_table_complete(kiln_table_def *def, kiln_error *error)
     bool walks = def->kind == KILN_TABLE_E_WALK;
     if (def->kind == KILN_TABLE_E_AVERAGE)
         def->width = 1;
-    // The walk's are what holds 2e-3 between texels: docs/theory/walk.md.
-    def->width = def->width ? def->width : walks ? 48 : has_depth ? 32 : 128;
-    def->height = def->height ? def->height : walks ? 64 : has_depth ? 32 : 128;
-    def->depth = def->depth ? def->depth : walks ? 24 : has_depth ? 32 : 1;
-    if (!walks)
+    def->width = def->width ? def->width : walks ? 40 : has_depth ? 32 : 128;
+    def->height = def->height ? def->height : has_depth ? 32 : 128;
+    def->depth = def->depth ? def->depth : walks ? 20 : has_depth ? 32 : 1;
+    if (walks) {
+        // What holds 2e-3 between texels: docs/theory/walk.md.
+        def->axis = KILN_AXIS_GRAZING;
+        def->corners = true;
+        def->path_count = def->path_count ? def->path_count : 8192;
+    } else
         def->path_count = 0;
-    else if (!def->path_count)
-        def->path_count = 8192;
     result = check_size("width", def->width, KILN_MAX_TABLE, error);
     if (!result)
         result = check_size("height", def->height, KILN_MAX_TABLE, error);
@@ -224,15 +231,15 @@ static void fill_walk_row(void *data, int row)
     size_t slice = (size_t)def->width * (size_t)def->height;
     float *pixels = job->table->image.pixels + (size_t)row * (size_t)def->width;
     for (int z = 0; z < def->depth; z += KI_WALK_COLUMN) {
-        double f0[KI_WALK_COLUMN], albedo[KI_WALK_COLUMN];
+        double f0[KI_WALK_COLUMN], added[KI_WALK_COLUMN];
         int count = ki_min(KI_WALK_COLUMN, def->depth - z);
         for (int x = 0; x < def->width; x++) {
-            double nov, roughness;
+            double nov = 0, roughness = 0;
             for (int i = 0; i < count; i++)
                 ki_table_texel(job->table, x, row, z + i, &nov, &roughness, &f0[i]);
-            ki_walk_column(roughness, nov, f0, count, def->path_count, 0, albedo);
+            ki_walk_column(roughness, nov, f0, count, def->path_count, 0, added);
             for (int i = 0; i < count; i++) {
-                double value = def->complement ? 1 - albedo[i] : albedo[i];
+                double value = def->complement ? 1 - added[i] : added[i];
                 pixels[(size_t)(z + i) * slice + (size_t)x] = (float)value;
             }
         }

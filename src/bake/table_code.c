@@ -43,7 +43,8 @@ static void write_result_comment(const code_job *j)
         [KILN_TABLE_SHEEN] = "the albedo of Charlie sheen",
         [KILN_TABLE_E_DIELECTRIC] = "the albedo of a rough dielectric's reflection",
         [KILN_TABLE_GLASS] = "reflected and transmitted from outside, then from inside",
-        [KILN_TABLE_E_WALK] = "the albedo with all bounces",
+        [KILN_TABLE_E_WALK] =
+            "what later bounces add: the factor to the lobe is 1 + it / (f0 A + B)",
     };
     ki_write_text(j->w, "// The result is %s.\n", results[j->def->kind]);
 }

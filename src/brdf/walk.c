@@ -220,7 +220,7 @@ static void add_bounces(void *data, int bounce, double voh, double leaves)
 }
 
 void ki_walk_column(double roughness, double nov, const double *f0, int count, int path_count,
-                    uint32_t seed, double *albedo)
+                    uint32_t seed, double *added)
 {
     double alpha = roughness * roughness, ab[2];
     column c = {.f0 = f0, .count = count};
@@ -236,7 +236,7 @@ void ki_walk_column(double roughness, double nov, const double *f0, int count, i
     // Light so rare that no path had it is as dark as two average first bounces.
     double e = ab[0] + ab[1], missing = e < 1 ? 1 - e : 0;
     for (int k = 0; k < count; k++) {
-        double single = f0[k] * ab[0] + ab[1], f = single / e;
-        albedo[k] = single + missing * (c.weight > 0 ? c.sum[k] / c.weight : f * f);
+        double f = (f0[k] * ab[0] + ab[1]) / e;
+        added[k] = missing * (c.weight > 0 ? c.sum[k] / c.weight : f * f);
     }
 }

@@ -23,13 +23,13 @@ double ki_walk_on(double alpha, double xi, ki_ray *ray);
 
 enum { KI_WALK_COLUMN = 64 };
 
-/// Albedo of `count` (to KI_WALK_COLUMN) Schlick surfaces, f0[] in [0, 1], for roughness and nov in
-/// [0, 1] and height-correlated Smith's GGX, from one set of walks: their angles do not depend on F.
-/// The bounces from the second one on are walked, the first one is exact, and so is f0 = 1. The same
+/// What the bounces after the first add to the albedo f0 A + B of `count` (to KI_WALK_COLUMN) Schlick
+/// surfaces, f0[] in [0, 1], for roughness and nov in [0, 1] and height-correlated Smith's GGX, from
+/// one set of walks: their angles do not depend on F. Exact for f0 = 1, where it is 1 - E. The same
 /// numbers are drawn at every (roughness, nov), so that what error there is changes smoothly along a
 /// table. path_count as in kiln_walk_def; 0.25 us each. Any thread. Error: docs/theory/walk.md.
 void ki_walk_column(double roughness, double nov, const double *f0, int count, int path_count,
-                    uint32_t seed, double *albedo);
+                    uint32_t seed, double *added);
 
 /// One surface with any of the def's Fresnel terms; as kiln_walk_albedo, arguments in range.
 void ki_walk_albedo(const kiln_walk_def *def, double roughness, double nov, kiln_walk *walk);

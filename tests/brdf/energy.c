@@ -337,6 +337,7 @@ static void wrong_tables_are_named(void **unused)
         {{.height = -1}, "height of the table is -1"},
         {{.depth = 4}, "depth of the table is 4, it must be 1"},
         {{.kind = KILN_TABLE_DFG, .complement = true}, "this one has 2"},
+        {{.kind = KILN_TABLE_E_WALK, .axis = KILN_AXIS_CBRT}, "of walks it must be 3, or 0"},
     };
     kiln_context *context;
     kiln_error error;

@@ -27,7 +27,7 @@ done
 expect 0 "" tables --table sheen -o sheen.exr --size 4 --sheen estevez -q
 expect 0 "" tables --table e-dielectric -o dielectric.ktx2 --size 4x4x3 -q
 expect 0 "" tables --table glass -o glass.ktx2 --size 2x2x2 -q
-expect 0 "" tables --table e-walk -o walk.ktx2 --size 4x4x2 --paths 64 -q
+expect 0 "" tables --table e-walk --axis grazing -o walk.ktx2 --size 4x4x2 --paths 64 -q
 only e.exr eavg.exr dfg.exr dfg-multiscatter.exr sheen.exr dielectric.ktx2 glass.ktx2 walk.ktx2
 rm ./*.exr ./*.ktx2
 
@@ -63,6 +63,7 @@ expect 2 "linear, sqrt, cbrt or grazing" tables -o out.ktx2 --axis log
 expect 2 "not for --table dfg" tables -o out.ktx2 --table dfg --complement
 expect 2 "not for --table dfg" tables -o out.ktx2 --table dfg --average mean.ktx2
 expect 2 "not for --table e-walk" tables -o out.ktx2 --table e-walk --g schlick-k2
+expect 2 "not for --table e-walk: its axis is grazing" tables -o out.ktx2 --table e-walk --axis linear
 expect 2 "not for --table e" tables -o out.ktx2 --paths 64
 expect 2 "is not sampled" tables -o out.ktx2 --samples 64
 expect 2 "not for --method textbook" tables -o out.exr --method textbook --axis sqrt
