@@ -7,40 +7,44 @@
 
 #include <math.h>
 
-enum { MAX_INDEX = 100000000 };
+static double unit(double x)
+{
+    return ki_clamp(x, 0, 1);
+}
 
 // Cosines so small that products of two would underflow are 0.
 static double cosine(double x)
 {
-    return x >= 1e-150 ? (x < 1 ? x : 1) : 0;
+    return x >= 1e-150 ? unit(x) : 0;
 }
 
-static double unit(double x)
+// So is a roughness whose eighth power would.
+static double rough(double x)
 {
-    return x > 0 ? (x < 1 ? x : 1) : 0;
+    return x >= 1e-35 ? unit(x) : 0;
 }
 
 static double index_of(double x)
 {
-    return x > 0 ? (x < MAX_INDEX ? x : MAX_INDEX) : 0;
+    return ki_clamp(x, 0, 1e8);
 }
 
 // ------------------------------------------------------------------------------------------- D, G
 
 double kiln_brdf_d(kiln_d d, double roughness, double noh)
 {
-    return ki_brdf_d(d, unit(roughness), unit(noh));
+    return ki_brdf_d(d, rough(roughness), unit(noh));
 }
 
 double kiln_brdf_g(const kiln_model *model, double roughness, double nov, double nol)
 {
-    return ki_masking(model, unit(roughness), cosine(nov), cosine(nol));
+    return ki_masking(model, rough(roughness), cosine(nov), cosine(nol));
 }
 
 double kiln_brdf_specular(const kiln_model *model, double roughness, double nov, double nol,
                           double noh)
 {
-    double r = unit(roughness), d = ki_brdf_d(model->d, r, unit(noh));
+    double r = rough(roughness), d = ki_brdf_d(model->d, r, unit(noh));
     if (!(d > 0 && d < HUGE_VAL))
         return d;
     return d * ki_visibility(model, r, cosine(nov), cosine(nol)) / 4;
@@ -96,9 +100,18 @@ double kiln_fresnel_conductor_average_fit(double reflectivity, double edge_tint)
 
 // --------------------------------------------------------------------------------------- samplers
 
+// xi into [0, 1): generators of floats may well round up to 1.
+static const double *clamp_xi(const double xi[2], double clamped[2])
+{
+    for (int i = 0; i < 2; i++)
+        clamped[i] = ki_clamp(xi[i], 0, 1 - 0x1p-53);
+    return clamped;
+}
+
 void kiln_sample_cosine(const double xi[2], double l[3])
 {
-    ki_sample_cosine(xi, l);
+    double x[2];
+    ki_sample_cosine(clamp_xi(xi, x), l);
 }
 
 double kiln_pdf_cosine(double nol)
@@ -108,28 +121,31 @@ double kiln_pdf_cosine(double nol)
 
 void kiln_sample_half_vector(kiln_d d, double roughness, const double xi[2], double h[3])
 {
-    double r = unit(roughness);
+    double r = rough(roughness), x[2];
     if (d == KILN_D_GGX)
-        ki_ggx_half_vector(r * r, xi, h);
+        ki_ggx_half_vector(r * r, clamp_xi(xi, x), h);
     else
-        ki_beckmann_half_vector(r * r, xi, h);
+        ki_beckmann_half_vector(r * r, clamp_xi(xi, x), h);
 }
 
 double kiln_pdf_half_vector(kiln_d d, double roughness, double noh)
 {
     double c = unit(noh);
-    return c > 0 ? c * ki_brdf_d(d, unit(roughness), c) : 0;
+    return c > 0 ? c * ki_brdf_d(d, rough(roughness), c) : 0;
 }
 
 void kiln_sample_visible(double roughness, const double v[3], const double xi[2], double h[3])
 {
-    double r = unit(roughness);
-    ki_sample_visible(r * r, v, xi, h);
+    double r = rough(roughness), x[2];
+    h[0] = h[1] = 0;
+    h[2] = 1; // of the mirror
+    if (r > 0)
+        ki_sample_visible(r * r, v, clamp_xi(xi, x), h);
 }
 
 double kiln_pdf_visible(double roughness, double nov, double noh, double voh)
 {
-    double r = unit(roughness), d = ki_brdf_d(KILN_D_GGX, r, unit(noh)), c = unit(voh);
+    double r = rough(roughness), d = ki_brdf_d(KILN_D_GGX, r, unit(noh)), c = unit(voh);
     if (!(d > 0 && d < HUGE_VAL && c > 0))
         return c > 0 ? d : 0;
     return d * ki_smith_g1_over_cosine(r * r, cosine(nov)) * c;
@@ -175,5 +191,5 @@ void kiln_walk_albedo(const kiln_walk_def *def, double roughness, double nov, ki
     d.f0 = unit(d.f0);
     d.n = index_of(d.n);
     d.k = index_of(d.k);
-    ki_walk_albedo(&d, unit(roughness), unit(nov), walk);
+    ki_walk_albedo(&d, rough(roughness), unit(nov), walk);
 }

@@ -1,23 +1,36 @@
-// Energy integrals as the caller sees them.
+// The integrals over the reflection model as the caller sees them: arguments are clamped.
 #include "brdf/energy.h"
-
-// Into [0, 1]; not a number becomes 0.
-static double unit(double x)
-{
-    return x > 0 ? x < 1 ? x : 1 : 0;
-}
+#include "brdf/dielectric.h"
+#include "brdf/sheen.h"
 
 double kiln_energy(const kiln_model *model, double roughness, double nov)
 {
-    return ki_energy(model, unit(roughness), unit(nov));
+    return ki_energy(model, ki_clamp(roughness, 0, 1), ki_clamp(nov, 0, 1));
 }
 
 double kiln_energy_average(const kiln_model *model, double roughness)
 {
-    return ki_energy_average(model, unit(roughness));
+    return ki_energy_average(model, ki_clamp(roughness, 0, 1));
 }
 
 void kiln_energy_split(const kiln_model *model, double roughness, double nov, double ab[2])
 {
-    ki_energy_split(model, unit(roughness), unit(nov), ab);
+    ki_energy_split(model, ki_clamp(roughness, 0, 1), ki_clamp(nov, 0, 1), ab);
+}
+
+// The others clamp their own.
+
+double kiln_sheen_albedo(kiln_sheen sheen, double roughness, double nov)
+{
+    return ki_sheen_albedo(sheen, roughness, nov);
+}
+
+void kiln_glass(const kiln_model *model, double roughness, double ior, double nov, double rt[2])
+{
+    ki_dielectric(model, roughness, ior, nov, rt);
+}
+
+void kiln_glass_average(const kiln_model *model, double roughness, double ior, double rt[2])
+{
+    ki_dielectric_average(model, roughness, ior, rt);
 }

@@ -86,9 +86,10 @@ static inline int ki_max(int a, int b)
     return a > b ? a : b;
 }
 
+/// Not a number becomes `low`.
 static inline double ki_clamp(double x, double low, double high)
 {
-    return x < low ? low : x > high ? high : x;
+    return x > low ? x < high ? x : high : low;
 }
 
 #endif

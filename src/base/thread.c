@@ -3,6 +3,7 @@
 #include "base/base.h"
 #include "base/context.h"
 
+#include <time.h>
 #include <unistd.h>
 
 int ki_core_count(void)
@@ -132,11 +133,22 @@ typedef struct steps {
     const ki_stage *stage;
     pthread_t caller;
     int count, told;
+    double asked; // seconds
     atomic_int done;
     atomic_bool stopped;
 } steps;
 
 enum { REPORTS = 64 };
+
+// Longest silence but for one task, so that work of hours stops as soon as short work.
+static const double silence = 0.05;
+
+static double seconds(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
 
 static void step(void *data, int index)
 {
@@ -145,9 +157,11 @@ static void step(void *data, int index)
         return;
     s->task(s->data, index);
     double part = (double)(atomic_fetch_add(&s->done, 1) + 1) / s->count;
-    if (!pthread_equal(pthread_self(), s->caller) || part * REPORTS < s->told + 1)
+    if (!pthread_equal(pthread_self(), s->caller) ||
+        (part * REPORTS < s->told + 1 && seconds() < s->asked + silence))
         return;
     s->told = (int)(part * REPORTS);
+    s->asked = seconds();
     const ki_stage *at = s->stage;
     bool go_on = at ? ki_progress(s->context, at->name, at->from + part * (at->to - at->from))
                     : ki_go_on(s->context);
@@ -167,7 +181,8 @@ bool ki_parallel_steps(kiln_context *context, const ki_stage *stage, int count, 
                .data = data,
                .stage = stage,
                .caller = pthread_self(),
-               .count = count};
+               .count = count,
+               .asked = seconds()};
     ki_parallel_for(context, count, step, &s);
     return !atomic_load(&s.stopped);
 }

@@ -100,10 +100,13 @@ void ki_beckmann_energy(const kiln_model *model, double roughness, double nov, d
             delta = total - 2 * psi_v;
             weight *= total;
         }
-        double nol, sine_l, tangent, cosine;
-        ki_sincos(psi_v + delta, &nol, &sine_l);
-        ki_sincos(delta / 2, &tangent, &cosine);
-        tangent /= cosine;
+        // Sums of angles, since that of psi_v and delta has no digits of a narrow lobe's delta.
+        double half_sine, half_cosine;
+        ki_sincos(delta / 2, &half_sine, &half_cosine);
+        double tangent = half_sine / half_cosine, turn = 2 * half_sine * half_cosine;
+        double straight = 1 - 2 * half_sine * half_sine;
+        double nol = fmax(0, nov * straight + sine_v * turn);
+        double sine_l = fmax(0, sine_v * straight - nov * turn);
         double s = nov + nol;
         weight *= sine_l * nol * ki_visibility(model, roughness, nov, nol) / 4;
         integrate_azimuth(alpha, tangent * tangent, 4 * sine_v * sine_l / (s * s), s, weight, sum);

@@ -23,6 +23,9 @@
 //     transmitted     c > 0, from inside c > critical and -n.l = eta n.v - (eta c - g) cos theta > 0
 //
 // Total reflection has F = 1, so R from inside is E less the integral of 1 - F, over c > critical too.
+// ior is from this to its inverse.
+#define LEAST_IOR (1.0 / 16)
+
 typedef enum part { REFLECTED, TRANSMITTED } part;
 
 typedef struct boundary {
@@ -266,7 +269,7 @@ static bool prepare(const kiln_model *model, double roughness, double ior, doubl
 {
     *s = (boundary){.model = *model, .roughness = ki_clamp(roughness, 0, 1)};
     s->alpha = s->roughness * s->roughness;
-    s->ior = ki_clamp(ior, 1.0 / 16, 16);
+    s->ior = ki_clamp(ior, LEAST_IOR, 1 / LEAST_IOR);
     s->eta = 1 / s->ior;
     s->mu = ki_clamp(nov, 1e-8 * s->alpha, 1);
     if (s->roughness < 1e-4)
@@ -321,6 +324,7 @@ double ki_dielectric_reflection(const kiln_model *model, double roughness, doubl
 void ki_dielectric_average(const kiln_model *model, double roughness, double ior, double rt[2])
 {
     enum { PANELS = 2 };
+    ior = ki_clamp(ior, LEAST_IOR, 1 / LEAST_IOR);
     double critical = ior < 1 ? sqrt((1 - ior) * (1 + ior)) : 0, open = ior < 1 ? ior : 0;
     double cuts[4] = {0, fmin(critical, open), fmax(critical, open), 1};
     rt[0] = rt[1] = 0;

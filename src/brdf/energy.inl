@@ -415,6 +415,8 @@ static void integrate(const entry *n, bool split, double out[2])
     }
     out[0] = sum_lanes(e);
     out[1] = sum_lanes(b);
+    // At nov = 1 a mirror's B is 0, and rounding goes both ways.
+    out[1] = out[1] > 0 ? out[1] : 0;
 }
 
 // The mirror: everything goes where i = o in mirror image, masked by G there.

@@ -118,36 +118,46 @@ double ki_fresnel_dielectric_average(double ior)
 
 enum { NODES = 16, DEPTH = 40 };
 
+// Between the kink, if any, and one end: mu = kink + (end - kink) t^2, which undoes a root there.
 typedef struct average {
-    double n, k, node[NODES], weight[NODES];
+    double n, k, kink, end, node[NODES], weight[NODES];
 } average;
 
 static double panel(const average *f, double from, double to)
 {
-    double sum = 0, half = (to - from) / 2;
+    double sum = 0, half = (to - from) / 2, length = f->end - f->kink;
     for (int i = 0; i < NODES; i++) {
-        double mu = from + half * (1 + f->node[i]);
-        sum += f->weight[i] * ki_fresnel_conductor(f->n, f->k, mu) * mu;
+        double t = from + half * (1 + f->node[i]), mu = f->kink + length * (t * t);
+        sum += f->weight[i] * ki_fresnel_conductor(f->n, f->k, mu) * mu * t;
     }
-    return sum * 2 * half;
+    return sum * 4 * half * fabs(length);
 }
 
-// Halves panels until both halves together agree with the whole. F has a root's kink near the
-// critical angle where n < 1 and k is small.
-static double refine(const average *f, double from, double to, double whole, int depth)
+// Halves panels until twice in a row both halves together agree with the whole.
+static double refine(const average *f, double from, double to, double whole, bool agreed, int depth)
 {
     double middle = (from + to) / 2;
     double left = panel(f, from, middle), right = panel(f, middle, to);
-    if (depth == 0 || fabs(left + right - whole) <= 1e-14)
+    bool agree = fabs(left + right - whole) <= 1e-14;
+    if (depth == 0 || (agreed && agree))
         return left + right;
-    return refine(f, from, middle, left, depth - 1) + refine(f, middle, to, right, depth - 1);
+    return refine(f, from, middle, left, agree, depth - 1) +
+           refine(f, middle, to, right, agree, depth - 1);
 }
 
 double ki_fresnel_conductor_average(double n, double k)
 {
-    average f = {.n = n, .k = k};
+    average f = {.n = n, .k = k, .end = 1};
     ki_gauss_legendre(NODES, f.node, f.weight);
-    return refine(&f, 0, 1, panel(&f, 0, 1), DEPTH);
+    // The critical angle, where g^2 is imaginary: with small k a root's kink, and with small n the
+    // cone inside is so narrow that no node would meet it.
+    double kink2 = (1 - n) * (1 + n) + k * k;
+    f.kink = kink2 > 0 && kink2 < 1 ? sqrt(kink2) : 0;
+    double sum = refine(&f, 0, 1, panel(&f, 0, 1), false, DEPTH);
+    f.end = 0;
+    if (f.kink > 0)
+        sum += refine(&f, 0, 1, panel(&f, 0, 1), false, DEPTH);
+    return sum < 1 ? sum : 1;
 }
 
 // Kulla and Conty 2017, for ior > 1 and below.

@@ -155,6 +155,11 @@ static void corners(void **unused)
         ki_beckmann_energy(&model, 1, 0, last);
         assert_memory_equal(ab, last, sizeof ab);
     }
+    // A narrow lobe seen head-on loses no digits.
+    for (int i = 1; i <= 20; i++) {
+        ki_beckmann_energy(&(kiln_model){.d = KILN_D_BECKMANN}, 1e-4 * i, 1, ab);
+        CHECK_NEAR(ab[0] + ab[1], 1, 1e-11);
+    }
     // With slopes far below the view's, nothing is hidden but by chance: E is 1 with Smith's G.
     ki_beckmann_energy(&(kiln_model){.d = KILN_D_BECKMANN}, 0.1, 0.7, ab);
     CHECK_NEAR(ab[0] + ab[1], 1, 1e-9);

@@ -217,6 +217,15 @@ static void averages_agree_with_quadrature(void **state)
             CHECK_NEAR(kiln_fresnel_conductor_average(f.n, f.k), graded(conductor_mu, &f, split),
                        1e-12);
         }
+    // The denser side, which little light leaves by a narrow cone; with little absorption.
+    for (int i = 0; i <= 40; i++)
+        for (int j = 0; j <= 6; j++) {
+            index f = {pow(10, -i / 10.0), j ? pow(10, j - 10) : 0, 0};
+            double off = kiln_fresnel_conductor_average(f.n, f.k);
+            off -= kiln_fresnel_dielectric_average(f.n);
+            // Absorption adds to what is reflected, by less than a few k.
+            CHECK_NEAR(off, 0, 1e-12 + 8 * f.k);
+        }
 }
 
 // The figures that kiln.h and docs/theory/fresnel.md state.
@@ -326,11 +335,13 @@ static void furnaces_close_at_f0_of_one(void **state)
     }
 }
 
+static const double wild[] = {-HUGE_VAL, -1, -0.0, 5e-324, 1e-200,   1e-75,
+                              0.5,       1,  2,    1e300,  HUGE_VAL, NAN};
+enum { WILD = sizeof wild / sizeof *wild };
+
 static void nothing_is_not_a_number(void **state)
 {
     (void)state;
-    static const double wild[] = {-HUGE_VAL, -1, -0.0, 5e-324, 1e-200, 0.5, 1, 2, 1e300, HUGE_VAL};
-    enum { WILD = sizeof wild / sizeof *wild };
     for (int a = 0; a < WILD; a++)
         for (int b = 0; b < WILD; b++)
             for (int c = 0; c < WILD; c++) {
@@ -358,6 +369,35 @@ static void nothing_is_not_a_number(void **state)
             }
 }
 
+static void integrals_take_any_number(void **state)
+{
+    (void)state;
+    for (int a = 0; a < WILD; a++)
+        for (int b = 0; b < WILD; b++) {
+            double x = wild[a], y = wild[b], ab[2];
+            for (int m = 0; m < 4 * DISTRIBUTIONS; m++) {
+                kiln_model model = {m / 4 ? KILN_D_BECKMANN : KILN_D_GGX, all_g[m % 4]};
+                double e = kiln_energy(&model, x, y);
+                assert_true(e >= 0 && e <= 1 + 1e-8);
+                kiln_energy_split(&model, x, y, ab);
+                assert_true(ab[0] >= 0 && ab[1] >= 0);
+                CHECK_NEAR(ab[0] + ab[1], e, 1e-15);
+            }
+            for (int k = 0; k < 2; k++)
+                assert_true(kiln_sheen_albedo((kiln_sheen)k, x, y) >= 0);
+            for (int c = 0; c < WILD; c++) {
+                kiln_glass(&(kiln_model){0}, x, y, wild[c], ab);
+                assert_true(ab[0] >= 0 && ab[1] >= 0 && ab[0] + ab[1] <= 1 + 2e-6);
+            }
+            double f = kiln_fresnel_conductor_average(x, y);
+            assert_true(f >= 0 && f <= 1);
+        }
+    double rt[2], limit[2];
+    kiln_glass_average(&(kiln_model){0}, 0.5, -7, rt);
+    kiln_glass_average(&(kiln_model){0}, 0.5, 1.0 / 16, limit);
+    assert_memory_equal(rt, limit, sizeof rt);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -373,6 +413,7 @@ int main(void)
         cmocka_unit_test(f_add_sums_the_bounces),
         cmocka_unit_test(furnaces_close_at_f0_of_one),
         cmocka_unit_test(nothing_is_not_a_number),
+        cmocka_unit_test(integrals_take_any_number),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

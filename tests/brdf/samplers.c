@@ -234,6 +234,11 @@ static void mirrors(void **state)
     }
     kiln_sample_visible(0, v, xi, h);
     assert_true(h[0] == 0 && h[1] == 0 && h[2] == 1);
+    kiln_sample_visible(0, (double[]){1, 0, 0}, xi, h);
+    assert_true(h[0] == 0 && h[1] == 0 && h[2] == 1);
+    // Generators of floats round up to 1.
+    kiln_sample_half_vector(KILN_D_BECKMANN, 0.5, (double[]){1, 1}, h);
+    CHECK_NEAR(h[0] * h[0] + h[1] * h[1] + h[2] * h[2], 1, 1e-14);
     assert_true(kiln_pdf_visible(0, 0.8, 0.9, 0.7) == 0 && kiln_pdf_half_vector(0, 0, 0.5) == 0);
 }
 
