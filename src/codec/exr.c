@@ -1,5 +1,6 @@
-// EXR files. OpenEXRCore reads the header and undoes PIZ, PXR24 and B44; the other compressions are
-// undone here, faster, and DWA because that library does not know it. Chunks are unpacked in
+// EXR files. OpenEXRCore reads the header and undoes PIZ, PXR24 and B44 (without it exr_header.c and
+// exr_other.c do); the other compressions are undone here, faster, and DWA because that library does
+// not know it. Chunks are unpacked in
 // parallel, straight into the picture.
 //
 // The picture is the display window; what the data window does not cover is 0. The first part with
@@ -188,42 +189,6 @@ static void unpack(const exr_file *f, const ki_exr_box *box, const uint8_t *raw)
 
 // ------------------------------------------------------------------------------------------ chunks
 
-static exr_result_t already_read(exr_decode_pipeline_t *pipeline)
-{
-    (void)pipeline;
-    return EXR_ERR_SUCCESS;
-}
-
-// PIZ, PXR24 and B44: the library's pipeline between our buffers.
-static bool undo_by_core(const exr_file *f, const exr_chunk *chunk, uint8_t *raw)
-{
-    exr_decode_pipeline_t pipeline = EXR_DECODE_PIPELINE_INITIALIZER;
-    if (exr_decoding_initialize(f->core, f->part, &chunk->info, &pipeline) != EXR_ERR_SUCCESS)
-        return false;
-    bool good =
-        exr_decoding_choose_default_routines(f->core, f->part, &pipeline) == EXR_ERR_SUCCESS;
-    if (good) {
-        union {
-            const uint8_t *input;
-            void *buffer;
-        } packed = {chunk->packed};
-        pipeline.read_fn = already_read;
-        pipeline.unpack_and_convert_fn = NULL;
-        pipeline.packed_buffer = packed.buffer; // only read
-        pipeline.packed_alloc_size = chunk->packed_size;
-        pipeline.unpacked_buffer = raw;
-        pipeline.unpacked_alloc_size = chunk->size;
-        good = exr_decoding_run(f->core, f->part, &pipeline) == EXR_ERR_SUCCESS &&
-               pipeline.unpacked_buffer == raw;
-        pipeline.packed_buffer = NULL;
-        pipeline.packed_alloc_size = 0;
-        pipeline.unpacked_buffer = NULL;
-        pipeline.unpacked_alloc_size = 0;
-    }
-    exr_decoding_destroy(f->core, &pipeline);
-    return good;
-}
-
 static kiln_result decode_chunk(const exr_file *f, const exr_chunk *chunk, uint8_t *raw,
                                 uint8_t *scratch)
 {
@@ -255,7 +220,8 @@ static kiln_result decode_chunk(const exr_file *f, const exr_chunk *chunk, uint8
     case EXR_COMPRESSION_PXR24:
     case EXR_COMPRESSION_B44:
     case EXR_COMPRESSION_B44A:
-        good = undo_by_core(f, chunk, raw);
+        good = ki_exr_undo_other(f->context, f->core, f->part, &chunk->info, &chunk->box,
+                                 (int)f->compression, packed, packed_size, raw, chunk->size);
         break;
     case EXR_COMPRESSION_NONE:
     case EXR_COMPRESSION_LAST_TYPE:
@@ -408,8 +374,8 @@ static int64_t read_memory(exr_const_context_t core, void *data, void *buffer, u
     const exr_file *f = data;
     if (offset >= f->size)
         return 0;
-    uint64_t count = f->size - offset < size ? f->size - offset : size;
-    memcpy(buffer, f->bytes + offset, count);
+    uint64_t left = f->size - offset, count = left < size ? left : size;
+    memcpy(buffer, f->bytes + offset, (size_t)count);
     return (int64_t)count;
 }
 

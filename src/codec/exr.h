@@ -44,6 +44,12 @@ size_t ki_exr_unpack_runs(const uint8_t *packed, size_t packed_size, uint8_t *ra
 /// zlib data into exactly `size` bytes.
 bool ki_exr_inflate(const uint8_t *packed, size_t packed_size, uint8_t *raw, size_t size);
 
+/// PIZ, PXR24, B44 and B44A, of a box that is chunk `info` of the file. False on damaged data or
+/// where memory is short.
+bool ki_exr_undo_other(kiln_context *context, exr_const_context_t core, int part,
+                       const exr_chunk_info_t *info, const ki_exr_box *box, int compression,
+                       const uint8_t *packed, size_t packed_size, uint8_t *raw, size_t size);
+
 /// Half floats as DWA stores them to linear ones, 65536 entries.
 void ki_dwa_linear_table(kiln_context *context, uint16_t *table);
 /// DWAA and DWAB. `raw` has the box's size. KILN_ERROR_FORMAT or KILN_ERROR_MEMORY, no sentence.

@@ -44,8 +44,8 @@ void ki_dwa_linear_table(kiln_context *context, uint16_t *table)
 // ------------------------------------------------------------------------------------- the header
 
 typedef struct counts {
-    uint64_t version, zlib_size, zlib_packed, ac_packed, dc_packed, runs_packed, runs_size,
-        runs_raw, ac_count, dc_count, ac_compression;
+    size_t version, zlib_size, zlib_packed, ac_packed, dc_packed, runs_packed, runs_size, runs_raw,
+        ac_count, dc_count, ac_compression;
 } counts;
 
 typedef struct dwa_rule {
@@ -75,11 +75,14 @@ typedef struct dwa {
 
 static void read_counts(ki_reader *r, counts *c)
 {
-    uint64_t *field[] = {&c->version,   &c->zlib_size,   &c->zlib_packed,   &c->ac_packed,
-                         &c->dc_packed, &c->runs_packed, &c->runs_size,     &c->runs_raw,
-                         &c->ac_count,  &c->dc_count,    &c->ac_compression};
-    for (size_t i = 0; i < sizeof field / sizeof *field; i++)
-        *field[i] = ki_read_u64(r);
+    size_t *field[] = {&c->version,   &c->zlib_size,   &c->zlib_packed,   &c->ac_packed,
+                       &c->dc_packed, &c->runs_packed, &c->runs_size,     &c->runs_raw,
+                       &c->ac_count,  &c->dc_count,    &c->ac_compression};
+    for (size_t i = 0; i < sizeof field / sizeof *field; i++) {
+        uint64_t value = ki_read_u64(r);
+        *field[i] = (size_t)value;
+        r->failed = r->failed || *field[i] != value;
+    }
 }
 
 static void add_rule(dwa *d, const char *suffix, int scheme, int place, int type, bool any_case)

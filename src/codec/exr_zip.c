@@ -1,19 +1,7 @@
 // EXR's byte-wise compressions: ZIP, ZIPS and RLE.
 #include "codec/exr.h"
 
-#include <libdeflate.h>
 #include <string.h>
-
-bool ki_exr_inflate(const uint8_t *packed, size_t packed_size, uint8_t *raw, size_t size)
-{
-    struct libdeflate_decompressor *d = libdeflate_alloc_decompressor();
-    if (!d)
-        return false;
-    enum libdeflate_result result =
-        libdeflate_zlib_decompress(d, packed, packed_size, raw, size, NULL);
-    libdeflate_free_decompressor(d);
-    return result == LIBDEFLATE_SUCCESS;
-}
 
 typedef uint8_t bytes16 __attribute__((vector_size(16)));
 

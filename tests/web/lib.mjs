@@ -2,7 +2,7 @@
 import { execFileSync } from 'node:child_process';
 import fs from 'node:fs';
 import path from 'node:path';
-import { pathToFileURL } from 'node:url';
+import { fileURLToPath, pathToFileURL } from 'node:url';
 
 export const [kilnPath, site, folder] = process.argv.slice(2).map((name) => path.resolve(name));
 
@@ -13,6 +13,7 @@ if (!folder || !fs.existsSync(path.join(site, 'baker.wasm'))) {
 fs.rmSync(folder, { recursive: true, force: true });
 fs.mkdirSync(folder, { recursive: true });
 
+export const root = fileURLToPath(new URL('../..', import.meta.url));
 export const inFolder = (name) => path.join(folder, name);
 export const read = (name) => fs.readFileSync(inFolder(name));
 

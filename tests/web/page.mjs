@@ -1,7 +1,9 @@
 // The page as a visitor meets it: drop a file, bake, see, download; by keyboard; by address; and what
 // a broken file does.
 import { downloaded, drawn, drop, idle, withPage } from './browser.mjs';
-import { check, checkSame, kiln, read, site } from './lib.mjs';
+import fs from 'node:fs';
+import path from 'node:path';
+import { check, checkSame, inFolder, kiln, read, root, site } from './lib.mjs';
 
 const text = (page, id) => page.textContent(`#${id}`);
 const levels = (page) => page.locator('#levels button').count();
@@ -47,6 +49,11 @@ async function aFileIsDroppedAndBaked(page) {
     checkSame(bytes, bakeByCommand('low.hdr'), name);
     const sh = await downloaded(page, () => button(page, 'Harmonics, JSON').click());
     checkSame(sh.bytes, read('out.json'), sh.name);
+    // An EXR by Blender, DWAB.
+    fs.copyFileSync(path.join(root, 'build/data/blender/city.exr'), inFolder('city.exr'));
+    await drop(page, 'city.exr', read('city.exr'));
+    checkSame((await cube(page)).bytes, bakeByCommand('city.exr'), 'city.ktx2');
+    await drop(page, 'low.hdr', read('low.hdr'));
 }
 
 async function aBrokenFileGivesASentence(page) {
