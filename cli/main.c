@@ -10,15 +10,15 @@ static const cli_command *const commands[] = {
 #ifdef KILN_VIEWER
     &cli_render, &cli_view,    &cli_hand_in,
 #endif
+    NULL,
 };
-enum { COMMANDS = sizeof commands / sizeof *commands };
 
 static void print_help(FILE *file)
 {
     fputs("Exact image-based lighting: a panorama goes in, prefiltered radiance comes out.\n\n"
           "Usage: kiln COMMAND [OPTION...]\n\n",
           file);
-    for (int i = 0; i < COMMANDS; i++)
+    for (int i = 0; commands[i]; i++)
         fprintf(file, "  kiln %-10s  %s\n", commands[i]->name, commands[i]->summary);
     fputs("\n  kiln help COMMAND  all options of a command, with examples\n"
           "  kiln --version     the version\n\n"
@@ -31,7 +31,7 @@ static void print_help(FILE *file)
 
 static const cli_command *find(const char *name)
 {
-    for (int i = 0; i < COMMANDS; i++)
+    for (int i = 0; commands[i]; i++)
         if (!strcmp(name, commands[i]->name))
             return commands[i];
     return NULL;
