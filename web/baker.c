@@ -217,6 +217,17 @@ const double *baker_scenery_harmonics(const baker *b)
     return &b->scenery.sh.c[0][0];
 }
 
+bool baker_table(baker *b, const char *path, int kind)
+{
+    static const kiln_table_kind kinds[] = {KILN_TABLE_E, KILN_TABLE_E_AVERAGE, KILN_TABLE_DFG};
+    kiln_table_def def = {.kind = kinds[kind < 0 || kind > 2 ? 0 : kind]};
+    kiln_table table;
+    bool good = !kiln_table_create(b->context, &def, &table, &b->error) &&
+                !kiln_table_save(b->context, &table, path, NULL, &b->error);
+    kiln_table_free(&table);
+    return good;
+}
+
 bool baker_save(baker *b, const char *path, int format)
 {
     const char *dot = strrchr(path, '.');

@@ -41,6 +41,10 @@ BAKER double baker_scenery_roughness(const baker *b, int level);
 BAKER const float *baker_scenery_texels(const baker *b, int level);
 BAKER const double *baker_scenery_harmonics(const baker *b);
 
+/// Writes a table of the reflection model, as `kiln tables --table` does by default: kind 0 is e, 1
+/// eavg, 2 dfg.
+BAKER bool baker_table(baker *b, const char *path, int kind);
+
 /// Writes a file by its name's ending: .ktx2 (format: kiln_format), .dds, or the harmonics as
 /// .json, .txt and .h.
 BAKER bool baker_save(baker *b, const char *path, int format);

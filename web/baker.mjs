@@ -1,6 +1,7 @@
 // kiln as an object: what baker.h says, with exceptions that carry its sentences.
 //   const baker = await Baker.make({ progress(stage, fraction) {} })
 export const FORMATS = { rgba16f: 1, rgba32f: 2, rgb9e5: 3, b10g11r11: 4 };
+export const TABLES = ['e', 'eavg', 'dfg'];
 export const SHAPES = ['panorama', 'cube', 'octahedron'];
 
 export class Baker {
@@ -91,8 +92,17 @@ export class Baker {
 
     // A file that the command would write, by the name's ending: .ktx2 .dds .json .txt .h
     file(name, format = 'rgba16f') {
-        const path = `/${name}`;
-        this.call('baker_save', path, FORMATS[format]);
+        this.call('baker_save', `/${name}`, FORMATS[format]);
+        return this.written(`/${name}`);
+    }
+
+    // A table of the reflection model: .ktx2 .raw .h .glsl
+    table(name, kind) {
+        this.call('baker_table', `/${name}`, TABLES.indexOf(kind));
+        return this.written(`/${name}`);
+    }
+
+    written(path) {
         const bytes = this.module.FS.readFile(path);
         this.module.FS.unlink(path);
         return bytes;

@@ -266,14 +266,15 @@ get('keys').append(...KEYS.map(([keys, words]) => {
 
 // ----------------------------------------------------------------------------------------- handing out
 
-function addDownload(label, ending, format) {
+// A button for a file: its name, and its bytes by that.
+function addDownload(label, nameOf, bytesOf) {
     const button = document.createElement('button');
     button.type = 'button';
     button.disabled = true;
     button.textContent = label;
     button.onclick = async () => {
         try {
-            const name = `${stem()}${ending}`, bytes = await engine.file(name, format);
+            const name = nameOf(), bytes = await bytesOf(name);
             const link = document.createElement('a');
             link.href = URL.createObjectURL(new Blob([bytes]));
             link.download = name;
@@ -286,11 +287,19 @@ function addDownload(label, ending, format) {
     get('downloads').append(button);
 }
 
-addDownload('Cube, KTX2', '.ktx2', 'rgba16f');
-addDownload('Cube, KTX2 of 32 bits', '-32.ktx2', 'rgba32f');
-addDownload('Cube, DDS', '.dds', 'rgba16f');
-addDownload('Harmonics, JSON', '.json');
-addDownload('Harmonics, C', '.h');
+const addFile = (label, ending, format) =>
+    addDownload(label, () => `${stem()}${ending}`, (name) => engine.file(name, format));
+const addTable = (label, kind) =>
+    addDownload(label, () => `${kind}.ktx2`, (name) => engine.table(name, kind));
+
+addFile('Cube, KTX2', '.ktx2', 'rgba16f');
+addFile('Cube, KTX2 of 32 bits', '-32.ktx2', 'rgba32f');
+addFile('Cube, DDS', '.dds', 'rgba16f');
+addFile('Harmonics, JSON', '.json');
+addFile('Harmonics, C', '.h');
+addTable('Table of E', 'e');
+addTable('Table of E_avg', 'eavg');
+addTable('Table of A, B', 'dfg');
 
 // ----------------------------------------------------------------------------------------- taking in
 

@@ -48,6 +48,11 @@ for (const [name, take] of Object.entries(sources))
             compared += 2;
         }
     }
+for (const kind of ['e', 'eavg', 'dfg']) {
+    kiln('tables', '--table', kind, '-q', '-o', 'table.ktx2');
+    checkSame(baker.table('table.ktx2', kind), read('table.ktx2'), `table ${kind}`);
+    compared++;
+}
 check(stages.size > 2, `told of ${[...stages]} only`);
 
 // What cannot be read is said, and what was there stays.
