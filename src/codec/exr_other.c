@@ -244,8 +244,8 @@ static bool undo_b44(kiln_context *context, const ki_exr_box *box, const uint8_t
                 size_t used = undo_block(r.at, ki_reader_left(&r), block);
                 good = used && ki_read_bytes(&r, used);
                 for (int j = 0; j < ki_min(4, height - y); j++)
-                    memcpy(plane + 2 * ((size_t)(y + j) * (size_t)width + (size_t)x), block + 4 * j,
-                           2 * (size_t)ki_min(4, width - x));
+                    memcpy(plane + 2 * ((size_t)(y + j) * (size_t)width + (size_t)x),
+                           block + (ptrdiff_t)4 * j, 2 * (size_t)ki_min(4, width - x));
             }
         plane += bytes;
     }

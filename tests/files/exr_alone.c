@@ -49,7 +49,7 @@ static bool check_both(const uint8_t *bytes, size_t size, const char *name)
     assert_memory_equal(&got_info, &wanted_info, sizeof got_info);
     size_t count = 3 * (size_t)got.width * (size_t)got.height;
     for (size_t i = 0; i < count; i++)
-        if (memcmp(&got.pixels[i], &wanted.pixels[i], sizeof(float)) != 0)
+        if (got.pixels[i] != wanted.pixels[i])
             fail_msg("%s: value %zu is %g, not %g", name, i, (double)got.pixels[i],
                      (double)wanted.pixels[i]);
     kiln_image_free(&got);
@@ -184,7 +184,7 @@ static void inflates_what_was_deflated(void **state)
                     uint32_t n = (uint32_t)i * 2654435761U;
                     plain[i] = (uint8_t)(kind == 0   ? n >> 24
                                          : kind == 1 ? i / 300
-                                                     : (n >> 28) * (n >> 27 & 1));
+                                                     : (n & 1U << 27 ? n >> 28 : 0));
                 }
                 struct libdeflate_compressor *c = libdeflate_alloc_compressor(level);
                 size_t length = libdeflate_zlib_compress(c, plain, size, packed, sizeof packed);
