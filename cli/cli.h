@@ -75,6 +75,9 @@ extern const char *const cli_d_names[], *const cli_g_names[], *const cli_sheen_n
 /// The model that two options name; not given leaves its part alone.
 int cli_model(const cli_arguments *arguments, int option_d, int option_g, kiln_model *model);
 
+/// Whether the name that an option gives to source code can be one: CLI_GO or CLI_WRONG.
+int cli_source_name(const cli_arguments *arguments, int option);
+
 /// The ending of a file's name without its dot, "" where it has none, "/" for a folder.
 const char *cli_ending(const char *path);
 /// Fails early, before the work, where the folder of an output file does not exist.

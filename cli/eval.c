@@ -343,7 +343,10 @@ static int read_lines(eval *v)
     size_t capacity = 0, room = 0, width = (size_t)v->column_count;
     char *line = NULL;
     int code = CLI_GO;
-    while (code == CLI_GO && getline(&line, &capacity, stdin) >= 0) {
+    ssize_t length;
+    while (code == CLI_GO && (length = getline(&line, &capacity, stdin)) >= 0) {
+        for (ssize_t i = 0; i < length; i++)
+            line[i] = line[i] ? line[i] : '?'; // which no number has
         if (v->line_count == room) {
             room = room ? 2 * room : 1024;
             double *more = room < SIZE_MAX / (width * sizeof *more * 2)

@@ -1,9 +1,7 @@
 // kiln fit: closed forms of the integrals, as functions in C and GLSL.
 #include "cli.h"
 
-#include <ctype.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { OUTPUT = 1, ERROR, D, G, FORM, ROUGHNESS_MIN, MAX_COEFFICIENTS, NAME, JSON, QUIET };
@@ -46,16 +44,6 @@ static int read_kind(const cli_arguments *a, kiln_fit_kind *kind)
                      a->rest[0]);
 }
 
-static int check_name(const char *name)
-{
-    bool good = !name || isalpha((unsigned char)*name) || *name == '_';
-    for (const char *at = name; good && at && *at; at++)
-        good = isalnum((unsigned char)*at) || *at == '_';
-    return good ? CLI_GO
-                : cli_wrong(&cli_fit, "--name is '%s', it must be letters, digits and underscores",
-                            name);
-}
-
 static int read_arguments(const cli_arguments *a, kiln_fit_def *def)
 {
     static const char *const forms[] = {"auto", "polynomial", "rational", NULL};
@@ -74,7 +62,7 @@ static int read_arguments(const cli_arguments *a, kiln_fit_def *def)
             CLI_GO ||
         (code = cli_integer(a, MAX_COEFFICIENTS, "--max-coefficients", 1, KILN_MAX_FIT,
                             &def->max_coefficients)) != CLI_GO ||
-        (code = check_name(a->value[NAME])) != CLI_GO)
+        (code = cli_source_name(a, NAME)) != CLI_GO)
         return code;
     def->form = (kiln_fit_form)form;
     if ((a->value[D] || a->value[G]) && def->kind == KILN_FIT_SHEEN)

@@ -32,7 +32,7 @@ static int read_size(const cli_arguments *a, kiln_table_def *def)
     for (; more && count < 3; count++) {
         char *end;
         side[count] = strtol(at, &end, 10);
-        if (end == at || side[count] < 1 || side[count] > KILN_MAX_TABLE)
+        if (*at < '0' || *at > '9' || side[count] < 1 || side[count] > KILN_MAX_TABLE)
             break;
         more = *end == 'x';
         at = end + more;
@@ -78,6 +78,7 @@ static int read_choices(exact_job *job)
         (code = cli_choice(a, TABLES_FORMAT, "--format", formats, &format)) != CLI_GO ||
         (code = cli_choice(a, TABLES_SHEEN, "--sheen", cli_sheen_names, &sheen)) != CLI_GO ||
         (code = cli_model(a, TABLES_D, TABLES_G, &job->def.model)) != CLI_GO ||
+        (code = cli_source_name(a, TABLES_NAME)) != CLI_GO ||
         (code = read_size(a, &job->def)) != CLI_GO)
         return code;
     job->def.kind = (kiln_table_kind)kind;
@@ -119,6 +120,17 @@ static int check_kind(const exact_job *job)
     return CLI_GO;
 }
 
+// The average must not take the place of another output.
+static int check_average(const exact_job *job)
+{
+    const cli_arguments *a = job->a;
+    const char *average = a->value[TABLES_AVERAGE];
+    if (average && (!strcmp(average, a->value[TABLES_OUTPUT]) || !strcmp(average, job->lookup[0]) ||
+                    !strcmp(average, job->lookup[1])))
+        return cli_wrong(a->command, "--average %s: that file is written already", average);
+    return CLI_GO;
+}
+
 static int read_arguments(exact_job *job)
 {
     const cli_arguments *a = job->a;
@@ -142,7 +154,9 @@ static int read_arguments(exact_job *job)
         return code;
     if (a->value[TABLES_AVERAGE] && (code = check_output(a, TABLES_AVERAGE, "--average")) != CLI_GO)
         return code;
-    return a->value[TABLES_LOOKUP] ? name_lookup(job) : CLI_GO;
+    if (a->value[TABLES_LOOKUP] && (code = name_lookup(job)) != CLI_GO)
+        return code;
+    return check_average(job);
 }
 
 static void report(const cli_job *run, const exact_job *job, const kiln_table *table)

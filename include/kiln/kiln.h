@@ -1,7 +1,11 @@
 // kiln: exact image-based lighting. A panorama goes in, prefiltered radiance comes out.
 //
-// Read from top to bottom this header follows the light:
-//   context -> load -> spectrum -> lobe -> prefilter -> spherical harmonics -> save.
+// Read from top to bottom this header follows the light,
+//   context -> load -> lobe -> spectrum -> prefilter -> spherical harmonics,
+// then what the surface does to it,
+//   microfacet models -> compensation of energy -> tables -> closed forms,
+// then what both are compared with, the textbook, the assignment, brute force, and last the files.
+// Each of the two can be read without the other.
 //
 // Conventions, the same in every function and every file written (docs/conventions.md):
 //   - linear Rec. 709 radiance in the input's own unit, 32-bit float, three channels;
@@ -480,8 +484,9 @@ KILN_API double kiln_sheen_albedo(kiln_sheen sheen, double roughness, double nov
 
 /// Rough glass, exact Fresnel: rt[0] of the light from n.v is reflected and rt[1] transmitted by one
 /// microfacet; the rest is lost to further bounces. ior = n beyond / n on the side of v: below 1 from
-/// the inside; clamped to [1/16, 16]. Error below 2e-6. KILN_G_SMITH hides transmitted light by Heitz's
-/// beta function, the others by the product. Source: docs/theory/glass.md.
+/// the inside; clamped to [1/16, 16]. Error below 2e-6, from the inside with ior next to 1 and n.v below
+/// 1e-3 6e-6. KILN_G_SMITH hides transmitted light by Heitz's beta function, the others by the
+/// product. Source: docs/theory/glass.md.
 KILN_API void kiln_glass(const kiln_model *model, double roughness, double ior, double nov,
                          double rt[2]);
 /// 2 int R mu dmu and 2 int T mu dmu. Reciprocity: T_avg(ior) = ior^2 T_avg(1 / ior).
@@ -579,9 +584,9 @@ typedef struct kiln_table_def {
     kiln_table_kind kind;
     kiln_model model;
     kiln_sheen sheen; ///< KILN_TABLE_SHEEN only
-    int width, height,
-        depth;       ///< 1 to KILN_MAX_TABLE; 0 for 128 x 128, 32 x 32 x 32 where there is w,
-                     ///< 40 x 32 x 20 of the walk
+    /// 1 to KILN_MAX_TABLE; 0 for 128 x 128, 32 x 32 x 32 where there is w,
+    /// 40 x 32 x 20 of the walk. E_avg is one texel wide.
+    int width, height, depth;
     kiln_axis axis;  ///< KILN_TABLE_E_WALK has the grazing one and corners, without being asked
     bool corners;    ///< texel i stands at i / (n - 1), else at (i + 1/2) / n, of each axis
     bool complement; ///< 1 - value: 1 - E keeps its precision where E is near 1
@@ -734,9 +739,8 @@ typedef struct kiln_assignment_def {
     int size;         ///< 2 to 1024; 0 for 128
     int sample_count; ///< to 1048576; 0 for 1024. Monte Carlo takes the largest square up to it
     kiln_g g;         ///< see has_g. D is GGX
-    bool has_g; ///< false: KILN_G_SCHLICK_K2, which its figures have; its text has the other k
-    bool
-        unclamped; ///< Monte Carlo: D's denominator as it is, where the framework has 1e-4 at least
+    bool has_g;     ///< false: KILN_G_SCHLICK_K2, which its figures have; its text has the other k
+    bool unclamped; ///< Monte Carlo: D's denominator as it is; false: at least 1e-4
     bool unflipped; ///< row 0 holds roughness 0, as in figure 3; else the top row is roughness 1
     uint64_t seed;  ///< of Monte Carlo's numbers
 } kiln_assignment_def;
@@ -812,8 +816,7 @@ KILN_API KILN_CHECKED kiln_result kiln_image_save(kiln_context *context, const k
 
 /// How a table's numbers are stored.
 typedef enum kiln_table_format {
-    KILN_TABLE_FORMAT_AUTO =
-        0, ///< halves in KTX2, which every device filters, 16 bits in PNG, else floats
+    KILN_TABLE_FORMAT_AUTO = 0, ///< halves in KTX2, 16 bits in PNG, else floats
     KILN_TABLE_FORMAT_F32,
     KILN_TABLE_FORMAT_F16,
     KILN_TABLE_FORMAT_U16, ///< 0 to 1 in 65535 steps, clamped

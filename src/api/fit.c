@@ -1,6 +1,7 @@
 // Closed forms as the caller sees them.
 #include "bake/fit.h"
 
+#include "api/table_source.h"
 #include "base/file.h"
 #include "codec/fit.h"
 
@@ -23,24 +24,6 @@ void kiln_fit_evaluate(const kiln_fit *fit, float nov, float roughness, float *v
     ki_fit_evaluate(fit, nov, roughness, values);
 }
 
-static bool ends_with(const char *text, const char *ending)
-{
-    size_t length = strlen(text), tail = strlen(ending);
-    return length > tail && !strcmp(text + length - tail, ending);
-}
-
-static bool is_identifier(const char *name)
-{
-    static const char *const letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_";
-    size_t first = strspn(name, letters);
-    if (!first)
-        return false;
-    for (; *name; name++)
-        if (!strchr(letters, *name) && !strchr("0123456789", *name))
-            return false;
-    return true;
-}
-
 static bool is_form(const kiln_fit *fit)
 {
     if (fit->part_count < 1 || fit->part_count > 2)
@@ -61,17 +44,18 @@ kiln_result kiln_fit_save(kiln_context *context, const kiln_fit *fit, const char
     if (!is_form(fit))
         return ki_fail(error, KILN_ERROR_ARGUMENT, "the fit has %d parts, it is not made",
                        fit->part_count);
-    name = name ? name : names[fit->def.kind];
-    if (!is_identifier(name))
-        return ki_fail(error, KILN_ERROR_ARGUMENT,
-                       "name is '%s', it must be letters, digits and underscores", name);
-    bool glsl = ends_with(path, ".glsl");
-    if (!glsl && !ends_with(path, ".h"))
+    ki_source_name made;
+    kiln_result result =
+        ki_source_name_make(path, name ? name : names[fit->def.kind], &made, error);
+    if (result != KILN_OK)
+        return result;
+    bool glsl = ki_ends_with(path, ".glsl");
+    if (!glsl && !ki_ends_with(path, ".h"))
         return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: ends in none of .h .glsl", path);
     ki_writer text = {.context = context};
-    ki_fit_encode(fit, name, glsl, &text);
-    kiln_result result = text.failed ? ki_fail_memory(context, error, path, text.size)
-                                     : ki_file_write(context, path, text.bytes, text.size, error);
+    ki_fit_encode(fit, made.text, glsl, &text);
+    result = text.failed ? ki_fail_memory(context, error, path, text.size)
+                         : ki_file_write(context, path, text.bytes, text.size, error);
     ki_writer_free(&text);
     return result;
 }

@@ -8,12 +8,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static bool ends_with(const char *text, const char *ending)
-{
-    size_t length = strlen(text), tail = strlen(ending);
-    return length > tail && !strcmp(text + length - tail, ending);
-}
-
 // ------------------------------------------------------------------------------------------- names
 
 // Text that grows; a failed allocation shows as `failed`.
@@ -36,7 +30,7 @@ static kiln_result make_template(const char *path, const kiln_map *map, text_wri
         return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: names a face, the map is a %s and has none",
                        path, map->shape == KILN_SHAPE_PANORAMA ? "panorama" : "octahedron");
     size_t length = strlen(path);
-    if (ends_with(path, "/")) {
+    if (ki_ends_with(path, "/")) {
         static const char *const names[] = {"panorama", "{face}", "octahedron"};
         add_text(w, path, length);
         ki_write_text(w, "%s%s.exr", names[map->shape],
@@ -78,9 +72,9 @@ static kiln_result encode(const char *path, const float *pixels, int width, int 
                           int channels, const ki_exr_options *options, ki_png_coding coding,
                           ki_writer *w, kiln_error *error)
 {
-    if (ends_with(path, ".exr"))
+    if (ki_ends_with(path, ".exr"))
         return ki_exr_encode(pixels, width, height, channels, options, w, error);
-    if (ends_with(path, ".hdr"))
+    if (ki_ends_with(path, ".hdr"))
         return ki_hdr_encode(pixels, width, height, w, error);
     return ki_png_encode(pixels, width, height, channels, coding, w, error);
 }
@@ -138,7 +132,7 @@ static kiln_result save_pictures(kiln_context *context, const kiln_map *map, con
     text_writer template = {.context = context};
     kiln_result result = make_template(path, map, &template, error);
     bool made = false;
-    if (result == KILN_OK && ends_with(path, "/")) {
+    if (result == KILN_OK && ki_ends_with(path, "/")) {
         made = mkdir(path, 0777) == 0;
         if (!made && errno != EEXIST)
             result = ki_fail(error, KILN_ERROR_IO, "%s: the folder cannot be made: %s", path,
@@ -158,8 +152,8 @@ static kiln_result save_cube(kiln_context *context, const kiln_map *map, const c
     ki_writer bytes = {.context = context};
     if (!ki_progress(context, "writing", 0))
         return ki_fail_cancelled(error, "writing");
-    kiln_result result = ends_with(path, ".ktx2") ? ki_ktx2_encode(map, def, &bytes, error)
-                                                  : ki_dds_encode(map, def, &bytes, error);
+    kiln_result result = ki_ends_with(path, ".ktx2") ? ki_ktx2_encode(map, def, &bytes, error)
+                                                     : ki_dds_encode(map, def, &bytes, error);
     if (result == KILN_OK)
         result = ki_file_write(context, path, bytes.bytes, bytes.size, error);
     ki_writer_free(&bytes);
@@ -191,15 +185,15 @@ kiln_result kiln_map_save(kiln_context *context, const kiln_map *map, const char
                        (int)def->format, (int)KILN_FORMAT_B10G11R11);
     if (def->zstd < 0 || def->zstd > 22)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "zstd is %d, it must be 0 to 22", def->zstd);
-    bool cube = ends_with(path, ".ktx2") || ends_with(path, ".dds");
+    bool cube = ki_ends_with(path, ".ktx2") || ki_ends_with(path, ".dds");
     if (cube) {
         result = save_cube(context, map, path, def, error);
         if (result == KILN_OK && file_count)
             *file_count = 1;
         return result;
     }
-    bool exr = ends_with(path, ".exr") || ends_with(path, "/");
-    if (!exr && !ends_with(path, ".hdr") && !ends_with(path, ".png"))
+    bool exr = ki_ends_with(path, ".exr") || ki_ends_with(path, "/");
+    if (!exr && !ki_ends_with(path, ".hdr") && !ki_ends_with(path, ".png"))
         return ki_fail(error, KILN_ERROR_ARGUMENT,
                        "%s: ends in none of .ktx2 .dds .exr .hdr .png and /", path);
     bool plain = def->format == KILN_FORMAT_AUTO || (exr && def->format <= KILN_FORMAT_RGBA32F);
@@ -213,8 +207,8 @@ kiln_result kiln_map_save(kiln_context *context, const kiln_map *map, const char
 kiln_result kiln_image_save(kiln_context *context, const kiln_image *image, const char *path,
                             kiln_error *error)
 {
-    bool exr = ends_with(path, ".exr"), hdr = ends_with(path, ".hdr");
-    if (!exr && !hdr && !ends_with(path, ".png"))
+    bool exr = ki_ends_with(path, ".exr"), hdr = ki_ends_with(path, ".hdr");
+    if (!exr && !hdr && !ki_ends_with(path, ".png"))
         return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: ends in none of .exr .hdr .png", path);
     if (!image->pixels || image->width < 1 || image->height < 1 || image->channels < 1 ||
         image->channels > 4)
@@ -301,11 +295,11 @@ kiln_result kiln_sh_save(kiln_context *context, const kiln_sh *sh, const char *p
     if (result != KILN_OK)
         return result;
     ki_writer bytes = {.context = context};
-    if (ends_with(path, ".json"))
+    if (ki_ends_with(path, ".json"))
         write_json(&bytes, sh);
-    else if (ends_with(path, ".txt"))
+    else if (ki_ends_with(path, ".txt"))
         write_lines(&bytes, sh);
-    else if (ends_with(path, ".h"))
+    else if (ki_ends_with(path, ".h"))
         write_array(&bytes, sh);
     else
         return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: ends in none of .json .txt .h", path);

@@ -78,19 +78,13 @@ static const struct ending {
     {".glsl", GLSL, KILN_TABLE_FORMAT_F32, F32 | F16 | U16 | U8},
 };
 
-static bool ends_with(const char *text, const char *ending)
-{
-    size_t length = strlen(text), tail = strlen(ending);
-    return length > tail && !strcmp(text + length - tail, ending);
-}
-
 static kiln_result find_ending(const char *path, const kiln_table_save_def *def,
                                const struct ending **ending, kiln_table_format *format,
                                kiln_error *error)
 {
     *ending = NULL;
     for (size_t i = 0; i < sizeof endings / sizeof *endings; i++)
-        if (ends_with(path, endings[i].text))
+        if (ki_ends_with(path, endings[i].text))
             *ending = &endings[i];
     if (!*ending)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
@@ -232,8 +226,8 @@ kiln_result kiln_table_save(kiln_context *context, const kiln_table *table, cons
 kiln_result kiln_table_lookup_save(kiln_context *context, const kiln_table_def *def,
                                    const char *path, const char *name, kiln_error *error)
 {
-    bool glsl = ends_with(path, ".glsl");
-    if (!glsl && !ends_with(path, ".h"))
+    bool glsl = ki_ends_with(path, ".glsl");
+    if (!glsl && !ki_ends_with(path, ".h"))
         return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: ends in none of .h .glsl", path);
     ki_source_name made;
     kiln_result result = check_def(def, error);

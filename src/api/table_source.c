@@ -92,16 +92,6 @@ static size_t number_count(const kiln_table *table)
     return (size_t)table->image.width * (size_t)table->image.height * (size_t)table->image.channels;
 }
 
-// A literal with a point or an exponent, which makes it a float in both languages.
-static void write_float(ki_writer *w, float value)
-{
-    size_t start = w->size;
-    ki_write_number(w, (double)value);
-    if (!w->failed && !memchr(w->bytes + start, '.', w->size - start) &&
-        !memchr(w->bytes + start, 'e', w->size - start))
-        ki_write_text(w, ".0");
-}
-
 static kiln_result write_floats(const kiln_table *table, const char *suffix, ki_writer *w,
                                 kiln_error *error)
 {
@@ -111,7 +101,7 @@ static kiln_result write_floats(const kiln_table *table, const char *suffix, ki_
         if (i % 65536 == 0 && !ki_go_on(w->context))
             return ki_fail_cancelled(error, "writing");
         ki_write_text(w, i % A_LINE ? " " : "    ");
-        write_float(w, table->image.pixels[i]);
+        ki_write_float(w, table->image.pixels[i]);
         ki_write_text(w, "%s%s%s", suffix, i + 1 < count ? "," : "",
                       i % A_LINE == A_LINE - 1 || i + 1 == count ? "\n" : "");
     }

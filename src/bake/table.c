@@ -175,9 +175,6 @@ kiln_result ki_table_complete(kiln_table_def *def, kiln_error *error)
     kiln_result result = check_choices(def, error);
     if (result)
         return result;
-    if (!fill_of[def->kind] && def->kind != KILN_TABLE_E_WALK)
-        return ki_fail(error, KILN_ERROR_UNSUPPORTED, "tables of kind %d are not made yet",
-                       (int)def->kind);
     bool has_depth = ki_table_third(def->kind) != KI_THIRD_NONE;
     bool walks = def->kind == KILN_TABLE_E_WALK;
     if (def->kind == KILN_TABLE_E_AVERAGE)

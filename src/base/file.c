@@ -7,6 +7,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+bool ki_ends_with(const char *path, const char *ending)
+{
+    size_t length = strlen(path), tail = strlen(ending);
+    return length > tail && !strcmp(path + length - tail, ending);
+}
+
 kiln_result ki_file_read(kiln_context *context, const char *path, uint8_t **bytes, size_t *size,
                          kiln_error *error)
 {

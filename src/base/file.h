@@ -4,6 +4,9 @@
 
 #include "base/base.h"
 
+/// Whether a path has this ending, ".exr" or "/", and something before it.
+bool ki_ends_with(const char *path, const char *ending);
+
 /// Reads a whole file into memory of the context; "-" is standard input. The caller frees `bytes`.
 kiln_result ki_file_read(kiln_context *context, const char *path, uint8_t **bytes, size_t *size,
                          kiln_error *error);

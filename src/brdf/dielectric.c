@@ -259,6 +259,7 @@ static double integrate_part(const boundary *s, part what)
 // The smooth boundary, where G is not 1 for Schlick's k of the text only.
 static void smooth(const kiln_model *model, double ior, double nov, double rt[2])
 {
+    nov = nov > 1e-150 ? nov : 0; // squares would underflow
     double f = ki_fresnel_dielectric(ior, nov);
     double beyond = sqrt(fmax(0, 1 - (1 - nov) * (1 + nov) / (ior * ior)));
     rt[0] = f * ki_masking(model, 0, nov, nov);
@@ -295,7 +296,7 @@ static bool prepare(const kiln_model *model, double roughness, double ior, doubl
 static double reflected(const boundary *s)
 {
     double sum = integrate_part(s, REFLECTED);
-    return s->critical > 0 ? ki_energy(&s->model, s->roughness, s->mu) - sum : sum;
+    return s->critical > 0 ? fmax(0, ki_energy(&s->model, s->roughness, s->mu) - sum) : sum;
 }
 
 void ki_dielectric(const kiln_model *model, double roughness, double ior, double nov, double rt[2])

@@ -18,7 +18,7 @@ void ki_energy_split(const kiln_model *model, double roughness, double nov, doub
 void ki_energy_values(const kiln_context *context, const kiln_model *model, double roughness,
                       const double *nov, int count, bool split, double *out);
 
-/// GGX, compiled once an instruction set.
+/// GGX, compiled once an instruction set: the body is energy.inl, KI_ROW_OF names the one to use.
 typedef void ki_energy_row(const kiln_model *model, double roughness, const double *nov, int count,
                            bool split, double *out);
 ki_energy_row ki_energy_row_scalar, ki_energy_row_sse2, ki_energy_row_avx2, ki_energy_row_avx512;

@@ -27,6 +27,10 @@ const char *ki_parse_number(const char *text, double *value);
 /// Nine digits: enough for a float to come back as it was.
 void ki_write_number(ki_writer *writer, double value);
 
+/// The shortest of six to nine digits that is this float again, with a point or an exponent, which C
+/// and GLSL want.
+void ki_write_float(ki_writer *writer, float value);
+
 /// What a file says of its table, as far as it is printable.
 void ki_describe_table(kiln_file_info *info, const char *text);
 

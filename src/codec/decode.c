@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 const char *ki_layout_name(int width, int height)
@@ -55,14 +56,33 @@ const char *ki_parse_number(const char *text, double *value)
     return text;
 }
 
-void ki_write_number(ki_writer *writer, double value)
+// Whatever the program's locale is.
+static void write_with_point(ki_writer *writer, char *text)
 {
-    char text[40];
-    snprintf(text, sizeof text, "%.9g", value);
     char *comma = strchr(text, ',');
     if (comma)
         *comma = '.';
     ki_write_text(writer, "%s", text);
+}
+
+void ki_write_number(ki_writer *writer, double value)
+{
+    char text[40];
+    snprintf(text, sizeof text, "%.9g", value);
+    write_with_point(writer, text);
+}
+
+void ki_write_float(ki_writer *writer, float value)
+{
+    char text[40];
+    for (int digits = 6; digits <= 9; digits++) {
+        snprintf(text, sizeof text, "%.*g", digits, (double)value);
+        if (strtof(text, NULL) == value)
+            break;
+    }
+    write_with_point(writer, text);
+    if (!strpbrk(text, ".e"))
+        ki_write_text(writer, ".0");
 }
 
 void ki_describe_table(kiln_file_info *info, const char *text)

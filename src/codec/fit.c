@@ -1,8 +1,8 @@
 #include "codec/fit.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "codec/codec.h"
+
+#include <stddef.h>
 
 // How the two languages differ.
 typedef struct language {
@@ -12,19 +12,10 @@ typedef struct language {
 static const language c_language = {"float", "f", "sqrtf", "static inline "};
 static const language glsl_language = {"highp float", "", "sqrt", ""};
 
-// Nine digits are this float again; both languages want a point.
 static void write_number(ki_writer *w, const language *l, float value)
 {
-    char text[40];
-    for (int digits = 6; digits <= 9; digits++) {
-        snprintf(text, sizeof text, "%.*g", digits, (double)value);
-        if (strtof(text, NULL) == value)
-            break;
-    }
-    char *comma = strchr(text, ','); // of the program's locale
-    if (comma)
-        *comma = '.';
-    ki_write_text(w, "%s%s%s", text, strpbrk(text, ".e") ? "" : ".0", l->suffix);
+    ki_write_float(w, value);
+    ki_write_text(w, "%s", l->suffix);
 }
 
 // ----------------------------------------------------------------------------------------- comment

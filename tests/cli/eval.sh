@@ -113,6 +113,7 @@ bad "line 3 has more than 'roughness mu'" '.5 .5\n.5 .5 .5'
 bad "line 2: mu is 1.5, it must be from 0 to 1" '.5 1.5'
 bad "line 2: roughness is nan" 'nan 1'
 bad "line 2: mu is -0.5" '1 -.5'
+bad "line 2" '.5 .5\0 7'
 seq 0 .00001 1 >log/in
 expect 0 "" eval e --roughness .7 <log/in
 [ "$(wc -l <log/out)" = "$(wc -l <log/in)" ] || die "as many values as lines"
