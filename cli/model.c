@@ -31,7 +31,7 @@ int cli_source_name(const cli_arguments *a, int option)
         good = isalnum((unsigned char)*at) || *at == '_';
     return good ? CLI_GO
                 : cli_wrong(a->command,
-                            "--%s is '%s', it must be at most %d letters, digits and single "
-                            "underscores, a letter first, no gl_",
+                            "--%s is '%s', it must be letters, digits and single underscores, "
+                            "%d at most, a letter first, no gl_",
                             cli_option_name(a->command, option), name, LONGEST);
 }

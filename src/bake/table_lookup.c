@@ -70,7 +70,7 @@ static double average_row(const kiln_table *table, double roughness)
         double u = x < def->width ? ki_texel_place(x, def->width, def->corners) : 1;
         double to = ki_axis_to_nov(def, roughness, u), half = (to - from) / 2;
         for (int i = 0; i < NODES; i++) {
-            double nov = from + half * (1 + node[i]), e;
+            double nov = from + half * (1 + node[i]), e = 0;
             ki_table_lookup(table, nov, roughness, 0, &e);
             sum += 2 * weight[i] * half * nov * e;
         }

@@ -37,10 +37,10 @@ static void beckmann_row(const kiln_model *model, double roughness, const double
         double ab[2];
         ki_beckmann_energy(model, roughness, nov[i], ab);
         if (split) {
-            out[2 * i] = ab[0];
-            out[2 * i + 1] = ab[1];
+            *out++ = ab[0];
+            *out++ = ab[1];
         } else {
-            out[i] = ab[0] + ab[1];
+            *out++ = ab[0] + ab[1];
         }
     }
 }

@@ -449,10 +449,10 @@ void KI_ROW(const kiln_model *model, double roughness, const double *nov, int co
             else
                 integrate(&block[i], split, both);
             if (split) {
-                out[2 * (from + i)] = both[0] - both[1];
-                out[2 * (from + i) + 1] = both[1];
+                *out++ = both[0] - both[1];
+                *out++ = both[1];
             } else {
-                out[from + i] = both[0];
+                *out++ = both[0];
             }
         }
     }

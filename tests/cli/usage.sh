@@ -115,7 +115,7 @@ expect 2 "from 2 to 4096" tables -o out.exr --method textbook --size 1
 expect 2 "size is '3x+5'" tables -o out.exr --size 3x+5
 expect 2 "written already" tables -o out.exr --average out.exr
 expect 2 "written already" tables -o out.ktx2 --average out_lookup.h --lookup
-expect 2 "name is '1x', it must be at most 47" tables -o out.h --name 1x
+expect 2 "name is '1x', it must be letters" tables -o out.h --name 1x
 expect 2 "name is 'a__b'" fit e -o out.glsl --name a__b
 expect 2 "no input" info
 expect 2 "no quantity: name e, eavg" eval
