@@ -536,6 +536,8 @@ static int filter_by_textbook(bake *b)
 static double format_limit(const bake *b, const char *path)
 {
     const char *ending = cli_ending(path);
+    if (b->engine && path == b->output)
+        return b->engine->limit;
     if (!strcmp(ending, "png"))
         return 1;
     if (!strcmp(ending, "hdr"))
@@ -564,7 +566,11 @@ static void warn_of_clamping(bake *b, const kiln_map *map, const char *path)
         return;
     double stops = floor(log2(limit / (double)most));
     const char *ending = cli_ending(path);
-    if (!strcmp(ending, "png"))
+    if (b->engine && path == b->output)
+        cli_warn(&b->job,
+                 "%s: %zu values above %g (up to %.4g) were cut off; --exposure %.0f keeps them",
+                 path, count, limit, (double)most, b->exposure + stops);
+    else if (!strcmp(ending, "png"))
         cli_warn(&b->job, "%s: %zu values above 1 (up to %.4g) were cut off, PNG holds no more",
                  path, count, (double)most);
     else

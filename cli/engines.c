@@ -24,6 +24,7 @@ static int list_json(void)
         cJSON_AddStringToObject(row, "mapping", engine->mapping);
         cJSON_AddNumberToObject(row, "size", engine->size);
         cJSON_AddNumberToObject(row, "level_count", engine->level_count);
+        cJSON_AddNumberToObject(row, "limit", engine->limit);
         cJSON_AddItemToArray(json, row);
     }
     return cli_print_json(json);

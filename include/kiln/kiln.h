@@ -867,6 +867,7 @@ typedef struct kiln_engine {
     const char *mapping; ///< of level k of n, of a size of w texels, to roughness r
     int size;            ///< of a face, where nothing else is asked for
     int level_count;     ///< then
+    double limit;        ///< the largest radiance that the files hold
 } kiln_engine;
 
 /// The engines in the order of their table; NULL where the index is none.

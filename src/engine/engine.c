@@ -8,8 +8,8 @@
 #include <math.h>
 #include <string.h>
 
-enum { RECIPES = 1 };
-static const ki_recipe *const recipes[RECIPES] = {&ki_three};
+enum { RECIPES = 3 };
+static const ki_recipe *const recipes[RECIPES] = {&ki_three, &ki_babylon, &ki_babylon_dds};
 
 const ki_recipe *ki_recipe_at(int index)
 {

@@ -89,10 +89,20 @@ function readCube(name) {
     });
 }
 
-// Radiance at a direction and a fractional level, of each asset; kiln's directions.
-const coded = (last) => ({
+// Irradiance / pi of three bands: rows of coefficients, as kiln writes them.
+function readHarmonics({ coefficients: c }, [x, y, z]) {
+    const k = [0.282095, 0.488603, 1.092548, 0.315392, 0.546274].map((v) => v / Math.PI);
+    const basis = [k[0], k[1] * y, k[1] * z, k[1] * x, k[2] * x * y, k[2] * y * z,
+                   k[3] * (3 * z * z - 1), k[2] * x * z, k[4] * (x * x - y * y)];
+    return [0, 1, 2].map((channel) => basis.reduce((sum, b, i) => sum + b * c[i][channel], 0));
+}
+
+// Radiance at a direction and a fractional level, and irradiance / pi, of each asset; kiln's
+// directions. Engines take the latter from the last level or from harmonics.
+const coded = (last, harmonics) => ({
     radiance: (d, lod) => d.map((x) => (1 + lod) * (2 + x)),
-    irradiance: (n) => n.map((x) => (1 + last) * (2 + x)),
+    irradiance: harmonics ? (n) => n.map((x) => 2 + 2 / 3 * x)
+                          : (n) => n.map((x) => (1 + last) * (2 + x)),
 });
 const white = { radiance: () => [1, 1, 1], irradiance: () => [1, 1, 1] };
 const baked = (levels) => ({
@@ -104,15 +114,20 @@ const baked = (levels) => ({
     irradiance: (n) => readLevel(levels.at(-1), n),
 });
 
-// model: { toKiln, lod, bend?, shade } as stated in each test.
-function predict(model, asset, { toEye, normals }, roughness) {
-    return normals.map((n) => {
+// model: { toKiln, lod, shade, clamp?, bend?, harmonics?, distance? } as stated in each test.
+function predict(model, asset, { toEye: forward, right, up, normals }, roughness) {
+    const row = ROUGHNESS.indexOf(roughness) - ROUGHNESS.length / 2, half = 0.5 + 0.5 / CELL;
+    return normals.map((n, i) => {
+        // Babylon looks from the camera's place even where rays are parallel.
+        const place = add(right.map((x) => (i + half - COLUMNS / 2) * x), row + half, up);
+        const toEye = model.distance
+            ? normalize(add(forward.map((x) => model.distance * x), -1, place)) : forward;
         const nov = dot(n, toEye), r = model.clamp ? model.clamp(roughness) : roughness;
         const mirror = add(n.map((x) => 2 * nov * x), -1, toEye);
         const way = model.bend ? normalize(mix(mirror, n, model.bend(r))) : mirror;
         const [single, multiple] = model.shade(nov, r);
         const light = asset.radiance(model.toKiln(way), model.lod(r));
-        const around = (model.irradiance ?? asset.irradiance)(model.toKiln(n));
+        const around = asset.irradiance(model.toKiln(n));
         return { way, nov, r, single, multiple, around,
                  value: light.map((x, c) => single * x + multiple * around[c]) };
     });
@@ -141,16 +156,43 @@ function fitLine(rows, values) {
     return a.map((row, i) => row[4] / row[i]);
 }
 
+// A direction as a coarse level's texels tell it, between which it is read bilinearly.
+const told = new Map();
+function readDirection(way, size) {
+    if (size > 64)
+        return way;
+    if (!told.has(size)) {
+        const texels = new Float32Array(24 * size * size), at = (i) => 2 * (i + 0.5) / size - 1;
+        for (let i = 0; i < 6 * size * size; i++) {
+            const face = Math.floor(i / size / size), y = Math.floor(i / size) % size;
+            texels.set(normalize(FACES[face](at(i % size), at(y))), 4 * i);
+        }
+        told.set(size, { size, texels });
+    }
+    return readLevel(told.get(size), way);
+}
+
+function readMixed(way, lod, size) {
+    const low = Math.floor(lod), t = lod - low;
+    return mix(readDirection(way, size >> low).map((x) => x * (1 + low) / (1 + lod)),
+               readDirection(way, Math.max(1, size >> (low + 1))).map((x) => x * (2 + low) / (1 + lod)),
+               t);
+}
+
 // From the pixels alone: which axes each channel follows, and which level was read.
-function checkCoded(model, views, last, shown, bounds) {
-    const asset = coded(last), worst = { axes: 0, lod: 0 };
+function checkCoded(model, views, last, size, shown, bounds) {
+    const asset = coded(last, model.harmonics), worst = { axes: 0, lod: 0 };
     ROUGHNESS.forEach((roughness, row) => {
         const rows = [], channels = [[], [], []];
         views.forEach((view, side) => predict(model, asset, view, roughness).forEach((p, i) => {
-            rows.push([1, ...p.way]);
+            if (p.single < 0.1)
+                return; // diffuse light alone
+            rows.push([1, ...readMixed(p.way, model.lod(p.r), size)]);
             shown[side][row][i].forEach((x, c) =>
                 channels[c].push((x - p.multiple * p.around[c]) / p.single));
         }));
+        if (!rows.length)
+            return;
         const fits = channels.map((values) => fitLine(rows, values));
         const level = fits.reduce((sum, fit) => sum + fit[0] / 6, 0);
         const lod = model.lod(model.clamp ? model.clamp(roughness) : roughness);
@@ -203,7 +245,7 @@ export function tableReader(size, texel) {
 
 // name: the engine's in kiln's table. page: its page, which defines draw(file, views, ROUGHNESS, CELL)
 // and resolves to numbers [view][roughness][normal][channel]. ending: of its files.
-export async function proveEngine({ name, page, ending, model, bounds, irradiance }) {
+export async function proveEngine({ name, page, ending, model, bounds }) {
     fs.rmSync(folder, { recursive: true, force: true });
     fs.mkdirSync(folder, { recursive: true });
     fs.symlinkSync(path.join(here, 'node_modules'), path.join(folder, 'npm'));
@@ -216,7 +258,10 @@ export async function proveEngine({ name, page, ending, model, bounds, irradianc
     const roughness = report.output.levels.map((level) => level.roughness);
     kiln('bake', panorama, '-q', '-o', 'plain.ktx2', '--format', 'rgba32f', '--size', `${size}`,
          '--roughness', roughness.join());
-    const views = makeViews(), { own, ...made } = model(count, size);
+    kiln('bake', panorama, '-q', '-o', 'plain.hdr', '--size', '8', '--levels', '1', '--sh', 'sh.json',
+         '--sh-irradiance');
+    const sh = JSON.parse(fs.readFileSync(path.join(folder, 'sh.json')));
+    const views = makeViews(), made = model(count, size);
     await withPage(folder, async (browser, address) => {
         const draw = async (file) => {
             await browser.goto(`${address}pages/${page}`);
@@ -225,10 +270,11 @@ export async function proveEngine({ name, page, ending, model, bounds, irradianc
                                     [`${address}${file}`, views, ROUGHNESS, CELL]);
         };
         console.log(name);
-        checkCoded(made, views, count - 1, await draw(`coded${ending}`), bounds.coded);
+        checkCoded(made, views, count - 1, size, await draw(`coded${ending}`), bounds.coded);
         checkPixels('furnace', made, white, views, await draw(`white${ending}`), bounds.white);
         const real = baked(readCube('plain.ktx2'));
-        checkPixels('real', made, { ...real, ...irradiance?.(kiln) }, views,
-                    await draw(`real${ending}`), bounds.real);
+        if (made.harmonics)
+            real.irradiance = (n) => readHarmonics(sh, n);
+        checkPixels('real', made, real, views, await draw(`real${ending}`), bounds.real);
     });
 }

@@ -26,6 +26,6 @@ await proveEngine({
             return [a + b, 1 - a - b];
         },
     }),
-    bounds: { coded: { axes: 0.02, lod: 0.02 }, white: { rms: 1e-3, most: 2e-3 },
-              real: { rms: 0.01, most: 0.05 } },
+    bounds: { coded: { axes: 0.01, lod: 0.01 }, white: { rms: 1e-3, most: 2e-3 },
+              real: { rms: 1e-3, most: 5e-3 } },
 });

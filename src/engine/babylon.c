@@ -1,0 +1,108 @@
+// Babylon.js: level lod = log2(W (r^2 + 0.0005)) * scale of a cube of W texels, and all the way down to
+// one texel. An .env states its scale, a .dds cannot: then it is 0.8. That is also the better choice: with
+// 1 there would be 2 x 2 texels at r = 0.7, which show three times the error. Toward r = 1 the shader goes over
+// to irradiance / pi from harmonics, which an .env brings as a polynomial; for a .dds Babylon computes it.
+//
+// Its world is left-handed. Its panoramas have +Z in the centre and +X to the right of it.
+#include "engine/engine.h"
+
+#include "codec/env.h"
+#include "math/math.h"
+
+#include <math.h>
+
+static const double lod_scale = 0.8;
+
+static double roughness(int level, int level_count, int size)
+{
+    (void)level_count;
+    double slope = ki_exp(level / lod_scale * ki_log(2)) / size;
+    return level == 0 ? 0 : slope >= 1 ? 1 : sqrt(slope - 0.0005);
+}
+
+// Irradiance / pi in harmonics is that of radiance times 1, 2/3 or 1/4 by band. As a polynomial Babylon
+// multiplies by these and by the constant of the basis function once more, which the shader's harmonics
+// take back: SphericalPolynomial.updateFromHarmonics and SphericalHarmonics.FromPolynomial. 1 is written
+// as x^2 + y^2 + z^2.
+static void make_polynomial(const kiln_sh *sh, double polynomial[9][3])
+{
+    const double k0 = sqrt(1 / (4 * KI_PI)), k1 = sqrt(3 / (4 * KI_PI)) * 4 / 9;
+    const double k2 = sqrt(15 / (4 * KI_PI)) / 16, k3 = sqrt(5 / (16 * KI_PI)) / 16;
+    for (int c = 0; c < 3; c++) {
+        double one = k0 * sh->c[0][c], z2 = k3 * sh->c[6][c], x2_y2 = k2 / 2 * sh->c[8][c];
+        polynomial[0][c] = k1 * sh->c[3][c];
+        polynomial[1][c] = k1 * sh->c[1][c];
+        polynomial[2][c] = k1 * sh->c[2][c];
+        polynomial[3][c] = one - z2 + x2_y2;
+        polynomial[4][c] = one - z2 - x2_y2;
+        polynomial[5][c] = one + 2 * z2;
+        polynomial[6][c] = k2 * sh->c[5][c];
+        polynomial[7][c] = k2 * sh->c[7][c];
+        polynomial[8][c] = k2 * sh->c[4][c];
+    }
+}
+
+static kiln_result write_env(ki_export *to, kiln_error *error)
+{
+    ki_writer bytes = {.context = to->context};
+    double polynomial[9][3];
+    make_polynomial(to->sh, polynomial);
+    kiln_result result = ki_env_encode(to->map, lod_scale, polynomial, &bytes, error);
+    if (result == KILN_OK)
+        result = ki_export_add(to, to->path, &bytes, error);
+    ki_writer_free(&bytes);
+    return result;
+}
+
+static kiln_result write_dds(ki_export *to, kiln_error *error)
+{
+    ki_writer bytes = {.context = to->context};
+    kiln_save_def def = {.format = KILN_FORMAT_RGBA16F};
+    kiln_result result = ki_dds_encode(to->map, &def, &bytes, error);
+    if (result == KILN_OK)
+        result = ki_export_add(to, to->path, &bytes, error);
+    ki_writer_free(&bytes);
+    return result;
+}
+
+#define BABYLON_AXES                                                                               \
+    {                                                                                              \
+        {0, 1, 2},                                                                                 \
+        {                                                                                          \
+            1, 1, -1                                                                               \
+        }                                                                                          \
+    }
+
+const ki_recipe ki_babylon = {
+    .about = {.name = "babylon",
+              .title = "Babylon.js 9, .env",
+              .files = "NAME.env",
+              .ending = "env",
+              .mapping = "r^2 = 2^(k / 0.8) / w - 0.0005, k > 0",
+              .size = 256,
+              .level_count = 9,
+              .limit = 255},
+    .axes = BABYLON_AXES,
+    .size_min = 16,
+    .size_max = 2048,
+    .last_size = 1,
+    .roughness = roughness,
+    .write = write_env,
+};
+
+const ki_recipe ki_babylon_dds = {
+    .about = {.name = "babylon-dds",
+              .title = "Babylon.js 9, .dds",
+              .files = "NAME.dds",
+              .ending = "dds",
+              .mapping = "r^2 = 2^(k / 0.8) / w - 0.0005, k > 0",
+              .size = 256,
+              .level_count = 9,
+              .limit = 65504},
+    .axes = BABYLON_AXES,
+    .size_min = 16,
+    .size_max = 2048,
+    .last_size = 1,
+    .roughness = roughness,
+    .write = write_dds,
+};
