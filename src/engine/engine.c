@@ -8,8 +8,9 @@
 #include <math.h>
 #include <string.h>
 
-enum { RECIPES = 3 };
-static const ki_recipe *const recipes[RECIPES] = {&ki_three, &ki_babylon, &ki_babylon_dds};
+enum { RECIPES = 4 };
+static const ki_recipe *const recipes[RECIPES] = {&ki_three, &ki_babylon, &ki_babylon_dds,
+                                                  &ki_filament};
 
 const ki_recipe *ki_recipe_at(int index)
 {

@@ -31,7 +31,7 @@ typedef struct ki_recipe {
     kiln_result (*write)(ki_export *to, kiln_error *error);
 } ki_recipe;
 
-extern const ki_recipe ki_three, ki_babylon, ki_babylon_dds;
+extern const ki_recipe ki_three, ki_babylon, ki_babylon_dds, ki_filament;
 
 /// The table of all; NULL behind the last.
 const ki_recipe *ki_recipe_at(int index);

@@ -244,8 +244,9 @@ export function tableReader(size, texel) {
 }
 
 // name: the engine's in kiln's table. page: its page, which defines draw(file, views, ROUGHNESS, CELL)
-// and resolves to numbers [view][roughness][normal][channel]. ending: of its files.
-export async function proveEngine({ name, page, ending, model, bounds }) {
+// and resolves to numbers [view][roughness][normal][channel]. ending: of what kiln is told to write;
+// loads: of what the page loads.
+export async function proveEngine({ name, page, ending, loads = ending, model, bounds }) {
     fs.rmSync(folder, { recursive: true, force: true });
     fs.mkdirSync(folder, { recursive: true });
     fs.symlinkSync(path.join(here, 'node_modules'), path.join(folder, 'npm'));
@@ -263,18 +264,16 @@ export async function proveEngine({ name, page, ending, model, bounds }) {
     const sh = JSON.parse(fs.readFileSync(path.join(folder, 'sh.json')));
     const views = makeViews(), made = model(count, size);
     await withPage(folder, async (browser, address) => {
-        const draw = async (file) => {
-            await browser.goto(`${address}pages/${page}`);
-            await browser.waitForFunction(() => window.draw);
-            return browser.evaluate((args) => window.draw(...args),
-                                    [`${address}${file}`, views, ROUGHNESS, CELL]);
-        };
+        await browser.goto(`${address}pages/${page}`);
+        await browser.waitForFunction(() => window.draw);
+        const draw = (file) => browser.evaluate((args) => window.draw(...args),
+                                                [`${address}${file}`, views, ROUGHNESS, CELL]);
         console.log(name);
-        checkCoded(made, views, count - 1, size, await draw(`coded${ending}`), bounds.coded);
-        checkPixels('furnace', made, white, views, await draw(`white${ending}`), bounds.white);
+        checkCoded(made, views, count - 1, size, await draw(`coded${loads}`), bounds.coded);
+        checkPixels('furnace', made, white, views, await draw(`white${loads}`), bounds.white);
         const real = baked(readCube('plain.ktx2'));
         if (made.harmonics)
             real.irradiance = (n) => readHarmonics(sh, n);
-        checkPixels('real', made, real, views, await draw(`real${ending}`), bounds.real);
+        checkPixels('real', made, real, views, await draw(`real${loads}`), bounds.real);
     });
 }

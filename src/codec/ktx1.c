@@ -1,0 +1,65 @@
+// KTX version 1 cubes of halves.
+#include "codec/ktx1.h"
+
+#include "codec/texel.h"
+
+#include <string.h>
+
+enum {
+    ORDER = 0x04030201,
+    GL_HALF_FLOAT = 0x140b,
+    GL_RGBA = 0x1908,
+    GL_RGBA16F = 0x881a,
+};
+
+static const uint8_t magic[12] = {0xab, 'K', 'T', 'X', ' ', '1', '1', 0xbb, '\r', '\n', 0x1a, '\n'};
+
+static void write_header(ki_writer *w, int size, int level_count)
+{
+    ki_write(w, magic, sizeof magic);
+    ki_write_u32(w, ORDER);
+    ki_write_u32(w, GL_HALF_FLOAT);
+    ki_write_u32(w, 2); // bytes that are swapped together
+    ki_write_u32(w, GL_RGBA);
+    ki_write_u32(w, GL_RGBA16F);
+    ki_write_u32(w, GL_RGBA);
+    ki_write_u32(w, (uint32_t)size);
+    ki_write_u32(w, (uint32_t)size);
+    ki_write_u32(w, 0); // depth
+    ki_write_u32(w, 0); // no array
+    ki_write_u32(w, 6);
+    ki_write_u32(w, (uint32_t)level_count);
+}
+
+// Key and value each end in NUL; the pair's size comes before it, zeros up to 4 bytes behind it.
+static void write_pair(ki_writer *w, const char *key, const char *value)
+{
+    size_t size = strlen(key) + strlen(value) + 2;
+    ki_write_u32(w, (uint32_t)(4 + (size + 3) / 4 * 4));
+    ki_write_u32(w, (uint32_t)size);
+    ki_write(w, key, strlen(key) + 1);
+    ki_write(w, value, strlen(value) + 1);
+    ki_write_align(w, 4);
+}
+
+kiln_result ki_ktx1_encode(const kiln_map *map, int first, int count, const char *key,
+                           const char *value, ki_writer *writer, kiln_error *error)
+{
+    const ki_texel *texel = ki_texel_of_format(KILN_FORMAT_RGBA16F);
+    write_header(writer, kiln_map_level_size(map, first), count);
+    if (key)
+        write_pair(writer, key, value);
+    else
+        ki_write_u32(writer, 0);
+    for (int k = first; k < first + count; k++) {
+        // The size of a level of a cube is that of one face. Faces of halves need no padding.
+        size_t texels = kiln_map_texels(map, k), size = texels * (size_t)texel->bytes;
+        ki_write_u32(writer, (uint32_t)(size / 6));
+        uint8_t *room = ki_write_room(writer, size);
+        if (!room)
+            return ki_fail_memory(writer->context, error, "a KTX file", writer->size);
+        if (!ki_texels_pack_many(writer->context, texel, map->level[k], texels, room))
+            return ki_fail_cancelled(error, "writing");
+    }
+    return KILN_OK;
+}
