@@ -120,7 +120,7 @@ build)
 test)
     need_all "$build_needs $test_needs $web_needs"
     panoramas
-    npm_packages web tests/web tests/files/ktx tests/engines
+    npm_packages web tests/web tests/files/ktx tests/brdf/witness tests/engines
     build release
     build wasm
     run_tests release

@@ -24,6 +24,7 @@ export function makeControls(container, state, words, changed) {
         add('see', 'split', 'handle', 0, 1, 0.01);
         add('see', 'occlusion', 'balls shade balls');
         add('see', 'cubeDiffuse', 'diffuse from the cube');
+        add('see', 'bent', 'bend rough reflections');
         add('see', 'asPrinted', 'as the handout prints it');
         add('see', 'auto', 'fit the brightness');
         add('see', 'samples', 'rays a pixel, squared', 1, 8, 1);

@@ -52,6 +52,7 @@ function kindsOf(scene) {
         background: number(own.background, 0, 1),
         occlusion: flag(Boolean(own.occlusion)),
         cubeDiffuse: flag(Boolean(own.cubeDiffuse)),
+        bent: flag(Boolean(own.bent)),
         asPrinted: flag(Boolean(own.asPrinted)),
         auto: flag(true),
         samples: number(own.samples, 1, 8, 0),

@@ -94,6 +94,7 @@ void stage_defaults(stage *s, int scene)
     n[STAGE_AS_PRINTED] = o.as_printed;
     n[STAGE_OCCLUSION] = o.occlusion;
     n[STAGE_CUBE_DIFFUSE] = o.cube_diffuse;
+    n[STAGE_BENT] = o.bent;
 }
 
 static view_options options_of(const stage *s)
@@ -118,6 +119,7 @@ static view_options options_of(const stage *s)
         .as_printed = n[STAGE_AS_PRINTED] != 0,
         .occlusion = n[STAGE_OCCLUSION] != 0,
         .cube_diffuse = n[STAGE_CUBE_DIFFUSE] != 0,
+        .bent = n[STAGE_BENT] != 0,
     };
 }
 

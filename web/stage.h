@@ -30,6 +30,7 @@ typedef enum stage_number {
     STAGE_AS_PRINTED,
     STAGE_OCCLUSION,
     STAGE_CUBE_DIFFUSE,
+    STAGE_BENT,
     STAGE_NUMBERS
 } stage_number;
 

@@ -1,7 +1,8 @@
 // The view as an object: what stage.h says, with names for its numbers.
 const NUMBERS = ['scene', 'method', 'material', 'targetX', 'targetY', 'targetZ', 'azimuth',
                  'elevation', 'distance', 'fov', 'rotation', 'exposure', 'debug', 'level', 'split',
-                 'background', 'samples', 'asPrinted', 'occlusion', 'cubeDiffuse'];
+                 'background', 'samples', 'asPrinted', 'occlusion', 'cubeDiffuse',
+                 'bent'];
 const WORDS = ['scene', 'method', 'material', 'debug'];
 
 export class Stage {
