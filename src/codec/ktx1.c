@@ -47,7 +47,7 @@ kiln_result ki_ktx1_encode(const kiln_map *map, int first, int count, const char
 {
     const ki_texel *texel = ki_texel_of_format(KILN_FORMAT_RGBA16F);
     write_header(writer, kiln_map_level_size(map, first), count);
-    if (key)
+    if (key && value)
         write_pair(writer, key, value);
     else
         ki_write_u32(writer, 0);
