@@ -11,7 +11,7 @@ test_needs="node:nodejs npm:npm chromium:chromium mandoc:mandoc clang-format:cla
     glslangValidator:glslang-tools
     glslangValidator:glslang-tools"
 web_needs="cmake:cmake ninja:ninja-build emcc:emscripten node:nodejs npm:npm"
-bench_needs="cmgen:libfilament-tools oiiotool:openimageio-tools valgrind:valgrind"
+bench_needs="cmgen:libfilament-tools oiiotool:openimageio-tools valgrind:valgrind chromium:chromium"
 lint_needs="clang-tidy:clang-tidy clang-format:clang-format cppcheck:cppcheck shellcheck:shellcheck"
 fuzz_needs="clang:clang libclang-rt-14-dev"
 
@@ -146,9 +146,11 @@ demo)
     say "open $PWD/build/demo/index.html"
     ;;
 bench)
-    need_all "$build_needs $bench_needs"
+    need_all "$build_needs $bench_needs $web_needs"
     panoramas
+    npm_packages web tests/web tests/engines
     build release
+    build wasm
     bench/run.sh "$@"
     ;;
 lint)

@@ -1,7 +1,8 @@
 #!/bin/sh
 # Makes the benches' inputs and runs them: bench/run.sh [--update] [CASE...]
 # Results go to bench/results/MACHINE/CASE.csv. Beside the cases of `bench --list` there is `count`,
-# the instructions of a fixed bake; --update makes today's count the reference.
+# the instructions of a fixed bake (--update makes today's count the reference), and `web`, kiln in a
+# browser's page beside three.js.
 set -eu
 cd "$(dirname "$0")/.."
 bin=build/release/bin
@@ -17,8 +18,8 @@ if [ "${1:-}" = --update ]; then
     update=yes
     shift
 fi
-[ $# -gt 0 ] || set -- accuracy probe threads instructions files scaling peer memory tables count
-for part in bench kiln; do
+[ $# -gt 0 ] || set -- accuracy probe threads instructions files scaling peer memory tables count web
+for part in bench bench_reference kiln; do
     [ -x $bin/$part ] || fail "there is no $bin/$part: run ./do bench"
 done
 [ -s build/data/blender/city.exr ] || fail "there are no panoramas: run scripts/panoramas.sh"
@@ -60,11 +61,27 @@ count() {
     }'
 }
 
+# The page's baker beside three.js's, in one browser.
+web() {
+    have chromium || fail "chromium is missing: install Debian's chromium"
+    [ -s build/wasm/site/baker.wasm ] || fail "there is no build/wasm/site: run ./do bench"
+    for folder in tests/web tests/engines; do
+        [ -d $folder/node_modules ] || fail "packages are missing: run  npm ci --prefix $folder"
+    done
+    printf '\nweb: bakes in a page, beside three.js, both against brute force\n'
+    node bench/web/pmrem.mjs build/release/bin build/wasm/site build/data/blender $inputs/web \
+        "$results/$($bin/bench --machine)/web.csv"
+}
+
 status=0
 for name; do
     case $name in
     count)
         count || status=1
+        continue
+        ;;
+    web)
+        web || status=1
         continue
         ;;
     peer)
