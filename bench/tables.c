@@ -188,7 +188,7 @@ static bool beside_sampling(bench *b, kiln_context *context, kiln_g g, samples *
             theirs[i] = fmin(theirs[i], bench_cpu() - start);
         }
     }
-    bool done = time_table(b, context, &def, 30, ours, &table);
+    bool done = time_table(b, context, &def, 30, ours, &table) && table.image.pixels;
     if (done) {
         char name[64];
         bench_times exact = bench_sum_up(ours, b->runs), sampling = bench_sum_up(theirs, b->runs);

@@ -114,7 +114,8 @@ static kiln_result furnace(tables *t, kiln_g g, const storage *s, kiln_image *li
     for (int i = 0; i < SIZE * SIZE && !result && s->rounded; i++)
         table.image.pixels[i] = s->rounded(table.image.pixels[i]);
     for (int i = 0; i < MAP * MAP && !result; i++) {
-        double nov = map_nov(i % MAP), roughness = 1 - (i / MAP + 0.5) / MAP, e;
+        int row = i / MAP;
+        double nov = map_nov(i % MAP), roughness = 1 - (row + 0.5) / MAP, e;
         kiln_table_lookup(&table, nov, roughness, 0, &e);
         light->pixels[i] = (float)(kiln_energy(&def.model, roughness, nov) + 1 - e);
     }
