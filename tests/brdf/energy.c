@@ -27,7 +27,7 @@ static void densities(const void *user, const half *h, double *x)
     // sin_h keeps the digits that 1 - noh has lost.
     double spread = alpha * alpha * h->noh * h->noh + h->sin_h * h->sin_h;
     double d = alpha * alpha / (pi * spread * spread);
-    for (int g = 0; g < MASKINGS; g++) {
+    for (size_t g = 0; g < MASKINGS; g++) {
         double e = d * ki_visibility(&models[g], p->roughness, p->nov, h->nol) * h->nol * h->voh;
         x[2 * g] = e;
         x[2 * g + 1] = e * c * c * c * c * c;
@@ -39,13 +39,13 @@ static void compare(double roughness, double nov, double *worst)
     double sums[2 * MASKINGS] = {0};
     point p = {roughness, nov};
     half_integrate(nov, roughness * roughness, densities, &p, 2 * MASKINGS, sums);
-    for (int g = 0; g < MASKINGS; g++) {
+    for (size_t g = 0; g < MASKINGS; g++) {
         double ab[2], e = kiln_energy(&models[g], roughness, nov);
         kiln_energy_split(&models[g], roughness, nov, ab);
         double off = fmax(fabs(e - sums[2 * g]), fabs(ab[1] - sums[2 * g + 1]));
         off = fmax(off, fabs(ab[0] - (sums[2 * g] - sums[2 * g + 1])));
         if (!(off <= 1e-8))
-            fail_msg("g %d, roughness %g, n.v %g: E %.12g and B %.12g, by half vectors %.12g and "
+            fail_msg("g %zu, roughness %g, n.v %g: E %.12g and B %.12g, by half vectors %.12g and "
                      "%.12g",
                      g, roughness, nov, e, ab[1], sums[2 * g], sums[2 * g + 1]);
         *worst = fmax(*worst, off);
@@ -76,7 +76,8 @@ static void corners_are_limits(void **unused)
     for (int g = 0; g < MASKINGS; g++) {
         const kiln_model *m = &models[g];
         double k = 1.0 / 8;
-        for (double nov = 1e-3; nov <= 1; nov *= 1.7) {
+        for (int i = 0; i < 14; i++) {
+            double nov = 1e-3 * pow(1.7, i);
             double mirror = g == KILN_G_SCHLICK_TEXT ? pow(nov / (nov * (1 - k) + k), 2) : 1;
             double ab[2];
             kiln_energy_split(m, 0, nov, ab);
@@ -84,13 +85,14 @@ static void corners_are_limits(void **unused)
             CHECK_NEAR(ab[1], mirror * pow(1 - nov, 5), 1e-15);
             CHECK_NEAR(kiln_energy(m, 1e-9, nov), mirror, 1e-8);
         }
-        for (double roughness = 1e-5; roughness <= 1; roughness *= 3) {
-            double near = 1e-13 * roughness * roughness;
+        for (int i = 0; i < 11; i++) {
+            double roughness = 1e-5 * pow(3, i), near = 1e-13 * roughness * roughness;
             CHECK_NEAR(kiln_energy(m, roughness, near), kiln_energy(m, roughness, 0), 1e-10);
         }
         // Down to where squares of alpha leave the range of doubles.
-        for (double roughness = 1; roughness > 1e-18; roughness /= 7)
-            for (double nov = 1; nov > 1e-30; nov /= 11) {
+        for (int i = 0; i < 22; i++)
+            for (int j = 0; j < 29; j++) {
+                double roughness = pow(7, -i), nov = pow(11, -j);
                 double e = kiln_energy(m, roughness, nov);
                 assert_true(e >= 0 && e <= 1 + 1e-11);
             }
@@ -182,9 +184,10 @@ static void furnace_closes(void **unused)
     (void)unused;
     double worst = 0;
     for (int g = 0; g < MASKINGS; g++)
-        for (double roughness = 0.04; roughness <= 1; roughness += 0.08)
-            for (double nov = 0.001; nov < 1; nov *= 3) {
-                furnace f = {.model = &models[g], .roughness = roughness, .nov = nov};
+        for (int i = 0; i < 13; i++)
+            for (int j = 0; j < 7; j++) {
+                furnace f = {
+                    .model = &models[g], .roughness = 0.04 + 0.08 * i, .nov = 0.001 * pow(3, j)};
                 worst = fmax(worst, furnace_error(&f));
             }
     print_message("furnace: exact to %.1e\n", worst);
@@ -210,9 +213,9 @@ static void furnace_closes_through_a_table(void **unused)
         make(context, &def, &table);
         CHECK_OK(kiln_table_average(context, &table, 0, &average, &error));
         double worst = 0;
-        for (double roughness = 0.04; roughness <= 1; roughness += 0.0371)
-            for (double nov = 0.0005; nov < 1; nov *= 1.6) {
-                furnace f = {&models[g], &table, &average, roughness, nov};
+        for (int i = 0; i < 26; i++)
+            for (int j = 0; j < 17; j++) {
+                furnace f = {&models[g], &table, &average, 0.04 + 0.0371 * i, 0.0005 * pow(1.6, j)};
                 worst = fmax(worst, furnace_error(&f));
             }
         print_message("furnace through 128 x 128 texels, g %d: %.1e\n", g, worst);
