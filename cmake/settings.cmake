@@ -32,3 +32,21 @@ if(NOT KILN_SCALAR AND EMSCRIPTEN)
     target_compile_definitions(kiln_settings INTERFACE KILN_HAVE_SIMD128)
     target_compile_options(kiln_settings INTERFACE -msimd128)
 endif()
+
+# kiln_kernels(NAME): NAME_scalar.c and, where the processor has them, one file an instruction set.
+function(kiln_kernels name)
+    set(options_scalar "-O3;$<$<C_COMPILER_ID:GNU>:-fno-tree-vectorize;-fno-tree-slp-vectorize>")
+    set(options_sse2 "-O3;-msse2")
+    set(options_avx2 "-O3;-mavx2")
+    set(options_avx512
+        "-O3;-mavx512f;-mavx512vl;-mavx512dq;-mavx512bw;-mprefer-vector-width=512")
+    set(sets scalar)
+    if(KILN_X86)
+        list(APPEND sets sse2 avx2 avx512)
+    endif()
+    foreach(set ${sets})
+        target_sources(kiln_objects PRIVATE ${name}_${set}.c)
+        set_source_files_properties(${name}_${set}.c TARGET_DIRECTORY kiln_objects
+                                    PROPERTIES COMPILE_OPTIONS "${options_${set}}")
+    endforeach()
+endfunction()
