@@ -2,25 +2,10 @@
 // after the other, level by level, face by face. Images are PNG in RGBD, their rows from the bottom up.
 #include "codec/env.h"
 
+#include "codec/rgbx.h"
 #include "image/image.h"
-#include "math/math.h"
-
-#include <math.h>
 
 static const uint8_t magic[8] = {0x86, 0x16, 0x87, 0x96, 0xf6, 0xd6, 0x96, 0x36};
-
-// A quotient D of 1 to 255, over 255, brings the largest channel to 1 at most; channels are stored as
-// (c D)^(1 / 2.2), D as alpha.
-void ki_rgbd_from_float(const float rgb[3], float rgbd[4])
-{
-    float largest = fmaxf(rgb[0], fmaxf(rgb[1], rgb[2]));
-    float quotient = largest > 1 ? floorf(255 / largest) : 255;
-    rgbd[3] = fmaxf(quotient, 1) / 255;
-    for (int c = 0; c < 3; c++) {
-        double share = ki_clamp((double)rgb[c] * (double)rgbd[3], 0, 1);
-        rgbd[c] = share > 0 ? (float)ki_pow(share, 1 / 2.2) : 0;
-    }
-}
 
 static kiln_result write_face(const float *texels, int n, float *scratch, ki_writer *w,
                               kiln_error *error)

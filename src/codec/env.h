@@ -4,8 +4,6 @@
 
 #include "codec/codec.h"
 
-/// One texel as RGBD, 0 to 1; radiance above 255 is cut off.
-void ki_rgbd_from_float(const float rgb[3], float rgbd[4]);
 /// A cube with all levels down to 1. `polynomial` is in the order x y z xx yy zz yz zx
 /// xy.
 kiln_result ki_env_encode(const kiln_map *map, double lod_scale, double polynomial[9][3],

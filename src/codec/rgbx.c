@@ -1,0 +1,72 @@
+#include "codec/rgbx.h"
+
+#include "base/base.h"
+#include "math/math.h"
+
+#include <math.h>
+
+static float largest_of(const float rgb[3])
+{
+    return fmaxf(rgb[0], fmaxf(rgb[1], rgb[2]));
+}
+
+// Square roots over a scale, of which the largest is 1 at most.
+static void put_roots(const float rgb[3], double scale, float color[3])
+{
+    for (int c = 0; c < 3; c++)
+        color[c] = rgb[c] > 0 ? (float)ki_clamp(sqrt((double)rgb[c]) / scale, 0, 1) : 0;
+}
+
+// Alpha is rounded up, so that no colour is above 1, to 255 at most and 1 at least.
+void ki_rgbm_from_float(const float rgb[3], float rgbm[4])
+{
+    double root = sqrt(fmax((double)largest_of(rgb), 0));
+    double steps = ki_clamp(ceil(root / 8 * 255), 1, 255);
+    put_roots(rgb, 8 * steps / 255, rgbm);
+    rgbm[3] = (float)(steps / 255);
+}
+
+// The scale is 8 - 7 a, so alpha is rounded down.
+void ki_rgbp_from_float(const float rgb[3], float rgbp[4])
+{
+    double root = sqrt(fmax((double)largest_of(rgb), 0));
+    double steps = ki_clamp(floor((8 - root) / 7 * 255), 0, 255);
+    put_roots(rgb, 8 - 7 * steps / 255, rgbp);
+    rgbp[3] = (float)(steps / 255);
+}
+
+// A quotient of 1 to 255, over 255, brings the largest channel to 1 at most.
+void ki_rgbd_from_float(const float rgb[3], float rgbd[4])
+{
+    float largest = largest_of(rgb);
+    float quotient = largest > 1 ? floorf(255 / largest) : 255;
+    rgbd[3] = fmaxf(quotient, 1) / 255;
+    for (int c = 0; c < 3; c++) {
+        double share = ki_clamp((double)rgb[c] * (double)rgbd[3], 0, 1);
+        rgbd[c] = share > 0 ? (float)ki_pow(share, 1 / 2.2) : 0;
+    }
+}
+
+void ki_float_from_rgbm(const float rgbm[4], float rgb[3])
+{
+    for (int c = 0; c < 3; c++) {
+        float root = 8 * rgbm[3] * rgbm[c];
+        rgb[c] = root * root;
+    }
+}
+
+void ki_float_from_rgbp(const float rgbp[4], float rgb[3])
+{
+    for (int c = 0; c < 3; c++) {
+        float root = (8 - 7 * rgbp[3]) * rgbp[c];
+        rgb[c] = root * root;
+    }
+}
+
+void ki_float_from_rgbd(const float rgbd[4], float rgb[3])
+{
+    for (int c = 0; c < 3; c++) {
+        double power = rgbd[c] > 0 ? ki_pow((double)rgbd[c], 2.2) : 0;
+        rgb[c] = (float)(power / fmax((double)rgbd[3], 1.0 / 255));
+    }
+}
