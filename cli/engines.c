@@ -25,6 +25,7 @@ static int list_json(void)
         cJSON_AddNumberToObject(row, "size", engine->size);
         cJSON_AddNumberToObject(row, "level_count", engine->level_count);
         cJSON_AddNumberToObject(row, "limit", engine->limit);
+        cJSON_AddStringToObject(row, "proof", engine->proof);
         cJSON_AddItemToArray(json, row);
     }
     return cli_print_json(json);
@@ -41,9 +42,10 @@ static int run(int argc, const char **argv)
     if (code == CLI_GO) {
         const kiln_engine *engine;
         for (int i = 0; (engine = kiln_engine_at(i)) != NULL; i++)
-            printf("%-14s %s\n  writes       %s, by default %d levels of %d\n  roughness    %s\n",
+            printf("%-14s %s\n  writes       %s, by default %d levels of %d\n  roughness    %s\n"
+                   "  proof        %s\n",
                    engine->name, engine->title, engine->files, engine->level_count, engine->size,
-                   engine->mapping);
+                   engine->mapping, engine->proof);
         code = CLI_DONE;
     }
     cli_arguments_free(&arguments);
@@ -54,11 +56,13 @@ const cli_command cli_engines = {
     .name = "engines",
     .arguments = "[OPTION...]",
     .summary = "Lists the engines that 'kiln bake --for' knows.",
-    .details = "Level k of n, of a size of w texels, is filtered for roughness r.\n"
-               "\n"
-               "Examples:\n"
-               "  kiln engines\n"
-               "  kiln bake city.exr --for three -o city.ktx2\n",
+    .details =
+        "Level k of n, of a size of w texels, is filtered for roughness r. The proof of a file is\n"
+        "what the engine's own pixels show in kiln's tests, or what was read in its source.\n"
+        "\n"
+        "Examples:\n"
+        "  kiln engines\n"
+        "  kiln bake city.exr --for three -o city.ktx2\n",
     .options = options,
     .run = run,
 };

@@ -868,6 +868,7 @@ typedef struct kiln_engine {
     int size;            ///< of a face, where nothing else is asked for
     int level_count;     ///< then
     double limit;        ///< the largest radiance that the files hold
+    const char *proof; ///< "pixels of" a version that renders them as it should, or "source of" one
 } kiln_engine;
 
 /// The engines in the order of their table; NULL where the index is none.

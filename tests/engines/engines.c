@@ -2,6 +2,7 @@
 #include "check.h"
 #include "engine/engine.h"
 
+#include <string.h>
 #include <unistd.h>
 
 static kiln_context *context;
@@ -32,6 +33,8 @@ static void every_engine_is_found_and_makes_sense(void **state)
         kiln_prefilter_def def;
         assert_ptr_equal(kiln_engine_find(engine->name), engine);
         assert_true(engine->title[0] && engine->files[0] && engine->mapping[0]);
+        assert_true(!strncmp(engine->proof, "pixels of ", 10) ||
+                    !strncmp(engine->proof, "source of ", 10));
         CHECK_OK(kiln_engine_levels(engine, 0, 0, roughness, &def, &error));
         assert_int_equal(def.size, engine->size);
         assert_int_equal(def.level_count, engine->level_count);
