@@ -122,8 +122,8 @@ static void write_contradictions(const assignment *a, FILE *f)
             "With the text's k even a mirror shadows itself: E_avg at roughness 0 is %.3f, so that "
             "Kulla and Conty's lobe would make it glow with the missing %.3f. With the figures' "
             "it is %.3f. The text's k is meant for point lights.\n",
-            text ? "(roughness + 1)^2 / 8" : "roughness^2 / 2", cli_g_names[a->def->g],
-            cli_g_names[text ? KILN_G_SCHLICK_K2 : KILN_G_SCHLICK_TEXT],
+            text ? "(roughness + 1)^2 / 8" : "roughness^2 / 2", kiln_g_names()[a->def->g],
+            kiln_g_names()[text ? KILN_G_SCHLICK_K2 : KILN_G_SCHLICK_TEXT],
             mirror_average(KILN_G_SCHLICK_TEXT), 1 - mirror_average(KILN_G_SCHLICK_TEXT),
             mirror_average(KILN_G_SCHLICK_K2));
     fprintf(
@@ -145,7 +145,7 @@ static void write_text(const assignment *a, FILE *f)
             "with Schlick's G, k = %s. %d x %d texels, %d samples each. Made by `kiln tables "
             "--assignment --g %s`, kiln %s.\n\n",
             a->def->g == KILN_G_SCHLICK_TEXT ? "(roughness + 1)^2 / 8" : "roughness^2 / 2",
-            a->def->size, a->def->size, a->def->samples, cli_g_names[a->def->g], kiln_version());
+            a->def->size, a->def->size, a->def->samples, kiln_g_names()[a->def->g], kiln_version());
     write_files(a, f);
     write_errors(a, f);
     write_band(a, f);
@@ -185,7 +185,7 @@ int assignment_print_json(const assignment *a)
     cJSON_AddNumberToObject(json, "files", a->file_count);
     cJSON_AddNumberToObject(json, "size", a->def->size);
     cJSON_AddNumberToObject(json, "samples", a->def->samples);
-    cJSON_AddStringToObject(json, "g", cli_g_names[a->def->g]);
+    cJSON_AddStringToObject(json, "g", kiln_g_names()[a->def->g]);
     cJSON_AddNumberToObject(json, "mirror_average", mirror_average(a->def->g));
     cJSON_AddNumberToObject(json, "clamped_below_roughness", clamp_reach());
     cJSON *tables = cJSON_AddArrayToObject(json, "tables");

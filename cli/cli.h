@@ -70,8 +70,6 @@ int cli_number(const cli_arguments *arguments, int option, const char *name, dou
 int cli_choice(const cli_arguments *arguments, int option, const char *name,
                const char *const *words, int *value);
 
-/// The words of --d, --g and --sheen, in the order of the enums, NULL last.
-extern const char *const cli_d_names[], *const cli_g_names[], *const cli_sheen_names[];
 /// The model that two options name; not given leaves its part alone.
 int cli_model(const cli_arguments *arguments, int option_d, int option_g, kiln_model *model);
 

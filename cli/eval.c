@@ -285,7 +285,7 @@ static int read_arguments(eval *v)
     bool taken[ARGUMENTS] = {false};
     int code = read_quantity(v);
     if (code != CLI_GO || (code = cli_model(arguments, D, G, &v->choices.model)) != CLI_GO ||
-        (code = cli_choice(arguments, SHEEN, "--sheen", cli_sheen_names, &v->choices.sheen)) !=
+        (code = cli_choice(arguments, SHEEN, "--sheen", kiln_sheen_names(), &v->choices.sheen)) !=
             CLI_GO ||
         (code = cli_choice(arguments, F_ADD, "--f-add", forms, &v->choices.f_add)) != CLI_GO)
         return code;
@@ -384,7 +384,7 @@ static void print_argument(double x)
 static void print_json(const eval *v, const double *x, double value)
 {
     printf("{\"quantity\": \"%s\", \"d\": \"%s\", \"g\": \"%s\"", v->quantity->name,
-           cli_d_names[v->choices.model.d], cli_g_names[v->choices.model.g]);
+           kiln_d_names()[v->choices.model.d], kiln_g_names()[v->choices.model.g]);
     for (int i = 0; i < v->count; i++) {
         printf(", \"%s\": ", argument_of[v->quantity->takes[i]].name);
         print_argument(x[i]);

@@ -82,8 +82,8 @@ static int report(const cli_arguments *a, const kiln_fit *fit, double seconds)
     cJSON *json = cJSON_CreateObject();
     cJSON_AddStringToObject(json, "output", path);
     cJSON_AddStringToObject(json, "quantity", kinds[fit->def.kind]);
-    cJSON_AddStringToObject(json, "d", cli_d_names[fit->def.model.d]);
-    cJSON_AddStringToObject(json, "g", cli_g_names[fit->def.model.g]);
+    cJSON_AddStringToObject(json, "d", kiln_d_names()[fit->def.model.d]);
+    cJSON_AddStringToObject(json, "g", kiln_g_names()[fit->def.model.g]);
     cJSON_AddNumberToObject(json, "coefficients", fit->coefficient_count);
     cJSON_AddNumberToObject(json, "max_error", fit->max_error);
     cJSON_AddNumberToObject(json, "rms_error", fit->rms_error);

@@ -5,9 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const kinds[] = {
-    "e", "eavg", "dfg", "dfg-multiscatter", "sheen", "e-dielectric", "glass", "e-walk", NULL};
-static const char *const axes[] = {"linear", "sqrt", "cbrt", "grazing", NULL};
 static const char *const formats[] = {"auto", "f32", "f16", "u16", "u8", NULL};
 static const char *const endings[] = {"ktx2", "exr", "hdr", "png", "raw", "bin", "h", "glsl", NULL};
 
@@ -73,10 +70,10 @@ static int read_choices(exact_job *job)
 {
     const cli_arguments *a = job->a;
     int kind = 0, axis = 0, format = 0, sheen = 0, code;
-    if ((code = cli_choice(a, TABLES_TABLE, "--table", kinds, &kind)) != CLI_GO ||
-        (code = cli_choice(a, TABLES_AXIS, "--axis", axes, &axis)) != CLI_GO ||
+    if ((code = cli_choice(a, TABLES_TABLE, "--table", kiln_table_kind_names(), &kind)) != CLI_GO ||
+        (code = cli_choice(a, TABLES_AXIS, "--axis", kiln_axis_names(), &axis)) != CLI_GO ||
         (code = cli_choice(a, TABLES_FORMAT, "--format", formats, &format)) != CLI_GO ||
-        (code = cli_choice(a, TABLES_SHEEN, "--sheen", cli_sheen_names, &sheen)) != CLI_GO ||
+        (code = cli_choice(a, TABLES_SHEEN, "--sheen", kiln_sheen_names(), &sheen)) != CLI_GO ||
         (code = cli_model(a, TABLES_D, TABLES_G, &job->def.model)) != CLI_GO ||
         (code = cli_source_name(a, TABLES_NAME)) != CLI_GO ||
         (code = read_size(a, &job->def)) != CLI_GO)
@@ -111,12 +108,12 @@ static int check_kind(const exact_job *job)
         if (job->a->value[only[i].option] && !(only[i].kinds >> job->def.kind & 1))
             return cli_wrong(job->a->command, "--%s is not for --table %s",
                              cli_option_name(job->a->command, only[i].option),
-                             kinds[job->def.kind]);
+                             kiln_table_kind_names()[job->def.kind]);
     if (job->def.kind == KILN_TABLE_E_WALK && job->a->value[TABLES_AXIS] &&
         job->def.axis != KILN_AXIS_GRAZING)
         return cli_wrong(job->a->command,
                          "--axis %s is not for --table e-walk: its axis is grazing",
-                         axes[job->def.axis]);
+                         kiln_axis_names()[job->def.axis]);
     return CLI_GO;
 }
 
@@ -167,13 +164,13 @@ static void report(const cli_job *run, const exact_job *job, const kiln_table *t
     snprintf(size, sizeof size, def->depth > 1 ? "%d x %d x %d" : "%d x %d", def->width,
              def->height, def->depth);
     if (def->kind == KILN_TABLE_SHEEN)
-        snprintf(model, sizeof model, "%s, ", cli_sheen_names[def->sheen]);
+        snprintf(model, sizeof model, "%s, ", kiln_sheen_names()[def->sheen]);
     else
-        snprintf(model, sizeof model, "%s, %s, ", cli_d_names[def->model.d],
-                 cli_g_names[def->model.g]);
+        snprintf(model, sizeof model, "%s, %s, ", kiln_d_names()[def->model.d],
+                 kiln_g_names()[def->model.g]);
     printf("%s: %s, %s%s, %s axis, texels at %s, %.2f s\n", a->value[TABLES_OUTPUT],
-           kinds[def->kind], model, size, axes[def->axis], def->corners ? "corners" : "centres",
-           cli_seconds() - run->began);
+           kiln_table_kind_names()[def->kind], model, size, kiln_axis_names()[def->axis],
+           def->corners ? "corners" : "centres", cli_seconds() - run->began);
     if (a->value[TABLES_AVERAGE])
         printf("%s: the mean of that table, 1024 texels\n", a->value[TABLES_AVERAGE]);
     if (a->value[TABLES_LOOKUP])
@@ -186,14 +183,14 @@ static int report_json(const cli_job *run, const exact_job *job, const kiln_tabl
     const cli_arguments *a = job->a;
     cJSON *json = cJSON_CreateObject();
     cJSON_AddStringToObject(json, "output", a->value[TABLES_OUTPUT]);
-    cJSON_AddStringToObject(json, "table", kinds[def->kind]);
-    cJSON_AddStringToObject(json, "d", cli_d_names[def->model.d]);
-    cJSON_AddStringToObject(json, "g", cli_g_names[def->model.g]);
+    cJSON_AddStringToObject(json, "table", kiln_table_kind_names()[def->kind]);
+    cJSON_AddStringToObject(json, "d", kiln_d_names()[def->model.d]);
+    cJSON_AddStringToObject(json, "g", kiln_g_names()[def->model.g]);
     cJSON_AddNumberToObject(json, "width", def->width);
     cJSON_AddNumberToObject(json, "height", def->height);
     cJSON_AddNumberToObject(json, "depth", def->depth);
     cJSON_AddNumberToObject(json, "channels", table->image.channels);
-    cJSON_AddStringToObject(json, "axis", axes[def->axis]);
+    cJSON_AddStringToObject(json, "axis", kiln_axis_names()[def->axis]);
     cJSON_AddBoolToObject(json, "corners", def->corners);
     cJSON_AddBoolToObject(json, "complement", def->complement);
     cJSON_AddBoolToObject(json, "flip", def->flip);

@@ -579,6 +579,13 @@ typedef enum kiln_axis {
                       ///< for Schlick's text k / (1 - k), so that every row has its layer alike
 } kiln_axis;
 
+/// What files and the command call these choices: names in the order of the enum, NULL behind the last.
+KILN_API const char *const *kiln_d_names(void);
+KILN_API const char *const *kiln_g_names(void);
+KILN_API const char *const *kiln_sheen_names(void);
+KILN_API const char *const *kiln_table_kind_names(void);
+KILN_API const char *const *kiln_axis_names(void);
+
 /// {0} is a good default: E of the default model, 128 x 128, u = n.v, texel centres.
 typedef struct kiln_table_def {
     kiln_table_kind kind;

@@ -1,5 +1,31 @@
 // Tables as the caller sees them.
 #include "bake/table.h"
+#include "bake/table_text.h"
+
+const char *const *kiln_d_names(void)
+{
+    return ki_d_names;
+}
+
+const char *const *kiln_g_names(void)
+{
+    return ki_g_names;
+}
+
+const char *const *kiln_sheen_names(void)
+{
+    return ki_sheen_names;
+}
+
+const char *const *kiln_table_kind_names(void)
+{
+    return ki_kind_names;
+}
+
+const char *const *kiln_axis_names(void)
+{
+    return ki_axis_names;
+}
 
 kiln_result kiln_table_create(kiln_context *context, const kiln_table_def *def, kiln_table *table,
                               kiln_error *error)

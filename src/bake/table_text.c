@@ -4,22 +4,22 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char *const kinds[] = {
+const char *const ki_kind_names[] = {
     "e", "eavg", "dfg", "dfg-multiscatter", "sheen", "e-dielectric", "glass", "e-walk", NULL};
-static const char *const distributions[] = {"ggx", "beckmann", NULL};
-static const char *const maskings[] = {"smith", "smith-uncorrelated", "schlick-k2", "schlick-text",
-                                       NULL};
-static const char *const sheens[] = {"ashikhmin", "estevez", NULL};
-static const char *const axes[] = {"linear", "sqrt", "cbrt", "grazing", NULL};
+const char *const ki_d_names[] = {"ggx", "beckmann", NULL};
+const char *const ki_g_names[] = {"smith", "smith-uncorrelated", "schlick-k2", "schlick-text",
+                                  NULL};
+const char *const ki_sheen_names[] = {"ashikhmin", "estevez", NULL};
+const char *const ki_axis_names[] = {"linear", "sqrt", "cbrt", "grazing", NULL};
 
 void ki_table_describe(const kiln_table_def *def, char text[KI_TABLE_TEXT])
 {
     snprintf(text, KI_TABLE_TEXT,
              "kind=%s d=%s g=%s sheen=%s axis=%s corners=%d complement=%d flip=%d size=%dx%dx%d "
              "paths=%d",
-             kinds[def->kind], distributions[def->model.d], maskings[def->model.g],
-             sheens[def->sheen], axes[def->axis], def->corners, def->complement, def->flip,
-             def->width, def->height, def->depth, def->path_count);
+             ki_kind_names[def->kind], ki_d_names[def->model.d], ki_g_names[def->model.g],
+             ki_sheen_names[def->sheen], ki_axis_names[def->axis], def->corners, def->complement,
+             def->flip, def->width, def->height, def->depth, def->path_count);
 }
 
 // What follows "KEY=WORD" and a space, with the word's place in `words`; NULL where it is not so.
@@ -73,11 +73,11 @@ bool ki_table_parse(const char *text, kiln_table_def *def)
     static const char *const answers[] = {"0", "1", NULL};
     int kind = 0, d = 0, g = 0, sheen = 0, axis = 0, corners = 0, complement = 0, flip = 0;
     *def = (kiln_table_def){0};
-    text = parse_word(text, "kind", kinds, &kind);
-    text = parse_word(text, "d", distributions, &d);
-    text = parse_word(text, "g", maskings, &g);
-    text = parse_word(text, "sheen", sheens, &sheen);
-    text = parse_word(text, "axis", axes, &axis);
+    text = parse_word(text, "kind", ki_kind_names, &kind);
+    text = parse_word(text, "d", ki_d_names, &d);
+    text = parse_word(text, "g", ki_g_names, &g);
+    text = parse_word(text, "sheen", ki_sheen_names, &sheen);
+    text = parse_word(text, "axis", ki_axis_names, &axis);
     text = parse_word(text, "corners", answers, &corners);
     text = parse_word(text, "complement", answers, &complement);
     text = parse_word(text, "flip", answers, &flip);

@@ -117,6 +117,8 @@ expect 2 "written already" tables -o out.exr --average out.exr
 expect 2 "written already" tables -o out.ktx2 --average out_lookup.h --lookup
 expect 2 "name is '1x', it must be letters" tables -o out.h --name 1x
 expect 2 "name is 'a__b'" fit e -o out.glsl --name a__b
+expect 2 "name is 'int'" tables -o out.h --name int
+expect 2 "name is 'vec3'" fit e -o e.glsl --name vec3
 expect 2 "no input" info
 expect 2 "no quantity: name e, eavg" eval
 expect 2 "frob: no such quantity, it must be e, .* or turquin" eval frob
