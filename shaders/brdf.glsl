@@ -75,6 +75,21 @@ float schlick_fresnel(float voh)
     return c2 * c2 * c;
 }
 
+// What a metal's F lies below Schlick's, over voh (1 - voh)^6 (Lazanyi and Szirmay-Kalos 2005), where f82
+// is its F at voh = 1 / 7, 82 degrees (Kutz et al. 2021).
+vec3 f82_dip(vec3 f0, vec3 f82)
+{
+    const float edge = 6.0 / 7.0, power = edge * edge * edge * edge * edge;
+    return (f0 + (1.0 - f0) * power - f82) * (7.0 / (power * edge));
+}
+
+vec3 fresnel_f82(vec3 f0, vec3 f82, float voh)
+{
+    float power = schlick_fresnel(voh);
+    vec3 f = f0 + (1.0 - f0) * power - f82_dip(f0, f82) * (voh * power * (1.0 - voh));
+    return clamp(f, 0.0, 1.0);
+}
+
 // ior is n_transmitted / n_incident. Born and Wolf 1999, section 1.5.2.
 float fresnel_dielectric(float ior, float c)
 {

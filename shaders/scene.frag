@@ -28,15 +28,15 @@ layout(std140) uniform View
     ivec4 mode;               // scene, debug, rays a side, balls
     ivec4 flags;              // tone, as printed, occlusion, diffuse light from the cube
     ivec4 levels;             // of the two environments; the level shown; 1 with G of Schlick's
-    vec4 table_layout[6];     // E, E_avg, split of the assignment's model; of the environment's
+    vec4 table_layout[7];     // E, E_avg, split of the assignment's model; of the environment's; dip
     vec4 level_roughness[8];  // of the two environments
     vec4 harmonics[18];       // of the two environments
-    vec4 balls[4 * MAX_BALLS]; // centre, radius; f0, roughness; F_avg, method; albedo, metallic
+    vec4 balls[5 * MAX_BALLS]; // centre, radius; f0, roughness; F_avg, method; albedo, metallic; f82
 };
 
 uniform highp samplerCube environment, environment_textbook, irradiance;
 uniform highp sampler2D handout_e, handout_e_average, handout_split;
-uniform highp sampler2D e, e_average, split_sum;
+uniform highp sampler2D e, e_average, split_sum, dip_sum;
 
 out vec4 color;
 
@@ -49,12 +49,13 @@ struct Ball
     vec3 f_average;
     int method;
     vec3 albedo;
+    vec3 f82;
 };
 
 Ball ball_at(int i)
 {
-    vec4 a = balls[4 * i], b = balls[4 * i + 1], c = balls[4 * i + 2], d = balls[4 * i + 3];
-    return Ball(a.xyz, a.w, b.xyz, b.w, c.xyz, int(c.w), d.xyz);
+    vec4 a = balls[5 * i], b = balls[5 * i + 1], c = balls[5 * i + 2], d = balls[5 * i + 3];
+    return Ball(a.xyz, a.w, b.xyz, b.w, c.xyz, int(c.w), d.xyz, balls[5 * i + 4].xyz);
 }
 
 // ---------------------------------------------------------------------------------------- the light
@@ -97,7 +98,7 @@ float occlusion_at(int self, vec3 p, vec3 n)
     float open = 1.0;
     for (int i = 0; i < mode.w; i++)
         if (i != self)
-            open *= ball_occlusion(n, balls[4 * i].xyz - p, balls[4 * i].w);
+            open *= ball_occlusion(n, balls[5 * i].xyz - p, balls[5 * i].w);
     return open;
 }
 
@@ -129,8 +130,8 @@ vec3 lit_by_light(Ball ball, vec3 n, vec3 v, float nov)
     return lobe * nol * light.w;
 }
 
-// The split sum: the environment through the lobe, times the albedo; what bounces more often leaves
-// as diffuse light; what is not reflected reaches the base.
+// The split sum: the environment through the lobe, times the albedo, which has a third term for metals;
+// what bounces more often leaves as diffuse light; what is not reflected reaches the base.
 vec3 lit_by_environment(int slot, Ball ball, vec3 n, vec3 v, float nov, float open)
 {
     vec3 r = 2.0 * nov * n - v;
@@ -140,13 +141,16 @@ vec3 lit_by_environment(int slot, Ball ball, vec3 n, vec3 v, float nov, float op
     vec3 around = irradiance_at(slot, n) * open;
     vec2 ab = table_read(split_sum, table_layout[5], nov, ball.roughness).rg;
     float missing = table_missing(e, table_layout[3], nov, ball.roughness);
-    vec3 single = ball.f0 * ab.x + ab.y, multiple = vec3(0.0);
+    float dip = table_read(dip_sum, table_layout[6], nov, ball.roughness).r;
+    vec3 single = ball.f0 * ab.x + ab.y - f82_dip(ball.f0, ball.f82) * dip, multiple = vec3(0.0);
     if (ball.method == METHOD_KULLA_CONTY || ball.method == METHOD_HANDOUT) {
         float a = table_missing(e_average, table_layout[4], 0.0, ball.roughness);
         int form = ball.method == METHOD_HANDOUT ? F_ADD_ASSIGNMENT : F_ADD_BOUNCES;
         multiple = kulla_conty_fresnel(form, ball.f_average, vec3(1.0 - a)) * missing;
     } else if (ball.method == METHOD_FDEZ_AGUERA) {
-        fdez_aguera(ball.f0, ab.x, ab.y, single, multiple);
+        // fdez_aguera(), with the metal's own F_avg.
+        vec3 bounces = kulla_conty_fresnel(F_ADD_ASSIGNMENT, ball.f_average, vec3(ab.x + ab.y));
+        multiple = single * bounces * ((1.0 - ab.x - ab.y) / (ab.x + ab.y));
     } else if (ball.method == METHOD_TURQUIN) {
         single *= turquin(ball.f0, 1.0 - missing);
     }
@@ -163,7 +167,7 @@ int nearest(int list[CANDIDATES], int count, vec3 d, out vec3 n, out vec3 p, out
     int found = -1;
     float reach = 1e30;
     for (int i = 0; i < count; i++) {
-        vec4 ball = balls[4 * list[i]];
+        vec4 ball = balls[5 * list[i]];
         vec3 from = eye.xyz - ball.xyz;
         float along = dot(from, d);
         vec3 closest = from - along * d;
@@ -193,7 +197,7 @@ vec3 shaded(int slot, int index, vec3 d, vec3 n, vec3 p, float nov)
         return vec3(1.0 - missing);
     }
     if (mode.y == DEBUG_F)
-        return ball.f0 + (1.0 - ball.f0) * schlick_fresnel(nov);
+        return fresnel_f82(ball.f0, ball.f82, nov);
     if (mode.x == SCENE_ASSIGNMENT)
         return lit_by_light(ball, n, -d, nov);
     float open = flags.z != 0 ? occlusion_at(index, p, n) : 1.0;
@@ -213,9 +217,9 @@ vec3 balls_at(vec2 corner, int slot)
     float spread = 2.0 * max(up.w / screen.y, right.w / screen.x);
     int list[CANDIDATES], count = 0;
     for (int i = 0; i < mode.w && count < CANDIDATES; i++) {
-        vec3 from = eye.xyz - balls[4 * i].xyz;
+        vec3 from = eye.xyz - balls[5 * i].xyz;
         float along = dot(from, middle);
-        float reach = balls[4 * i].w - along * spread;
+        float reach = balls[5 * i].w - along * spread;
         vec3 closest = from - along * middle;
         if (along < 0.0 && dot(closest, closest) < reach * reach)
             list[count++] = i;

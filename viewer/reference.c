@@ -189,18 +189,19 @@ static void estimate(const job *j, const view_point *p, view_random *random, dou
         reflect(p->v, h, l);
         add(j, p, l, sum);
     } else { // a perfect mirror: no draw finds its peak
-        double radiance[3], up[3] = {0, 0, 1};
+        double radiance[3], f[3], up[3] = {0, 0, 1};
         reflect(p->v, up, l);
         to_world(p, l, d);
         view_light_radiance(&j->light, d, radiance);
+        view_fresnel(ball, &j->energy, p->v[2], f);
         for (int c = 0; c < 3 && !is_shaded(j, p, d); c++)
-            sum[c] += kiln_fresnel_schlick(ball->f0[c], p->v[2]) * radiance[c] * p->specular[c];
+            sum[c] += f[c] * radiance[c] * p->specular[c];
     }
     draw(random, xi);
     kiln_sample_cosine(xi, l);
     add(j, p, l, sum);
     if (j->walks[p->ball]) {
-        view_walk walk = {ball, &j->light};
+        view_walk walk = {ball, &j->light, &j->energy};
         view_walk_add(&walk, p, random, sum);
     }
 }

@@ -27,6 +27,10 @@ kiln_result view_energy_create(kiln_context *context, const view_options *option
     def.complement = false;
     if (result == KILN_OK && !light)
         result = kiln_table_create(context, &def, &energy->split, error);
+    if (result == KILN_OK && !light)
+        result = view_dip_create(context, &energy->dip, error);
+    for (int i = 0; i <= VIEW_CURVE && options->material < VIEW_METAL_COUNT; i++)
+        view_metal_fresnel(options->material, (double)i / VIEW_CURVE, energy->curve[i]);
     if (result != KILN_OK)
         view_energy_free(energy);
     return result;
@@ -36,6 +40,21 @@ void view_energy_free(view_energy *energy)
 {
     kiln_table_free(&energy->e);
     kiln_table_free(&energy->split);
+    kiln_table_free(&energy->dip);
+}
+
+void view_fresnel(const view_ball *ball, const view_energy *energy, double voh, double f[3])
+{
+    double at = voh * VIEW_CURVE;
+    int i = at < VIEW_CURVE - 1 ? (int)at : VIEW_CURVE - 1;
+    for (int c = 0; c < 3; c++) {
+        if (!ball->measured) {
+            f[c] = kiln_fresnel_schlick(ball->f0[c], voh);
+            continue;
+        }
+        double low = energy->curve[i][c], metal = low + (at - i) * (energy->curve[i + 1][c] - low);
+        f[c] = ball->metallic * metal + (1 - ball->metallic) * kiln_fresnel_schlick(0.04, voh);
+    }
 }
 
 static bool is_kulla_conty(view_method method)
@@ -48,15 +67,24 @@ static kiln_f_add form_of(view_method method)
     return method == VIEW_METHOD_KULLA_CONTY_HANDOUT ? KILN_F_ADD_ASSIGNMENT : KILN_F_ADD_SECOND;
 }
 
+// As shaders/brdf.glsl's f82_dip.
+static double dip_of(double f0, double f82)
+{
+    static const double edge = 1.0 / 7;
+    return (kiln_fresnel_schlick(f0, edge) - f82) / (edge * pow(1 - edge, 6));
+}
+
 void view_point_prepare(const view_ball *ball, const view_energy *energy, view_point *point)
 {
-    double ab[2], average = energy->average[point->ball];
+    double ab[2], dip, average = energy->average[point->ball];
     if (!energy->split.image.pixels) // one light: view_reflect_light needs none of it
         return;
     kiln_table_lookup(&energy->split, point->v[2], ball->roughness, 0, ab);
+    kiln_table_lookup(&energy->dip, point->v[2], ball->roughness, 0, &dip);
     double e = ab[0] + ab[1];
     for (int c = 0; c < 3; c++) {
         double f0 = ball->f0[c], single = f0 * ab[0] + ab[1], multiple = 0;
+        single -= dip_of(f0, ball->f82[c]) * dip;
         point->specular[c] = 1;
         point->lobe[c] = 0;
         if (is_kulla_conty(ball->method)) {
@@ -65,7 +93,9 @@ void view_point_prepare(const view_ball *ball, const view_energy *energy, view_p
             point->lobe[c] = average < 1 ? factor * (1 - e) / (1 - average) : 0;
             multiple = factor * (1 - e);
         } else if (ball->method == VIEW_METHOD_FDEZ_AGUERA) {
-            kiln_fdez_aguera(f0, ab[0], ab[1], &single, &multiple);
+            // kiln_fdez_aguera, with the metal's own F_avg.
+            multiple = single * (1 - e) / e *
+                       kiln_kulla_conty_fresnel(KILN_F_ADD_ASSIGNMENT, ball->f_average[c], e);
         } else if (ball->method == VIEW_METHOD_TURQUIN) {
             point->specular[c] = kiln_turquin(f0, e);
         }
@@ -88,7 +118,8 @@ void view_reflect(const view_ball *ball, const view_energy *energy, const view_p
         size += h[c] * h[c];
     }
     size = sqrt(size);
-    double voh = fmin(size / 2, 1); // |l + v| = 2 v.h
+    double voh = fmin(size / 2, 1), fresnel[3]; // |l + v| = 2 v.h
+    view_fresnel(ball, energy, voh, fresnel);
     double specular = 0, lobe = 0;
     if (ball->roughness > 0)
         specular =
@@ -99,8 +130,7 @@ void view_reflect(const view_ball *ball, const view_energy *energy, const view_p
         lobe = (1 - e) / pi;
     }
     for (int c = 0; c < 3; c++) {
-        double fresnel = kiln_fresnel_schlick(ball->f0[c], voh);
-        f[c] = nol * (specular * fresnel * point->specular[c] + lobe * point->lobe[c] +
+        f[c] = nol * (specular * fresnel[c] * point->specular[c] + lobe * point->lobe[c] +
                       point->diffuse[c] / pi);
     }
 }

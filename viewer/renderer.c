@@ -10,24 +10,30 @@
 typedef struct block {
     float eye[4], right[4], up[4], back[4], light[4], turn[4], screen[4], handout_average[4];
     int32_t mode[4], flags[4], levels[4];
-    float table_layout[6][4];
+    float table_layout[7][4];
     float level_roughness[VIEW_SLOT_COUNT][KILN_MAX_LEVELS];
     float harmonics[VIEW_SLOT_COUNT][9][4];
-    float balls[VIEW_MAX_BALLS][4][4];
+    float balls[VIEW_MAX_BALLS][5][4];
 } block;
 
 _Static_assert(offsetof(block, mode) == 128, "std140");
 _Static_assert(offsetof(block, table_layout) == 176, "std140");
-_Static_assert(offsetof(block, balls) == 688, "std140");
+_Static_assert(offsetof(block, balls) == 704, "std140");
 
 enum { TONE_LINEAR, TONE_NEUTRAL, TONE_ASSIGNMENT };
 
 // Texture units.
-enum { ENVIRONMENT, ENVIRONMENT_TEXTBOOK, IRRADIANCE, TABLES, TEXTURES = TABLES + 6 };
-static const char *const samplers[TEXTURES] = {
-    "environment",       "environment_textbook", "irradiance", "handout_e",
-    "handout_e_average", "handout_split",        "e",          "e_average",
-    "split_sum"};
+enum { ENVIRONMENT, ENVIRONMENT_TEXTBOOK, IRRADIANCE, TABLES, DIP = 6, TEXTURES = TABLES + 7 };
+static const char *const samplers[TEXTURES] = {"environment",
+                                               "environment_textbook",
+                                               "irradiance",
+                                               "handout_e",
+                                               "handout_e_average",
+                                               "handout_split",
+                                               "e",
+                                               "e_average",
+                                               "split_sum",
+                                               "dip_sum"};
 
 struct view_renderer {
     kiln_context *context;
@@ -126,8 +132,16 @@ static kiln_result make_model_tables(view_renderer *r, kiln_g g, kiln_error *err
 
 static kiln_result make_tables(view_renderer *r, kiln_error *error)
 {
+    kiln_table dip = {0};
     kiln_result result = make_model_tables(r, KILN_G_SCHLICK_K2, error);
-    return result == KILN_OK ? make_model_tables(r, KILN_G_SMITH, error) : result;
+    if (result == KILN_OK)
+        result = make_model_tables(r, KILN_G_SMITH, error);
+    if (result == KILN_OK)
+        result = view_dip_create(r->context, &dip, error);
+    if (result == KILN_OK)
+        set_table(r, DIP, &dip);
+    kiln_table_free(&dip);
+    return result;
 }
 
 // Nothing but black, so that every sampler has something to read.
@@ -220,6 +234,7 @@ static void fill_balls(block *b, const view_options *o)
         copy3(to[1], ball->f0);
         copy3(to[2], ball->f_average);
         copy3(to[3], ball->albedo);
+        copy3(to[4], ball->f82);
         to[0][3] = (float)ball->radius;
         to[1][3] = (float)ball->roughness;
         to[2][3] = (float)ball->method;

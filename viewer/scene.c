@@ -13,8 +13,8 @@ static const double degree = 0.017453292519943295;
 static const char *const scene_names[] = {"assignment", "ibl", "furnace", "grid", "compare"};
 static const char *const method_names[] = {"single", "kulla-conty", "handout", "fdez-aguera",
                                            "turquin"};
-static const char *const material_names[] = {"gold",    "copper",  "aluminium", "white",
-                                             "handout", "plastic", "chalk"};
+static const char *const material_names[] = {"gold",     "copper", "aluminium", "silver",  "iron",
+                                             "titanium", "white",  "handout",   "plastic", "chalk"};
 static const char *const debug_names[] = {"none",        "level", "table-e", "table-e-average",
                                           "table-split", "e",     "f"};
 
@@ -102,12 +102,8 @@ typedef struct substance {
     double f0[3], albedo[3];
 } substance;
 
-// Metals: F0 in linear Rec. 709 from measured indices of refraction, Akenine-Moller et al., Real-Time
-// Rendering, 4th edition 2018, table 9.2; gold's red, 1.022 there, lies outside the primaries.
+// Of what is not measured: metals.c has the others.
 static const substance substances[VIEW_MATERIAL_COUNT] = {
-    [VIEW_MATERIAL_GOLD] = {.f0 = {1.0, 0.782, 0.344}},
-    [VIEW_MATERIAL_COPPER] = {.f0 = {0.955, 0.638, 0.538}},
-    [VIEW_MATERIAL_ALUMINIUM] = {.f0 = {0.913, 0.922, 0.924}},
     [VIEW_MATERIAL_WHITE] = {.f0 = {1, 1, 1}},
     [VIEW_MATERIAL_PLASTIC] = {.f0 = {0.04, 0.04, 0.04}, .albedo = {0.6, 0.05, 0.04}},
     [VIEW_MATERIAL_CHALK] = {.f0 = {0.04, 0.04, 0.04}, .albedo = {0.9, 0.9, 0.9}},
@@ -117,8 +113,18 @@ static const substance substances[VIEW_MATERIAL_COUNT] = {
 const double view_handout_albedo[3] = {0.7216, 0.451, 0.2};
 static const double handout_edge[3] = {0.827, 0.792, 0.678};
 
+static const double edge = 1.0 / 7; // where F82 is
+
 static void set_substance(view_ball *ball, view_material material)
 {
+    ball->metallic = material != VIEW_MATERIAL_PLASTIC && material != VIEW_MATERIAL_CHALK;
+    ball->measured = material < VIEW_METAL_COUNT;
+    if (ball->measured) {
+        view_metal_fresnel(material, 1, ball->f0);
+        view_metal_fresnel(material, edge, ball->f82);
+        view_metal_average(material, ball->f_average);
+        return;
+    }
     for (int c = 0; c < 3; c++) {
         if (material == VIEW_MATERIAL_HANDOUT) {
             ball->f0[c] = pow(view_handout_albedo[c], 2.2);
@@ -127,9 +133,17 @@ static void set_substance(view_ball *ball, view_material material)
             ball->f0[c] = substances[material].f0[c];
             ball->f_average[c] = (1 + 20 * ball->f0[c]) / 21;
         }
+        ball->f82[c] = kiln_fresnel_schlick(ball->f0[c], edge);
         ball->albedo[c] = substances[material].albedo[c];
     }
-    ball->metallic = material != VIEW_MATERIAL_PLASTIC && material != VIEW_MATERIAL_CHALK;
+}
+
+// What is on all balls.
+static view_ball make_ball(view_material material)
+{
+    view_ball ball = {.radius = 36};
+    set_substance(&ball, material);
+    return ball;
 }
 
 // The assignment's rows: compensated above, one bounce below.
@@ -137,41 +151,43 @@ static int make_rows(const view_options *o, view_material material, view_ball *b
 {
     enum { COLUMNS = 5 };
     int count = 0;
+    const view_ball same = make_ball(material);
     for (int i = o->one_row ? COLUMNS : 0; i < 2 * COLUMNS; i++) {
         int column = i % COLUMNS;
-        balls[count] = (view_ball){
-            .centre = {180 - 80.0 * column, i < COLUMNS ? 60 : -60, 0},
-            .radius = 36,
-            .roughness = 0.15 + 0.2 * column,
-            .method = i < COLUMNS ? o->method : VIEW_METHOD_SINGLE,
-        };
-        set_substance(&balls[count++], material);
+        view_ball *ball = &balls[count++];
+        *ball = same;
+        ball->centre[0] = 180 - 80.0 * column;
+        ball->centre[1] = i < COLUMNS ? 60 : -60;
+        ball->roughness = 0.15 + 0.2 * column;
+        ball->method = i < COLUMNS ? o->method : VIEW_METHOD_SINGLE;
     }
     return count;
 }
 
-// Roughness 0 to 1 from left to right, metallic 0 to 1 upwards: F0 and albedo between a dielectric's
+// Roughness 0 to 1 from left to right, metallic 0 to 1 upwards: F and albedo between a dielectric's
 // and the metal's, which a metal keeps in its F0.
 static int make_grid(const view_options *o, view_ball *balls)
 {
     enum { COLUMNS = 7, ROWS = 5 };
+    const view_ball same = make_ball(o->material);
     for (int i = 0; i < COLUMNS * ROWS; i++) {
         int column = i % COLUMNS, row = i / COLUMNS;
         view_ball *ball = &balls[i];
-        *ball = (view_ball){
-            .centre = {80.0 * column - 240, 80.0 * row - 160, 0},
-            .radius = 36,
-            .roughness = column / (COLUMNS - 1.0),
-            .method = o->method,
-        };
-        set_substance(ball, o->material);
+        *ball = same;
+        ball->centre[0] = 80.0 * column - 240;
+        ball->centre[1] = 80.0 * row - 160;
+        ball->roughness = column / (COLUMNS - 1.0);
+        ball->method = o->method;
         bool metal = ball->metallic > 0;
         double m = ball->metallic = row / (ROWS - 1.0);
         for (int c = 0; c < 3; c++) {
             double colour = metal ? ball->f0[c] : ball->albedo[c];
+            double f82 = metal ? same.f82[c] : kiln_fresnel_schlick(colour, edge);
+            double average = metal ? same.f_average[c] : kiln_fresnel_schlick_average(colour);
             ball->f0[c] = 0.04 * (1 - m) + colour * m;
+            ball->f82[c] = kiln_fresnel_schlick(0.04, edge) * (1 - m) + f82 * m;
+            ball->f_average[c] = kiln_fresnel_schlick_average(0.04) * (1 - m) + average * m;
             ball->albedo[c] = colour * (1 - m);
-            ball->f_average[c] = (1 + 20 * ball->f0[c]) / 21;
         }
     }
     return COLUMNS * ROWS;

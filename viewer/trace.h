@@ -47,20 +47,26 @@ typedef struct view_point {
     double diffuse[3];       ///< the rest, as an albedo
 } view_point;
 
-/// E, A and B as the reference looks them up, to 1e-6, and E_avg of each ball.
+enum { VIEW_CURVE = 256 };
+
+/// E, A and B as the reference looks them up, to 1e-6, C to 1e-4; E_avg of each ball; the measured
+/// metal's F at v.h = i / VIEW_CURVE.
 typedef struct view_energy {
     kiln_model model;
-    kiln_table e, split;
+    kiln_table e, split, dip;
     double average[VIEW_MAX_BALLS];
+    double curve[VIEW_CURVE + 1][3];
 } view_energy;
 
 KILN_CHECKED kiln_result view_energy_create(kiln_context *context, const view_options *options,
                                             view_energy *energy, kiln_error *error);
 void view_energy_free(view_energy *energy);
 
+/// The ball's reflectance at v.h: Schlick's, or a metal's measured one.
+void view_fresnel(const view_ball *ball, const view_energy *energy, double voh, double f[3]);
 /// Fills specular, lobe and diffuse; ball, n, t, b and v are set.
 void view_point_prepare(const view_ball *ball, const view_energy *energy, view_point *point);
-/// The BRDF times the cosine for light from l in (t, b, n), with Schlick's F. A perfect mirror's peak
+/// The BRDF times the cosine for light from l in (t, b, n), with view_fresnel's F. A perfect mirror's peak
 /// is left out.
 void view_reflect(const view_ball *ball, const view_energy *energy, const view_point *point,
                   const double l[3], double f[3]);
@@ -68,6 +74,7 @@ void view_reflect(const view_ball *ball, const view_energy *energy, const view_p
 typedef struct view_walk {
     const view_ball *ball;
     const view_light *light;
+    const view_energy *energy; ///< for a measured metal's F
 } view_walk;
 
 void view_walk_add(const view_walk *walk, const view_point *point, view_random *random,

@@ -34,11 +34,15 @@ typedef enum view_material {
     VIEW_MATERIAL_GOLD,
     VIEW_MATERIAL_COPPER,
     VIEW_MATERIAL_ALUMINIUM,
+    VIEW_MATERIAL_SILVER,
+    VIEW_MATERIAL_IRON,
+    VIEW_MATERIAL_TITANIUM,
     VIEW_MATERIAL_WHITE,   ///< reflects everything: F0 = 1
     VIEW_MATERIAL_HANDOUT, ///< the assignment's copper
     VIEW_MATERIAL_PLASTIC, ///< a dielectric of index 1.5, red underneath
     VIEW_MATERIAL_CHALK,   ///< the same, white underneath
-    VIEW_MATERIAL_COUNT
+    VIEW_MATERIAL_COUNT,
+    VIEW_METAL_COUNT = VIEW_MATERIAL_WHITE ///< those from measured indices of refraction
 } view_material;
 
 /// What is shown instead of the picture.
@@ -99,9 +103,11 @@ typedef struct view_ball {
     double centre[3], radius;
     double roughness, metallic;
     double f0[3];        ///< specular at normal incidence
+    double f82[3];       ///< at 82 degrees, as kiln_fresnel_f82 has it
     double f_average[3]; ///< 2 int F(mu) mu dmu
     double albedo[3];    ///< of the diffuse base; 0 for metals
     view_method method;
+    bool measured; ///< the metal's own F, to the share `metallic`
 } view_ball;
 
 /// The balls of a view; returns how many.

@@ -93,7 +93,7 @@ static double phase(double roughness, const double w[3], const double l[3], doub
 static void count(const view_walk *walk, const view_point *p, const ray *before, const double l[3],
                   double sum[3])
 {
-    double d[3], radiance[3], voh = 0, r = walk->ball->roughness;
+    double d[3], radiance[3], f[3], voh = 0, r = walk->ball->roughness;
     double out = leaving(r * r, before->below, l[2]);
     double density = out > 0 ? phase(r, before->w, l, &voh) : 0;
     if (!(density > 0))
@@ -102,9 +102,9 @@ static void count(const view_walk *walk, const view_point *p, const ray *before,
         d[c] = l[0] * p->t[c] + l[1] * p->b[c] + l[2] * p->n[c];
     double share = density * out / (density + view_light_pdf(walk->light, d));
     view_light_radiance(walk->light, d, radiance);
+    view_fresnel(walk->ball, walk->energy, fmin(voh, 1), f);
     for (int c = 0; c < 3; c++)
-        sum[c] += before->weight[c] * kiln_fresnel_schlick(walk->ball->f0[c], fmin(voh, 1)) *
-                  share * radiance[c];
+        sum[c] += before->weight[c] * f[c] * share * radiance[c];
 }
 
 void view_walk_add(const view_walk *walk, const view_point *p, view_random *random, double sum[3])
@@ -116,7 +116,7 @@ void view_walk_add(const view_walk *walk, const view_point *p, view_random *rand
         return;
     advance(alpha, random, &r);
     for (int bounce = 1; bounce <= MAX_BOUNCES; bounce++) {
-        double v[3] = {-r.w[0], -r.w[1], -r.w[2]}, h[3], l[3];
+        double v[3] = {-r.w[0], -r.w[1], -r.w[2]}, h[3], l[3], f[3];
         draw_normal(alpha, v, random, h);
         double voh = dot(v, h);
         for (int c = 0; c < 3; c++)
@@ -128,9 +128,10 @@ void view_walk_add(const view_walk *walk, const view_point *p, view_random *rand
             count(walk, p, &r, drawn, sum);
             count(walk, p, &r, l, sum);
         }
+        view_fresnel(ball, walk->energy, fmin(voh, 1), f);
         for (int c = 0; c < 3; c++) {
             r.w[c] = l[c];
-            r.weight[c] *= kiln_fresnel_schlick(ball->f0[c], fmin(voh, 1));
+            r.weight[c] *= f[c];
         }
         if (!advance(alpha, random, &r))
             return;

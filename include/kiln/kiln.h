@@ -421,6 +421,9 @@ KILN_API double kiln_brdf_specular(const kiln_model *model, double roughness, do
 
 /// Schlick 1994: f0 + (1 - f0) (1 - voh)^5.
 KILN_API double kiln_fresnel_schlick(double f0, double voh);
+/// A metal's: Schlick's less a dip towards the edge, a voh (1 - voh)^6 (Lazanyi and Szirmay-Kalos
+/// 2005), with a such that F is `f82` at voh = 1 / 7, 82 degrees (Kutz et al. 2021). Cut to [0, 1].
+KILN_API double kiln_fresnel_f82(double f0, double f82, double voh);
 /// Unpolarised light on a dielectric of ior = n_transmitted / n_incident, 0 to 1e8. Total
 /// reflection is 1.
 KILN_API double kiln_fresnel_dielectric(double ior, double voh);
@@ -432,6 +435,9 @@ KILN_API void kiln_gulbrandsen(double reflectivity, double edge_tint, double *n,
 
 /// F_avg = 2 int F(mu) mu dmu from 0 to 1. Schlick's is exactly (1 + 20 f0) / 21.
 KILN_API double kiln_fresnel_schlick_average(double f0);
+/// (1 + 20 f0) / 21 - a / 126, exact where nothing is cut: f0 of 0.2 or more, f82 from
+/// f0 to Schlick's F.
+KILN_API double kiln_fresnel_f82_average(double f0, double f82);
 /// Exact (Walsh 1926, and reciprocity for ior < 1), to 1e-14.
 KILN_API double kiln_fresnel_dielectric_average(double ior);
 /// By adaptive quadrature, to 1e-12.

@@ -73,6 +73,17 @@ void kiln_gulbrandsen(double reflectivity, double edge_tint, double *n, double *
     ki_gulbrandsen(ki_clamp(reflectivity, 0, 0.9999), unit(edge_tint), n, k);
 }
 
+double kiln_fresnel_f82(double f0, double f82, double voh)
+{
+    return ki_fresnel_f82(unit(f0), unit(f82), unit(voh));
+}
+
+double kiln_fresnel_f82_average(double f0, double f82)
+{
+    double f = unit(f0);
+    return (1 + 20 * f) / 21 - ki_f82_dip(f, unit(f82)) / 126;
+}
+
 double kiln_fresnel_schlick_average(double f0)
 {
     return (1 + 20 * unit(f0)) / 21;

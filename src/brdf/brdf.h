@@ -38,6 +38,9 @@ double ki_smith_g1_over_cosine(double alpha, double nox);
 
 /// (1 - voh)^5, the varying part of Schlick's Fresnel F = f0 + (1 - f0) (1 - voh)^5.
 double ki_schlick_fresnel(double voh);
+/// Schlick's F less dip voh (1 - voh)^6, so that F = f82 at voh = 1 / 7, and that dip.
+double ki_fresnel_f82(double f0, double f82, double voh);
+double ki_f82_dip(double f0, double f82);
 /// ior is n_transmitted / n_incident, c the cosine.
 double ki_fresnel_dielectric(double ior, double c);
 double ki_fresnel_conductor(double n, double k, double c);

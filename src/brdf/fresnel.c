@@ -1,6 +1,7 @@
 // Fresnel's reflectances of unpolarised light, and their averages over a diffuse illumination.
 #include "brdf/brdf.h"
 
+#include "base/base.h"
 #include "math/math.h"
 
 #include <math.h>
@@ -61,6 +62,20 @@ void ki_gulbrandsen(double reflectivity, double edge_tint, double *n, double *k)
     *n = n_max - less;
     double k2 = less * (*n - 1 / n_max);
     *k = sqrt(k2 > 0 ? k2 : 0);
+}
+
+// What Schlick's F loses at most, of what is largest at v.h = 1 / 7, 82 degrees.
+double ki_f82_dip(double f0, double f82)
+{
+    double edge = 6.0 / 7, power = edge * edge * edge * edge * edge;
+    return (f0 + (1 - f0) * power - f82) * 7 / (power * edge);
+}
+
+double ki_fresnel_f82(double f0, double f82, double voh)
+{
+    double power = ki_schlick_fresnel(voh);
+    double f = f0 + (1 - f0) * power - ki_f82_dip(f0, f82) * voh * (power * (1 - voh));
+    return ki_clamp(f, 0, 1);
 }
 
 // ---------------------------------------------------------------------------------------- averages

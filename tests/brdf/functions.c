@@ -122,6 +122,12 @@ static double conductor_mu(void *data, double mu)
     return 2 * mu * kiln_fresnel_conductor(i->n, i->k, mu);
 }
 
+static double f82_mu(void *data, double mu)
+{
+    const index *i = data;
+    return 2 * mu * kiln_fresnel_f82(i->n, i->k, mu);
+}
+
 static double schlick_mu(void *data, double mu)
 {
     return 2 * mu * kiln_fresnel_schlick(((index *)data)->n, mu);
@@ -187,6 +193,29 @@ static void gulbrandsen_gives_the_reflectivity_back(void **state)
             CHECK_NEAR(n, g * (1 - r) / (1 + r) + (1 - g) * n_max, 1e-13 * n_max);
             CHECK_NEAR(k * k * (1 - r), r * (n + 1) * (n + 1) - (n - 1) * (n - 1),
                        1e-13 * n_max * n_max);
+        }
+}
+
+// It passes through its three points, is Schlick's where f82 is Schlick's, and stays in [0, 1].
+static void metals_dip_at_82_degrees(void **state)
+{
+    (void)state;
+    for (int i = 0; i <= 10; i++)
+        for (int j = 0; j <= 10; j++) {
+            double f0 = i / 10.0, f82 = j / 10.0;
+            double schlick = kiln_fresnel_schlick(f0, 1.0 / 7);
+            CHECK_NEAR(kiln_fresnel_f82(f0, f82, 1), f0, 0);
+            CHECK_NEAR(kiln_fresnel_f82(f0, f82, 0), 1, 0);
+            CHECK_NEAR(kiln_fresnel_f82(f0, f82, 1.0 / 7), f82, 1e-14);
+            for (int k = 0; k <= 64; k++) {
+                double f = kiln_fresnel_f82(f0, f82, k / 64.0);
+                assert_true(f >= 0 && f <= 1);
+                CHECK_NEAR(kiln_fresnel_f82(f0, schlick, k / 64.0),
+                           kiln_fresnel_schlick(f0, k / 64.0), 1e-14);
+            }
+            index metal = {f0, f82, 0};
+            if (f0 > 0.19 && f82 >= f0 && f82 <= schlick)
+                CHECK_NEAR(kiln_fresnel_f82_average(f0, f82), graded(f82_mu, &metal, 0), 1e-14);
         }
 }
 
@@ -407,6 +436,7 @@ int main(void)
         cmocka_unit_test(specular_is_reciprocal_and_finite),
         cmocka_unit_test(fresnel_at_its_ends),
         cmocka_unit_test(gulbrandsen_gives_the_reflectivity_back),
+        cmocka_unit_test(metals_dip_at_82_degrees),
         cmocka_unit_test(averages_agree_with_quadrature),
         cmocka_unit_test(fits_err_as_documented),
         cmocka_unit_test(kulla_conty_closes_the_furnace),

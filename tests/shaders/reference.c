@@ -1,6 +1,7 @@
 // The integrator against a sum over every texel, and its parts against their laws.
 #include "check.h"
 
+#include "parts.h"
 #include "reference.h"
 #include "trace.h"
 
@@ -111,7 +112,7 @@ static void walks_lose_nothing(void **unused)
         view_point p = {.n = {0, 0, 1}, .t = {1, 0, 0}, .b = {0, 1, 0}};
         p.v[0] = sqrt(1 - nov * nov);
         p.v[2] = nov;
-        view_walk walk = {&ball, &white};
+        view_walk walk = {&ball, &white, NULL};
         for (int k = 0; k < COUNT; k++)
             view_walk_add(&walk, &p, &random, sum);
         kiln_walk_def def = {.f0 = f0[i / 9]};
@@ -144,9 +145,11 @@ static void sum_all(const kiln_map *map, const view_ball *ball, const double n[3
     enum { FINE = 256 };
     const kiln_model model = {0};
     double r = ball->roughness, average = kiln_energy_average(&model, r), nov = dot(n, v);
-    double e_o = kiln_energy(&model, r, nov), e[FINE + 1];
-    for (int i = 0; i <= FINE; i++)
+    double e_o = kiln_energy(&model, r, nov), e[FINE + 1], gold[FINE + 1][3];
+    for (int i = 0; i <= FINE; i++) {
         e[i] = kiln_energy(&model, r, (double)i / FINE);
+        view_metal_fresnel(VIEW_MATERIAL_GOLD, (double)i / FINE, gold[i]);
+    }
     for (int y = 0; y < FINE; y++)
         for (int x = 0; x < 2 * FINE; x++) {
             double theta = 3.14159265358979 * (y + 0.5) / FINE;
@@ -164,7 +167,7 @@ static void sum_all(const kiln_map *map, const view_ball *ball, const double n[3
             int i = (int)(nol * FINE) < FINE ? (int)(nol * FINE) : FINE - 1;
             double e_i = e[i] + (e[i + 1] - e[i]) * (nol * FINE - i);
             for (int c = 0; c < 3; c++) {
-                double f = lobe * kiln_fresnel_schlick(ball->f0[c], dot(v, h));
+                double f = lobe * gold[(int)(dot(v, h) * FINE + 0.5)][c];
                 if (ball->method == VIEW_METHOD_KULLA_CONTY)
                     f += kiln_kulla_conty(e_o, e_i, average) *
                          kiln_kulla_conty_fresnel(KILN_F_ADD_SECOND, ball->f_average[c], average);

@@ -170,6 +170,18 @@ static void c_schlick_fresnel(const double x[ARGUMENTS], double r[3])
     r[0] = ki_schlick_fresnel(x[0]);
 }
 
+static void c_f82_dip(const double x[ARGUMENTS], double r[3])
+{
+    for (int c = 0; c < 3; c++)
+        r[c] = 10 + ki_f82_dip(x[c], x[3 + c]);
+}
+
+static void c_fresnel_f82(const double x[ARGUMENTS], double r[3])
+{
+    for (int c = 0; c < 3; c++)
+        r[c] = ki_fresnel_f82(x[c], x[3 + c], x[6]);
+}
+
 static void c_fresnel_dielectric(const double x[ARGUMENTS], double r[3])
 {
     r[0] = ki_fresnel_dielectric(x[0], x[1]);
@@ -289,6 +301,16 @@ static const function functions[] = {
      "r = vec3(schlick_fresnel(x[0]), 0.0, 0.0);",
      c_schlick_fresnel,
      {0},
+     {TO_1}},
+    {"f82_dip", // away from 0, where there is no relative error
+     "r = 10.0 + f82_dip(vec3(x[0], x[1], x[2]), vec3(x[3], x[4], x[5]));",
+     c_f82_dip,
+     {0},
+     {TO_1}},
+    {"fresnel_f82", // likewise
+     "r = fresnel_f82(vec3(x[0], x[1], x[2]), vec3(x[3], x[4], x[5]), x[6]);",
+     c_fresnel_f82,
+     {0.2, 0.2, 0.2, 0.4, 0.4, 0.4},
      {TO_1}},
     {"fresnel_dielectric",
      "r = vec3(fresnel_dielectric(x[0], x[1]), 0.0, 0.0);",
