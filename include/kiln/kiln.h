@@ -894,6 +894,16 @@ KILN_API KILN_CHECKED kiln_result kiln_engine_levels(const kiln_engine *engine, 
                                                      int level_count,
                                                      float roughness[KILN_MAX_LEVELS],
                                                      kiln_prefilter_def *def, kiln_error *error);
+/// The level, a fraction, that the engine's shader reads for a roughness; -1 where the engine is none
+/// of kiln's or reads no levels.
+KILN_API double kiln_engine_level(const kiln_engine *engine, double roughness, int size,
+                                  int level_count);
+/// What the engine shows of such a cube in directions that are not 0: two levels mixed by the fraction,
+/// each read bilinearly across faces. `values` receives count * 3.
+KILN_API KILN_CHECKED kiln_result kiln_engine_show(kiln_context *context, const kiln_engine *engine,
+                                                   const kiln_map *map, double roughness,
+                                                   const double (*directions)[3], int count,
+                                                   double (*values)[3], kiln_error *error);
 /// Writes such a cube, given in kiln's directions, as the engine reads it: turned so that it shows a
 /// panorama where its own loader would. `sh`, of three bands or more, is the environment's radiance,
 /// which some engines take their diffuse light from. Files appear together or not at all.

@@ -2,7 +2,9 @@
 #include "engine/engine.h"
 
 #include "image/image.h"
+#include "math/math.h"
 
+#include <math.h>
 #include <string.h>
 
 const kiln_engine *kiln_engine_at(int index)
@@ -67,6 +69,61 @@ kiln_result kiln_engine_levels(const kiln_engine *engine, int size, int level_co
     for (int k = 0; k < level_count; k++)
         roughness[k] = (float)recipe->roughness(k, level_count, size);
     *def = (kiln_prefilter_def){.size = size, .level_count = level_count, .roughness = roughness};
+    return KILN_OK;
+}
+
+double kiln_engine_level(const kiln_engine *engine, double roughness, int size, int level_count)
+{
+    const ki_recipe *recipe = ki_recipe_of(engine);
+    return recipe && recipe->level ? recipe->level(roughness, level_count, size) : -1;
+}
+
+// What is shown at some roughness.
+typedef struct view {
+    const kiln_map *map;
+    int level;
+    double mix;
+    const double (*directions)[3];
+    double (*values)[3];
+    int count;
+} view;
+
+enum { VIEW_CHUNK = 1024 };
+
+// Task: one chunk of directions.
+static void show(void *data, int index)
+{
+    const view *v = data;
+    int first = index * VIEW_CHUNK, end = ki_min(first + VIEW_CHUNK, v->count);
+    for (int i = first; i < end; i++) {
+        double next[3];
+        ki_cube_read(v->map, v->level, v->directions[i], v->values[i]);
+        if (v->mix <= 0)
+            continue;
+        ki_cube_read(v->map, v->level + 1, v->directions[i], next);
+        for (int c = 0; c < 3; c++)
+            v->values[i][c] += v->mix * (next[c] - v->values[i][c]);
+    }
+}
+
+kiln_result kiln_engine_show(kiln_context *context, const kiln_engine *engine, const kiln_map *map,
+                             double roughness, const double (*directions)[3], int count,
+                             double (*values)[3], kiln_error *error)
+{
+    const ki_recipe *recipe;
+    kiln_result result = find_recipe(engine, &recipe, error);
+    if (result != KILN_OK || (result = ki_map_check(map, error)) != KILN_OK)
+        return result;
+    if (!recipe->level || map->shape != KILN_SHAPE_CUBE)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: shows levels of cubes only",
+                       recipe->about.name);
+    if (!(roughness >= 0 && roughness <= 1))
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "roughness is %g, it must be 0 to 1", roughness);
+    double level = recipe->level(roughness, map->level_count, map->size);
+    view v = {.map = map, .directions = directions, .values = values, .count = count};
+    v.level = (int)ki_clamp(floor(level), 0, map->level_count - 1);
+    v.mix = v.level + 1 < map->level_count ? level - v.level : 0;
+    ki_parallel_for(context, (count + VIEW_CHUNK - 1) / VIEW_CHUNK, show, &v);
     return KILN_OK;
 }
 

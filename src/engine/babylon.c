@@ -20,6 +20,12 @@ static double roughness(int level, int level_count, int size)
     return level == 0 ? 0 : slope >= 1 ? 1 : sqrt(slope - 0.0005);
 }
 
+static double level(double roughness, int level_count, int size)
+{
+    double slope = roughness * roughness + 0.0005;
+    return ki_clamp(ki_log(size * slope) / ki_log(2) * lod_scale, 0, level_count - 1);
+}
+
 // Irradiance / pi in harmonics is that of radiance times 1, 2/3 or 1/4 by band. As a polynomial Babylon
 // multiplies by these and by the constant of the basis function once more, which the shader's harmonics
 // take back: SphericalPolynomial.updateFromHarmonics and SphericalHarmonics.FromPolynomial. 1 is written
@@ -88,6 +94,7 @@ const ki_recipe ki_babylon = {
     .size_max = 2048,
     .last_size = 1,
     .roughness = roughness,
+    .level = level,
     .write = write_env,
 };
 
@@ -106,5 +113,6 @@ const ki_recipe ki_babylon_dds = {
     .size_max = 2048,
     .last_size = 1,
     .roughness = roughness,
+    .level = level,
     .write = write_dds,
 };

@@ -28,6 +28,8 @@ typedef struct ki_recipe {
     int last_size;       ///< of the last level, which gives the default number of levels
     int level_count_min; ///< where the number may be chosen; 0 where it may not
     double (*roughness)(int level, int level_count, int size);
+    /// The inverse as its shader has it: the level, a fraction, that it reads for a roughness.
+    double (*level)(double roughness, int level_count, int size);
     kiln_result (*write)(ki_export *to, kiln_error *error);
 } ki_recipe;
 

@@ -17,6 +17,14 @@ static double roughness(int level, int level_count, int size)
     return level_count > 1 ? 1 - sqrt(1 - (double)level / (level_count - 1)) : 0;
 }
 
+// Its materials are no smoother than 0.045.
+static double level(double roughness, int level_count, int size)
+{
+    (void)size;
+    double r = fmax(roughness, 0.045);
+    return (level_count - 1) * r * (2 - r);
+}
+
 // Irradiance / pi: factors to 1, y, z, x, xy, yz, 3z^2 - 1, zx, x^2 - y^2.
 static void make_factors(const kiln_sh *sh, double factors[9][3])
 {
@@ -111,5 +119,6 @@ const ki_recipe ki_filament = {
     .last_size = 16,
     .level_count_min = 2,
     .roughness = roughness,
+    .level = level,
     .write = write,
 };

@@ -15,6 +15,14 @@ static double roughness(int level, int level_count, int size)
     return level_count > 1 ? 1 - sqrt(1 - (double)level / (level_count - 1)) : 0;
 }
 
+// Its materials are no smoother than 0.045.
+static double level(double roughness, int level_count, int size)
+{
+    (void)size;
+    double r = fmax(roughness, 0.045);
+    return (level_count - 1) * r * (2 - r);
+}
+
 static kiln_result write(ki_export *to, kiln_error *error)
 {
     ki_writer bytes = {.context = to->context};
@@ -42,5 +50,6 @@ const ki_recipe ki_three = {
     .last_size = 8,
     .level_count_min = 2,
     .roughness = roughness,
+    .level = level,
     .write = write,
 };

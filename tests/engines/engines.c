@@ -48,6 +48,49 @@ static void every_engine_is_found_and_makes_sense(void **state)
     assert_null(kiln_engine_find("frob"));
 }
 
+static void a_shader_reads_each_level_at_its_roughness(void **state)
+{
+    (void)state;
+    for (int e = 0; kiln_engine_at(e); e++) {
+        const kiln_engine *engine = kiln_engine_at(e);
+        float roughness[KILN_MAX_LEVELS];
+        kiln_prefilter_def def;
+        CHECK_OK(kiln_engine_levels(engine, 0, 0, roughness, &def, &error));
+        double last = kiln_engine_level(engine, 1, def.size, def.level_count);
+        if (last < 0)
+            continue;
+        assert_true(last <= def.level_count - 1);
+        for (int k = 1; k < def.level_count; k++)
+            CHECK_NEAR(kiln_engine_level(engine, (double)roughness[k], def.size, def.level_count),
+                       k < last ? k : last, 1e-5);
+    }
+    assert_true(kiln_engine_level(&(kiln_engine){0}, 0.5, 256, 5) < 0);
+}
+
+// Level k is 1 + k everywhere, so that what is shown tells the level.
+static void what_is_shown_is_the_mix_of_two_levels(void **state)
+{
+    (void)state;
+    kiln_map map;
+    const double directions[2][3] = {{1, 0.9999, -0.3}, {-0.2, -3, 1}};
+    double values[2][3];
+    const kiln_engine *three = kiln_engine_find("three");
+    CHECK_OK(kiln_map_create(context, KILN_SHAPE_CUBE, 32, 5, &map, &error));
+    for (int k = 0; k < 5; k++)
+        for (size_t i = 0; i < 3 * kiln_map_texels(&map, k); i++)
+            map.level[k][i] = (float)(1 + k);
+    for (int i = 0; i <= 20; i++) {
+        double r = i / 20.0;
+        CHECK_OK(kiln_engine_show(context, three, &map, r, directions, 2, values, &error));
+        for (int c = 0; c < 3; c++)
+            for (int j = 0; j < 2; j++)
+                CHECK_NEAR(values[j][c], 1 + kiln_engine_level(three, r, 32, 5), 1e-6);
+    }
+    assert_int_equal(kiln_engine_show(context, three, &map, 1.5, directions, 2, values, &error),
+                     KILN_ERROR_ARGUMENT);
+    kiln_map_free(&map);
+}
+
 // Radiance with no symmetry at all.
 static double radiance(const double d[3], int c)
 {
@@ -154,6 +197,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(every_engine_is_found_and_makes_sense, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_shader_reads_each_level_at_its_roughness, set_up,
+                                        tear_down),
+        cmocka_unit_test_setup_teardown(what_is_shown_is_the_mix_of_two_levels, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_turned_cube_holds_each_texel_where_it_is_looked_for,
                                         set_up, tear_down),
         cmocka_unit_test_setup_teardown(turned_harmonics_are_the_same_function, set_up, tear_down),
