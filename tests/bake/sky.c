@@ -3,28 +3,14 @@
 
 #include "bake/sky.h"
 
+#include "context.h"
+
 static const double elevations[] = {-5, -3, -1, -0.2, 0, 0.1, 1, 5, 20, 45, 70, 89.9, 90};
 static const double turbidities[] = {1.7, 2, 3, 5, 7, 10};
 enum {
     ELEVATIONS = sizeof elevations / sizeof *elevations,
     TURBIDITIES = sizeof turbidities / sizeof *turbidities
 };
-
-static kiln_context *context;
-
-static int set_up(void **state)
-{
-    (void)state;
-    context = make_context(2);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    (void)state;
-    kiln_context_destroy(context);
-    return 0;
-}
 
 static kiln_map sky_of(int size, double elevation, double azimuth, double turbidity)
 {

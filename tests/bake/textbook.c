@@ -3,21 +3,7 @@
 
 #include "brdf/brdf.h"
 
-static kiln_context *context;
-
-static int set_up(void **state)
-{
-    (void)state;
-    context = make_context(2);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    (void)state;
-    kiln_context_destroy(context);
-    return 0;
-}
+#include "context.h"
 
 // ------------------------------------------------------------------------------------------- brdf
 

@@ -7,24 +7,9 @@
 
 #include <float.h>
 
-static kiln_context *context;
+#include "context.h"
+
 static kiln_error error;
-
-static int set_up(void **state)
-{
-    (void)state;
-    return kiln_context_create(NULL, &context, &error) != KILN_OK;
-}
-
-static int tear_down(void **state)
-{
-    (void)state;
-    size_t held = 0;
-    kiln_context_memory(context, &held, NULL);
-    kiln_context_destroy(context);
-    context = NULL;
-    return held != 0;
-}
 
 // Smooth with some noise below, different for every channel, never negative.
 static float ramp(int x, int y, const char *channel)
