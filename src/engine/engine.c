@@ -8,9 +8,9 @@
 #include <math.h>
 #include <string.h>
 
-enum { RECIPES = 4 };
-static const ki_recipe *const recipes[RECIPES] = {&ki_three, &ki_babylon, &ki_babylon_dds,
-                                                  &ki_filament};
+enum { RECIPES = 6 };
+static const ki_recipe *const recipes[RECIPES] = {&ki_three,    &ki_babylon,    &ki_babylon_dds,
+                                                  &ki_filament, &ki_playcanvas, &ki_playcanvas_dds};
 
 const ki_recipe *ki_recipe_at(int index)
 {
@@ -28,7 +28,8 @@ const ki_recipe *ki_recipe_of(const kiln_engine *engine)
 int ki_recipe_levels(const ki_recipe *recipe, int size)
 {
     int count = 1;
-    while (size >> count >= recipe->last_size && count < KILN_MAX_LEVELS)
+    int most = recipe->level_count_max ? recipe->level_count_max : KILN_MAX_LEVELS;
+    while (size >> count >= recipe->last_size && count < most)
         count++;
     return count;
 }

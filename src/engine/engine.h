@@ -26,6 +26,7 @@ typedef struct ki_recipe {
     ki_axes axes;
     int size_min, size_max;
     int last_size;       ///< of the last level, which gives the default number of levels
+    int level_count_max; ///< of the default number; 0 for no limit
     int level_count_min; ///< where the number may be chosen; 0 where it may not
     double (*roughness)(int level, int level_count, int size);
     /// The inverse as its shader has it: the level, a fraction, that it reads for a roughness.
@@ -33,7 +34,8 @@ typedef struct ki_recipe {
     kiln_result (*write)(ki_export *to, kiln_error *error);
 } ki_recipe;
 
-extern const ki_recipe ki_three, ki_babylon, ki_babylon_dds, ki_filament;
+extern const ki_recipe ki_three, ki_babylon, ki_babylon_dds, ki_filament, ki_playcanvas,
+    ki_playcanvas_dds;
 
 /// The table of all; NULL behind the last.
 const ki_recipe *ki_recipe_at(int index);

@@ -114,7 +114,7 @@ const baked = (levels) => ({
     irradiance: (n) => readLevel(levels.at(-1), n),
 });
 
-// model: { toKiln, lod, shade, clamp?, bend?, harmonics?, distance? } as stated in each test.
+// model: { toKiln, lod, shade, clamp?, bend?, harmonics?, distance?, told? } as stated in each test.
 function predict(model, asset, { toEye: forward, right, up, normals }, roughness) {
     const row = ROUGHNESS.indexOf(roughness) - ROUGHNESS.length / 2, half = 0.5 + 0.5 / CELL;
     return normals.map((n, i) => {
@@ -172,11 +172,11 @@ function readDirection(way, size) {
     return readLevel(told.get(size), way);
 }
 
-function readMixed(way, lod, size) {
+function readMixed(model, way, lod, size) {
     const low = Math.floor(lod), t = lod - low;
-    return mix(readDirection(way, size >> low).map((x) => x * (1 + low) / (1 + lod)),
-               readDirection(way, Math.max(1, size >> (low + 1))).map((x) => x * (2 + low) / (1 + lod)),
-               t);
+    const read = model.told ?? readDirection;
+    return mix(read(way, size >> low).map((x) => x * (1 + low) / (1 + lod)),
+               read(way, Math.max(1, size >> (low + 1))).map((x) => x * (2 + low) / (1 + lod)), t);
 }
 
 // From the pixels alone: which axes each channel follows, and which level was read.
@@ -187,7 +187,7 @@ function checkCoded(model, views, last, size, shown, bounds) {
         views.forEach((view, side) => predict(model, asset, view, roughness).forEach((p, i) => {
             if (p.single < 0.1)
                 return; // diffuse light alone
-            rows.push([1, ...readMixed(p.way, model.lod(p.r), size)]);
+            rows.push([1, ...readMixed(model, p.way, model.lod(p.r), size)]);
             shown[side][row][i].forEach((x, c) =>
                 channels[c].push((x - p.multiple * p.around[c]) / p.single));
         }));
@@ -206,10 +206,12 @@ function checkCoded(model, views, last, size, shown, bounds) {
           `axes are off by ${worst.axes} (${bounds.axes}), the level by ${worst.lod} (${bounds.lod})`);
 }
 
+// Of the rows whose roughness lies within bounds.rows.
 function checkPixels(name, model, asset, views, shown, bounds) {
     let most = 0, squares = 0, count = 0, scale = 0;
+    const [from, to] = bounds.rows ?? [0, 1];
     views.forEach((view, side) => ROUGHNESS.forEach((roughness, row) =>
-        predict(model, asset, view, roughness).forEach((p, i) => p.value.forEach((wanted, c) => {
+        from <= roughness && roughness <= to && predict(model, asset, view, roughness).forEach((p, i) => p.value.forEach((wanted, c) => {
             const off = Math.abs(shown[side][row][i][c] - wanted);
             most = Math.max(most, off / wanted);
             squares += off * off;
@@ -246,6 +248,7 @@ export function tableReader(size, texel) {
 // name: the engine's in kiln's table. page: its page, which defines draw(file, views, ROUGHNESS, CELL)
 // and resolves to numbers [view][roughness][normal][channel]. ending: of what kiln is told to write;
 // loads: of what the page loads.
+// bounds.diffuse: the page draws diffuse light alone where its address ends in #diffuse.
 export async function proveEngine({ name, page, ending, loads = ending, model, bounds }) {
     fs.rmSync(folder, { recursive: true, force: true });
     fs.mkdirSync(folder, { recursive: true });
@@ -274,6 +277,14 @@ export async function proveEngine({ name, page, ending, loads = ending, model, b
         const real = baked(readCube('plain.ktx2'));
         if (made.harmonics)
             real.irradiance = (n) => readHarmonics(sh, n);
-        checkPixels('real', made, real, views, await draw(`real${loads}`), bounds.real);
+        const shown = await draw(`real${loads}`);
+        [bounds.real].flat().forEach((bound) => checkPixels('real', made, real, views, shown, bound));
+        if (bounds.diffuse) {
+            await browser.evaluate(() => { location.hash = 'diffuse'; });
+            const matt = { ...made, shade: () => [0, 1] };
+            checkPixels('diffuse, coded', matt, coded(count - 1, made.harmonics), views,
+                        await draw(`coded${loads}`), bounds.diffuse);
+            checkPixels('diffuse, real', matt, real, views, await draw(`real${loads}`), bounds.diffuse);
+        }
     });
 }
