@@ -8,6 +8,7 @@
 #include "engine/engine.h"
 
 #include "codec/codec.h"
+#include "codec/rgbx.h"
 #include "image/image.h"
 #include "image/pack.h"
 #include "math/math.h"
@@ -21,18 +22,6 @@ static double roughness(int level, int level_count, int size)
 {
     (void)size;
     return (double)level / (level_count - 1);
-}
-
-// RGBP: square roots over their largest, 1 to 8, which alpha holds as 1 - (largest - 1) / 7; at most 64.
-static void pack(const float root[3], float rgbp[4])
-{
-    double largest = 1;
-    for (int c = 0; c < 3; c++)
-        largest = (double)root[c] > largest ? (double)root[c] : largest;
-    double alpha = floor(255 * (1 - (ki_clamp(largest, 1, 8) - 1) / 7)) / 255;
-    for (int c = 0; c < 3; c++)
-        rgbp[c] = (float)ki_clamp((double)root[c] / (8 - 7 * alpha), 0, 1);
-    rgbp[3] = (float)alpha;
 }
 
 // A picture in the atlas. The shader interpolates what is stored, so texels are sought whose interpolation
@@ -82,8 +71,9 @@ static void average_row(void *data, int row)
     for (int x = 0; x < p->width; x++) {
         double sum[3] = {0};
         for (int i = 0; i < p->times * p->times; i++) {
-            const float *at = p->wanted + 3 * (((ptrdiff_t)row * p->times + i / p->times) * width +
-                                               x * p->times + i % p->times);
+            ptrdiff_t y = (ptrdiff_t)row * p->times + i / p->times;
+            ptrdiff_t place = y * width + (ptrdiff_t)x * p->times + i % p->times;
+            const float *at = p->wanted + 3 * place;
             for (int c = 0; c < 3; c++)
                 sum[c] += (double)(p->roots ? at[c] * at[c] : at[c]);
         }
@@ -198,7 +188,8 @@ static bool draw(const atlas *a, const kiln_map *map, int level, int x, int y, i
                 texel_at(p.texels, p.width, p.height, column - border, row - border);
             float *to = a->pixels + 4 * ((ptrdiff_t)(y + row) * size + x + column);
             if (a->roots)
-                pack(from, to);
+                ki_rgbp_from_float(
+                    (const float[3]){from[0] * from[0], from[1] * from[1], from[2] * from[2]}, to);
             else
                 memcpy(to, (const float[4]){from[0], from[1], from[2], 1}, 4 * sizeof *to);
         }
@@ -282,7 +273,8 @@ const ki_recipe ki_playcanvas = {
               .mapping = "r = k / 5",
               .size = ATLAS,
               .level_count = LEVELS,
-              .limit = 64},
+              .limit = KI_RGBP_MAX,
+              .proof = "pixels of PlayCanvas 2.23.3"},
     .axes = {{0, 1, 2}, {-1, 1, -1}},
     .size_min = ATLAS,
     .size_max = 2 * ATLAS,
@@ -300,7 +292,8 @@ const ki_recipe ki_playcanvas_dds = {
               .mapping = "r = k / 5",
               .size = ATLAS,
               .level_count = LEVELS,
-              .limit = 65504},
+              .limit = 65504,
+              .proof = "pixels of PlayCanvas 2.23.3"},
     .axes = {{0, 1, 2}, {-1, 1, -1}},
     .size_min = ATLAS,
     .size_max = 2 * ATLAS,
