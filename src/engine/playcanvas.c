@@ -24,6 +24,12 @@ static double roughness(int level, int level_count, int size)
     return (double)level / (level_count - 1);
 }
 
+static double level(double roughness, int level_count, int size)
+{
+    (void)size;
+    return (level_count - 1) * roughness;
+}
+
 // A picture in the atlas. The shader interpolates what is stored, so texels are sought whose interpolation
 // is nearest to the level everywhere, and not the level's values at their centres.
 typedef struct picture {
@@ -281,6 +287,7 @@ const ki_recipe ki_playcanvas = {
     .last_size = 16,
     .level_count_max = LEVELS,
     .roughness = roughness,
+    .level = level,
     .write = write_rgbp,
 };
 
@@ -300,5 +307,6 @@ const ki_recipe ki_playcanvas_dds = {
     .last_size = 16,
     .level_count_max = LEVELS,
     .roughness = roughness,
+    .level = level,
     .write = write_halfs,
 };
