@@ -62,7 +62,7 @@ static struct poptOption output_options[] = {
     VALUE("size", SIZE, "texels along a face, rows of a panorama (256)", "N"),
     VALUE("levels", LEVELS, "levels of the chain (all, down to 1 texel)", "N"),
     VALUE("shape", SHAPE, "cube, panorama or octahedron (cube)", "SHAPE"),
-    VALUE("format", FORMAT, "rgba16f, rgba32f, rgb9e5 or b10g11r11 (rgba16f)", "FORMAT"),
+    VALUE("format", FORMAT, "rgba16f, rgba32f, rgb9e5, b10g11r11 or bc6h (rgba16f)", "FORMAT"),
     VALUE("zstd", ZSTD, "compress KTX2; a level from 1 to 22 as --zstd=LEVEL (3)", "LEVEL"),
     POPT_TABLEEND,
 };
@@ -111,7 +111,8 @@ static const char *const lobes[] = {"ggx", "lambert", "charlie", "phong", NULL};
 static const char *const shapes[] = {"panorama", "cube", "octahedron", NULL};
 static const char *const methods[] = {"exact", "textbook", NULL};
 static const char *const layouts[] = {"auto", "panorama", "cross", "strip", "octahedron", NULL};
-static const char *const formats[] = {"auto", "rgba16f", "rgba32f", "rgb9e5", "b10g11r11", NULL};
+static const char *const formats[] = {"auto",      "rgba16f", "rgba32f", "rgb9e5",
+                                      "b10g11r11", "bc6h",    NULL};
 
 typedef struct bake {
     cli_arguments arguments;
@@ -188,7 +189,7 @@ static int check_output(const bake *b, const char *option, const char *path)
     if (b->shape != KILN_SHAPE_CUBE && (strstr(path, "%s") || strstr(path, "{face}")))
         return cli_wrong(&cli_bake, "%s %s: names a face, --shape %s has none", option, path,
                          shapes[b->shape]);
-    bool packed = b->format == KILN_FORMAT_RGB9E5 || b->format == KILN_FORMAT_B10G11R11;
+    bool packed = b->format >= KILN_FORMAT_RGB9E5;
     if (packed && !texture)
         return cli_wrong(&cli_bake, "%s %s: --format %s is for .ktx2 and .dds", option, path,
                          formats[b->format]);

@@ -180,9 +180,9 @@ kiln_result kiln_map_save(kiln_context *context, const kiln_map *map, const char
         result = check_sh(def->sh, error);
     if (result != KILN_OK)
         return result;
-    if ((int)def->format < 0 || def->format > KILN_FORMAT_B10G11R11)
+    if ((int)def->format < 0 || def->format > KILN_FORMAT_BC6H)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "format is %d, it must be 0 to %d",
-                       (int)def->format, (int)KILN_FORMAT_B10G11R11);
+                       (int)def->format, (int)KILN_FORMAT_BC6H);
     if (def->zstd < 0 || def->zstd > 22)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "zstd is %d, it must be 0 to 22", def->zstd);
     bool cube = ki_ends_with(path, ".ktx2") || ki_ends_with(path, ".dds");

@@ -8,7 +8,9 @@
 
 enum {
     HEADER_SIZE = 124,
-    FLAGS = 0x1 | 0x2 | 0x4 | 0x8 | 0x1000 | 0x20000, // caps, sizes, pitch, format, levels
+    FLAGS = 0x1 | 0x2 | 0x4 | 0x1000 | 0x20000, // caps, sizes, format, levels
+    FLAG_PITCH = 0x8,                           // bytes of a row
+    FLAG_LINEAR = 0x80000,                      // bytes of a face, for blocks
     FORMAT_SIZE = 32,
     FORMAT_FOURCC = 0x4,
     CAPS = 0x8 | 0x1000 | 0x400000, // complex, texture, levels
@@ -35,17 +37,18 @@ kiln_result ki_dds_encode(const kiln_map *map, const kiln_save_def *def, ki_writ
         return ki_fail(error, KILN_ERROR_ARGUMENT, "a DDS file holds a cube, not another shape");
     if (!texel)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "format is %d, it must be 0 to %d",
-                       (int)def->format, (int)KILN_FORMAT_B10G11R11);
+                       (int)def->format, (int)KILN_FORMAT_BC6H);
     if (def->zstd)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "zstd is %d, a DDS file has no compression",
                        def->zstd);
     ki_writer *w = writer;
     ki_write(w, "DDS ", 4);
     ki_write_u32(w, HEADER_SIZE);
-    ki_write_u32(w, FLAGS);
+    ki_write_u32(w, FLAGS | (texel->block > 1 ? FLAG_LINEAR : FLAG_PITCH));
     ki_write_u32(w, (uint32_t)map->size);
     ki_write_u32(w, (uint32_t)map->size);
-    ki_write_u32(w, (uint32_t)map->size * (uint32_t)texel->bytes);
+    int rows = texel->block > 1 ? map->size : 1;
+    ki_write_u32(w, (uint32_t)ki_texels_size(texel, map->size, rows));
     ki_write_u32(w, 0); // depth
     ki_write_u32(w, (uint32_t)map->level_count);
     for (int i = 0; i < 11; i++)
@@ -66,12 +69,13 @@ kiln_result ki_dds_encode(const kiln_map *map, const kiln_save_def *def, ki_writ
     ki_write_u32(w, 0); // alpha mode not stated
     for (int face = 0; face < 6; face++) {
         for (int k = 0; k < map->level_count; k++) {
+            int n = kiln_map_level_size(map, k);
             size_t texels = kiln_map_texels(map, k) / 6;
-            uint8_t *room = ki_write_room(w, texels * (size_t)texel->bytes);
+            uint8_t *room = ki_write_room(w, (size_t)ki_texels_size(texel, n, n));
             if (!room)
                 return ki_fail_memory(w->context, error, "a DDS file", w->size);
-            if (!ki_texels_pack_many(w->context, texel, map->level[k] + 3 * texels * (size_t)face,
-                                     texels, room))
+            if (!ki_texels_pack(w->context, texel, map->level[k] + 3 * texels * (size_t)face, n, n,
+                                1, room))
                 return ki_fail_cancelled(error, "writing");
         }
     }
@@ -125,10 +129,11 @@ static kiln_result read_header(ki_reader *r, const char *name, dds_header *h, ki
         return ki_fail(error, KILN_ERROR_UNSUPPORTED,
                        "%s: is no single cube of six faces, others are not read", name);
     if (!h->texel)
-        return ki_fail(error, KILN_ERROR_UNSUPPORTED,
-                       "%s: has pixel format %u; DXGI 2, 10, 26 and 67 and the codes 113 and 116 "
-                       "are read",
-                       name, format);
+        return ki_fail(
+            error, KILN_ERROR_UNSUPPORTED,
+            "%s: has pixel format %u; DXGI 2, 10, 26, 67 and 95 and the codes 113 and 116 "
+            "are read",
+            name, format);
     if (h->width < 1 || h->width != h->height || h->width > KILN_MAX_SIZE)
         return ki_fail(error, KILN_ERROR_FORMAT,
                        "%s: faces are %u x %u, they must be square and 1 to %d", name, h->width,
@@ -152,7 +157,7 @@ kiln_result ki_dds_decode(kiln_context *context, const uint8_t *bytes, size_t si
         return result;
     uint64_t wanted = 0;
     for (uint32_t k = 0; k < h.levels; k++)
-        wanted += 6 * (uint64_t)(h.width >> k) * (h.width >> k) * (uint64_t)h.texel->bytes;
+        wanted += 6 * ki_texels_size(h.texel, (int)h.width >> k, (int)h.width >> k);
     if (wanted > ki_reader_left(&r))
         return ki_fail(error, KILN_ERROR_FORMAT,
                        "%s: its levels need %llu bytes, %zu are left behind the header", name,
@@ -162,7 +167,7 @@ kiln_result ki_dds_decode(kiln_context *context, const uint8_t *bytes, size_t si
     info->width = info->height = (int)h.width;
     info->face_count = 6;
     info->level_count = (int)h.levels;
-    info->channel_count = h.texel->bytes == 4 ? 3 : 4;
+    info->channel_count = h.texel->channels;
     if (!map)
         return KILN_OK;
 
@@ -172,9 +177,10 @@ kiln_result ki_dds_decode(kiln_context *context, const uint8_t *bytes, size_t si
         return result;
     for (int face = 0; face < 6; face++) {
         for (int k = 0; k < map->level_count; k++) {
+            int n = kiln_map_level_size(map, k);
             size_t texels = kiln_map_texels(map, k) / 6;
-            const uint8_t *from = ki_read_bytes(&r, texels * (size_t)h.texel->bytes);
-            ki_texels_unpack(h.texel, from, texels, map->level[k] + 3 * texels * (size_t)face);
+            const uint8_t *from = ki_read_bytes(&r, (size_t)ki_texels_size(h.texel, n, n));
+            ki_texels_unpack(h.texel, from, n, n, map->level[k] + 3 * texels * (size_t)face);
         }
     }
     for (int k = 0; k < map->level_count; k++)

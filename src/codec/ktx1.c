@@ -53,12 +53,13 @@ kiln_result ki_ktx1_encode(const kiln_map *map, int first, int count, const char
         ki_write_u32(writer, 0);
     for (int k = first; k < first + count; k++) {
         // The size of a level of a cube is that of one face. Faces of halves need no padding.
-        size_t texels = kiln_map_texels(map, k), size = texels * (size_t)texel->bytes;
-        ki_write_u32(writer, (uint32_t)(size / 6));
-        uint8_t *room = ki_write_room(writer, size);
+        int n = kiln_map_level_size(map, k);
+        size_t size = (size_t)ki_texels_size(texel, n, n);
+        ki_write_u32(writer, (uint32_t)size);
+        uint8_t *room = ki_write_room(writer, 6 * size);
         if (!room)
             return ki_fail_memory(writer->context, error, "a KTX file", writer->size);
-        if (!ki_texels_pack_many(writer->context, texel, map->level[k], texels, room))
+        if (!ki_texels_pack(writer->context, texel, map->level[k], n, n, 6, room))
             return ki_fail_cancelled(error, "writing");
     }
     return KILN_OK;

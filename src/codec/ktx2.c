@@ -14,16 +14,17 @@ enum { INDEX_ENTRY = 24, SCHEME_NONE = 0, SCHEME_ZSTD = 2 };
 // Khronos Data Format 1.3, basic descriptor block.
 static void write_format(ki_writer *w, const ki_ktx2_file *file)
 {
-    enum { MODEL_RGBSDA = 1, PRIMARIES_BT709 = 1, TRANSFER_LINEAR = 1 };
+    enum { MODEL_RGBSDA = 1, MODEL_BC6H = 133, PRIMARIES_BT709 = 1, TRANSFER_LINEAR = 1 };
     uint32_t block = 24 + 16 * (uint32_t)file->sample_count;
     ki_write_u32(w, 4 + block);
     ki_write_u32(w, 0);               // vendor Khronos, basic format
     ki_write_u32(w, 2 | block << 16); // version 1.3
-    ki_write_u8(w, MODEL_RGBSDA);
+    ki_write_u8(w, file->block > 1 ? MODEL_BC6H : MODEL_RGBSDA);
     ki_write_u8(w, PRIMARIES_BT709);
     ki_write_u8(w, TRANSFER_LINEAR);
-    ki_write_u8(w, 0);  // straight alpha
-    ki_write_u32(w, 0); // texel blocks of 1 x 1 x 1 x 1
+    ki_write_u8(w, 0); // straight alpha
+    uint32_t less = (uint32_t)ki_max(file->block, 1) - 1;
+    ki_write_u32(w, less | less << 8); // texel blocks of so many and one, by 1 by 1
     ki_write_u32(w, (uint32_t)file->texel_size);
     ki_write_u32(w, 0);
     for (int i = 0; i < file->sample_count; i++) {

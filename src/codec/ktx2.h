@@ -23,7 +23,8 @@ typedef struct ki_ktx2_sample {
 /// What the header and the data format descriptor say.
 typedef struct ki_ktx2_file {
     uint32_t vk;
-    int type_size, texel_size; // bytes of what is swapped for byte order, and of a texel
+    int type_size, texel_size; // bytes of what is swapped for byte order, and of a texel or block
+    int block;                 // edge of a block of BC6H, 0 or 1 for texels
     int width, height, depth;  // depth 0: not a 3-D texture
     int face_count, level_count;
     int zstd; // level, 0 for none

@@ -24,6 +24,9 @@ static int find_samples(const ki_texel *texel, ki_ktx2_sample samples[6])
         samples[1] = (ki_ktx2_sample){11, 11, 1 | KI_KTX2_FLOAT, 0, one};
         samples[2] = (ki_ktx2_sample){22, 10, 2 | KI_KTX2_FLOAT, 0, one};
         return 3;
+    case KILN_FORMAT_BC6H:
+        samples[0] = (ki_ktx2_sample){0, 128, 0 | KI_KTX2_FLOAT, 0, one};
+        return 1;
     case KILN_FORMAT_AUTO:
     case KILN_FORMAT_RGBA16F:
     case KILN_FORMAT_RGBA32F:
@@ -74,8 +77,8 @@ typedef struct pack_job {
 static bool pack_level(kiln_context *context, const void *data, int level, uint8_t *bytes)
 {
     const pack_job *job = data;
-    return ki_texels_pack_many(context, job->texel, job->map->level[level],
-                               kiln_map_texels(job->map, level), bytes);
+    int n = kiln_map_level_size(job->map, level);
+    return ki_texels_pack(context, job->texel, job->map->level[level], n, n, 6, bytes);
 }
 
 kiln_result ki_ktx2_encode(const kiln_map *map, const kiln_save_def *def, ki_writer *writer,
@@ -86,10 +89,11 @@ kiln_result ki_ktx2_encode(const kiln_map *map, const kiln_save_def *def, ki_wri
         return ki_fail(error, KILN_ERROR_ARGUMENT, "a KTX2 file holds a cube, not another shape");
     if (!texel)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "format is %d, it must be 0 to %d",
-                       (int)def->format, (int)KILN_FORMAT_B10G11R11);
+                       (int)def->format, (int)KILN_FORMAT_BC6H);
     ki_ktx2_file file = {.vk = texel->vk,
                          .type_size = texel->type_size,
                          .texel_size = texel->bytes,
+                         .block = texel->block,
                          .width = map->size,
                          .height = map->size,
                          .face_count = 6,
@@ -103,9 +107,11 @@ kiln_result ki_ktx2_encode(const kiln_map *map, const kiln_save_def *def, ki_wri
     write_metadata(writer, map, def);
     result = ki_ktx2_end_metadata(&k, error);
     pack_job job = {map, texel};
-    for (int level = map->level_count - 1; level >= 0 && result == KILN_OK; level--)
-        result = ki_ktx2_write_level(&k, level, kiln_map_texels(map, level) * (size_t)texel->bytes,
-                                     pack_level, &job, error);
+    for (int level = map->level_count - 1; level >= 0 && result == KILN_OK; level--) {
+        int n = kiln_map_level_size(map, level);
+        result = ki_ktx2_write_level(&k, level, 6 * (size_t)ki_texels_size(texel, n, n), pack_level,
+                                     &job, error);
+    }
     return result;
 }
 
@@ -115,7 +121,7 @@ static kiln_result check(const ki_ktx2_source *s, const ki_texel *texel, kiln_er
 {
     if (!texel)
         return ki_fail(error, KILN_ERROR_UNSUPPORTED,
-                       "%s: has vkFormat %u; 97, 109, 122 and 123 are read", s->name, s->vk);
+                       "%s: has vkFormat %u; 97, 109, 122, 123 and 131 are read", s->name, s->vk);
     if (s->width < 1 || s->width != s->height || s->width > KILN_MAX_SIZE)
         return ki_fail(error, KILN_ERROR_FORMAT,
                        "%s: faces are %u x %u, they must be square and 1 to %d", s->name, s->width,
@@ -132,8 +138,10 @@ static kiln_result read_level(kiln_context *context, const ki_ktx2_source *s, co
     const uint8_t *plain;
     uint8_t *unpacked;
     kiln_result result = ki_ktx2_unpack(context, s, k, level, &plain, &unpacked, error);
-    if (result == KILN_OK)
-        ki_texels_unpack(texel, plain, kiln_map_texels(map, k), map->level[k]);
+    int n = kiln_map_level_size(map, k);
+    size_t face = (size_t)ki_texels_size(texel, n, n), texels = kiln_map_texels(map, k) / 6;
+    for (size_t i = 0; i < 6 && result == KILN_OK; i++)
+        ki_texels_unpack(texel, plain + face * i, n, n, map->level[k] + 3 * texels * i);
     ki_free(unpacked);
     return result;
 }
@@ -145,7 +153,7 @@ static void describe(const ki_ktx2_source *s, const ki_texel *texel, kiln_file_i
     info->width = info->height = (int)s->width;
     info->face_count = 6;
     info->level_count = (int)s->level_count;
-    info->channel_count = texel->bytes == 4 ? 3 : 4;
+    info->channel_count = texel->channels;
 }
 
 kiln_result ki_ktx2_decode_cube(kiln_context *context, ki_ktx2_source *s, kiln_map *map,
@@ -158,7 +166,8 @@ kiln_result ki_ktx2_decode_cube(kiln_context *context, ki_ktx2_source *s, kiln_m
         return result;
     describe(s, texel, info);
     for (uint32_t k = 0; k < s->level_count && result == KILN_OK; k++) {
-        uint64_t edge = s->width >> k, wanted = 6 * edge * edge * (uint64_t)texel->bytes;
+        int edge = (int)(s->width >> k);
+        uint64_t wanted = 6 * ki_texels_size(texel, edge, edge);
         result = ki_ktx2_find_level(s, k, wanted, &levels[k], error);
     }
     if (result != KILN_OK || !map)

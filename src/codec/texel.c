@@ -1,4 +1,6 @@
 #include "codec/texel.h"
+
+#include "codec/bc6h.h"
 #include "image/pack.h"
 
 #include <float.h>
@@ -6,18 +8,19 @@
 
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "files are written as memory is");
 
-const ki_texel ki_texels[4] = {
-    {KILN_FORMAT_RGBA16F, "rgba16f", 97, 10, 8, 2},
-    {KILN_FORMAT_RGBA32F, "rgba32f", 109, 2, 16, 4},
-    {KILN_FORMAT_RGB9E5, "rgb9e5", 123, 67, 4, 4},
-    {KILN_FORMAT_B10G11R11, "b10g11r11", 122, 26, 4, 4},
+const ki_texel ki_texels[KI_TEXELS] = {
+    {KILN_FORMAT_RGBA16F, "rgba16f", 97, 10, 8, 2, 1, 4},
+    {KILN_FORMAT_RGBA32F, "rgba32f", 109, 2, 16, 4, 1, 4},
+    {KILN_FORMAT_RGB9E5, "rgb9e5", 123, 67, 4, 4, 1, 3},
+    {KILN_FORMAT_B10G11R11, "b10g11r11", 122, 26, 4, 4, 1, 3},
+    {KILN_FORMAT_BC6H, "bc6h", 131, 95, KI_BC6H_BYTES, 1, 4, 3},
 };
 
 const ki_texel *ki_texel_of_format(kiln_format format)
 {
     if (format == KILN_FORMAT_AUTO)
         return &ki_texels[0];
-    for (size_t i = 0; i < sizeof ki_texels / sizeof *ki_texels; i++)
+    for (size_t i = 0; i < KI_TEXELS; i++)
         if (ki_texels[i].format == format)
             return &ki_texels[i];
     return NULL;
@@ -25,7 +28,7 @@ const ki_texel *ki_texel_of_format(kiln_format format)
 
 const ki_texel *ki_texel_of_vk(uint32_t vk)
 {
-    for (size_t i = 0; i < sizeof ki_texels / sizeof *ki_texels; i++)
+    for (size_t i = 0; i < KI_TEXELS; i++)
         if (ki_texels[i].vk == vk)
             return &ki_texels[i];
     return NULL;
@@ -33,7 +36,7 @@ const ki_texel *ki_texel_of_vk(uint32_t vk)
 
 const ki_texel *ki_texel_of_dxgi(uint32_t dxgi)
 {
-    for (size_t i = 0; i < sizeof ki_texels / sizeof *ki_texels; i++)
+    for (size_t i = 0; i < KI_TEXELS; i++)
         if (ki_texels[i].dxgi == dxgi)
             return &ki_texels[i];
     return NULL;
@@ -49,7 +52,7 @@ static void pack_floats(const float *rgb, size_t count, uint8_t *bytes)
     }
 }
 
-void ki_texels_pack(const ki_texel *texel, const float *rgb, size_t count, uint8_t *bytes)
+static void pack(const ki_texel *texel, const float *rgb, size_t count, uint8_t *bytes)
 {
     if (texel->format == KILN_FORMAT_RGBA32F) {
         pack_floats(rgb, count, bytes);
@@ -85,15 +88,25 @@ static void pack_piece(void *data, int index)
 {
     const pack_job *job = data;
     size_t first = (size_t)index * PIECE, left = job->count - first;
-    ki_texels_pack(job->texel, job->rgb + 3 * first, left < PIECE ? left : PIECE,
-                   job->bytes + (size_t)job->texel->bytes * first);
+    pack(job->texel, job->rgb + 3 * first, left < PIECE ? left : PIECE,
+         job->bytes + (size_t)job->texel->bytes * first);
 }
 
-bool ki_texels_pack_many(kiln_context *context, const ki_texel *texel, const float *rgb,
-                         size_t count, uint8_t *bytes)
+uint64_t ki_texels_size(const ki_texel *texel, int width, int height)
 {
-    pack_job job = {texel, rgb, count, bytes};
-    return ki_parallel_steps(context, NULL, (int)((count + PIECE - 1) / PIECE), pack_piece, &job);
+    int edge = texel->block;
+    uint64_t columns = (uint64_t)((width + edge - 1) / edge);
+    return columns * (uint64_t)((height + edge - 1) / edge) * (uint64_t)texel->bytes;
+}
+
+bool ki_texels_pack(kiln_context *context, const ki_texel *texel, const float *rgb, int width,
+                    int height, int count, uint8_t *bytes)
+{
+    if (texel->format == KILN_FORMAT_BC6H)
+        return ki_bc6h_encode(context, rgb, width, height, count, bytes);
+    pack_job job = {texel, rgb, (size_t)width * (size_t)height * (size_t)count, bytes};
+    return ki_parallel_steps(context, NULL, (int)((job.count + PIECE - 1) / PIECE), pack_piece,
+                             &job);
 }
 
 static float sane(float value, float largest)
@@ -102,7 +115,7 @@ static float sane(float value, float largest)
     return value < largest ? value : largest;
 }
 
-void ki_texels_unpack(const ki_texel *texel, const uint8_t *bytes, size_t count, float *rgb)
+static void unpack(const ki_texel *texel, const uint8_t *bytes, size_t count, float *rgb)
 {
     for (size_t i = 0; i < count; i++) {
         const uint8_t *from = bytes + (size_t)texel->bytes * i;
@@ -126,6 +139,7 @@ void ki_texels_unpack(const ki_texel *texel, const uint8_t *bytes, size_t count,
             largest[2] = 64512;
             break;
         case KILN_FORMAT_RGBA16F:
+        case KILN_FORMAT_BC6H:
         case KILN_FORMAT_AUTO:
             memcpy(halfs, from, sizeof halfs);
             ki_floats_from_halfs(halfs, 4, value);
@@ -135,4 +149,13 @@ void ki_texels_unpack(const ki_texel *texel, const uint8_t *bytes, size_t count,
         for (int c = 0; c < 3; c++)
             rgb[3 * i + (size_t)c] = sane(value[c], largest[c]);
     }
+}
+
+void ki_texels_unpack(const ki_texel *texel, const uint8_t *bytes, int width, int height,
+                      float *rgb)
+{
+    if (texel->format == KILN_FORMAT_BC6H)
+        ki_bc6h_decode(bytes, width, height, rgb);
+    else
+        unpack(texel, bytes, (size_t)width * (size_t)height, rgb);
 }

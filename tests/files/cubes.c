@@ -1,6 +1,7 @@
 // KTX2 and DDS: every format and compression there and back, and the bytes that specifications
 // fix.
 #include "check.h"
+#include "codec/bc6h.h"
 #include "codec/codec.h"
 #include "codec/texel.h"
 #include "image/pack.h"
@@ -48,6 +49,19 @@ static void store(kiln_format format, const float rgb[3], float stored[3])
         ki_float_from_b10g11r11(ki_b10g11r11_from_float(rgb), stored);
 }
 
+// A level as blocks hold it, face by face.
+static void store_blocks(kiln_map *map, int level)
+{
+    int n = kiln_map_level_size(map, level);
+    size_t face = 3 * kiln_map_texels(map, level) / 6;
+    uint8_t *bytes = malloc(ki_bc6h_size(n, n));
+    for (size_t f = 0; f < 6; f++) {
+        assert_true(ki_bc6h_encode(context, map->level[level] + f * face, n, n, 1, bytes));
+        ki_bc6h_decode(bytes, n, n, map->level[level] + f * face);
+    }
+    free(bytes);
+}
+
 typedef kiln_result encoder(const kiln_map *map, const kiln_save_def *def, ki_writer *writer,
                             kiln_error *failure);
 
@@ -72,6 +86,8 @@ static void there_and_back(encoder *encode, const kiln_save_def *def, int size, 
     assert_int_equal(info.level_count, map.level_count);
     assert_int_equal(decoded.map.size, size);
     assert_int_equal(decoded.map.level_count, map.level_count);
+    for (int k = 0; k < map.level_count && def->format == KILN_FORMAT_BC6H; k++)
+        store_blocks(&map, k);
     for (int k = 0; k < map.level_count; k++)
         for (size_t i = 0; i < kiln_map_texels(&map, k); i++) {
             float stored[3];
@@ -87,7 +103,7 @@ static void there_and_back(encoder *encode, const kiln_save_def *def, int size, 
 static void every_format_comes_back(void **state)
 {
     (void)state;
-    for (int format = KILN_FORMAT_RGBA16F; format <= KILN_FORMAT_B10G11R11; format++)
+    for (int format = KILN_FORMAT_RGBA16F; format <= KILN_FORMAT_BC6H; format++)
         for (int zstd = 0; zstd < 2; zstd++) {
             kiln_save_def def = {.format = (kiln_format)format, .zstd = zstd * 5};
             const char *name = ki_texel_of_format(def.format)->name;
@@ -121,7 +137,7 @@ static void ktx2_is_laid_out_as_specified(void **state)
     (void)state;
     kiln_map map;
     make_cube(16, 0, &map);
-    for (int format = KILN_FORMAT_RGBA16F; format <= KILN_FORMAT_B10G11R11; format++)
+    for (int format = KILN_FORMAT_RGBA16F; format <= KILN_FORMAT_BC6H; format++)
         for (int zstd = 0; zstd < 2; zstd++) {
             const ki_texel *texel = ki_texel_of_format((kiln_format)format);
             kiln_save_def def = {.format = texel->format, .zstd = 3 * zstd, .lobe = "ggx"};
@@ -142,8 +158,8 @@ static void ktx2_is_laid_out_as_specified(void **state)
             for (int k = 4; k >= 0; k--) { // smallest first
                 size_t entry = 80 + 24 * (size_t)k;
                 uint64_t offset = long_word(&w, entry), length = long_word(&w, entry + 8);
-                uint64_t plain =
-                    6 * (uint64_t)(16 >> k) * (uint64_t)(16 >> k) * (uint64_t)texel->bytes;
+                uint64_t edge = (uint64_t)((16 >> k) + texel->block - 1) / (uint64_t)texel->block;
+                uint64_t plain = 6 * edge * edge * (uint64_t)texel->bytes;
                 assert_int_equal(long_word(&w, entry + 16), plain);
                 if (zstd) {
                     assert_int_equal(offset, end);
@@ -193,6 +209,7 @@ static void data_formats_are_as_specified(void **state)
         {KILN_FORMAT_B10G11R11,
          3,
          {{0x800a0000, 0, 0x3f800000}, {0x810a000b, 0, 0x3f800000}, {0x82090016, 0, 0x3f800000}}},
+        {KILN_FORMAT_BC6H, 1, {{0x807f0000, 0, 0x3f800000}}},
     };
     kiln_map map;
     make_cube(4, 1, &map);
@@ -202,10 +219,14 @@ static void data_formats_are_as_specified(void **state)
         CHECK_OK(ki_ktx2_encode(&map, &def, &w, &error));
         size_t at = word(&w, 48);
         uint32_t block = 24 + 16 * (uint32_t)wanted[f].count;
-        const uint32_t words[7] = {
-            4 + block,  0, 2 | block << 16,
-            0x00010101, 0, (uint32_t)ki_texel_of_format(wanted[f].format)->bytes,
-            0};
+        bool blocks = wanted[f].format == KILN_FORMAT_BC6H;
+        const uint32_t words[7] = {4 + block,
+                                   0,
+                                   2 | block << 16,
+                                   blocks ? 0x00010185 : 0x00010101,
+                                   blocks ? 0x0303 : 0,
+                                   (uint32_t)ki_texel_of_format(wanted[f].format)->bytes,
+                                   0};
         for (int i = 0; i < 7; i++)
             assert_int_equal(word(&w, at + 4 * (size_t)i), words[i]);
         for (int i = 0; i < wanted[f].count; i++) {
@@ -339,7 +360,7 @@ static void what_is_not_read_is_said(void **state)
     kiln_save_def def = {0};
     CHECK_OK(ki_ktx2_encode(&map, &def, &w, &error));
     refused(&w, 12, 37, KILN_ERROR_UNSUPPORTED,
-            "bad: has vkFormat 37; 97, 109, 122 and 123 are read");
+            "bad: has vkFormat 37; 97, 109, 122, 123 and 131 are read");
     refused(&w, 36, 3, KILN_ERROR_UNSUPPORTED,
             "bad: has 3 faces, 0 layers and depth 0, only single cubes and tables are read");
     refused(&w, 28, 2, KILN_ERROR_UNSUPPORTED,
@@ -354,8 +375,9 @@ static void what_is_not_read_is_said(void **state)
     ki_writer_free(&w);
     w.context = context;
     CHECK_OK(ki_dds_encode(&map, &def, &w, &error));
-    refused(&w, 128, 28, KILN_ERROR_UNSUPPORTED,
-            "bad: has pixel format 28; DXGI 2, 10, 26 and 67 and the codes 113 and 116 are read");
+    refused(
+        &w, 128, 28, KILN_ERROR_UNSUPPORTED,
+        "bad: has pixel format 28; DXGI 2, 10, 26, 67 and 95 and the codes 113 and 116 are read");
     refused(&w, 136, 0, KILN_ERROR_UNSUPPORTED,
             "bad: is no single cube of six faces, others are not read");
     w.size -= 8;

@@ -1,0 +1,88 @@
+// Pictures of BC6H blocks.
+#include "codec/bc6h.h"
+
+#include "image/pack.h"
+
+#include <string.h>
+
+static ki_bc6h_row *fastest(const kiln_context *context)
+{
+    ki_bc6h_row *row = ki_bc6h_row_scalar;
+#if defined(KILN_HAVE_X86)
+    enum kiln_cpu cpu = ki_context_cpu(context);
+    if (cpu >= KILN_CPU_SSE2)
+        row = ki_bc6h_row_sse2;
+    if (cpu >= KILN_CPU_AVX2)
+        row = ki_bc6h_row_avx2;
+    if (cpu >= KILN_CPU_AVX512)
+        row = ki_bc6h_row_avx512;
+#else
+    (void)context;
+#endif
+    return row;
+}
+
+size_t ki_bc6h_size(int width, int height)
+{
+    size_t columns = ((size_t)width + 3) / 4, rows = ((size_t)height + 3) / 4;
+    return columns * rows * KI_BC6H_BYTES;
+}
+
+typedef struct job {
+    ki_bc6h_row *row;
+    const float *rgb;
+    int width, height, rows;
+    uint8_t *bytes;
+} job;
+
+static void encode_row(void *data, int index)
+{
+    const job *j = data;
+    size_t picture = (size_t)(index / j->rows), y = (size_t)(index % j->rows);
+    size_t texels = (size_t)j->width * (size_t)j->height;
+    size_t size = ki_bc6h_size(j->width, j->height);
+    j->row(j->rgb + 3 * texels * picture, j->width, j->height, (int)y,
+           j->bytes + size * picture + size / (size_t)j->rows * y);
+}
+
+bool ki_bc6h_encode(kiln_context *context, const float *rgb, int width, int height,
+                    int picture_count, uint8_t *bytes)
+{
+    job j = {fastest(context), rgb, width, height, (height + 3) / 4, bytes};
+    return ki_parallel_steps(context, NULL, j.rows * picture_count, encode_row, &j);
+}
+
+// A block of a reserved mode is black.
+static void decode_block(const uint8_t *bytes, uint16_t halfs[16][3])
+{
+    ki_bc6h_block b;
+    if (!ki_bc6h_unpack(bytes, &b)) {
+        memset(halfs, 0, 16 * sizeof *halfs);
+        return;
+    }
+    const ki_bc6h_mode *mode = &ki_bc6h_modes[b.mode];
+    for (int i = 0; i < 16; i++) {
+        int subset = mode->subsets == 2 ? ki_bc6h_partitions[b.partition] >> i & 1 : 0;
+        int weight = ki_bc6h_weight(b.index[i], mode->subsets);
+        for (int c = 0; c < 3; c++) {
+            int from = ki_bc6h_unquantize(b.endpoint[2 * subset][c], mode->bits);
+            int to = ki_bc6h_unquantize(b.endpoint[2 * subset + 1][c], mode->bits);
+            int mixed = ((64 - weight) * from + weight * to + 32) >> 6;
+            halfs[i][c] = (uint16_t)(mixed * 31 >> 6);
+        }
+    }
+}
+
+void ki_bc6h_decode(const uint8_t *bytes, int width, int height, float *rgb)
+{
+    for (int y = 0; y < height; y += 4)
+        for (int x = 0; x < width; x += 4, bytes += KI_BC6H_BYTES) {
+            uint16_t halfs[16][3];
+            decode_block(bytes, halfs);
+            for (int i = 0; i < 16; i++)
+                if (x + i % 4 < width && y + i / 4 < height) {
+                    size_t at = (size_t)(y + i / 4) * (size_t)width + (size_t)(x + i % 4);
+                    ki_floats_from_halfs(halfs[i], 3, rgb + 3 * at);
+                }
+        }
+}

@@ -1,0 +1,455 @@
+// The body of ki_bc6h_row, compiled once an instruction set. Before inclusion: KI_BC6H_ROW, its name.
+// Plain loops over a block's sixteen texels or over the partitions, which compilers turn into vectors;
+// sums are folded in one order.
+//
+// Errors are squared differences of half floats' bits ("codes", 1024 to an octave): relative errors, but
+// for the darkest. A code is read as its middle, since decoding rounds down.
+#include "codec/bc6h.h"
+#include "image/pack.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { TEXELS = 16, PARTITIONS = KI_BC6H_PARTITIONS };
+
+// Codes are 31/64 of the numbers that endpoints stand for.
+#define CODE (31.0f / 64)
+
+// Partitions that are tried, modes of each that reach, and rounds of least squares.
+enum { TRIED = 3, MODES = 2, ROUNDS = 2 };
+
+// How far beyond its differences a mode is tried: its ends are then pulled in.
+#define REACH 1.2f
+
+typedef struct texels {
+    float code[3][TEXELS];
+} texels;
+
+// The ends of each subset's line, in codes.
+typedef struct lines {
+    float end[2][2][3];
+} lines;
+
+typedef struct candidate {
+    ki_bc6h_block block;
+    float error;
+} candidate;
+
+static float fold(const float v[TEXELS])
+{
+    float a[8], b[4];
+    for (int i = 0; i < 8; i++)
+        a[i] = v[i] + v[i + 8];
+    for (int i = 0; i < 4; i++)
+        b[i] = a[i] + a[i + 4];
+    return b[0] + b[2] + (b[1] + b[3]);
+}
+
+// 1 where the texel is of subset 1.
+static void read_mask(int partition, float mask[TEXELS])
+{
+    for (int i = 0; i < TEXELS; i++)
+        mask[i] = (float)(ki_bc6h_partitions[partition] >> i & 1);
+}
+
+// --------------------------------------------------------------------------------- real endpoints
+
+// The axis of a symmetric matrix's largest eigenvalue, xx xy xz yy yz zz, by powers of it.
+static void find_axis(const float m[6], float axis[3])
+{
+    const float columns[3][3] = {{m[0], m[1], m[2]}, {m[1], m[3], m[4]}, {m[2], m[4], m[5]}};
+    const float *c = columns[m[0] >= m[3] && m[0] >= m[5] ? 0 : m[3] >= m[5] ? 1 : 2];
+    float x = c[0], y = c[1], z = c[2];
+    for (int i = 0; i < 6; i++) {
+        float most = fmaxf(fabsf(x), fmaxf(fabsf(y), fabsf(z)));
+        float scale = most > 0 ? 1 / most : 0;
+        x *= scale;
+        y *= scale;
+        z *= scale;
+        float a = m[0] * x + m[1] * y + m[2] * z;
+        float b = m[1] * x + m[3] * y + m[4] * z;
+        float d = m[2] * x + m[4] * y + m[5] * z;
+        x = a;
+        y = b;
+        z = d;
+    }
+    float length = sqrtf(x * x + y * y + z * z);
+    float scale = length > 0 ? 1 / length : 0;
+    axis[0] = x * scale;
+    axis[1] = y * scale;
+    axis[2] = z * scale;
+}
+
+// The ends of the line of least squares through the texels whose weight is 1.
+static void find_line(const texels *t, const float weight[TEXELS], float end[2][3])
+{
+    float centered[3][TEXELS], product[TEXELS], mean[3], m[6], axis[3];
+    float count = fold(weight);
+    for (int c = 0; c < 3; c++) {
+        for (int i = 0; i < TEXELS; i++)
+            product[i] = weight[i] * t->code[c][i];
+        mean[c] = fold(product) / count;
+        for (int i = 0; i < TEXELS; i++)
+            centered[c][i] = weight[i] * (t->code[c][i] - mean[c]);
+    }
+    for (int a = 0, k = 0; a < 3; a++)
+        for (int b = a; b < 3; b++, k++) {
+            for (int i = 0; i < TEXELS; i++)
+                product[i] = centered[a][i] * centered[b][i];
+            m[k] = fold(product);
+        }
+    find_axis(m, axis);
+    float low = 0, high = 0;
+    for (int i = 0; i < TEXELS; i++) {
+        float at = centered[0][i] * axis[0] + centered[1][i] * axis[1] + centered[2][i] * axis[2];
+        low = at < low ? at : low;
+        high = at > high ? at : high;
+    }
+    for (int c = 0; c < 3; c++) {
+        end[0][c] = mean[c] + 0.5f + low * axis[c];
+        end[1][c] = mean[c] + 0.5f + high * axis[c];
+    }
+}
+
+// What is left of each partition's variance beside its two lines: one a lane.
+static void rank(const texels *t, float left[PARTITIONS])
+{
+    float mean[3], x[3][TEXELS], total[10] = {0};
+    for (int c = 0; c < 3; c++) {
+        mean[c] = fold(t->code[c]) / TEXELS;
+        for (int i = 0; i < TEXELS; i++)
+            x[c][i] = t->code[c][i] - mean[c];
+    }
+    // Of subset 1, then of both: count, sums, products.
+    float sum[10][PARTITIONS] = {{0}};
+    for (int i = 0; i < TEXELS; i++) {
+        const float a = x[0][i], b = x[1][i], d = x[2][i];
+        const float value[10] = {1, a, b, d, a * a, a * b, a * d, b * b, b * d, d * d};
+        float mask[PARTITIONS];
+        for (int p = 0; p < PARTITIONS; p++)
+            mask[p] = (float)(ki_bc6h_partitions[p] >> i & 1);
+        for (int k = 0; k < 10; k++) {
+            total[k] += value[k];
+            for (int p = 0; p < PARTITIONS; p++)
+                sum[k][p] += value[k] * mask[p];
+        }
+    }
+    for (int p = 0; p < PARTITIONS; p++)
+        left[p] = 0;
+    for (int subset = 0; subset < 2; subset++)
+        for (int p = 0; p < PARTITIONS; p++) {
+            float s[10];
+            for (int k = 0; k < 10; k++)
+                s[k] = subset ? sum[k][p] : total[k] - sum[k][p];
+            float share = 1 / s[0];
+            float xx = s[4] - s[1] * s[1] * share, xy = s[5] - s[1] * s[2] * share;
+            float xz = s[6] - s[1] * s[3] * share, yy = s[7] - s[2] * s[2] * share;
+            float yz = s[8] - s[2] * s[3] * share, zz = s[9] - s[3] * s[3] * share;
+            // From the largest column: the Rayleigh quotient after three products.
+            bool first = xx >= yy && xx >= zz, second = yy >= zz;
+            float a = first ? xx : second ? xy : xz;
+            float b = first ? xy : second ? yy : yz;
+            float d = first ? xz : second ? yz : zz;
+            float trace = xx + yy + zz, scale = 1 / (trace + 1e-6f);
+            for (int i = 0; i < 3; i++) {
+                float u = (xx * a + xy * b + xz * d) * scale;
+                float v = (xy * a + yy * b + yz * d) * scale;
+                float w = (xz * a + yz * b + zz * d) * scale;
+                a = u;
+                b = v;
+                d = w;
+            }
+            float u = xx * a + xy * b + xz * d;
+            float v = xy * a + yy * b + yz * d;
+            float w = xz * a + yz * b + zz * d;
+            float most = (u * a + v * b + w * d) / (a * a + b * b + d * d + 1e-30f);
+            left[p] += fmaxf(trace - most, 0);
+        }
+}
+
+// ---------------------------------------------------------------------------- quantized endpoints
+
+static float code_of(int value, int bits)
+{
+    return (float)ki_bc6h_unquantize(value, bits) * CODE;
+}
+
+// The nearest endpoint to a code.
+static int quantize(float code, int bits)
+{
+    float step = (float)(65536 >> bits) * CODE;
+    int last = (1 << bits) - 1;
+    float at = code / step;
+    return at < 0.25f ? 0 : at > (float)last + 0.75f ? last : ki_min((int)at, last);
+}
+
+// A difference is kept within the mode's bits.
+static int keep(int value, int base, const ki_bc6h_mode *mode, int channel)
+{
+    if (mode->relative) {
+        int half = 1 << (mode->delta_bits[channel] - 1);
+        value = ki_max(base - half, ki_min(value, base + half - 1));
+    }
+    return ki_max(0, ki_min(value, (1 << mode->bits) - 1));
+}
+
+static void quantize_lines(const lines *from, candidate *k)
+{
+    const ki_bc6h_mode *mode = &ki_bc6h_modes[k->block.mode];
+    for (int e = 0; e < 2 * mode->subsets; e++)
+        for (int c = 0; c < 3; c++) {
+            int value = quantize(from->end[e / 2][e % 2][c], mode->bits);
+            k->block.endpoint[e][c] = e ? keep(value, k->block.endpoint[0][c], mode, c) : value;
+        }
+}
+
+// Whether differences fit, with the first one taken as the base.
+static bool fits(const ki_bc6h_block *b, const int endpoint[4][3])
+{
+    const ki_bc6h_mode *mode = &ki_bc6h_modes[b->mode];
+    for (int e = 1; e < 2 * mode->subsets && mode->relative; e++)
+        for (int c = 0; c < 3; c++)
+            if (keep(endpoint[e][c], endpoint[0][c], mode, c) != endpoint[e][c])
+                return false;
+    return true;
+}
+
+// An anchor's index must be below half: its subset's ends change places, or where the differences then
+// fit no more, the index gives way.
+static void obey_anchors(ki_bc6h_block *b, int index[TEXELS])
+{
+    int subsets = ki_bc6h_modes[b->mode].subsets, count = subsets == 2 ? 8 : 16;
+    for (int s = 0; s < subsets; s++) {
+        int anchor = s ? ki_bc6h_anchors[b->partition] : 0;
+        if (index[anchor] < count / 2)
+            continue;
+        int turned[4][3];
+        memcpy(turned, b->endpoint, sizeof turned);
+        memcpy(turned[2 * s], b->endpoint[2 * s + 1], sizeof turned[0]);
+        memcpy(turned[2 * s + 1], b->endpoint[2 * s], sizeof turned[0]);
+        if (!fits(b, (const int(*)[3])turned)) {
+            index[anchor] = count / 2 - 1;
+            continue;
+        }
+        memcpy(b->endpoint, turned, sizeof turned);
+        for (int i = 0; i < TEXELS; i++)
+            if (subsets == 1 || (ki_bc6h_partitions[b->partition] >> i & 1) == s)
+                index[i] = count - 1 - index[i];
+    }
+}
+
+// Chooses each texel's index, makes the anchors' valid, and measures what is decoded.
+static void choose_indices(const texels *t, const float mask[TEXELS], candidate *k)
+{
+    ki_bc6h_block *b = &k->block;
+    const ki_bc6h_mode *mode = &ki_bc6h_modes[b->mode];
+    float last = mode->subsets == 2 ? 7 : 15;
+    float along[TEXELS] = {0}, length[TEXELS] = {0}, error[TEXELS] = {0};
+    for (int c = 0; c < 3; c++) {
+        float end[4];
+        for (int e = 0; e < 4; e++)
+            end[e] = e < 2 * mode->subsets ? code_of(b->endpoint[e][c], mode->bits) : 0;
+        for (int i = 0; i < TEXELS; i++) {
+            float from = mask[i] != 0 ? end[2] : end[0];
+            float way = mask[i] != 0 ? end[3] - end[2] : end[1] - end[0];
+            along[i] += (t->code[c][i] + 0.5f - from) * way;
+            length[i] += way * way;
+        }
+    }
+    int index[TEXELS];
+    for (int i = 0; i < TEXELS; i++) {
+        float at = length[i] > 0 ? along[i] / length[i] : 0;
+        at = at > 0 ? at < 1 ? at : 1 : 0;
+        index[i] = (int)(at * last + 0.5f);
+    }
+    obey_anchors(b, index);
+    float weight[TEXELS];
+    for (int i = 0; i < TEXELS; i++) {
+        b->index[i] = index[i];
+        weight[i] = (float)ki_bc6h_weight(index[i], mode->subsets);
+    }
+    // All of it is whole and below 2^24.
+    for (int c = 0; c < 3; c++) {
+        float end[4];
+        for (int e = 0; e < 4; e++)
+            end[e] = (float)ki_bc6h_unquantize(e < 2 * mode->subsets ? b->endpoint[e][c] : 0,
+                                               mode->bits);
+        for (int i = 0; i < TEXELS; i++) {
+            float from = mask[i] != 0 ? end[2] : end[0], to = mask[i] != 0 ? end[3] : end[1];
+            float mixed = (float)(int)(((64 - weight[i]) * from + weight[i] * to + 32) / 64);
+            float off = (float)(int)(mixed * 31 / 64) - t->code[c][i];
+            error[i] += off * off;
+        }
+    }
+    k->error = fold(error);
+}
+
+// The squared error of a channel by the codes a and b of the ends, up to a constant:
+//     xx a^2 + 2 xy a b + yy b^2 - 2 x a - 2 y b.
+typedef struct parabola {
+    float xx, xy, yy, x, y;
+} parabola;
+
+// Three ends near the minimum, each with the best other one.
+static void descend(const parabola *p, const ki_bc6h_mode *mode, int channel, int base,
+                    bool is_base, int *low, int *high)
+{
+    float determinant = p->xx * p->yy - p->xy * p->xy;
+    if (!(determinant > 1e-4f * p->xx * p->yy))
+        return; // all texels have one index: the ends stay
+    float a = (p->x * p->yy - p->y * p->xy) / determinant, best = INFINITY;
+    int first = quantize(a, mode->bits);
+    for (int i = -1; i <= 1; i++) {
+        int q = ki_max(0, ki_min(first + i, (1 << mode->bits) - 1));
+        q = is_base ? q : keep(q, base, mode, channel);
+        float u = code_of(q, mode->bits);
+        int other = keep(quantize((p->y - p->xy * u) / p->yy, mode->bits), is_base ? q : base, mode,
+                         channel);
+        float v = code_of(other, mode->bits);
+        float error = p->xx * u * u + 2 * p->xy * u * v + p->yy * v * v - 2 * (p->x * u + p->y * v);
+        if (error < best) {
+            best = error;
+            *low = q;
+            *high = other;
+        }
+    }
+}
+
+// The ends that are best for the indices.
+static void refine(const texels *t, const float mask[TEXELS], candidate *k)
+{
+    ki_bc6h_block *b = &k->block;
+    const ki_bc6h_mode *mode = &ki_bc6h_modes[b->mode];
+    for (int s = 0; s < mode->subsets; s++) {
+        float near[TEXELS], far[TEXELS], product[TEXELS];
+        parabola p;
+        for (int i = 0; i < TEXELS; i++) {
+            float in = s ? mask[i] : 1 - mask[i];
+            float weight = (float)ki_bc6h_weight(b->index[i], mode->subsets) / 64;
+            near[i] = in * (1 - weight);
+            far[i] = in * weight;
+        }
+        for (int i = 0; i < TEXELS; i++)
+            product[i] = near[i] * near[i];
+        p.xx = fold(product);
+        for (int i = 0; i < TEXELS; i++)
+            product[i] = near[i] * far[i];
+        p.xy = fold(product);
+        for (int i = 0; i < TEXELS; i++)
+            product[i] = far[i] * far[i];
+        p.yy = fold(product);
+        for (int c = 0; c < 3; c++) {
+            for (int i = 0; i < TEXELS; i++)
+                product[i] = near[i] * (t->code[c][i] + 0.5f);
+            p.x = fold(product);
+            for (int i = 0; i < TEXELS; i++)
+                product[i] = far[i] * (t->code[c][i] + 0.5f);
+            p.y = fold(product);
+            descend(&p, mode, c, b->endpoint[0][c], s == 0, &b->endpoint[2 * s][c],
+                    &b->endpoint[2 * s + 1][c]);
+        }
+    }
+}
+
+// Subset 1 must stay within reach of a base that moved.
+static void keep_all(ki_bc6h_block *b)
+{
+    const ki_bc6h_mode *mode = &ki_bc6h_modes[b->mode];
+    for (int e = 1; e < 2 * mode->subsets; e++)
+        for (int c = 0; c < 3; c++)
+            b->endpoint[e][c] = keep(b->endpoint[e][c], b->endpoint[0][c], mode, c);
+}
+
+// --------------------------------------------------------------------------------------- choosing
+
+static void try_mode(const texels *t, const float mask[TEXELS], const lines *ends, int mode,
+                     int partition, candidate *best)
+{
+    candidate k = {.block = {.mode = mode, .partition = partition}};
+    quantize_lines(ends, &k);
+    float before = INFINITY;
+    for (int round = 0;; round++) {
+        choose_indices(t, mask, &k);
+        if (k.error < best->error)
+            *best = k;
+        if (round == ROUNDS || !(k.error < before))
+            break;
+        before = k.error;
+        refine(t, mask, &k);
+        keep_all(&k.block);
+    }
+}
+
+// Whether a mode's differences reach, or nearly, from the first end to the others.
+static bool reaches(const lines *ends, const ki_bc6h_mode *mode)
+{
+    float step = (float)(65536 >> mode->bits) * CODE;
+    for (int c = 0; c < 3 && mode->relative; c++) {
+        float most = (float)((1 << (mode->delta_bits[c] - 1)) - 1) * step * REACH;
+        for (int e = 1; e < 2 * mode->subsets; e++)
+            if (fabsf(ends->end[e / 2][e % 2][c] - ends->end[0][0][c]) > most)
+                return false;
+    }
+    return true;
+}
+
+// Modes in the order of their precision: the first that reach are tried.
+static void try_modes(const texels *t, const float mask[TEXELS], const lines *ends,
+                      const uint8_t *modes, int count, int partition, candidate *best)
+{
+    for (int i = 0, tried = 0; i < count && tried < MODES && best->error > 0; i++)
+        if (reaches(ends, &ki_bc6h_modes[modes[i]])) {
+            try_mode(t, mask, ends, modes[i], partition, best);
+            tried++;
+        }
+}
+
+static void encode(const texels *t, uint8_t bytes[KI_BC6H_BYTES])
+{
+    static const uint8_t ones_modes[4] = {13, 12, 11, 10};
+    static const uint8_t twos_modes[10] = {2, 3, 4, 0, 5, 6, 7, 8, 1, 9};
+    candidate best = {.error = INFINITY};
+    float mask[TEXELS] = {0}, rest[TEXELS], left[PARTITIONS];
+    lines ends;
+    for (int i = 0; i < TEXELS; i++)
+        rest[i] = 1;
+    find_line(t, rest, ends.end[0]);
+    try_modes(t, mask, &ends, ones_modes, 4, 0, &best);
+    if (best.error > 0)
+        rank(t, left);
+    for (int n = 0; n < TRIED && best.error > 0; n++) {
+        int p = 0;
+        for (int i = 1; i < PARTITIONS; i++)
+            p = left[i] < left[p] ? i : p;
+        if (left[p] >= best.error)
+            break;
+        left[p] = INFINITY;
+        read_mask(p, mask);
+        for (int i = 0; i < TEXELS; i++)
+            rest[i] = 1 - mask[i];
+        find_line(t, rest, ends.end[0]);
+        find_line(t, mask, ends.end[1]);
+        try_modes(t, mask, &ends, twos_modes, 10, p, &best);
+    }
+    ki_bc6h_pack(&best.block, bytes);
+}
+
+void KI_BC6H_ROW(const float *rgb, int width, int height, int y, uint8_t *bytes)
+{
+    for (int x = 0; x < width; x += 4, bytes += KI_BC6H_BYTES) {
+        float block[3 * TEXELS];
+        uint16_t halfs[3 * TEXELS];
+        texels t;
+        for (int i = 0; i < TEXELS; i++) {
+            size_t column = (size_t)ki_min(x + i % 4, width - 1);
+            size_t row = (size_t)ki_min(4 * y + i / 4, height - 1);
+            memcpy(block + 3 * i, rgb + 3 * (row * (size_t)width + column), 3 * sizeof *block);
+        }
+        for (int i = 0; i < 3 * TEXELS; i++)
+            block[i] = block[i] > 0 ? block[i] : 0;
+        ki_halfs_from_floats(block, 3 * TEXELS, halfs);
+        for (int i = 0; i < 3 * TEXELS; i++)
+            t.code[i % 3][i / 3] = (float)halfs[i];
+        encode(&t, bytes);
+    }
+}
