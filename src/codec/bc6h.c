@@ -57,7 +57,7 @@ static void decode_block(const uint8_t *bytes, uint16_t halfs[16][3])
 {
     ki_bc6h_block b;
     if (!ki_bc6h_unpack(bytes, &b)) {
-        memset(halfs, 0, 16 * sizeof *halfs);
+        memset(halfs[0], 0, sizeof(uint16_t[16][3]));
         return;
     }
     const ki_bc6h_mode *mode = &ki_bc6h_modes[b.mode];
@@ -65,8 +65,8 @@ static void decode_block(const uint8_t *bytes, uint16_t halfs[16][3])
         int subset = mode->subsets == 2 ? ki_bc6h_partitions[b.partition] >> i & 1 : 0;
         int weight = ki_bc6h_weight(b.index[i], mode->subsets);
         for (int c = 0; c < 3; c++) {
-            int from = ki_bc6h_unquantize(b.endpoint[2 * subset][c], mode->bits);
-            int to = ki_bc6h_unquantize(b.endpoint[2 * subset + 1][c], mode->bits);
+            int from = ki_bc6h_unquantize(b.endpoint[subset][0][c], mode->bits);
+            int to = ki_bc6h_unquantize(b.endpoint[subset][1][c], mode->bits);
             int mixed = ((64 - weight) * from + weight * to + 32) >> 6;
             halfs[i][c] = (uint16_t)(mixed * 31 >> 6);
         }

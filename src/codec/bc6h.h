@@ -15,10 +15,10 @@ typedef struct ki_bc6h_mode {
     const char *runs; ///< of bits, behind the mode's number up to the partition's or the indices
 } ki_bc6h_mode;
 
-/// What a block says. Endpoints are whole, not differences: [2 * subset + end][channel].
+/// What a block says. Endpoints are whole, not differences: [subset][end][channel].
 typedef struct ki_bc6h_block {
     int mode, partition; ///< which of ki_bc6h_modes, not its number
-    int endpoint[4][3];
+    int endpoint[2][2][3];
     int index[16];
 } ki_bc6h_block;
 

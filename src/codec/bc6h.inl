@@ -10,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { TEXELS = 16, PARTITIONS = KI_BC6H_PARTITIONS };
+enum { TEXELS = 16, VALUES = 3 * TEXELS, PARTITIONS = KI_BC6H_PARTITIONS };
 
 // Codes are 31/64 of the numbers that endpoints stand for.
 #define CODE (31.0f / 64)
@@ -199,19 +199,31 @@ static void quantize_lines(const lines *from, candidate *k)
     for (int e = 0; e < 2 * mode->subsets; e++)
         for (int c = 0; c < 3; c++) {
             int value = quantize(from->end[e / 2][e % 2][c], mode->bits);
-            k->block.endpoint[e][c] = e ? keep(value, k->block.endpoint[0][c], mode, c) : value;
+            k->block.endpoint[e / 2][e % 2][c] =
+                e ? keep(value, k->block.endpoint[0][0][c], mode, c) : value;
         }
 }
 
-// Whether differences fit, with the first one taken as the base.
-static bool fits(const ki_bc6h_block *b, const int endpoint[4][3])
+// Whether differences fit.
+static bool fits(const ki_bc6h_block *b)
 {
     const ki_bc6h_mode *mode = &ki_bc6h_modes[b->mode];
     for (int e = 1; e < 2 * mode->subsets && mode->relative; e++)
-        for (int c = 0; c < 3; c++)
-            if (keep(endpoint[e][c], endpoint[0][c], mode, c) != endpoint[e][c])
+        for (int c = 0; c < 3; c++) {
+            int value = b->endpoint[e / 2][e % 2][c];
+            if (keep(value, b->endpoint[0][0][c], mode, c) != value)
                 return false;
+        }
     return true;
+}
+
+static void swap_ends(int end[2][3])
+{
+    for (int c = 0; c < 3; c++) {
+        int first = end[0][c];
+        end[0][c] = end[1][c];
+        end[1][c] = first;
+    }
 }
 
 // An anchor's index must be below half: its subset's ends change places, or where the differences then
@@ -223,15 +235,12 @@ static void obey_anchors(ki_bc6h_block *b, int index[TEXELS])
         int anchor = s ? ki_bc6h_anchors[b->partition] : 0;
         if (index[anchor] < count / 2)
             continue;
-        int turned[4][3];
-        memcpy(turned, b->endpoint, sizeof turned);
-        memcpy(turned[2 * s], b->endpoint[2 * s + 1], sizeof turned[0]);
-        memcpy(turned[2 * s + 1], b->endpoint[2 * s], sizeof turned[0]);
-        if (!fits(b, (const int(*)[3])turned)) {
+        swap_ends(b->endpoint[s]);
+        if (!fits(b)) {
+            swap_ends(b->endpoint[s]);
             index[anchor] = count / 2 - 1;
             continue;
         }
-        memcpy(b->endpoint, turned, sizeof turned);
         for (int i = 0; i < TEXELS; i++)
             if (subsets == 1 || (ki_bc6h_partitions[b->partition] >> i & 1) == s)
                 index[i] = count - 1 - index[i];
@@ -248,7 +257,7 @@ static void choose_indices(const texels *t, const float mask[TEXELS], candidate 
     for (int c = 0; c < 3; c++) {
         float end[4];
         for (int e = 0; e < 4; e++)
-            end[e] = e < 2 * mode->subsets ? code_of(b->endpoint[e][c], mode->bits) : 0;
+            end[e] = code_of(b->endpoint[e / 2][e % 2][c], mode->bits);
         for (int i = 0; i < TEXELS; i++) {
             float from = mask[i] != 0 ? end[2] : end[0];
             float way = mask[i] != 0 ? end[3] - end[2] : end[1] - end[0];
@@ -272,8 +281,7 @@ static void choose_indices(const texels *t, const float mask[TEXELS], candidate 
     for (int c = 0; c < 3; c++) {
         float end[4];
         for (int e = 0; e < 4; e++)
-            end[e] = (float)ki_bc6h_unquantize(e < 2 * mode->subsets ? b->endpoint[e][c] : 0,
-                                               mode->bits);
+            end[e] = (float)ki_bc6h_unquantize(b->endpoint[e / 2][e % 2][c], mode->bits);
         for (int i = 0; i < TEXELS; i++) {
             float from = mask[i] != 0 ? end[2] : end[0], to = mask[i] != 0 ? end[3] : end[1];
             float mixed = (float)(int)(((64 - weight[i]) * from + weight[i] * to + 32) / 64);
@@ -345,8 +353,8 @@ static void refine(const texels *t, const float mask[TEXELS], candidate *k)
             for (int i = 0; i < TEXELS; i++)
                 product[i] = far[i] * (t->code[c][i] + 0.5f);
             p.y = fold(product);
-            descend(&p, mode, c, b->endpoint[0][c], s == 0, &b->endpoint[2 * s][c],
-                    &b->endpoint[2 * s + 1][c]);
+            descend(&p, mode, c, b->endpoint[0][0][c], s == 0, &b->endpoint[s][0][c],
+                    &b->endpoint[s][1][c]);
         }
     }
 }
@@ -357,7 +365,8 @@ static void keep_all(ki_bc6h_block *b)
     const ki_bc6h_mode *mode = &ki_bc6h_modes[b->mode];
     for (int e = 1; e < 2 * mode->subsets; e++)
         for (int c = 0; c < 3; c++)
-            b->endpoint[e][c] = keep(b->endpoint[e][c], b->endpoint[0][c], mode, c);
+            b->endpoint[e / 2][e % 2][c] =
+                keep(b->endpoint[e / 2][e % 2][c], b->endpoint[0][0][c], mode, c);
 }
 
 // --------------------------------------------------------------------------------------- choosing
@@ -410,7 +419,7 @@ static void encode(const texels *t, uint8_t bytes[KI_BC6H_BYTES])
     static const uint8_t twos_modes[10] = {2, 3, 4, 0, 5, 6, 7, 8, 1, 9};
     candidate best = {.error = INFINITY};
     float mask[TEXELS] = {0}, rest[TEXELS], left[PARTITIONS];
-    lines ends;
+    lines ends = {0};
     for (int i = 0; i < TEXELS; i++)
         rest[i] = 1;
     find_line(t, rest, ends.end[0]);
@@ -437,18 +446,18 @@ static void encode(const texels *t, uint8_t bytes[KI_BC6H_BYTES])
 void KI_BC6H_ROW(const float *rgb, int width, int height, int y, uint8_t *bytes)
 {
     for (int x = 0; x < width; x += 4, bytes += KI_BC6H_BYTES) {
-        float block[3 * TEXELS];
-        uint16_t halfs[3 * TEXELS];
+        float block[VALUES];
+        uint16_t halfs[VALUES];
         texels t;
         for (int i = 0; i < TEXELS; i++) {
             size_t column = (size_t)ki_min(x + i % 4, width - 1);
             size_t row = (size_t)ki_min(4 * y + i / 4, height - 1);
-            memcpy(block + 3 * i, rgb + 3 * (row * (size_t)width + column), 3 * sizeof *block);
+            const float *from = rgb + 3 * (row * (size_t)width + column);
+            for (int c = 0; c < 3; c++)
+                block[3 * i + c] = from[c] > 0 ? from[c] : 0;
         }
-        for (int i = 0; i < 3 * TEXELS; i++)
-            block[i] = block[i] > 0 ? block[i] : 0;
-        ki_halfs_from_floats(block, 3 * TEXELS, halfs);
-        for (int i = 0; i < 3 * TEXELS; i++)
+        ki_halfs_from_floats(block, VALUES, halfs);
+        for (int i = 0; i < VALUES; i++)
             t.code[i % 3][i / 3] = (float)halfs[i];
         encode(&t, bytes);
     }

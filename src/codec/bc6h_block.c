@@ -165,9 +165,9 @@ void ki_bc6h_pack(const ki_bc6h_block *block, uint8_t bytes[KI_BC6H_BYTES])
     put(&b, mode->number, number_bits(mode->number));
     run r;
     for (const char *at = mode->runs; next_run(&at, &r);) {
-        int value = block->endpoint[r.end][r.channel];
+        int value = block->endpoint[r.end / 2][r.end % 2][r.channel];
         if (r.end && mode->relative)
-            value -= block->endpoint[0][r.channel];
+            value -= block->endpoint[0][0][r.channel];
         put(&b, (uint64_t)(int64_t)value >> r.first, r.count);
     }
     if (mode->subsets == 2)
@@ -199,12 +199,12 @@ bool ki_bc6h_unpack(const uint8_t bytes[KI_BC6H_BYTES], ki_bc6h_block *block)
     const ki_bc6h_mode *mode = &ki_bc6h_modes[block->mode];
     run r;
     for (const char *at = mode->runs; next_run(&at, &r);)
-        block->endpoint[r.end][r.channel] |= get(&b, r.count) << r.first;
+        block->endpoint[r.end / 2][r.end % 2][r.channel] |= get(&b, r.count) << r.first;
     for (int end = 1; end < 2 * mode->subsets && mode->relative; end++)
         for (int c = 0; c < 3; c++) {
             int sign = 1 << (mode->delta_bits[c] - 1);
-            int delta = (block->endpoint[end][c] ^ sign) - sign;
-            block->endpoint[end][c] = (block->endpoint[0][c] + delta) & ((1 << mode->bits) - 1);
+            int *value = &block->endpoint[end / 2][end % 2][c], delta = (*value ^ sign) - sign;
+            *value = (block->endpoint[0][0][c] + delta) & ((1 << mode->bits) - 1);
         }
     if (mode->subsets == 2)
         block->partition = get(&b, 5);
