@@ -7,8 +7,8 @@
 
 static const uint8_t magic[8] = {0x86, 0x16, 0x87, 0x96, 0xf6, 0xd6, 0x96, 0x36};
 
-static kiln_result write_face(const float *texels, int n, float *scratch, ki_writer *w,
-                              kiln_error *error)
+kiln_result ki_rgbd_png_encode(const float *texels, int n, float *scratch, ki_writer *w,
+                               kiln_error *error)
 {
     size_t row = (size_t)n;
     for (size_t y = 0; y < row; y++)
@@ -49,8 +49,8 @@ kiln_result ki_env_encode(const kiln_map *map, double lod_scale, double polynomi
     for (int i = 0; i < 6 * map->level_count && result == KILN_OK; i++) {
         int n = kiln_map_level_size(map, i / 6);
         size_t begin = images.size;
-        result = write_face(map->level[i / 6] + 3 * (size_t)(i % 6) * (size_t)n * (size_t)n, n,
-                            scratch, &images, error);
+        result = ki_rgbd_png_encode(map->level[i / 6] + 3 * (size_t)(i % 6) * (size_t)n * (size_t)n,
+                                    n, scratch, &images, error);
         ki_write_text(w, "%s{\"length\":%zu,\"position\":%zu}", i ? "," : "", images.size - begin,
                       begin);
     }

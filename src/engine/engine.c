@@ -8,9 +8,11 @@
 #include <math.h>
 #include <string.h>
 
-enum { RECIPES = 6 };
-static const ki_recipe *const recipes[RECIPES] = {&ki_three,    &ki_babylon,    &ki_babylon_dds,
-                                                  &ki_filament, &ki_playcanvas, &ki_playcanvas_dds};
+static const ki_recipe *const recipes[] = {
+    &ki_three,      &ki_babylon,        &ki_babylon_dds, &ki_filament,
+    &ki_playcanvas, &ki_playcanvas_dds, &ki_gltf,
+};
+enum { RECIPES = sizeof recipes / sizeof *recipes };
 
 const ki_recipe *ki_recipe_at(int index)
 {

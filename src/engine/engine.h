@@ -35,7 +35,7 @@ typedef struct ki_recipe {
 } ki_recipe;
 
 extern const ki_recipe ki_three, ki_babylon, ki_babylon_dds, ki_filament, ki_playcanvas,
-    ki_playcanvas_dds;
+    ki_playcanvas_dds, ki_gltf;
 
 /// The table of all; NULL behind the last.
 const ki_recipe *ki_recipe_at(int index);

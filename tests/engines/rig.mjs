@@ -114,7 +114,8 @@ const baked = (levels) => ({
     irradiance: (n) => readLevel(levels.at(-1), n),
 });
 
-// model: { toKiln, lod, shade, clamp?, bend?, harmonics?, distance?, told? } as stated in each test.
+// model: { toKiln, lod, shade, clamp?, bend?, harmonics?, distance?, curve?, brightest?, told? } as stated in each
+// test; curve is what the engine does to radiance after reading it, brightest where it cuts its pixels off.
 function predict(model, asset, { toEye: forward, right, up, normals }, roughness) {
     const row = ROUGHNESS.indexOf(roughness) - ROUGHNESS.length / 2, half = 0.5 + 0.5 / CELL;
     return normals.map((n, i) => {
@@ -128,8 +129,10 @@ function predict(model, asset, { toEye: forward, right, up, normals }, roughness
         const [single, multiple] = model.shade(nov, r);
         const light = asset.radiance(model.toKiln(way), model.lod(r));
         const around = asset.irradiance(model.toKiln(n));
+        const curve = model.curve ?? ((x) => x);
         return { way, nov, r, single, multiple, around,
-                 value: light.map((x, c) => single * x + multiple * around[c]) };
+                 value: light.map((x, c) => Math.min(single * curve(x) + multiple * around[c],
+                                                    model.brightest ?? Infinity)) };
     });
 }
 
@@ -272,8 +275,10 @@ export async function proveEngine({ name, page, ending, loads = ending, model, b
         const draw = (file) => browser.evaluate((args) => window.draw(...args),
                                                 [`${address}${file}`, views, ROUGHNESS, CELL]);
         console.log(name);
-        checkCoded(made, views, count - 1, size, await draw(`coded${loads}`), bounds.coded);
-        checkPixels('furnace', made, white, views, await draw(`white${loads}`), bounds.white);
+        if (bounds.coded)
+            checkCoded(made, views, count - 1, size, await draw(`coded${loads}`), bounds.coded);
+        if (bounds.white)
+            checkPixels('furnace', made, white, views, await draw(`white${loads}`), bounds.white);
         const real = baked(readCube('plain.ktx2'));
         if (made.harmonics)
             real.irradiance = (n) => readHarmonics(sh, n);
