@@ -296,10 +296,29 @@ static int check_combinations(const bake *b)
     return CLI_GO;
 }
 
-// --for decides the lobe, the format and each level's roughness.
+// Whether an engine takes the format.
+static int check_engine_format(const bake *b)
+{
+    const kiln_format *all = b->engine->formats;
+    char names[64] = "";
+    if (b->format == KILN_FORMAT_AUTO)
+        return CLI_GO;
+    for (int i = 0; i < 4 && all[i]; i++) {
+        if (all[i] == (kiln_format)b->format)
+            return CLI_GO;
+        size_t length = strlen(names);
+        snprintf(names + length, sizeof names - length, "%s%s", i ? " or " : "", formats[all[i]]);
+    }
+    if (!names[0])
+        return cli_wrong(&cli_bake, "--for %s has one format, leave --format out", b->engine->name);
+    return cli_wrong(&cli_bake, "--for %s takes --format %s, not %s", b->engine->name, names,
+                     formats[b->format]);
+}
+
+// --for decides the lobe and each level's roughness, and which formats there are.
 static int take_engine(bake *b)
 {
-    static const int decided[] = {SHAPE, FORMAT, ZSTD, ROUGHNESS, LOBE, METHOD};
+    static const int decided[] = {SHAPE, ZSTD, ROUGHNESS, LOBE, METHOD};
     const cli_arguments *a = &b->arguments;
     const char *name = a->value[ENGINE];
     if (!name)
@@ -312,6 +331,9 @@ static int take_engine(bake *b)
         if (a->value[decided[i]])
             return cli_wrong(&cli_bake, "--for %s decides what --%s is, leave one of them out",
                              name, cli_option_name(&cli_bake, decided[i]));
+    int code = check_engine_format(b);
+    if (code != CLI_GO)
+        return code;
     if (b->engine->ending[0] && strcmp(cli_ending(b->output), b->engine->ending) != 0)
         return cli_wrong(&cli_bake, "--output %s: --for %s writes .%s", b->output, name,
                          b->engine->ending);
@@ -537,7 +559,7 @@ static int filter_by_textbook(bake *b)
 static double format_limit(const bake *b, const char *path)
 {
     const char *ending = cli_ending(path);
-    if (b->engine && path == b->output)
+    if (b->engine && path == b->output && b->format != KILN_FORMAT_B10G11R11)
         return b->engine->limit;
     if (!strcmp(ending, "png"))
         return 1;
@@ -592,8 +614,8 @@ static int save(bake *b)
     };
     int count = 0;
     kiln_map_free(&b->source);
-    if (b->engine ? kiln_engine_save(job->context, b->engine, &b->map, &b->stored_sh, b->output,
-                                     &count, &job->error)
+    if (b->engine ? kiln_engine_save(job->context, b->engine, &b->map, &b->stored_sh,
+                                     (kiln_format)b->format, b->output, &count, &job->error)
                   : kiln_map_save(job->context, &b->map, b->output, &def, &count, &job->error))
         return CLI_FAILED;
     b->file_count = b->main_count = count;

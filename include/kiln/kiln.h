@@ -882,6 +882,8 @@ typedef struct kiln_engine {
     int size;            ///< of a face, where nothing else is asked for
     int level_count;     ///< then
     double limit;        ///< the largest radiance that the files hold
+    kiln_format
+        formats[4];    ///< to choose from, the first by default; KILN_FORMAT_AUTO behind the last
     const char *proof; ///< "pixels of" a version that renders them as it should, or "source of" one
 } kiln_engine;
 
@@ -907,11 +909,12 @@ KILN_API KILN_CHECKED kiln_result kiln_engine_show(kiln_context *context, const 
                                                    double (*values)[3], kiln_error *error);
 /// Writes such a cube, given in kiln's directions, as the engine reads it: turned so that it shows a
 /// panorama where its own loader would. `sh`, of three bands or more, is the environment's radiance,
-/// which some engines take their diffuse light from. Files appear together or not at all.
+/// which some engines take their diffuse light from. `format` is one of the engine's, or
+/// KILN_FORMAT_AUTO. Files appear together or not at all.
 KILN_API KILN_CHECKED kiln_result kiln_engine_save(kiln_context *context, const kiln_engine *engine,
                                                    const kiln_map *map, const kiln_sh *sh,
-                                                   const char *path, int *file_count,
-                                                   kiln_error *error);
+                                                   kiln_format format, const char *path,
+                                                   int *file_count, kiln_error *error);
 
 #ifdef __cplusplus
 }

@@ -1,10 +1,12 @@
 // Engines: their levels, and their files.
 #include "engine/engine.h"
 
+#include "codec/texel.h"
 #include "image/image.h"
 #include "math/math.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 const kiln_engine *kiln_engine_at(int index)
@@ -153,16 +155,39 @@ static kiln_result check_map(const ki_recipe *recipe, const kiln_map *map, const
     return check_levels(recipe, map->size, map->level_count, error);
 }
 
+// The recipe's first format for KILN_FORMAT_AUTO.
+static kiln_result choose_format(const ki_recipe *recipe, kiln_format *format, kiln_error *error)
+{
+    const kiln_format *formats = recipe->about.formats;
+    char names[64] = "";
+    if (*format == KILN_FORMAT_AUTO) {
+        *format = formats[0];
+        return KILN_OK;
+    }
+    for (int i = 0; i < 4 && formats[i]; i++) {
+        if (*format == formats[i])
+            return KILN_OK;
+        size_t length = strlen(names);
+        snprintf(names + length, sizeof names - length, "%s%s", i ? " or " : "",
+                 ki_texel_of_format(formats[i])->name);
+    }
+    const ki_texel *texel = ki_texel_of_format(*format);
+    return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: format is %s, it %s%s", recipe->about.name,
+                   texel ? texel->name : "none of kiln's",
+                   names[0] ? "must be " : "has one format and takes no other", names);
+}
+
 kiln_result kiln_engine_save(kiln_context *context, const kiln_engine *engine, const kiln_map *map,
-                             const kiln_sh *sh, const char *path, int *file_count,
-                             kiln_error *error)
+                             const kiln_sh *sh, kiln_format format, const char *path,
+                             int *file_count, kiln_error *error)
 {
     if (file_count)
         *file_count = 0;
     const ki_recipe *recipe;
     kiln_result result = find_recipe(engine, &recipe, error);
     if (result != KILN_OK || (result = check_path(recipe, path, error)) != KILN_OK ||
-        (result = check_map(recipe, map, sh, error)) != KILN_OK)
+        (result = check_map(recipe, map, sh, error)) != KILN_OK ||
+        (result = choose_format(recipe, &format, error)) != KILN_OK)
         return result;
     kiln_map turned = {
         .shape = KILN_SHAPE_CUBE, .size = map->size, .level_count = map->level_count};
@@ -174,7 +199,7 @@ kiln_result kiln_engine_save(kiln_context *context, const kiln_engine *engine, c
         return result;
     ki_turn_cube(map, &recipe->axes, &turned);
     ki_turn_sh(&few, &recipe->axes, &turned_sh);
-    ki_export to = {context, &turned, &turned_sh, path, ki_file_set_begin(context), 0};
+    ki_export to = {context, &turned, &turned_sh, format, path, ki_file_set_begin(context), 0};
     result = to.set ? recipe->write(&to, error) : ki_fail_memory(context, error, path, 64);
     if (result == KILN_OK)
         result = ki_file_set_commit(to.set, error);

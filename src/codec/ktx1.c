@@ -1,4 +1,4 @@
-// KTX version 1 cubes of halves.
+// KTX version 1 cubes of halves, or of 11, 11 and 10 bits.
 #include "codec/ktx1.h"
 
 #include "codec/texel.h"
@@ -8,21 +8,26 @@
 enum {
     ORDER = 0x04030201,
     GL_HALF_FLOAT = 0x140b,
+    GL_RGB = 0x1907,
     GL_RGBA = 0x1908,
     GL_RGBA16F = 0x881a,
+    GL_R11F_G11F_B10F = 0x8c3a,
 };
+
+// glType, glTypeSize, glFormat, glInternalFormat, glBaseInternalFormat. The packed one is as Filament's
+// cmgen writes it, which its reader insists on; KTX means 0x8c3b, 4 and RGB by the first two and the last.
+static const uint32_t half_types[5] = {GL_HALF_FLOAT, 2, GL_RGBA, GL_RGBA16F, GL_RGBA};
+static const uint32_t packed_types[5] = {GL_R11F_G11F_B10F, 1, GL_RGB, GL_R11F_G11F_B10F,
+                                         GL_R11F_G11F_B10F};
 
 static const uint8_t magic[12] = {0xab, 'K', 'T', 'X', ' ', '1', '1', 0xbb, '\r', '\n', 0x1a, '\n'};
 
-static void write_header(ki_writer *w, int size, int level_count)
+static void write_header(ki_writer *w, const uint32_t types[5], int size, int level_count)
 {
     ki_write(w, magic, sizeof magic);
     ki_write_u32(w, ORDER);
-    ki_write_u32(w, GL_HALF_FLOAT);
-    ki_write_u32(w, 2); // bytes that are swapped together
-    ki_write_u32(w, GL_RGBA);
-    ki_write_u32(w, GL_RGBA16F);
-    ki_write_u32(w, GL_RGBA);
+    for (int i = 0; i < 5; i++)
+        ki_write_u32(w, types[i]);
     ki_write_u32(w, (uint32_t)size);
     ki_write_u32(w, (uint32_t)size);
     ki_write_u32(w, 0); // depth
@@ -42,17 +47,19 @@ static void write_pair(ki_writer *w, const char *key, const char *value)
     ki_write_align(w, 4);
 }
 
-kiln_result ki_ktx1_encode(const kiln_map *map, int first, int count, const char *key,
-                           const char *value, ki_writer *writer, kiln_error *error)
+kiln_result ki_ktx1_encode(const kiln_map *map, int first, int count, kiln_format format,
+                           const char *key, const char *value, ki_writer *writer, kiln_error *error)
 {
-    const ki_texel *texel = ki_texel_of_format(KILN_FORMAT_RGBA16F);
-    write_header(writer, kiln_map_level_size(map, first), count);
+    const ki_texel *texel = ki_texel_of_format(format);
+    bool packed = format == KILN_FORMAT_B10G11R11;
+    write_header(writer, packed ? packed_types : half_types, kiln_map_level_size(map, first),
+                 count);
     if (key && value)
         write_pair(writer, key, value);
     else
         ki_write_u32(writer, 0);
     for (int k = first; k < first + count; k++) {
-        // The size of a level of a cube is that of one face. Faces of halves need no padding.
+        // The size of a level of a cube is that of one face. Faces of 4 and 8 bytes a texel need no padding.
         int n = kiln_map_level_size(map, k);
         size_t size = (size_t)ki_texels_size(texel, n, n);
         ki_write_u32(writer, (uint32_t)size);

@@ -16,6 +16,7 @@ typedef struct ki_export {
     kiln_context *context;
     const kiln_map *map;
     const kiln_sh *sh;
+    kiln_format format; // one of the recipe's, AUTO where it has none
     const char *path;
     ki_file_set *set;
     int file_count;

@@ -1,5 +1,5 @@
 // Filament, as cmgen --deploy writes: NAME_ibl.ktx, NAME_skybox.ktx and sh.txt. Level l of 0 to M holds
-// r = 1 - sqrt(1 - l / M), 256 texels down to 16. Diffuse light comes from the harmonics, which also stand
+// r = 1 - sqrt(1 - l / M), 256 texels down to 16, as halves or, as cmgen has it, in 11, 11 and 10 bits. Diffuse light comes from the harmonics, which also stand
 // in the .ktx, or where an application leaves them out from the last level.
 //
 // Its panoramas have +Z in the centre and -X to the right of it.
@@ -85,12 +85,12 @@ static kiln_result write(ki_export *to, kiln_error *error)
     if (text.failed)
         result = ki_fail_memory(to->context, error, "harmonics", text.size);
     if (result == KILN_OK)
-        result = ki_ktx1_encode(to->map, 0, to->map->level_count, "sh", (const char *)text.bytes,
-                                &bytes, error);
+        result = ki_ktx1_encode(to->map, 0, to->map->level_count, to->format, "sh",
+                                (const char *)text.bytes, &bytes, error);
     if (result == KILN_OK)
         result = add(to, "_ibl.ktx", &bytes, &name, error);
     if (result == KILN_OK)
-        result = ki_ktx1_encode(to->map, 0, 1, NULL, NULL, &bytes, error);
+        result = ki_ktx1_encode(to->map, 0, 1, to->format, NULL, NULL, &bytes, error);
     if (result == KILN_OK)
         result = add(to, "_skybox.ktx", &bytes, &name, error);
     if (result == KILN_OK) {
@@ -112,6 +112,7 @@ const ki_recipe ki_filament = {
               .size = 256,
               .level_count = 5,
               .limit = 65504,
+              .formats = {KILN_FORMAT_RGBA16F, KILN_FORMAT_B10G11R11},
               .proof = "pixels of Filament's web build 1.53.4"},
     .axes = {{0, 1, 2}, {-1, 1, -1}},
     .size_min = 32,

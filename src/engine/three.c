@@ -26,7 +26,7 @@ static double level(double roughness, int level_count, int size)
 static kiln_result write(ki_export *to, kiln_error *error)
 {
     ki_writer bytes = {.context = to->context};
-    kiln_save_def def = {.format = KILN_FORMAT_RGBA16F, .sh = to->sh, .lobe = "ggx"};
+    kiln_save_def def = {.format = to->format, .sh = to->sh, .lobe = "ggx"};
     kiln_result result = ki_ktx2_encode(to->map, &def, &bytes, error);
     if (result == KILN_OK)
         result = ki_export_add(to, to->path, &bytes, error);
@@ -43,6 +43,7 @@ const ki_recipe ki_three = {
               .size = 256,
               .level_count = 6,
               .limit = 65504,
+              .formats = {KILN_FORMAT_RGBA16F},
               .proof = "pixels of three.js 0.187.0"},
     .axes = {{2, 1, 0}, {1, 1, -1}},
     .size_min = 16,

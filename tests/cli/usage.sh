@@ -45,6 +45,9 @@ expect 1 "there is no folder nowhere" bake in.exr -o out.ktx2 --sh nowhere/sh.js
 expect 2 "is 'frob', which is no engine" bake in.exr -o out.ktx2 --for frob
 expect 2 "out.dds: --for three writes .ktx2" bake in.exr -o out.dds --for three
 expect 2 "decides what --lobe is" bake in.exr -o out.ktx2 --for three --lobe ggx
+expect 2 "for filament takes --format rgba16f or b10g11r11, not bc6h" \
+    bake in.exr -o out --for filament --format bc6h
+expect 2 "for babylon has one format" bake in.exr -o out.env --for babylon --format rgba16f
 expect 2 "three: size is 100, it must be a power of two from 16 to 4096" \
     bake in.exr -o out.ktx2 --for three --size 100
 expect 2 "three: 1 levels, a size of 32 may have 2 to 6" \

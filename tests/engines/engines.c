@@ -176,18 +176,40 @@ static void what_an_engine_does_not_take_is_said(void **state)
     (void)state;
     const kiln_engine *three = kiln_engine_find("three");
     kiln_engine stranger = *three;
-    kiln_map map;
+    kiln_map map, chain;
     kiln_sh sh = {.bands = 3};
     CHECK_OK(kiln_map_create(context, KILN_SHAPE_CUBE, 32, 3, &map, &error));
-    assert_int_equal(kiln_engine_save(context, &stranger, &map, &sh, "x.ktx2", NULL, &error),
-                     KILN_ERROR_ARGUMENT);
-    assert_int_equal(kiln_engine_save(context, three, &map, &sh, "x.dds", NULL, &error),
-                     KILN_ERROR_ARGUMENT);
-    assert_int_equal(kiln_engine_save(context, three, &map, NULL, "x.ktx2", NULL, &error),
-                     KILN_ERROR_ARGUMENT);
+    assert_int_equal(
+        kiln_engine_save(context, &stranger, &map, &sh, KILN_FORMAT_AUTO, "x.ktx2", NULL, &error),
+        KILN_ERROR_ARGUMENT);
+    assert_int_equal(
+        kiln_engine_save(context, three, &map, &sh, KILN_FORMAT_AUTO, "x.dds", NULL, &error),
+        KILN_ERROR_ARGUMENT);
+    assert_int_equal(
+        kiln_engine_save(context, three, &map, NULL, KILN_FORMAT_AUTO, "x.ktx2", NULL, &error),
+        KILN_ERROR_ARGUMENT);
+    assert_int_equal(
+        kiln_engine_save(context, three, &map, &sh, KILN_FORMAT_BC6H, "x.ktx2", NULL, &error),
+        KILN_ERROR_ARGUMENT);
+    assert_string_equal(error.message, "three: format is bc6h, it must be rgba16f");
+    const kiln_engine *filament = kiln_engine_find("filament");
+    assert_int_equal(
+        kiln_engine_save(context, filament, &map, &sh, KILN_FORMAT_RGB9E5, "x", NULL, &error),
+        KILN_ERROR_ARGUMENT);
+    assert_string_equal(error.message,
+                        "filament: format is rgb9e5, it must be rgba16f or b10g11r11");
+    const kiln_engine *babylon = kiln_engine_find("babylon");
+    CHECK_OK(kiln_map_create(context, KILN_SHAPE_CUBE, 16, 5, &chain, &error));
+    assert_int_equal(
+        kiln_engine_save(context, babylon, &chain, &sh, KILN_FORMAT_RGB9E5, "x.env", NULL, &error),
+        KILN_ERROR_ARGUMENT);
+    assert_string_equal(error.message,
+                        "babylon: format is rgb9e5, it has one format and takes no other");
+    kiln_map_free(&chain);
     map.shape = KILN_SHAPE_OCTAHEDRON;
-    assert_int_equal(kiln_engine_save(context, three, &map, &sh, "x.ktx2", NULL, &error),
-                     KILN_ERROR_ARGUMENT);
+    assert_int_equal(
+        kiln_engine_save(context, three, &map, &sh, KILN_FORMAT_AUTO, "x.ktx2", NULL, &error),
+        KILN_ERROR_ARGUMENT);
     map.shape = KILN_SHAPE_CUBE;
     assert_int_not_equal(access("x.ktx2", F_OK), 0);
     kiln_map_free(&map);

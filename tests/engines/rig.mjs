@@ -252,7 +252,8 @@ export function tableReader(size, texel) {
 // and resolves to numbers [view][roughness][normal][channel]. ending: of what kiln is told to write;
 // loads: of what the page loads.
 // bounds.diffuse: the page draws diffuse light alone where its address ends in #diffuse.
-export async function proveEngine({ name, page, ending, loads = ending, model, bounds }) {
+// format: its name and its number in kiln_format, where it is not the engine's first.
+export async function proveEngine({ name, page, ending, loads = ending, format, model, bounds }) {
     fs.rmSync(folder, { recursive: true, force: true });
     fs.mkdirSync(folder, { recursive: true });
     fs.symlinkSync(path.join(here, 'node_modules'), path.join(folder, 'npm'));
@@ -260,8 +261,9 @@ export async function proveEngine({ name, page, ending, loads = ending, model, b
     fs.symlinkSync(here, path.join(folder, 'pages'));
     const { size, level_count: count } = engineOf(name);
     for (const what of ['coded', 'white'])
-        run(writePath, name, what, `${size}`, `${what}${ending}`);
-    const report = JSON.parse(kiln('bake', panorama, '--for', name, '-o', `real${ending}`, '--json'));
+        run(writePath, name, what, `${size}`, `${what}${ending}`, ...(format ? [`${format[1]}`] : []));
+    const report = JSON.parse(kiln('bake', panorama, '--for', name, '-o', `real${ending}`, '--json',
+                                    ...(format ? ['--format', format[0]] : [])));
     const roughness = report.output.levels.map((level) => level.roughness);
     kiln('bake', panorama, '-q', '-o', 'plain.ktx2', '--format', 'rgba32f', '--size', `${size}`,
          '--roughness', roughness.join());
@@ -274,7 +276,7 @@ export async function proveEngine({ name, page, ending, loads = ending, model, b
         await browser.waitForFunction(() => window.draw);
         const draw = (file) => browser.evaluate((args) => window.draw(...args),
                                                 [`${address}${file}`, views, ROUGHNESS, CELL]);
-        console.log(name);
+        console.log(name, format?.[0] ?? '');
         if (bounds.coded)
             checkCoded(made, views, count - 1, size, await draw(`coded${loads}`), bounds.coded);
         if (bounds.white)

@@ -39,19 +39,20 @@ int main(int argc, char **argv)
     kiln_map map = {0};
     kiln_prefilter_def def;
     float roughness[KILN_MAX_LEVELS];
-    const kiln_engine *engine = argc == 5 ? kiln_engine_find(argv[1]) : NULL;
+    const kiln_engine *engine = argc >= 5 && argc <= 6 ? kiln_engine_find(argv[1]) : NULL;
     bool coded = engine && !strcmp(argv[2], "coded");
     if (!engine || (!coded && strcmp(argv[2], "white") != 0)) {
-        fprintf(stderr, "engine_write ENGINE coded|white SIZE PATH\n");
+        fprintf(stderr, "engine_write ENGINE coded|white SIZE PATH [FORMAT]\n");
         return 2;
     }
-    int size = (int)strtol(argv[3], NULL, 10);
+    int size = (int)strtol(argv[3], NULL, 10), format = argc == 6 ? atoi(argv[5]) : 0;
     kiln_sh sh = harmonics(coded);
     if (!kiln_context_create(NULL, &context, &error) &&
         !kiln_engine_levels(engine, size, 0, roughness, &def, &error) &&
         !kiln_map_create(context, KILN_SHAPE_CUBE, def.size, def.level_count, &map, &error)) {
         paint(&map, coded);
-        if (!kiln_engine_save(context, engine, &map, &sh, argv[4], NULL, &error))
+        if (!kiln_engine_save(context, engine, &map, &sh, (kiln_format)format, argv[4], NULL,
+                              &error))
             error.result = KILN_OK;
     }
     kiln_map_free(&map);
