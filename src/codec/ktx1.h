@@ -7,6 +7,7 @@
 /// Levels `first` to `first + count - 1` of a cube as RGBA16F or B10G11R11, with one pair of metadata
 /// where `key` is not NULL.
 kiln_result ki_ktx1_encode(const kiln_map *map, int first, int count, kiln_format format,
-                           const char *key, const char *value, ki_writer *writer, kiln_error *error);
+                           const char *key, const char *value, ki_writer *writer,
+                           kiln_error *error);
 
 #endif
