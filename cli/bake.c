@@ -62,7 +62,9 @@ static struct poptOption output_options[] = {
     VALUE("size", SIZE, "texels along a face, rows of a panorama (256)", "N"),
     VALUE("levels", LEVELS, "levels of the chain (all, down to 1 texel)", "N"),
     VALUE("shape", SHAPE, "cube, panorama or octahedron (cube)", "SHAPE"),
-    VALUE("format", FORMAT, "rgba16f, rgba32f, rgb9e5, b10g11r11 or bc6h (rgba16f)", "FORMAT"),
+    VALUE("format", FORMAT,
+          "rgba16f, rgba32f, rgb9e5, b10g11r11 or bc6h (rgba16f); for PNG rgbm, rgbd or rgbp",
+          "FORMAT"),
     VALUE("zstd", ZSTD, "compress KTX2; a level from 1 to 22 as --zstd=LEVEL (3)", "LEVEL"),
     POPT_TABLEEND,
 };
@@ -111,8 +113,8 @@ static const char *const lobes[] = {"ggx", "lambert", "charlie", "phong", NULL};
 static const char *const shapes[] = {"panorama", "cube", "octahedron", NULL};
 static const char *const methods[] = {"exact", "textbook", NULL};
 static const char *const layouts[] = {"auto", "panorama", "cross", "strip", "octahedron", NULL};
-static const char *const formats[] = {"auto",      "rgba16f", "rgba32f", "rgb9e5",
-                                      "b10g11r11", "bc6h",    NULL};
+static const char *const formats[] = {"auto", "rgba16f", "rgba32f", "rgb9e5", "b10g11r11",
+                                      "bc6h", "rgbm",    "rgbd",    "rgbp",   NULL};
 
 typedef struct bake {
     cli_arguments arguments;
@@ -189,11 +191,15 @@ static int check_output(const bake *b, const char *option, const char *path)
     if (b->shape != KILN_SHAPE_CUBE && (strstr(path, "%s") || strstr(path, "{face}")))
         return cli_wrong(&cli_bake, "%s %s: names a face, --shape %s has none", option, path,
                          shapes[b->shape]);
-    bool packed = b->format >= KILN_FORMAT_RGB9E5;
+    bool bytes = b->format >= KILN_FORMAT_RGBM;
+    bool packed = b->format >= KILN_FORMAT_RGB9E5 && !bytes;
     if (packed && !texture)
         return cli_wrong(&cli_bake, "%s %s: --format %s is for .ktx2 and .dds", option, path,
                          formats[b->format]);
-    if (b->format != KILN_FORMAT_AUTO && !texture && !exr)
+    if (bytes && strcmp(ending, "png") != 0)
+        return cli_wrong(&cli_bake, "%s %s: --format %s is for .png", option, path,
+                         formats[b->format]);
+    if (b->format != KILN_FORMAT_AUTO && !texture && !exr && !bytes)
         return cli_wrong(&cli_bake, "%s %s: .%s has one format only, leave --format out", option,
                          path, ending);
     return CLI_GO;
@@ -562,7 +568,7 @@ static double format_limit(const bake *b, const char *path)
     if (b->engine && path == b->output && b->format != KILN_FORMAT_B10G11R11)
         return b->engine->limit;
     if (!strcmp(ending, "png"))
-        return 1;
+        return b->format == KILN_FORMAT_RGBD ? 255 : b->format > KILN_FORMAT_BC6H ? 64 : 1;
     if (!strcmp(ending, "hdr"))
         return 0;
     return b->format == KILN_FORMAT_RGBA32F     ? 0
@@ -589,7 +595,8 @@ static void warn_of_clamping(bake *b, const kiln_map *map, const char *path)
         return;
     double stops = floor(log2(limit / (double)most));
     const char *ending = cli_ending(path);
-    if (b->engine && path == b->output)
+    bool bytes = b->format >= KILN_FORMAT_RGBM;
+    if ((b->engine && path == b->output) || (bytes && !strcmp(ending, "png")))
         cli_warn(&b->job,
                  "%s: %zu values above %g (up to %.4g) were cut off; --exposure %.0f keeps them",
                  path, count, limit, (double)most, b->exposure + stops);

@@ -805,7 +805,10 @@ typedef enum kiln_format {
     KILN_FORMAT_RGBA32F,
     KILN_FORMAT_RGB9E5,
     KILN_FORMAT_B10G11R11,
-    KILN_FORMAT_BC6H ///< unsigned, 4 x 4 texels in 16 bytes, KTX2 and DDS only
+    KILN_FORMAT_BC6H, ///< unsigned, 4 x 4 texels in 16 bytes, KTX2 and DDS only
+    KILN_FORMAT_RGBM, ///< these three for PNG: four bytes, docs/conventions.md has their formulas
+    KILN_FORMAT_RGBD,
+    KILN_FORMAT_RGBP
 } kiln_format;
 
 /// {0} is a good default.

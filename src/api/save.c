@@ -1,6 +1,7 @@
 // Saving: a map as one file or a set of them, pictures and spherical harmonics.
 #include "base/file.h"
 #include "codec/codec.h"
+#include "codec/rgbx.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -67,6 +68,21 @@ static bool expand(const char *template, int face, int level, text_writer *w)
 
 // ------------------------------------------------------------------------------------------- files
 
+// A picture of three channels in four bytes.
+static kiln_result encode_rgbx(ki_rgbx *pack, const float *pixels, int width, int height,
+                               ki_writer *w, kiln_error *error)
+{
+    size_t texels = (size_t)width * (size_t)height;
+    float *packed = ki_alloc_raw(w->context, texels, 4 * sizeof *packed);
+    if (!packed)
+        return ki_fail_memory(w->context, error, "a PNG", 16 * texels);
+    for (size_t i = 0; i < texels; i++)
+        pack(pixels + 3 * i, packed + 4 * i);
+    kiln_result result = ki_png_encode(packed, width, height, 4, KI_PNG_PLAIN8, w, error);
+    ki_free(packed);
+    return result;
+}
+
 // One picture by the ending of its path.
 static kiln_result encode(const char *path, const float *pixels, int width, int height,
                           int channels, const ki_exr_options *options, ki_png_coding coding,
@@ -109,8 +125,11 @@ static kiln_result write_set(kiln_context *context, const kiln_map *map, const c
             break;
         }
         const char *name = (const char *)path.bytes;
-        result = encode(name, map->level[level] + floats * (size_t)face, width, height, 3, &options,
-                        KI_PNG_SRGB8, &bytes, error);
+        const float *pixels = map->level[level] + floats * (size_t)face;
+        ki_rgbx *rgbx = ki_rgbx_of_format(def->format);
+        result =
+            rgbx ? encode_rgbx(rgbx, pixels, width, height, &bytes, error)
+                 : encode(name, pixels, width, height, 3, &options, KI_PNG_SRGB8, &bytes, error);
         if (result == KILN_OK)
             result = ki_file_set_add(set, name, bytes.bytes, bytes.size, error);
         count++;
@@ -180,9 +199,9 @@ kiln_result kiln_map_save(kiln_context *context, const kiln_map *map, const char
         result = check_sh(def->sh, error);
     if (result != KILN_OK)
         return result;
-    if ((int)def->format < 0 || def->format > KILN_FORMAT_BC6H)
+    if ((int)def->format < 0 || def->format > KILN_FORMAT_RGBP)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "format is %d, it must be 0 to %d",
-                       (int)def->format, (int)KILN_FORMAT_BC6H);
+                       (int)def->format, (int)KILN_FORMAT_RGBP);
     if (def->zstd < 0 || def->zstd > 22)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "zstd is %d, it must be 0 to 22", def->zstd);
     bool cube = ki_ends_with(path, ".ktx2") || ki_ends_with(path, ".dds");
@@ -196,10 +215,12 @@ kiln_result kiln_map_save(kiln_context *context, const kiln_map *map, const char
     if (!exr && !ki_ends_with(path, ".hdr") && !ki_ends_with(path, ".png"))
         return ki_fail(error, KILN_ERROR_ARGUMENT,
                        "%s: ends in none of .ktx2 .dds .exr .hdr .png and /", path);
-    bool plain = def->format == KILN_FORMAT_AUTO || (exr && def->format <= KILN_FORMAT_RGBA32F);
+    bool plain = def->format == KILN_FORMAT_AUTO || (exr && def->format <= KILN_FORMAT_RGBA32F) ||
+                 (ki_ends_with(path, ".png") && ki_rgbx_of_format(def->format));
     if (!plain || def->zstd)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
-                       "%s: has no %s; EXR takes rgba16f and rgba32f, HDR and PNG have one format",
+                       "%s: has no %s; EXR takes rgba16f and rgba32f, PNG rgbm, rgbd and "
+                       "rgbp, HDR has one format",
                        path, plain ? "zstd" : "such format");
     return save_pictures(context, map, path, def, file_count, error);
 }

@@ -27,9 +27,7 @@ static int find_samples(const ki_texel *texel, ki_ktx2_sample samples[6])
     case KILN_FORMAT_BC6H:
         samples[0] = (ki_ktx2_sample){0, 128, 0 | KI_KTX2_FLOAT, 0, one};
         return 1;
-    case KILN_FORMAT_AUTO:
-    case KILN_FORMAT_RGBA16F:
-    case KILN_FORMAT_RGBA32F:
+    default:
         break;
     }
     int bits = 2 * texel->bytes;

@@ -1,6 +1,5 @@
 #include "codec/rgbx.h"
 
-#include "base/base.h"
 #include "math/math.h"
 
 #include <math.h>
@@ -69,4 +68,12 @@ void ki_float_from_rgbd(const float rgbd[4], float rgb[3])
         double power = rgbd[c] > 0 ? ki_pow((double)rgbd[c], 2.2) : 0;
         rgb[c] = (float)(power / fmax((double)rgbd[3], 1.0 / 255));
     }
+}
+
+ki_rgbx *ki_rgbx_of_format(kiln_format format)
+{
+    return format == KILN_FORMAT_RGBM   ? ki_rgbm_from_float
+           : format == KILN_FORMAT_RGBD ? ki_rgbd_from_float
+           : format == KILN_FORMAT_RGBP ? ki_rgbp_from_float
+                                        : NULL;
 }

@@ -2,6 +2,8 @@
 #ifndef KI_RGBX_H
 #define KI_RGBX_H
 
+#include "base/base.h"
+
 /// The largest radiance each holds; more is cut off.
 enum { KI_RGBM_MAX = 64, KI_RGBP_MAX = 64, KI_RGBD_MAX = 255 };
 
@@ -17,5 +19,9 @@ void ki_rgbd_from_float(const float rgb[3], float rgbd[4]);
 void ki_float_from_rgbm(const float rgbm[4], float rgb[3]);
 void ki_float_from_rgbp(const float rgbp[4], float rgb[3]);
 void ki_float_from_rgbd(const float rgbd[4], float rgb[3]);
+
+typedef void ki_rgbx(const float rgb[3], float rgbx[4]);
+/// NULL where the format is none of the three.
+ki_rgbx *ki_rgbx_of_format(kiln_format format);
 
 #endif

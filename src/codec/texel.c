@@ -139,8 +139,7 @@ static void unpack(const ki_texel *texel, const uint8_t *bytes, size_t count, fl
             largest[2] = 64512;
             break;
         case KILN_FORMAT_RGBA16F:
-        case KILN_FORMAT_BC6H:
-        case KILN_FORMAT_AUTO:
+        default:
             memcpy(halfs, from, sizeof halfs);
             ki_floats_from_halfs(halfs, 4, value);
             largest[0] = largest[1] = largest[2] = 65504;

@@ -1,6 +1,7 @@
 // PNG: every colour type and depth as libpng writes it, as linear floats; and what kiln writes.
 #include "check.h"
 #include "codec/codec.h"
+#include "codec/rgbx.h"
 #include "image/pack.h"
 
 #include <png.h>
@@ -144,6 +145,49 @@ static void srgb_bytes_are_nearest(void **state)
     ki_writer_free(&w);
 }
 
+// A panorama in four bytes, read by libpng itself.
+static void radiance_in_four_bytes_comes_back(void **state)
+{
+    (void)state;
+    static const struct {
+        kiln_format format;
+        void (*unpack)(const float packed[4], float rgb[3]);
+        double bound; // of the largest channel, relative
+    } codings[] = {{KILN_FORMAT_RGBM, ki_float_from_rgbm, 0.005},
+                   {KILN_FORMAT_RGBD, ki_float_from_rgbd, 0.007},
+                   {KILN_FORMAT_RGBP, ki_float_from_rgbp, 0.005}};
+    enum { SIZE = 16, COUNT = 2 * SIZE * SIZE };
+    kiln_map map;
+    CHECK_OK(kiln_map_create(context, KILN_SHAPE_PANORAMA, SIZE, 1, &map, &error));
+    for (int i = 0; i < 3 * COUNT; i++)
+        map.level[0][i] = (float)exp2(6.0 * (i % 1009) / 1009); // 1 to 64
+    for (int k = 0; k < 3; k++) {
+        static png_byte bytes[4 * COUNT];
+        kiln_save_def def = {.format = codings[k].format};
+        png_image image = {.version = PNG_IMAGE_VERSION};
+        CHECK_OK(kiln_map_save(context, &map, "four-bytes.png", &def, NULL, &error));
+        assert_int_not_equal(png_image_begin_read_from_file(&image, "four-bytes.png"), 0);
+        assert_int_equal(image.format, PNG_FORMAT_RGBA);
+        assert_int_equal(image.width, 2 * SIZE);
+        assert_int_equal(image.height, SIZE);
+        assert_int_not_equal(png_image_finish_read(&image, NULL, bytes, 0, NULL), 0);
+        for (int i = 0; i < COUNT; i++) {
+            float stored[4], back[3];
+            const float *rgb = map.level[0] + 3 * (size_t)i;
+            int most = rgb[1] > rgb[0] ? 1 : 0;
+            most = rgb[2] > rgb[most] ? 2 : most;
+            for (int c = 0; c < 4; c++)
+                stored[c] = (float)bytes[4 * i + c] / 255;
+            codings[k].unpack(stored, back);
+            CHECK_NEAR((double)(back[most] / rgb[most]), 1, codings[k].bound);
+        }
+        assert_int_equal(kiln_map_save(context, &map, "four-bytes.exr", &def, NULL, &error),
+                         KILN_ERROR_ARGUMENT);
+    }
+    remove("four-bytes.png");
+    kiln_map_free(&map);
+}
+
 static void a_cut_file_is_said(void **state)
 {
     (void)state;
@@ -162,6 +206,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(every_kind_is_read, set_up, tear_down),
         cmocka_unit_test_setup_teardown(what_is_written_comes_back, set_up, tear_down),
         cmocka_unit_test_setup_teardown(srgb_bytes_are_nearest, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(radiance_in_four_bytes_comes_back, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_cut_file_is_said, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
