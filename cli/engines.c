@@ -42,10 +42,11 @@ static int run(int argc, const char **argv)
     if (code == CLI_GO) {
         const kiln_engine *engine;
         for (int i = 0; (engine = kiln_engine_at(i)) != NULL; i++)
-            printf("%-14s %s\n  writes       %s, by default %d levels of %d\n  roughness    %s\n"
+            printf("%-14s %s\n  writes       %s, by default %d level%s of %d\n  roughness    %s\n"
                    "  proof        %s\n",
-                   engine->name, engine->title, engine->files, engine->level_count, engine->size,
-                   engine->mapping, engine->proof);
+                   engine->name, engine->title, engine->files, engine->level_count,
+                   engine->level_count > 1 ? "s" : "", engine->size, engine->mapping,
+                   engine->proof);
         code = CLI_DONE;
     }
     cli_arguments_free(&arguments);
@@ -58,7 +59,7 @@ const cli_command cli_engines = {
     .summary = "Lists the engines that 'kiln bake --for' knows.",
     .details =
         "Level k of n, of a size of w texels, is filtered for roughness r. The proof of a file is\n"
-        "what the engine's own pixels show in kiln's tests, or what was read in its source.\n"
+        "what the engine's own pixels show in kiln's tests, or else what was read of it.\n"
         "\n"
         "Examples:\n"
         "  kiln engines\n"

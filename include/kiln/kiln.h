@@ -887,7 +887,7 @@ typedef struct kiln_engine {
     double limit;        ///< the largest radiance that the files hold
     kiln_format
         formats[4];    ///< to choose from, the first by default; KILN_FORMAT_AUTO behind the last
-    const char *proof; ///< "pixels of" a version that renders them as it should, or "source of" one
+    const char *proof; ///< "pixels of VERSION", where seen; else "source of" or "manual of"
 } kiln_engine;
 
 /// The engines in the order of their table; NULL where the index is none.

@@ -9,8 +9,8 @@
 #include <string.h>
 
 static const ki_recipe *const recipes[] = {
-    &ki_three,      &ki_babylon,        &ki_babylon_dds, &ki_filament,
-    &ki_playcanvas, &ki_playcanvas_dds, &ki_gltf,
+    &ki_three, &ki_babylon, &ki_babylon_dds, &ki_filament, &ki_playcanvas, &ki_playcanvas_dds,
+    &ki_gltf,  &ki_bevy,    &ki_unity,       &ki_godot,    &ki_unreal,
 };
 enum { RECIPES = sizeof recipes / sizeof *recipes };
 

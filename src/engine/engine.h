@@ -36,7 +36,7 @@ typedef struct ki_recipe {
 } ki_recipe;
 
 extern const ki_recipe ki_three, ki_babylon, ki_babylon_dds, ki_filament, ki_playcanvas,
-    ki_playcanvas_dds, ki_gltf;
+    ki_playcanvas_dds, ki_gltf, ki_bevy, ki_unity, ki_godot, ki_unreal;
 
 /// The table of all; NULL behind the last.
 const ki_recipe *ki_recipe_at(int index);

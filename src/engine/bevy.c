@@ -1,0 +1,70 @@
+// Bevy's EnvironmentMapLight: NAME_specular.ktx2, whose level k of n holds r = k / (n - 1), and
+// NAME_diffuse.ktx2, irradiance / pi, which is what GGX gives at roughness 1: the last level. Cubes of
+// rgb9e5, as Bevy's own, where nothing else is asked for.
+//
+// Its world is right-handed with -Z ahead, as kiln's; it looks cubes up in (x, y, -z).
+#include "engine/engine.h"
+
+#include "codec/codec.h"
+#include "image/image.h"
+
+static double roughness(int level, int level_count, int size)
+{
+    (void)size;
+    return level_count > 1 ? (double)level / (level_count - 1) : 0;
+}
+
+static double level(double roughness, int level_count, int size)
+{
+    (void)size;
+    return (level_count - 1) * roughness;
+}
+
+static kiln_result add(ki_export *to, const kiln_map *map, const char *lobe, const char *ending,
+                       kiln_error *error)
+{
+    ki_writer bytes = {.context = to->context}, name = bytes;
+    kiln_save_def def = {.format = to->format, .lobe = lobe};
+    ki_write_text(&name, "%s%s", to->path, ending);
+    ki_write_u8(&name, 0);
+    kiln_result result = name.failed ? ki_fail_memory(to->context, error, to->path, name.size)
+                                     : ki_ktx2_encode(map, &def, &bytes, error);
+    if (result == KILN_OK)
+        result = ki_export_add(to, (const char *)name.bytes, &bytes, error);
+    ki_writer_free(&bytes);
+    ki_writer_free(&name);
+    return result;
+}
+
+static kiln_result write(ki_export *to, kiln_error *error)
+{
+    int last = to->map->level_count - 1;
+    kiln_map diffuse = {.shape = KILN_SHAPE_CUBE,
+                        .size = kiln_map_level_size(to->map, last),
+                        .level_count = 1,
+                        .level = {to->map->level[last]},
+                        .roughness = {1}};
+    kiln_result result = add(to, to->map, "ggx", "_specular.ktx2", error);
+    return result == KILN_OK ? add(to, &diffuse, "lambert", "_diffuse.ktx2", error) : result;
+}
+
+const ki_recipe ki_bevy = {
+    .about = {.name = "bevy",
+              .title = "Bevy",
+              .files = "NAME_specular.ktx2 and NAME_diffuse.ktx2",
+              .ending = "",
+              .mapping = "r = k / (n - 1)",
+              .size = 256,
+              .level_count = 5,
+              .limit = 65408,
+              .formats = {KILN_FORMAT_RGB9E5, KILN_FORMAT_RGBA16F, KILN_FORMAT_BC6H},
+              .proof = "source of Bevy 0.19.1"},
+    .axes = {{0, 1, 2}, {1, 1, -1}},
+    .size_min = 32,
+    .size_max = 4096,
+    .last_size = 16,
+    .level_count_min = 2,
+    .roughness = roughness,
+    .level = level,
+    .write = write,
+};

@@ -1,0 +1,92 @@
+// Engines that take nothing but a panorama and filter it by themselves: Godot's PanoramaSkyMaterial and
+// Unreal's sky light. A cube of w texels becomes a panorama of 4w x 2w, in kiln's own directions, so that
+// it lies as the one that was read.
+#include "engine/engine.h"
+
+#include "codec/codec.h"
+#include "image/image.h"
+
+static double roughness(int level, int level_count, int size)
+{
+    (void)level;
+    (void)level_count;
+    (void)size;
+    return 0;
+}
+
+static kiln_result write_exr(const kiln_map *p, ki_writer *bytes, kiln_error *error)
+{
+    ki_exr_options options = {.half = true, .panorama = true, .roughness = -1};
+    return ki_exr_encode(p->level[0], 2 * p->size, p->size, 3, &options, bytes, error);
+}
+
+static kiln_result write_hdr(const kiln_map *p, ki_writer *bytes, kiln_error *error)
+{
+    return ki_hdr_encode(p->level[0], 2 * p->size, p->size, bytes, error);
+}
+
+static kiln_result write(ki_export *to,
+                         kiln_result (*encode)(const kiln_map *, ki_writer *, kiln_error *),
+                         kiln_error *error)
+{
+    ki_writer bytes = {.context = to->context};
+    kiln_map panorama = {.shape = KILN_SHAPE_PANORAMA, .size = 2 * to->map->size, .level_count = 1};
+    kiln_result result = ki_map_allocate(to->context, &panorama, error);
+    if (result == KILN_OK)
+        result = ki_map_resample(to->context, to->map, 0, &panorama, 0, error);
+    if (result == KILN_OK)
+        result = encode(&panorama, &bytes, error);
+    if (result == KILN_OK)
+        result = ki_export_add(to, to->path, &bytes, error);
+    ki_writer_free(&bytes);
+    kiln_map_free(&panorama);
+    return result;
+}
+
+static kiln_result write_godot(ki_export *to, kiln_error *error)
+{
+    return write(to, write_exr, error);
+}
+
+static kiln_result write_unreal(ki_export *to, kiln_error *error)
+{
+    return write(to, write_hdr, error);
+}
+
+const ki_recipe ki_godot = {
+    .about = {.name = "godot",
+              .title = "Godot 4, which filters by itself",
+              .files = "NAME.exr, a panorama",
+              .ending = "exr",
+              .mapping = "r = 0, unfiltered",
+              .size = 512,
+              .level_count = 1,
+              .limit = 65504,
+              .proof = "source of Godot 0095d7d"},
+    .axes = {{0, 1, 2}, {1, 1, 1}},
+    .size_min = 32,
+    .size_max = 4096,
+    .last_size = 1,
+    .level_count_max = 1,
+    .roughness = roughness,
+    .write = write_godot,
+};
+
+const ki_recipe ki_unreal = {
+    .about = {.name = "unreal",
+              .title = "Unreal Engine, which filters by itself",
+              .files = "NAME.hdr, a panorama",
+              .ending = "hdr",
+              .mapping = "r = 0, unfiltered",
+              .size = 512,
+              .level_count = 1,
+              .limit = 1e38,
+              .proof = "manual of Unreal Engine 4.27"},
+    .axes = {{0, 1, 2}, {1, 1, 1}},
+    .size_min = 32,
+    .size_max = 4096,
+    .last_size = 1,
+    .level_count_max = 1,
+    .roughness = roughness,
+    .write = write_unreal,
+};

@@ -1,0 +1,57 @@
+// Unity: a cube as .dds whose level 6 holds r = 1, whatever its size: its shaders read level
+// 6 r (1.7 - 0.7 r), PerceptualRoughnessToMipmapLevel. Levels behind the sixth are never read; they are
+// there because a DDS cube is best whole.
+//
+// Its world is left-handed. Its panoramas (Skybox/Panoramic) have +X in the centre and -Z to the right.
+#include "engine/engine.h"
+
+#include "codec/codec.h"
+
+#include <math.h>
+
+enum { STEPS = 6 };
+
+static double roughness(int level, int level_count, int size)
+{
+    (void)level_count;
+    (void)size;
+    return level < STEPS ? (1.7 - sqrt(2.89 - 2.8 * level / STEPS)) / 1.4 : 1;
+}
+
+static double level(double roughness, int level_count, int size)
+{
+    (void)level_count;
+    (void)size;
+    return STEPS * roughness * (1.7 - 0.7 * roughness);
+}
+
+static kiln_result write(ki_export *to, kiln_error *error)
+{
+    ki_writer bytes = {.context = to->context};
+    kiln_save_def def = {.format = to->format};
+    kiln_result result = ki_dds_encode(to->map, &def, &bytes, error);
+    if (result == KILN_OK)
+        result = ki_export_add(to, to->path, &bytes, error);
+    ki_writer_free(&bytes);
+    return result;
+}
+
+const ki_recipe ki_unity = {
+    .about = {.name = "unity",
+              .title = "Unity",
+              .files = "NAME.dds",
+              .ending = "dds",
+              .mapping = "k = 6 r (1.7 - 0.7 r), 1 behind",
+              .size = 512,
+              .level_count = 10,
+              .limit = 65504,
+              .formats = {KILN_FORMAT_RGBA16F, KILN_FORMAT_BC6H},
+              .proof = "source of Unity's shaders, Graphics 0c658a0"},
+    .axes = {{2, 1, 0}, {-1, 1, -1}},
+    .size_min = 64,
+    .size_max = 4096,
+    .last_size = 1,
+    .roughness = roughness,
+    .level = level,
+    .write = write,
+};
