@@ -8,6 +8,7 @@ build_needs="cmake:cmake ninja:ninja-build cc:gcc pkg-config:pkg-config libc6-de
     libdeflate-dev libpng-dev libzstd-dev libpopt-dev libcjson-dev libcmocka-dev
     libegl-dev libgles-dev libglfw3-dev libegl1 libgl1-mesa-dri"
 test_needs="node:nodejs npm:npm chromium:chromium mandoc:mandoc clang-format:clang-format script:bsdutils Xvfb:xvfb xauth:xauth
+    oiiotool:openimageio-tools
     glslangValidator:glslang-tools
     glslangValidator:glslang-tools"
 web_needs="cmake:cmake ninja:ninja-build emcc:emscripten node:nodejs npm:npm"

@@ -119,7 +119,7 @@ static kiln_result check(const ki_ktx2_source *s, const ki_texel *texel, kiln_er
 {
     if (!texel)
         return ki_fail(error, KILN_ERROR_UNSUPPORTED,
-                       "%s: has vkFormat %u; 97, 109, 122, 123 and 131 are read", s->name, s->vk);
+                       "%s: has vkFormat %u; 97, 109, 122, 123 and 143 are read", s->name, s->vk);
     if (s->width < 1 || s->width != s->height || s->width > KILN_MAX_SIZE)
         return ki_fail(error, KILN_ERROR_FORMAT,
                        "%s: faces are %u x %u, they must be square and 1 to %d", s->name, s->width,

@@ -13,7 +13,7 @@ const ki_texel ki_texels[KI_TEXELS] = {
     {KILN_FORMAT_RGBA32F, "rgba32f", 109, 2, 16, 4, 1, 4},
     {KILN_FORMAT_RGB9E5, "rgb9e5", 123, 67, 4, 4, 1, 3},
     {KILN_FORMAT_B10G11R11, "b10g11r11", 122, 26, 4, 4, 1, 3},
-    {KILN_FORMAT_BC6H, "bc6h", 131, 95, KI_BC6H_BYTES, 1, 4, 3},
+    {KILN_FORMAT_BC6H, "bc6h", 143, 95, KI_BC6H_BYTES, 1, 4, 3},
 };
 
 const ki_texel *ki_texel_of_format(kiln_format format)

@@ -1,14 +1,20 @@
 # cmake -D WRITE=PROGRAM -D FOLDER=EMPTY -P check.cmake
-if(NOT EXISTS "${CMAKE_CURRENT_LIST_DIR}/node_modules/ktx-parse/package.json")
-    message(FATAL_ERROR "ktx-parse is missing: run  npm ci --prefix tests/files/ktx")
-endif()
+foreach(package ktx-parse @khronosgroup/gltf-viewer)
+    if(NOT EXISTS "${CMAKE_CURRENT_LIST_DIR}/node_modules/${package}/package.json")
+        message(FATAL_ERROR "${package} is missing: run  npm ci --prefix tests/files/ktx")
+    endif()
+endforeach()
 find_program(NODE node)
-if(NOT NODE)
-    message(FATAL_ERROR "node is missing: install nodejs")
+find_program(OIIOTOOL oiiotool)
+if(NOT NODE OR NOT OIIOTOOL)
+    message(FATAL_ERROR "node or oiiotool is missing: install nodejs and openimageio-tools")
 endif()
 file(REMOVE_RECURSE "${FOLDER}")
 file(MAKE_DIRECTORY "${FOLDER}")
-foreach(command "${WRITE};${FOLDER}" "${NODE};${CMAKE_CURRENT_LIST_DIR}/check.mjs;${FOLDER}")
+foreach(command "${WRITE};${FOLDER}" "${NODE};${CMAKE_CURRENT_LIST_DIR}/check.mjs;${FOLDER}"
+        "${NODE};--no-deprecation;${CMAKE_CURRENT_LIST_DIR}/libktx.mjs;${FOLDER}"
+        "${OIIOTOOL};${FOLDER}/blocks.dds;--fullpixels;--scanline;-o;${FOLDER}/oiio.exr"
+        "${OIIOTOOL};${FOLDER}/oiio.exr;${FOLDER}/blocks.exr;--fail;0;--diff")
     execute_process(COMMAND ${command} RESULT_VARIABLE result)
     if(NOT result EQUAL 0)
         message(FATAL_ERROR "failed: ${command}")

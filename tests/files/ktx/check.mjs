@@ -21,6 +21,8 @@ const formats = {
     rgb9e5: { vk: ktx.VK_FORMAT_E5B9G9R9_UFLOAT_PACK32, bytes: 4, type: 4, samples: shared },
     b10g11r11: { vk: ktx.VK_FORMAT_B10G11R11_UFLOAT_PACK32, bytes: 4, type: 4, samples: [
         [0, 11, RED | FLOAT, 0, one], [11, 11, GREEN | FLOAT, 0, one], [22, 10, BLUE | FLOAT, 0, one]] },
+    bc6h: { vk: ktx.VK_FORMAT_BC6H_UFLOAT_BLOCK, bytes: 16, type: 1, block: 4, model: 133, // KHR_DF_MODEL_BC6H
+            samples: [[0, 128, FLOAT, 0, one]] },
 };
 
 const text = (value) => typeof value === "string" ? value : Buffer.from(value).toString().replace(/\0$/, "");
@@ -30,11 +32,12 @@ function checkDescriptor(file, format) {
     const block = file.dataFormatDescriptor[0];
     assert.equal(block.vendorId, ktx.KHR_DF_VENDORID_KHRONOS);
     assert.equal(block.descriptorType, ktx.KHR_DF_KHR_DESCRIPTORTYPE_BASICFORMAT);
-    assert.equal(block.colorModel, ktx.KHR_DF_MODEL_RGBSDA);
+    assert.equal(block.colorModel, format.model ?? ktx.KHR_DF_MODEL_RGBSDA);
     assert.equal(block.colorPrimaries, ktx.KHR_DF_PRIMARIES_BT709);
     assert.equal(block.transferFunction, ktx.KHR_DF_TRANSFER_LINEAR);
     assert.equal(block.flags, ktx.KHR_DF_FLAG_ALPHA_STRAIGHT);
-    assert.deepEqual([...block.texelBlockDimension], [0, 0, 0, 0]);
+    const less = (format.block ?? 1) - 1;
+    assert.deepEqual([...block.texelBlockDimension], [less, less, 0, 0]);
     assert.deepEqual([...block.bytesPlane], [format.bytes, 0, 0, 0, 0, 0, 0, 0]);
     assert.deepEqual(block.samples.map((s) => [s.bitOffset, s.bitLength + 1, s.channelType,
                                                Number(s.sampleLower) >>> 0, Number(s.sampleUpper) >>> 0]),
@@ -57,7 +60,8 @@ function check(path, format, zstd, size, levels) {
 
     assert.equal(file.levels.length, levels);
     file.levels.forEach((level, k) => {
-        const edge = Math.max(1, size >> k), bytes = 6 * edge * edge * format.bytes;
+        const edge = Math.ceil(Math.max(1, size >> k) / (format.block ?? 1));
+        const bytes = 6 * edge * edge * format.bytes;
         assert.equal(level.uncompressedByteLength, bytes);
         if (zstd)
             assert.deepEqual([...level.levelData.subarray(0, 4)], [0x28, 0xb5, 0x2f, 0xfd]);
@@ -142,7 +146,7 @@ function checkTable(path, kind, number, zstd, channels, depth) {
 
 const folder = process.argv[2];
 const names = readdirSync(folder).filter((name) => name.endsWith(".ktx2"));
-assert.equal(names.length, 76);
+assert.equal(names.length, 80);
 for (const name of names) {
     const [format, coding, size, levels] = name.replace(".ktx2", "").split("-");
     const [, kind, number, packing, channels, depth] = name.replace(".ktx2", "").split("-");

@@ -1,9 +1,10 @@
-// Writes KTX2 cubes and tables of every format, with and without zstd, for check.mjs.
+// Writes KTX2 cubes and tables of every format, with and without zstd, for check.mjs and libktx.mjs, and
+// for oiiotool a DDS of random blocks, with what kiln reads of it.
 #include <kiln/kiln.h>
 
 #include <stdio.h>
 
-static const char *const names[] = {"rgba16f", "rgba32f", "rgb9e5", "b10g11r11"};
+static const char *const names[] = {"rgba16f", "rgba32f", "rgb9e5", "b10g11r11", "bc6h"};
 
 // Number i of a table is i / 1024.
 static kiln_result write_table(kiln_context *context, const char *folder, int index,
@@ -38,6 +39,40 @@ static kiln_result write_table(kiln_context *context, const char *folder, int in
     return result;
 }
 
+enum { BLOCKS = 32, SIZE = 4 * BLOCKS }; // along an edge
+
+// Whatever bits blocks may have: six faces of one level, and the same as a picture, face below face.
+static kiln_result write_blocks(kiln_context *context, const char *folder, kiln_error *error)
+{
+    char dds[512], exr[512];
+    snprintf(dds, sizeof dds, "%s/blocks.dds", folder);
+    snprintf(exr, sizeof exr, "%s/blocks.exr", folder);
+    kiln_map map, back = {0};
+    kiln_save_def def = {.format = KILN_FORMAT_BC6H};
+    kiln_result result = kiln_map_create(context, KILN_SHAPE_CUBE, SIZE, 1, &map, error);
+    if (result == KILN_OK)
+        result = kiln_map_save(context, &map, dds, &def, NULL, error);
+    kiln_map_free(&map);
+    FILE *file = result == KILN_OK ? fopen(dds, "r+b") : NULL;
+    if (!file)
+        return result ? result : KILN_ERROR_IO;
+    uint32_t random = 1;
+    fseek(file, 148, SEEK_SET);
+    for (int i = 0; i < 6 * BLOCKS * BLOCKS * 16; i++) {
+        random ^= random << 13;
+        random ^= random >> 17;
+        random ^= random << 5;
+        fputc((int)(random >> 8 & 0xff), file);
+    }
+    fclose(file);
+    result = kiln_map_load(context, dds, NULL, &back, error);
+    kiln_image image = {SIZE, 6 * SIZE, 3, back.level[0], NULL};
+    if (result == KILN_OK)
+        result = kiln_image_save(context, &image, exr, error);
+    kiln_map_free(&back);
+    return result;
+}
+
 int main(int argc, char **argv)
 {
     kiln_context *context;
@@ -45,8 +80,8 @@ int main(int argc, char **argv)
     if (argc != 2 || kiln_context_create(NULL, &context, &error))
         return 2;
     kiln_sh sh = {.bands = 2, .c = {{1, 2, 3}, {-0.5, 0, 0.125}}};
-    for (int i = 0; i < 16; i++) {
-        int size = i < 8 ? 8 : 5, levels = i < 8 ? 4 : 2, format = i % 4, zstd = i / 4 % 2;
+    for (int i = 0; i < 20; i++) {
+        int size = i < 10 ? 8 : 5, levels = i < 10 ? 4 : 2, format = i % 5, zstd = i / 5 % 2;
         kiln_map map;
         if (kiln_map_create(context, KILN_SHAPE_CUBE, size, levels, &map, &error))
             break;
@@ -73,6 +108,8 @@ int main(int argc, char **argv)
     for (int i = 0; i < 60 && error.result == KILN_OK; i++)
         if (write_table(context, argv[1], i, &error))
             break;
+    if (!error.result && write_blocks(context, argv[1], &error))
+        error.result = error.result ? error.result : KILN_ERROR_IO;
     kiln_context_destroy(context);
     if (error.result)
         fprintf(stderr, "%s\n", error.message);
