@@ -120,7 +120,7 @@ typedef struct bake {
     cli_arguments arguments;
     const char *output, *irradiance_path, *sh_path;
     const kiln_engine *engine; // NULL without --for
-    int size, level_count, shape, format, zstd, lobe, textbook;
+    int size, level_count, smallest, shape, format, zstd, lobe, textbook;
     int samples, phi_steps, theta_steps;
     int irradiance_size, sh_bands, layout, threads;
     double sh_window, rotation, exposure;
@@ -281,7 +281,7 @@ static int check_combinations(const bake *b)
     if (lambert && b->level_count > 1)
         return cli_wrong(&cli_bake, "--lobe lambert has no roughness: one level, not %d",
                          b->level_count);
-    if (b->level_count > largest_level_count(b->size))
+    if (!b->engine && b->level_count > largest_level_count(b->size))
         return cli_wrong(&cli_bake, "%d levels: a size of %d has %d at most", b->level_count,
                          b->size, largest_level_count(b->size));
     if (v[ZSTD] && strcmp(cli_ending(b->output), "ktx2") != 0)
@@ -349,6 +349,7 @@ static int take_engine(bake *b)
         return cli_wrong(&cli_bake, "--for %s", b->job.error.message);
     b->size = def.size;
     b->level_count = def.level_count;
+    b->smallest = def.smallest;
     b->has_roughness = true;
     b->stores_sh = true;
     return CLI_GO;
@@ -496,6 +497,7 @@ static int filter_exactly(bake *b)
         .has_shape = true,
         .size = b->size,
         .level_count = b->level_count,
+        .smallest = b->smallest,
         .roughness = b->has_roughness ? b->roughness : NULL,
         .lobe = (enum kiln_lobe_kind)b->lobe,
         .rotation = b->rotation,

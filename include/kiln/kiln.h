@@ -128,12 +128,13 @@ typedef enum kiln_shape {
 } kiln_shape;
 
 /// Radiance by direction: RGB floats, row-major, face after face, level after level. Level k has
-/// the size max(1, size >> k). Made by kiln_map_create or a function that says so, released by
+/// the size max(1, smallest, size >> k). Made by kiln_map_create or a function that says so, released by
 /// kiln_map_free; the numbers may be read and written freely.
 typedef struct kiln_map {
     kiln_shape shape;
     int size;                         ///< of level 0: 1 to KILN_MAX_SIZE
     int level_count;                  ///< 1 to KILN_MAX_LEVELS
+    int smallest;                     ///< size below which no level goes; 0 or 1 for none
     float *level[KILN_MAX_LEVELS];    ///< kiln_map_texels(map, k) * 3 floats each
     float roughness[KILN_MAX_LEVELS]; ///< what each level was filtered for, 0 to 1
     void *owner;                      ///< kiln's own
@@ -156,7 +157,7 @@ KILN_API KILN_CHECKED kiln_result kiln_image_create(kiln_context *context, int w
                                                     kiln_error *error);
 KILN_API void kiln_image_free(kiln_image *image);
 
-/// Size of a level, in texels along its short side: max(1, size >> level).
+/// Size of a level, in texels along its short side: max(1, smallest, size >> level).
 KILN_API int kiln_map_level_size(const kiln_map *map, int level);
 /// Number of texels of a level, all faces: n * n * 6, n * 2n or n * n.
 KILN_API size_t kiln_map_texels(const kiln_map *map, int level);
@@ -331,6 +332,7 @@ typedef struct kiln_prefilter_def {
     bool has_shape;         ///< false: a cube
     int size;               ///< 1 to KILN_MAX_SIZE; 0 for 256
     int level_count;        ///< 1 to KILN_MAX_LEVELS; 0 for all down to 1
+    int smallest;           ///< of the map: only with it may there be more levels than down to 1
     const float *roughness; ///< level_count numbers in [0, 1]; NULL for level / (level_count - 1),
                             ///< or 1 for Lambert, which has none
     kiln_lobe_kind lobe;    ///< GGX (alpha = roughness^2), Lambert, Charlie (the same alpha,

@@ -39,7 +39,7 @@ static kiln_result check_levels(const ki_recipe *recipe, int size, int level_cou
     int most = 1;
     while (size >> most && most < KILN_MAX_LEVELS)
         most++;
-    if (level_count < recipe->level_count_min || level_count > most)
+    if (level_count < recipe->level_count_min || level_count > most + recipe->extra_levels)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: %d levels, a size of %d may have %d to %d",
                        name, level_count, size, recipe->level_count_min, most);
     return KILN_OK;
@@ -70,7 +70,10 @@ kiln_result kiln_engine_levels(const kiln_engine *engine, int size, int level_co
         return result;
     for (int k = 0; k < level_count; k++)
         roughness[k] = (float)recipe->roughness(k, level_count, size);
-    *def = (kiln_prefilter_def){.size = size, .level_count = level_count, .roughness = roughness};
+    *def = (kiln_prefilter_def){.size = size,
+                                .level_count = level_count,
+                                .smallest = recipe->smallest,
+                                .roughness = roughness};
     return KILN_OK;
 }
 
@@ -148,6 +151,10 @@ static kiln_result check_map(const ki_recipe *recipe, const kiln_map *map, const
     if (map->shape != KILN_SHAPE_CUBE)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: takes a cube, the map has shape %d",
                        recipe->about.name, (int)map->shape);
+    if (map->smallest != recipe->smallest)
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "%s: levels are no smaller than %d, the map's smallest is %d",
+                       recipe->about.name, recipe->smallest, map->smallest);
     if (!sh || sh->bands < 3 || sh->bands > KILN_MAX_BANDS || sh->irradiance)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
                        "%s: takes harmonics of radiance, of 3 to %d bands", recipe->about.name,
@@ -189,8 +196,10 @@ kiln_result kiln_engine_save(kiln_context *context, const kiln_engine *engine, c
         (result = check_map(recipe, map, sh, error)) != KILN_OK ||
         (result = choose_format(recipe, &format, error)) != KILN_OK)
         return result;
-    kiln_map turned = {
-        .shape = KILN_SHAPE_CUBE, .size = map->size, .level_count = map->level_count};
+    kiln_map turned = {.shape = KILN_SHAPE_CUBE,
+                       .size = map->size,
+                       .level_count = map->level_count,
+                       .smallest = map->smallest};
     kiln_sh few = *sh, turned_sh;
     few.bands = 3;
     if (!ki_progress(context, "writing", 0))

@@ -40,7 +40,9 @@ void kiln_image_free(kiln_image *image)
 
 int kiln_map_level_size(const kiln_map *map, int level)
 {
-    return level < 0 || level >= KILN_MAX_LEVELS ? 1 : ki_max(1, map->size >> level);
+    return level < 0 || level >= KILN_MAX_LEVELS
+               ? 1
+               : ki_max(ki_max(1, map->smallest), map->size >> level);
 }
 
 size_t kiln_map_texels(const kiln_map *map, int level)

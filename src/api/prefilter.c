@@ -21,8 +21,11 @@ void kiln_plan_destroy(kiln_plan *plan)
 
 kiln_result kiln_plan_map(const kiln_plan *plan, kiln_map *map, kiln_error *error)
 {
-    kiln_result result = kiln_map_create(plan->context, plan->def.shape, plan->def.size,
-                                         plan->def.level_count, map, error);
+    *map = (kiln_map){.shape = plan->def.shape,
+                      .size = plan->def.size,
+                      .level_count = plan->def.level_count,
+                      .smallest = plan->def.smallest};
+    kiln_result result = ki_map_allocate(plan->context, map, error);
     for (int i = 0; i < map->level_count; i++)
         map->roughness[i] = plan->roughness[i];
     return result;
@@ -44,6 +47,9 @@ static kiln_result check_and_execute(kiln_plan *plan, const kiln_map *panorama,
                        "the plan writes shape %d, size %d, %d levels; this map has %d, %d, %d",
                        (int)plan->def.shape, plan->def.size, plan->def.level_count, (int)map->shape,
                        map->size, map->level_count);
+    if (map->smallest != plan->def.smallest)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "the plan's smallest is %d, this map's is %d",
+                       plan->def.smallest, map->smallest);
     return ki_plan_execute(plan, panorama, source, map, error);
 }
 

@@ -46,6 +46,11 @@ kiln_result ki_prefilter_resolve(const kiln_prefilter_def *def, kiln_prefilter_d
     while (d.size >> full)
         full++;
     d.level_count = d.level_count ? d.level_count : full;
+    if (d.smallest < 0 || d.smallest > d.size)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "smallest is %d, it must be 0 to the size, %d",
+                       d.smallest, d.size);
+    if (d.smallest)
+        full = KILN_MAX_LEVELS;
     if (d.level_count < 1 || d.level_count > full)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "level_count is %d, a size of %d has 1 to %d",
                        d.level_count, d.size, full);
@@ -112,7 +117,10 @@ kiln_result ki_lobe_spectrum(kiln_context *context, const kiln_lobe *lobe, doubl
 static kiln_result plan_mirror(kiln_plan *p, int level, const kiln_map *source, kiln_error *error)
 {
     kiln_map panorama = {.shape = KILN_SHAPE_PANORAMA, .size = p->source_size, .level_count = 1};
-    kiln_map target = {.shape = p->def.shape, .size = p->def.size, .level_count = level + 1};
+    kiln_map target = {.shape = p->def.shape,
+                       .size = p->def.size,
+                       .level_count = level + 1,
+                       .smallest = p->def.smallest};
     if (source) {
         bool exact = source->shape == KILN_SHAPE_CUBE && target.shape == KILN_SHAPE_CUBE &&
                      fmod(p->def.rotation, 90) == 0;
@@ -166,7 +174,7 @@ kiln_result ki_plan_create(kiln_context *context, int panorama_size, const kiln_
     if (result == KILN_OK)
         result = ki_spectrum_create(p->analysis, &p->spectrum, error);
     for (int i = 0; i < p->def.level_count && result == KILN_OK; i++) {
-        int size = ki_max(1, p->def.size >> i);
+        int size = ki_max(ki_max(1, p->def.smallest), p->def.size >> i);
         if (!ki_progress(context, stage, (double)i / p->def.level_count))
             result = ki_fail_cancelled(error, stage);
         else if (ki_is_mirror(&lobes[i]))

@@ -38,6 +38,9 @@ kiln_result ki_dds_encode(const kiln_map *map, const kiln_save_def *def, ki_writ
     if (!texel)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "format is %d, it must be 0 to %d",
                        (int)def->format, (int)KILN_FORMAT_BC6H);
+    if (map->smallest > 1 && map->size >> (map->level_count - 1) < map->smallest)
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "a DDS file halves every level, the map's smallest is %d", map->smallest);
     if (def->zstd)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "zstd is %d, a DDS file has no compression",
                        def->zstd);

@@ -88,6 +88,9 @@ kiln_result ki_ktx2_encode(const kiln_map *map, const kiln_save_def *def, ki_wri
     if (!texel)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "format is %d, it must be 0 to %d",
                        (int)def->format, (int)KILN_FORMAT_BC6H);
+    if (map->smallest > 1 && map->size >> (map->level_count - 1) < map->smallest)
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "a KTX2 file halves every level, the map's smallest is %d", map->smallest);
     ki_ktx2_file file = {.vk = texel->vk,
                          .type_size = texel->type_size,
                          .texel_size = texel->bytes,

@@ -9,8 +9,9 @@
 #include <string.h>
 
 static const ki_recipe *const recipes[] = {
-    &ki_three, &ki_babylon, &ki_babylon_dds, &ki_filament, &ki_playcanvas, &ki_playcanvas_dds,
-    &ki_gltf,  &ki_bevy,    &ki_unity,       &ki_godot,    &ki_unreal,
+    &ki_three,    &ki_three_cubeuv, &ki_babylon,        &ki_babylon_dds,
+    &ki_filament, &ki_playcanvas,   &ki_playcanvas_dds, &ki_gltf,
+    &ki_bevy,     &ki_unity,        &ki_godot,          &ki_unreal,
 };
 enum { RECIPES = sizeof recipes / sizeof *recipes };
 
@@ -33,7 +34,7 @@ int ki_recipe_levels(const ki_recipe *recipe, int size)
     int most = recipe->level_count_max ? recipe->level_count_max : KILN_MAX_LEVELS;
     while (size >> count >= recipe->last_size && count < most)
         count++;
-    return count;
+    return ki_min(count + recipe->extra_levels, KILN_MAX_LEVELS);
 }
 
 static void turn(const ki_axes *axes, const double direction[3], double turned[3])

@@ -27,6 +27,8 @@ typedef struct ki_recipe {
     ki_axes axes;
     int size_min, size_max;
     int last_size;       ///< of the last level, which gives the default number of levels
+    int smallest;        ///< size below which no level goes, 0 for none
+    int extra_levels;    ///< of the last size, behind the first that has it
     int level_count_max; ///< of the default number; 0 for no limit
     int level_count_min; ///< where the number may be chosen; 0 where it may not
     double (*roughness)(int level, int level_count, int size);
@@ -36,7 +38,7 @@ typedef struct ki_recipe {
 } ki_recipe;
 
 extern const ki_recipe ki_three, ki_babylon, ki_babylon_dds, ki_filament, ki_playcanvas,
-    ki_playcanvas_dds, ki_gltf, ki_bevy, ki_unity, ki_godot, ki_unreal;
+    ki_playcanvas_dds, ki_three_cubeuv, ki_gltf, ki_bevy, ki_unity, ki_godot, ki_unreal;
 
 /// The table of all; NULL behind the last.
 const ki_recipe *ki_recipe_at(int index);

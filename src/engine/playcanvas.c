@@ -9,6 +9,7 @@
 
 #include "codec/codec.h"
 #include "codec/rgbx.h"
+#include "engine/picture.h"
 #include "image/image.h"
 #include "image/pack.h"
 #include "math/math.h"
@@ -30,133 +31,34 @@ static double level(double roughness, int level_count, int size)
     return (level_count - 1) * roughness;
 }
 
-// A picture in the atlas. The shader interpolates what is stored, so texels are sought whose interpolation
-// is nearest to the level everywhere, and not the level's values at their centres.
-typedef struct picture {
+// An equirectangular picture of a level.
+typedef struct view {
     const kiln_map *map;
     int level;
-    bool roots;           // what is stored: square roots, or radiance
-    int width, height;    // in texels without the border
-    int times;            // wanted values along a texel's side
-    float *texels;        // height x width x 3
-    float *wanted, *rest; // height times x width times x 3
-} picture;
+} view;
 
-// (x, y) of an equirectangular picture, also beyond its edges: x goes around, y over a pole.
-static float *texel_at(float *pixels, int width, int height, int x, int y)
+static double read(const void *data, double u, double v, double rgb[3])
 {
-    if (y < 0 || y >= height) {
-        y = y < 0 ? -1 - y : 2 * height - 1 - y;
-        x += width / 2;
+    const view *w = data;
+    double d[3];
+    if (v < 0 || v > 1) { // over a pole
+        v = v < 0 ? -v : 2 - v;
+        u += 0.5;
     }
-    x = (x + width) % width;
-    return pixels + 3 * ((ptrdiff_t)y * width + x);
+    // +Z in the centre and -X to the right: a panorama of kiln's turned by half.
+    ki_panorama_direction(u - floor(u), v, d);
+    const double at[3] = {-d[0], d[1], -d[2]};
+    ki_cube_read(w->map, w->level, at, rgb);
+    return sqrt(d[0] * d[0] + d[2] * d[2]);
 }
 
-static void read_row(void *data, int row)
-{
-    const picture *p = data;
-    int width = p->width * p->times, height = p->height * p->times;
-    for (int x = 0; x < width; x++) {
-        double d[3], rgb[3];
-        // +Z in the centre and -X to the right: a panorama of kiln's turned by half.
-        ki_panorama_direction((x + 0.5) / width, (row + 0.5) / height, d);
-        const double at[3] = {-d[0], d[1], -d[2]};
-        ki_cube_read(p->map, p->level, at, rgb);
-        float *to = p->wanted + 3 * ((ptrdiff_t)row * width + x);
-        for (int c = 0; c < 3; c++)
-            to[c] = (float)(p->roots ? sqrt(rgb[c] > 0 ? rgb[c] : 0) : rgb[c]);
-    }
-}
-
-// Means of radiance.
-static void average_row(void *data, int row)
-{
-    const picture *p = data;
-    int width = p->width * p->times;
-    for (int x = 0; x < p->width; x++) {
-        double sum[3] = {0};
-        for (int i = 0; i < p->times * p->times; i++) {
-            ptrdiff_t y = (ptrdiff_t)row * p->times + i / p->times;
-            ptrdiff_t place = y * width + (ptrdiff_t)x * p->times + i % p->times;
-            const float *at = p->wanted + 3 * place;
-            for (int c = 0; c < 3; c++)
-                sum[c] += (double)(p->roots ? at[c] * at[c] : at[c]);
-        }
-        float *to = p->texels + 3 * ((ptrdiff_t)row * p->width + x);
-        for (int c = 0; c < 3; c++) {
-            sum[c] /= p->times * p->times;
-            to[c] = (float)(p->roots ? sqrt(sum[c]) : sum[c]);
-        }
-    }
-}
-
-// What is wanted less what is shown, times the solid angle.
-static void compare_row(void *data, int row)
-{
-    const picture *p = data;
-    int width = p->width * p->times, height = p->height * p->times;
-    double y = (row + 0.5) / p->times - 0.5, v = y - floor(y), sine, cosine;
-    ki_sincos(KI_PI * (row + 0.5) / height, &sine, &cosine);
-    for (int i = 0; i < width; i++) {
-        double x = (i + 0.5) / p->times - 0.5, u = x - floor(x);
-        double weight[4] = {(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v};
-        double shown[3] = {0};
-        for (int j = 0; j < 4; j++) {
-            const float *at = texel_at(p->texels, p->width, p->height, (int)floor(x) + j % 2,
-                                       (int)floor(y) + j / 2);
-            for (int c = 0; c < 3; c++)
-                shown[c] += weight[j] * (double)at[c];
-        }
-        ptrdiff_t place = 3 * ((ptrdiff_t)row * width + i);
-        for (int c = 0; c < 3; c++)
-            p->rest[place + c] = (float)(sine * ((double)p->wanted[place + c] - shown[c]));
-    }
-}
-
-// Moves texels by the mean of what is left, weighted as they are read: steps toward the least squares.
-static void correct_row(void *data, int row)
-{
-    const picture *p = data;
-    int times = p->times, width = p->width * times, height = p->height * times;
-    for (int x = 0; x < p->width; x++) {
-        double sum[3] = {0}, total = 0;
-        for (int j = 0; j < 2 * times; j++) {
-            int fy = row * times + j - times / 2;
-            double sine, cosine;
-            ki_sincos(KI_PI * (fy + 0.5) / height, &sine, &cosine);
-            for (int i = 0; i < 2 * times; i++) {
-                double weight =
-                    (1 - fabs((i + 0.5) / times - 1)) * (1 - fabs((j + 0.5) / times - 1));
-                const float *at = texel_at(p->rest, width, height, x * times + i - times / 2, fy);
-                for (int c = 0; c < 3; c++)
-                    sum[c] += weight * (double)at[c];
-                total += weight * fabs(sine);
-            }
-        }
-        float *to = p->texels + 3 * ((ptrdiff_t)row * p->width + x);
-        for (int c = 0; c < 3; c++)
-            to[c] = (float)ki_clamp((double)to[c] + sum[c] / total, 0, 65504);
-    }
-}
-
-static bool find_texels(kiln_context *context, picture *p, int steps)
-{
-    int fine = p->height * p->times;
-    bool good = ki_parallel_steps(context, NULL, fine, read_row, p) &&
-                ki_parallel_steps(context, NULL, p->height, average_row, p);
-    for (int i = 0; i < steps && good; i++)
-        good = ki_parallel_steps(context, NULL, fine, compare_row, p) &&
-               ki_parallel_steps(context, NULL, p->height, correct_row, p);
-    return good;
-}
-
-// What the atlas holds, and the picture being drawn.
+// What the atlas holds, and room for one picture of it.
 typedef struct atlas {
     ki_export *to;
     bool roots;
     float *pixels;   // size x size x 4
-    float *room;     // for a picture's arrays
+    float *texels;   // of a picture
+    float *room;     // for it
     kiln_map halves; // level 0 halved: level k is 2 << k times smaller
 } atlas;
 
@@ -176,22 +78,21 @@ static bool draw(const atlas *a, const kiln_map *map, int level, int x, int y, i
                  bool sharp)
 {
     int size = a->to->map->size, border = size / ATLAS;
-    picture p = {.map = map,
-                 .level = level,
-                 .roots = a->roots,
-                 .width = width - 2 * border,
-                 .height = width / 2 - 2 * border,
-                 .times = sharp || width < size / 4 ? 4 : 2};
-    size_t texels = (size_t)p.width * (size_t)p.height, fine = (size_t)(p.times * p.times) * texels;
-    p.texels = a->room;
-    p.wanted = p.texels + 3 * texels;
-    p.rest = p.wanted + 3 * fine;
-    if (!find_texels(a->to->context, &p, sharp ? 0 : STEPS))
+    view shown = {map, level};
+    ki_picture p = {.width = width,
+                    .height = width / 2,
+                    .border = border,
+                    .times = sharp || width < size / 4 ? 4 : 2,
+                    .roots = a->roots,
+                    .read = read,
+                    .data = &shown,
+                    .texels = a->texels,
+                    .room = a->room};
+    if (!ki_picture_draw(a->to->context, &p, sharp ? 0 : STEPS))
         return false;
     for (int row = 0; row < width / 2; row++)
         for (int column = 0; column < width; column++) {
-            const float *from =
-                texel_at(p.texels, p.width, p.height, column - border, row - border);
+            const float *from = p.texels + 3 * ((ptrdiff_t)row * width + column);
             float *to = a->pixels + 4 * ((ptrdiff_t)(y + row) * size + x + column);
             if (a->roots)
                 ki_rgbp_from_float(
@@ -242,10 +143,11 @@ static kiln_result write_atlas(ki_export *to, bool roots, kiln_error *error)
     if (result != KILN_OK)
         return result;
     a.pixels = ki_alloc(to->context, count, 4 * sizeof *a.pixels);
-    // A picture has at most half of the atlas, and 16 wanted values and rests a texel.
-    a.room = ki_alloc_raw(to->context, count / 2 * (1 + 2 * 16), 3 * sizeof *a.room);
-    if (!a.pixels || !a.room)
-        result = ki_fail_memory(to->context, error, "an atlas", count * 51 * sizeof *a.room);
+    // The sharpest picture is half of the atlas; the largest that is refined an eighth, by 4 samples.
+    a.texels = ki_alloc_raw(to->context, count / 2, 3 * sizeof *a.texels);
+    a.room = ki_alloc_raw(to->context, count / 2, 7 * sizeof *a.room);
+    if (!a.pixels || !a.texels || !a.room)
+        result = ki_fail_memory(to->context, error, "an atlas", count * 9 * sizeof *a.room);
     else if (!draw_all(&a))
         result = ki_fail_cancelled(error, "writing");
     else if (roots)
@@ -256,6 +158,7 @@ static kiln_result write_atlas(ki_export *to, bool roots, kiln_error *error)
         result = ki_export_add(to, to->path, &bytes, error);
     ki_writer_free(&bytes);
     ki_free(a.room);
+    ki_free(a.texels);
     ki_free(a.pixels);
     kiln_map_free(&a.halves);
     return result;

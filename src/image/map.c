@@ -139,6 +139,9 @@ static kiln_result check_numbers(const kiln_map *map, kiln_error *error)
     if (map->size < 1 || map->size > KILN_MAX_SIZE)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "%s size is %d, it must be 1 to %d",
                        shape_names[map->shape], map->size, KILN_MAX_SIZE);
+    if (map->smallest < 0 || map->smallest > map->size)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "smallest is %d, it must be 0 to the size, %d",
+                       map->smallest, map->size);
     if (map->level_count < 1 || map->level_count > KILN_MAX_LEVELS)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "level_count is %d, it must be 1 to %d",
                        map->level_count, KILN_MAX_LEVELS);
@@ -158,7 +161,7 @@ kiln_result ki_map_check(const kiln_map *map, kiln_error *error)
 
 void ki_level_extent(const kiln_map *map, int level, int *width, int *height)
 {
-    int n = ki_max(1, map->size >> level);
+    int n = ki_max(ki_max(1, map->smallest), map->size >> level);
     *width = map->shape == KILN_SHAPE_PANORAMA ? 2 * n : n;
     *height = map->shape == KILN_SHAPE_CUBE ? 6 * n : n;
 }

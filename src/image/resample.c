@@ -850,7 +850,7 @@ kiln_result ki_map_resample(kiln_context *context, const kiln_map *source, doubl
     ki_resample_plan *plan;
     kiln_result result =
         ki_resample_plan_create(context, source->shape, source->size, target->shape,
-                                ki_max(1, target->size >> level), rotation, &plan, error);
+                                kiln_map_level_size(target, level), rotation, &plan, error);
     if (result || !plan)
         return result;
     static const ki_stage stage = {"converting", 0, 1};

@@ -172,6 +172,40 @@ static void reading_a_cube_crosses_its_edges_smoothly(void **state)
     kiln_map_free(&map);
 }
 
+// Levels of the smallest size are those that a cube of that size would have.
+static void levels_may_stop_halving(void **state)
+{
+    (void)state;
+    kiln_map source, map, alone;
+    const float roughness[6] = {0, 0.3f, 0.5f, 0.6f, 0.8f, 1};
+    kiln_prefilter_def def = {.size = 64, .level_count = 6, .smallest = 16, .roughness = roughness};
+    CHECK_OK(kiln_map_create(context, KILN_SHAPE_PANORAMA, 32, 1, &source, &error));
+    for (size_t i = 0; i < kiln_map_texels(&source, 0); i++)
+        for (int c = 0; c < 3; c++) {
+            double d[3];
+            kiln_map_direction(&source, 0, i, d);
+            source.level[0][3 * i + (size_t)c] = (float)radiance(d, c);
+        }
+    CHECK_OK(kiln_prefilter(context, &source, &def, &map, &error));
+    for (int k = 0; k < 6; k++) {
+        int size = k < 2 ? 64 >> k : 16;
+        assert_int_equal(kiln_map_level_size(&map, k), size);
+        kiln_prefilter_def one = {.size = size, .level_count = 1, .roughness = roughness + k};
+        CHECK_OK(kiln_prefilter(context, &source, &one, &alone, &error));
+        for (size_t i = 0; i < 3 * kiln_map_texels(&alone, 0); i++)
+            CHECK_NEAR((double)map.level[k][i], (double)alone.level[0][i], 2e-6);
+        kiln_map_free(&alone);
+    }
+    assert_int_equal(kiln_map_save(context, &map, "x.ktx2", NULL, NULL, &error),
+                     KILN_ERROR_ARGUMENT);
+    assert_int_equal(kiln_map_save(context, &map, "x.dds", NULL, NULL, &error),
+                     KILN_ERROR_ARGUMENT);
+    kiln_map_free(&map);
+    kiln_map_free(&source);
+    def.smallest = 65;
+    assert_int_equal(kiln_prefilter(context, &source, &def, &map, &error), KILN_ERROR_ARGUMENT);
+}
+
 static void what_an_engine_does_not_take_is_said(void **state)
 {
     (void)state;
@@ -228,6 +262,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(turned_harmonics_are_the_same_function, set_up, tear_down),
         cmocka_unit_test_setup_teardown(reading_a_cube_crosses_its_edges_smoothly, set_up,
                                         tear_down),
+        cmocka_unit_test_setup_teardown(levels_may_stop_halving, set_up, tear_down),
         cmocka_unit_test_setup_teardown(what_an_engine_does_not_take_is_said, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

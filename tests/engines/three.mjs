@@ -1,14 +1,8 @@
 // three.js shows what kiln wrote: MeshStandardMaterial, lit by scene.environment.
-import fs from 'node:fs';
-import { proveEngine, tableReader } from './rig.mjs';
+import { proveEngine } from './rig.mjs';
+import { readTable } from './three-table.mjs';
 
-// three's own split sum: 16 x 16 halves (A, B), x = roughness, y = n.v.
-const source = fs.readFileSync(new URL('node_modules/three/src/renderers/shaders/DFGLUTData.js',
-                                       import.meta.url), 'utf8');
-const halves = source.match(/Uint16Array\(\s*\[([^\]]*)\]/)[1].match(/0x[0-9a-f]+/g).map(Number);
-const decode = (half) => (half >> 10 ? (1 + (half & 1023) / 1024) * 2 ** ((half >> 10) - 15)
-                                     : (half & 1023) * 2 ** -24);
-const table = tableReader(16, (x, y) => [0, 1].map((c) => decode(halves[2 * (16 * y + x) + c])));
+const table = readTable('three');
 
 await proveEngine({
     name: 'three',

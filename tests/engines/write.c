@@ -37,6 +37,7 @@ int main(int argc, char **argv)
     kiln_context *context = NULL;
     kiln_error error = {0};
     kiln_map map = {0};
+    kiln_plan *plan = NULL; // knows how the levels are laid out
     kiln_prefilter_def def;
     float roughness[KILN_MAX_LEVELS];
     const kiln_engine *engine = argc >= 5 && argc <= 6 ? kiln_engine_find(argv[1]) : NULL;
@@ -49,13 +50,14 @@ int main(int argc, char **argv)
     kiln_sh sh = harmonics(coded);
     if (!kiln_context_create(NULL, &context, &error) &&
         !kiln_engine_levels(engine, size, 0, roughness, &def, &error) &&
-        !kiln_map_create(context, KILN_SHAPE_CUBE, def.size, def.level_count, &map, &error)) {
+        !kiln_plan_create(context, 16, &def, &plan, &error) && !kiln_plan_map(plan, &map, &error)) {
         paint(&map, coded);
         if (!kiln_engine_save(context, engine, &map, &sh, (kiln_format)format, argv[4], NULL,
                               &error))
             error.result = KILN_OK;
     }
     kiln_map_free(&map);
+    kiln_plan_destroy(plan);
     kiln_context_destroy(context);
     if (error.result)
         fprintf(stderr, "%s\n", error.message);

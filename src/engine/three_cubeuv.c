@@ -1,0 +1,151 @@
+// three.js r181 to r186, model-viewer: "CubeUV", one picture of six faces a level, as
+// cube_uv_reflection_fragment.glsl.js reads it. Mip m of M to 4 has faces of 2^m texels, +X +Y +Z in a row
+// and -X -Y -Z above it, from 4 (2^M - 2^m) texels above the bottom; mips 3 to -2 have faces of 16 and
+// stand to the right of mip 4. Each face has a border of one texel of its own. At the base size of 256 the
+// whole is 768 by 1024.
+//
+// Its panoramas have +X in the centre and +Z to the right of it.
+#include "engine/engine.h"
+
+#include "codec/codec.h"
+#include "engine/picture.h"
+#include "image/image.h"
+#include "math/math.h"
+
+#include <math.h>
+#include <string.h>
+
+// Faces are read from a cube of twice their size.
+enum { FINER = 2, LAST = 16, EXTRA = 6, STEPS = 12 };
+
+// From mip 4 on in steps of roughness, below by 2^(-m / 2) / 1.16: roughnessToMip.
+static const double coarse[] = {0.21, 0.305, 0.4, 0.4 + 0.4 / 3, 0.4 + 0.8 / 3, 0.8, 1};
+
+// The largest mip, M.
+static int largest_mip(int size)
+{
+    int mip = 4;
+    while ((FINER * LAST) << (mip - 4) < size)
+        mip++;
+    return mip;
+}
+
+static double roughness(int level, int level_count, int size)
+{
+    (void)level_count;
+    int mip = largest_mip(size) - level;
+    if (level == 0)
+        return 0;
+    return mip > 4 ? ki_exp(-mip * ki_log(2) / 2) / 1.16 : coarse[4 - mip];
+}
+
+// Its materials are no smoother than 0.0525.
+static double level(double roughness, int level_count, int size)
+{
+    (void)level_count;
+    int most = largest_mip(size);
+    double r = fmax(roughness, 0.0525);
+    if ((float)r < (float)coarse[0]) // as the shader compares
+        return most - ki_clamp(-2 * ki_log(1.16 * r) / ki_log(2), -2, most);
+    int k = 0;
+    while (k < EXTRA - 1 && r >= coarse[k + 1])
+        k++;
+    return most - 4 + k + (r - coarse[k]) / (coarse[k + 1] - coarse[k]);
+}
+
+typedef struct face {
+    const kiln_map *map;
+    int level, face;
+} face;
+
+// getUV, inverted: face +X +Y +Z -X -Y -Z, v upwards.
+static double read(const void *data, double u, double v, double rgb[3])
+{
+    const face *f = data;
+    double s = 2 * u - 1, t = 2 * v - 1;
+    const double at[6][3] = {{1, t, s},   {-s, 1, -t}, {-s, t, 1},
+                             {-1, t, -s}, {-s, -1, t}, {s, t, -1}};
+    ki_cube_read(f->map, f->level, at[f->face], rgb);
+    double square = 1 + s * s + t * t;
+    return 1 / (square * sqrt(square));
+}
+
+typedef struct sheet {
+    const kiln_map *map;
+    int width, height;
+    float *pixels; // height x width x 3, the last row first
+    float *texels, *room;
+} sheet;
+
+static bool draw(kiln_context *context, const sheet *s, int level, int index)
+{
+    int most = largest_mip(s->map->size), mip = most - level, size = 1 << ki_max(mip, 4);
+    int left = index % 3 * size + ki_max(4 - mip, 0) * 3 * LAST;
+    int bottom = index / 3 * size + 4 * ((1 << most) - size);
+    face f = {s->map, level, index};
+    ki_picture p = {.width = size,
+                    .height = size,
+                    .border = 1,
+                    .times = size > LAST ? 2 : 4,
+                    .read = read,
+                    .data = &f,
+                    .texels = s->texels,
+                    .room = s->room};
+    if (!ki_picture_draw(context, &p, level > 0 ? STEPS : 0))
+        return false;
+    for (int y = 0; y < size; y++)
+        memcpy(s->pixels + 3 * ((ptrdiff_t)(s->height - 1 - bottom - y) * s->width + left),
+               s->texels + 3 * (ptrdiff_t)y * size, 3 * sizeof(float) * (size_t)size);
+    return true;
+}
+
+static kiln_result write(ki_export *to, kiln_error *error)
+{
+    int base = to->map->size / FINER;
+    sheet s = {.map = to->map, .width = 3 * ki_max(base, 7 * LAST), .height = 4 * base};
+    size_t count = (size_t)s.width * (size_t)s.height, face_count = (size_t)base * (size_t)base;
+    ki_writer bytes = {.context = to->context};
+    kiln_result result = KILN_OK;
+    s.pixels = ki_alloc(to->context, count, 3 * sizeof *s.pixels);
+    s.texels = ki_alloc_raw(to->context, face_count, 3 * sizeof *s.texels);
+    // Of the faces that are refined the largest has a quarter of the texels, and 4 samples for each; 16
+    // texels a side have 16 for each.
+    s.room = ki_alloc_raw(to->context, face_count + 16 * LAST * LAST, 7 * sizeof *s.room);
+    bool good = s.pixels && s.texels && s.room;
+    if (!good)
+        result = ki_fail_memory(to->context, error, "a picture", count * 8 * sizeof *s.pixels);
+    for (int i = 0; i < 6 * to->map->level_count && result == KILN_OK; i++)
+        if (!draw(to->context, &s, i / 6, i % 6))
+            result = ki_fail_cancelled(error, "writing");
+    const ki_exr_options options = {.half = true, .roughness = -1};
+    if (result == KILN_OK)
+        result = ki_exr_encode(s.pixels, s.width, s.height, 3, &options, &bytes, error);
+    if (result == KILN_OK)
+        result = ki_export_add(to, to->path, &bytes, error);
+    ki_writer_free(&bytes);
+    ki_free(s.room);
+    ki_free(s.texels);
+    ki_free(s.pixels);
+    return result;
+}
+
+const ki_recipe ki_three_cubeuv = {
+    .about = {.name = "three-cubeuv",
+              .title = "three.js r181 to r186",
+              .files = "NAME.exr",
+              .ending = "exr",
+              .mapping = "r = 2^(-m / 2) / 1.16, .21 .305 .4 .53 .67 .8 1",
+              .size = 512,
+              .level_count = 11,
+              .limit = 65504,
+              .proof = "pixels of three.js 0.183.2"},
+    .axes = {{2, 1, 0}, {1, 1, -1}},
+    .size_min = 64,
+    .size_max = 2048,
+    .last_size = FINER * LAST,
+    .smallest = FINER * LAST,
+    .extra_levels = EXTRA,
+    .roughness = roughness,
+    .level = level,
+    .write = write,
+};

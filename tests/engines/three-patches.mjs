@@ -1,0 +1,41 @@
+// Patches of white metal in three.js, whichever version a page calls 'three'.
+import * as THREE from 'three';
+
+function patches(view, row, rows, material) {
+    const positions = [], normals = [], columns = view.normals.length;
+    view.normals.forEach((normal, i) => {
+        const at = (x, y) => view.right.map((r, c) => (i + x - columns / 2) * r + (row + y - rows / 2) * view.up[c]);
+        for (const [x, y] of [[0, 0], [1, 0], [1, 1], [0, 0], [1, 1], [0, 1]]) {
+            positions.push(...at(x, y));
+            normals.push(...normal);
+        }
+    });
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute('position', new THREE.Float32BufferAttribute(positions, 3));
+    geometry.setAttribute('normal', new THREE.Float32BufferAttribute(normals, 3));
+    return new THREE.Mesh(geometry, material);
+}
+
+export async function drawPatches(environment, views, roughness, cell) {
+    const renderer = new THREE.WebGLRenderer();
+    return views.map((view) => {
+        const columns = view.normals.length, rows = roughness.length;
+        const scene = new THREE.Scene();
+        scene.environment = environment;
+        roughness.forEach((r, row) => scene.add(patches(view, row, rows,
+            new THREE.MeshStandardMaterial({ color: 0xffffff, metalness: 1, roughness: r }))));
+        const camera = new THREE.OrthographicCamera(-columns / 2, columns / 2, rows / 2, -rows / 2, 1, 100);
+        camera.position.fromArray(view.toEye).multiplyScalar(50);
+        camera.up.fromArray(view.up);
+        camera.lookAt(0, 0, 0);
+        const target = new THREE.WebGLRenderTarget(columns * cell, rows * cell, { type: THREE.FloatType });
+        renderer.setRenderTarget(target);
+        renderer.render(scene, camera);
+        const pixels = new Float32Array(4 * cell * cell * columns * rows);
+        renderer.readRenderTargetPixels(target, 0, 0, columns * cell, rows * cell, pixels);
+        return roughness.map((_, row) => view.normals.map((_, i) => {
+            const at = 4 * ((row * cell + cell / 2) * columns * cell + i * cell + cell / 2);
+            return [...pixels.slice(at, at + 3)];
+        }));
+    });
+}
