@@ -40,8 +40,9 @@ static void average_row(void *data, int row)
     for (int x = 0; x < p->width; x++, to += 3) {
         double sum[3] = {0}, rgb[3];
         for (int i = 0; i < p->times * p->times; i++) {
-            double u = x - p->border + (i % p->times + 0.5) / p->times;
-            double v = row - p->border + (i / p->times + 0.5) / p->times;
+            int column = i % p->times, line = i / p->times;
+            double u = x - p->border + (column + 0.5) / p->times;
+            double v = row - p->border + (line + 0.5) / p->times;
             p->read(p->data, u / (p->width - 2 * p->border), v / (p->height - 2 * p->border), rgb);
             for (int c = 0; c < 3; c++)
                 sum[c] += rgb[c];
@@ -55,7 +56,7 @@ static void read_row(void *data, int row)
 {
     const ki_picture *p = data;
     ptrdiff_t across = samples_across(p), down = samples_down(p);
-    float *to = p->room + WANTED * row * across;
+    float *to = p->room + (ptrdiff_t)WANTED * row * across;
     for (ptrdiff_t x = 0; x < across; x++, to += WANTED) {
         double rgb[3];
         double weight =
@@ -71,8 +72,8 @@ static void compare_row(void *data, int row)
 {
     const ki_picture *p = data;
     ptrdiff_t across = samples_across(p);
-    const float *wanted = p->room + WANTED * row * across;
-    float *rest = rest_of(p) + REST * row * across;
+    const float *wanted = p->room + (ptrdiff_t)WANTED * row * across;
+    float *rest = rest_of(p) + (ptrdiff_t)REST * row * across;
     double y = p->border + (row + 0.5) / p->times - 0.5, v = y - floor(y);
     for (ptrdiff_t i = 0; i < across; i++, wanted += WANTED, rest += REST) {
         double x = p->border + ((double)i + 0.5) / p->times - 0.5, u = x - floor(x);
@@ -99,11 +100,12 @@ static void correct_row(void *data, int row)
         ptrdiff_t left = (ptrdiff_t)(x - p->border) * times - times / 2;
         double sum[3] = {0}, total = 0;
         for (int i = 0; i < 4 * times * times; i++) {
-            ptrdiff_t fx = left + i % (2 * times), fy = top + i / (2 * times);
+            int column = i % (2 * times), line = i / (2 * times);
+            ptrdiff_t fx = left + column, fy = top + line;
             if (fx < 0 || fy < 0 || fx >= across || fy >= down)
                 continue;
-            double weight = (1 - fabs((i % (2 * times) + 0.5) / times - 1)) *
-                            (1 - fabs((i / (2 * times) + 0.5) / times - 1));
+            double weight =
+                (1 - fabs((column + 0.5) / times - 1)) * (1 - fabs((line + 0.5) / times - 1));
             const float *rest = rests + REST * (fy * across + fx);
             for (int c = 0; c < 3; c++)
                 sum[c] += weight * (double)rest[c];

@@ -110,7 +110,7 @@ static kiln_result write(ki_export *to, kiln_error *error)
     s.texels = ki_alloc_raw(to->context, face_count, 3 * sizeof *s.texels);
     // Of the faces that are refined the largest has a quarter of the texels, and 4 samples for each; 16
     // texels a side have 16 for each.
-    s.room = ki_alloc_raw(to->context, face_count + 16 * LAST * LAST, 7 * sizeof *s.room);
+    s.room = ki_alloc_raw(to->context, face_count + (size_t)16 * LAST * LAST, 7 * sizeof *s.room);
     bool good = s.pixels && s.texels && s.room;
     if (!good)
         result = ki_fail_memory(to->context, error, "a picture", count * 8 * sizeof *s.pixels);
