@@ -125,18 +125,21 @@ static void check_shown(const char *name, const kiln_map *map, kiln_format forma
                         void (*shows)(const double[3], double[3]))
 {
     const kiln_engine *engine = kiln_engine_find(name);
-    // Texels of the coarsest level that is read are an eighth of a face wide; blocks err besides.
-    double bound = format == KILN_FORMAT_BC6H ? 0.03 : 0.02;
+    // Texels of the coarsest level that is read are an eighth of a face wide. A block of BC6H is then
+    // half a face, over which its few colours cannot follow three axes: finer levels are its proof.
+    const double finest = format == KILN_FORMAT_BC6H ? 2 : KILN_MAX_LEVELS;
     for (int j = 0; j <= LEVELS_SHOWN; j++)
         for (int i = 0; i < WAYS; i++) {
             double world[3], way[3], d[3], rgb[3], lod, r = (double)j / LEVELS_SHOWN;
             spiral(i, world);
             look(world, r, map->level_count, way, &lod);
+            if (lod > finest)
+                continue;
             shows(world, d);
             sample(map, way, lod, rgb);
             CHECK_NEAR(lod, kiln_engine_level(engine, r, map->size, map->level_count), 1e-12);
             for (int c = 0; c < 3; c++)
-                CHECK_NEAR(rgb[c] / (1 + lod), 2 + d[c], bound);
+                CHECK_NEAR(rgb[c] / (1 + lod), 2 + d[c], format == KILN_FORMAT_BC6H ? 0.03 : 0.02);
         }
 }
 
@@ -151,7 +154,7 @@ static void bevy_reads_each_level_where_it_lies(void **state)
         check_shown("bevy", &map, format[i], bevy_looks, bevy_shows);
         kiln_map_free(&map);
     }
-    CHECK_OK(kiln_map_load(context, path_of("b_diffuse.ktx2"), NULL, &map, &error));
+    map = written("bevy", KILN_FORMAT_AUTO, 256, "b", "b_diffuse.ktx2");
     assert_int_equal(map.size, 16);
     assert_int_equal(map.level_count, 1);
     for (int i = 0; i < WAYS; i++) {
