@@ -152,19 +152,23 @@ int look_load(cli_job *job, const look *l, kiln_map *source)
     return CLI_GO;
 }
 
+int look_bake_slot(cli_job *job, const look *l, const kiln_map *source, view_slot slot,
+                   view_renderer *renderer)
+{
+    view_environment e;
+    if (view_bake(job->context, source, l->bake_size, slot == VIEW_SLOT_TEXTBOOK ? 1024 : 0, &e,
+                  &job->error) != KILN_OK)
+        return CLI_FAILED;
+    kiln_result result =
+        view_set_environment(renderer, slot, &e.levels, &e.sh, &e.irradiance, &job->error);
+    view_environment_free(&e);
+    return result == KILN_OK ? CLI_GO : CLI_FAILED;
+}
+
 int look_bake(cli_job *job, const look *l, const kiln_map *source, view_renderer *renderer)
 {
-    int count = l->options.scene == VIEW_SCENE_COMPARE ? VIEW_SLOT_COUNT : 1;
-    for (int slot = 0; slot < count; slot++) {
-        view_environment e;
-        if (view_bake(job->context, source, l->bake_size, slot == VIEW_SLOT_TEXTBOOK, &e,
-                      &job->error) != KILN_OK)
-            return CLI_FAILED;
-        kiln_result result = view_set_environment(renderer, (view_slot)slot, &e.levels, &e.sh,
-                                                  &e.irradiance, &job->error);
-        view_environment_free(&e);
-        if (result != KILN_OK)
-            return CLI_FAILED;
-    }
-    return CLI_GO;
+    int code = look_bake_slot(job, l, source, VIEW_SLOT_EXACT, renderer);
+    if (code == CLI_GO && l->options.scene == VIEW_SCENE_COMPARE)
+        code = look_bake_slot(job, l, source, VIEW_SLOT_TEXTBOOK, renderer);
+    return code;
 }

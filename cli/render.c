@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { OUTPUT = 1, REFERENCE, ERRORS, WALK, NOISE, THREADS, QUIET };
+enum { OUTPUT = 1, REFERENCE, ERRORS, WALK, ALONE, BOUNCES, NOISE, THREADS, QUIET };
 
 static const struct poptOption options[] = {
     {"output", 'o', POPT_ARG_STRING, NULL, OUTPUT,
@@ -21,6 +21,10 @@ static const struct poptOption options[] = {
      "show the real-time picture's error against the reference", NULL},
     {"walk", 0, POPT_ARG_NONE, NULL, WALK,
      "reference: further bounces by random walk, not by --method", NULL},
+    {"alone", 0, POPT_ARG_NONE, NULL, ALONE,
+     "reference: balls do not see one another, as in the real-time picture", NULL},
+    {"bounces", 0, POPT_ARG_STRING, NULL, BOUNCES,
+     "reference: light that would meet more balls is lost, 1 to 1000 (all of it is kept)", "N"},
     {"noise", 0, POPT_ARG_STRING, NULL, NOISE,
      "relative standard error at which the reference stops, 1e-4 to 1 (0.01)", "E"},
     {"threads", 0, POPT_ARG_STRING, NULL, THREADS, "1 to 256, one a core by default", "N"},
@@ -31,10 +35,31 @@ static const struct poptOption options[] = {
 
 typedef struct render {
     look look;
-    int threads;
-    bool reference, errors, walk;
+    int threads, bounces;
+    bool reference, errors, walk, alone;
     double noise;
 } render;
+
+// Options of the reference without one.
+static int check_reference(const cli_arguments *a, const render *r)
+{
+    static const struct {
+        int option;
+        const char *name;
+    } of_it[] = {{NOISE, "--noise"}, {WALK, "--walk"}, {ALONE, "--alone"}, {BOUNCES, "--bounces"}};
+    if (r->reference && r->errors)
+        return cli_wrong(&cli_render, "--reference and --error contradict each other");
+    for (size_t i = 0; i < sizeof of_it / sizeof *of_it && !r->reference && !r->errors; i++)
+        if (a->value[of_it[i].option])
+            return cli_wrong(&cli_render, "%s needs --reference or --error", of_it[i].name);
+    if (r->alone && a->value[BOUNCES])
+        return cli_wrong(&cli_render, "--alone and --bounces contradict each other");
+    if (r->walk && r->look.options.scene == VIEW_SCENE_ASSIGNMENT)
+        return cli_wrong(&cli_render, "--walk: the scene assignment has a light of no size");
+    if ((r->reference || r->errors) && r->look.options.debug)
+        return cli_wrong(&cli_render, "--debug has no reference");
+    return CLI_GO;
+}
 
 static int read_arguments(const cli_arguments *a, render *r)
 {
@@ -47,23 +72,17 @@ static int read_arguments(const cli_arguments *a, render *r)
     r->reference = a->value[REFERENCE];
     r->errors = a->value[ERRORS];
     r->walk = a->value[WALK];
+    r->alone = a->value[ALONE];
     int code = look_read(a, &r->look);
     if (code != CLI_GO)
         return code;
-    if (r->reference && r->errors)
-        return cli_wrong(&cli_render, "--reference and --error contradict each other");
-    if (a->value[NOISE] && !r->reference && !r->errors)
-        return cli_wrong(&cli_render, "--noise needs --reference or --error");
-    if (r->walk && !r->reference && !r->errors)
-        return cli_wrong(&cli_render, "--walk needs --reference or --error");
-    if (r->walk && r->look.options.scene == VIEW_SCENE_ASSIGNMENT)
-        return cli_wrong(&cli_render, "--walk: the scene assignment has a light of no size");
-    if ((r->reference || r->errors) && r->look.options.debug)
-        return cli_wrong(&cli_render, "--debug has no reference");
+    if ((code = check_reference(a, r)) != CLI_GO)
+        return code;
     if (r->errors && !strcmp(ending, "hdr"))
         return cli_wrong(&cli_render, "--output %s: .hdr cannot hold an error's sign",
                          a->value[OUTPUT]);
     if ((code = cli_integer(a, THREADS, "--threads", 1, 256, &r->threads)) != CLI_GO ||
+        (code = cli_integer(a, BOUNCES, "--bounces", 1, 1000, &r->bounces)) != CLI_GO ||
         (code = cli_number(a, NOISE, "--noise", 1e-4, 1, &r->noise)) != CLI_GO)
         return code;
     return cli_check_folder(a->value[OUTPUT]);
@@ -96,6 +115,8 @@ static int integrate(cli_job *job, const render *r, const kiln_map *source, bool
     const view_options *o = &r->look.options;
     view_reference_def def = {.noise = r->noise,
                               .walk = r->walk,
+                              .alone = r->alone,
+                              .bounces = r->bounces,
                               .thread_count = r->threads,
                               .progress = cli_progress,
                               .progress_user = job};

@@ -29,7 +29,16 @@ typedef struct show {
 static kiln_result prepare(void *user, view_renderer *renderer, kiln_error *error)
 {
     const show *s = user;
-    if (look_bake(s->job, s->look, s->source, renderer) == CLI_GO)
+    if (look_bake_slot(s->job, s->look, s->source, VIEW_SLOT_EXACT, renderer) == CLI_GO)
+        return KILN_OK;
+    *error = s->job->error;
+    return error->result;
+}
+
+static kiln_result textbook(void *user, view_renderer *renderer, kiln_error *error)
+{
+    const show *s = user;
+    if (look_bake_slot(s->job, s->look, s->source, VIEW_SLOT_TEXTBOOK, renderer) == CLI_GO)
         return KILN_OK;
     *error = s->job->error;
     return error->result;
@@ -54,7 +63,7 @@ static int open_window(cli_job *job, const look *l, const char *screenshot)
                            .go_on = go_on,
                            .user = &s,
                            .has_environment = true,
-                           .has_textbook = l->options.scene == VIEW_SCENE_COMPARE,
+                           .textbook = textbook,
                            .screenshot = screenshot ? &image : NULL};
     int code = look_load(job, l, &source);
     if (code == CLI_GO)

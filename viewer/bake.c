@@ -28,10 +28,14 @@ static kiln_result copy(kiln_context *context, const kiln_map *from, kiln_map *t
 }
 
 static kiln_result textbook_levels(kiln_context *context, const kiln_map *source, int size,
-                                   int level_count, kiln_map *levels, kiln_error *error)
+                                   int level_count, int samples, kiln_map *levels,
+                                   kiln_error *error)
 {
     kiln_map panorama = {0};
-    kiln_textbook_def def = {.shape = KILN_SHAPE_CUBE, .size = size, .level_count = level_count};
+    kiln_textbook_def def = {.shape = KILN_SHAPE_CUBE,
+                             .size = size,
+                             .level_count = level_count,
+                             .sample_count = samples};
     bool convert = source->shape != KILN_SHAPE_PANORAMA;
     kiln_result result = convert ? kiln_map_convert(context, source, KILN_SHAPE_PANORAMA,
                                                     2 * source->size, 0, &panorama, error)
@@ -43,19 +47,19 @@ static kiln_result textbook_levels(kiln_context *context, const kiln_map *source
     return result;
 }
 
-static kiln_result make_levels(kiln_context *context, const kiln_map *source, int size,
-                               bool textbook, kiln_map *levels, kiln_error *error)
+static kiln_result make_levels(kiln_context *context, const kiln_map *source, int size, int samples,
+                               kiln_map *levels, kiln_error *error)
 {
     int level_count = count_levels(size);
-    if (textbook)
-        return textbook_levels(context, source, size, level_count, levels, error);
+    if (samples)
+        return textbook_levels(context, source, size, level_count, samples, levels, error);
     if (source->shape == KILN_SHAPE_CUBE && source->level_count > 1)
         return copy(context, source, levels, error);
     kiln_prefilter_def def = {.size = size, .level_count = level_count};
     return kiln_prefilter(context, source, &def, levels, error);
 }
 
-kiln_result view_bake(kiln_context *context, const kiln_map *source, int size, bool textbook,
+kiln_result view_bake(kiln_context *context, const kiln_map *source, int size, int samples,
                       view_environment *environment, kiln_error *error)
 {
     *environment = (view_environment){0};
@@ -67,7 +71,7 @@ kiln_result view_bake(kiln_context *context, const kiln_map *source, int size, b
     const kiln_prefilter_def lambert = {
         .size = IRRADIANCE_SIZE, .level_count = 1, .lobe = KILN_LOBE_LAMBERT};
     kiln_map *irradiance = &environment->irradiance;
-    kiln_result result = make_levels(context, source, size, textbook, &environment->levels, error);
+    kiln_result result = make_levels(context, source, size, samples, &environment->levels, error);
     if (result == KILN_OK)
         result = kiln_spectrum_analyze(context, source, BANDS, &spectrum, error);
     if (result == KILN_OK)

@@ -4,8 +4,9 @@
 //
 //     L(v) = int f(v, l) L(l) (n.l) dl  ~  sum over the three of  f L (n.l) / (p1 + p2 + p3)
 //
-// (Veach 1997, section 9.2.2). Batches of that are repeated until the pixel's standard error is what
-// was wanted. Balls do not light one another; with occlusion they are black to one another.
+// (Veach 1997, section 9.2.2). Where l meets another ball, L is what that one reflects, by one of the three
+// drawn at random, and so on until a path leaves. Batches of that are repeated until the pixel's
+// standard error is what was wanted.
 #include "reference.h"
 
 #include "parts.h"
@@ -18,13 +19,14 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { MAX_RAYS = 64, FIRST_CHECK = 32, MAX_THREADS = 256 };
+enum { MAX_RAYS = 64, FIRST_CHECK = 32, MAX_THREADS = 256, SURE = 8 };
 
 typedef struct job {
     const view_options *options;
     int width, height, side;
     double noise;
-    int batch_limit;
+    int batch_limit, bounces;
+    bool alone;
     bool walks[VIEW_MAX_BALLS]; // its further bounces are walked
     double eye[3], right[3], up[3], back[3], slope;
     view_ball balls[VIEW_MAX_BALLS];
@@ -83,14 +85,16 @@ static void tangents(const double n[3], double t[3], double b[3])
     b[2] = -n[1];
 }
 
-static void find_point(const job *j, const double d[3], view_point *p)
+// What a ray from `from` meets; it does not meet the ball that it leaves, or -1.
+static void find_point(const job *j, const double from[3], const double d[3], int leaves,
+                       view_point *p)
 {
     double reach = 1e30, closest[3], found[3] = {0};
     p->ball = -1;
     memcpy(p->ray, d, sizeof p->ray);
     for (int i = 0; i < j->ball_count; i++) {
-        double t = meet(&j->balls[i], j->eye, d, closest);
-        if (t > 0 && t < reach) {
+        double t = meet(&j->balls[i], from, d, closest);
+        if (i != leaves && t > 0 && t < reach) {
             reach = t;
             p->ball = i;
             memcpy(found, closest, sizeof found);
@@ -116,11 +120,36 @@ static void find_point(const job *j, const double d[3], view_point *p)
 static bool is_shaded(const job *j, const view_point *p, const double d[3])
 {
     double closest[3];
-    if (j->options->occlusion)
-        for (int i = 0; i < j->ball_count; i++)
-            if (i != p->ball && meet(&j->balls[i], p->position, d, closest) > 0)
-                return true;
+    for (int i = 0; i < j->ball_count; i++)
+        if (i != p->ball && meet(&j->balls[i], p->position, d, closest) > 0)
+            return true;
     return false;
+}
+
+static void estimate_one(const job *j, const view_point *p, int depth, view_random *random,
+                         double sum[3]);
+
+// What arrives at p from d; p is the depth-th ball of its path.
+static void incoming(const job *j, const view_point *p, int depth, const double d[3],
+                     view_random *random, double radiance[3])
+{
+    view_point from = {.ball = -1};
+    radiance[0] = radiance[1] = radiance[2] = 0;
+    if (j->alone && j->options->occlusion && is_shaded(j, p, d))
+        return;
+    if (!j->alone)
+        find_point(j, p->position, d, p->ball, &from);
+    if (from.ball < 0) {
+        view_light_radiance(&j->light, d, radiance);
+        return;
+    }
+    // Long paths go on with a fair chance.
+    double chance = depth < SURE ? 1 : 0.75;
+    if (depth == j->bounces || (chance < 1 && view_random_next(random) >= chance))
+        return;
+    estimate_one(j, &from, depth + 1, random, radiance);
+    for (int c = 0; c < 3; c++)
+        radiance[c] /= chance;
 }
 
 static void to_world(const view_point *p, const double l[3], double d[3])
@@ -143,9 +172,19 @@ static double pdf_specular(const view_ball *ball, const view_point *p, const dou
     return kiln_pdf_reflection(kiln_pdf_visible(ball->roughness, p->v[2], noh, voh), voh);
 }
 
+// A path's vertex, and how its light is counted.
+typedef struct vertex {
+    const job *j;
+    const view_point *p;
+    int depth;
+    double share; // the weight of a draw
+} vertex;
+
 // Adds what light from l brings, over the density of all three ways to draw it.
-static void add(const job *j, const view_point *p, const double l[3], double sum[3])
+static void add(const vertex *v, const double l[3], view_random *random, double sum[3])
 {
+    const job *j = v->j;
+    const view_point *p = v->p;
     const view_ball *ball = &j->balls[p->ball];
     double f[3], radiance[3], d[3];
     if (l[2] <= 0)
@@ -153,11 +192,11 @@ static void add(const job *j, const view_point *p, const double l[3], double sum
     to_world(p, l, d);
     view_reflect(ball, &j->energy, p, l, f);
     double pdf = view_light_pdf(&j->light, d) + pdf_specular(ball, p, l) + kiln_pdf_cosine(l[2]);
-    if (!(pdf > 0) || is_shaded(j, p, d))
+    if (!(pdf > 0))
         return;
-    view_light_radiance(&j->light, d, radiance);
+    incoming(j, p, v->depth, d, random, radiance);
     for (int c = 0; c < 3; c++)
-        sum[c] += f[c] * radiance[c] / pdf;
+        sum[c] += v->share * f[c] * radiance[c] / pdf;
 }
 
 static void draw(view_random *random, double xi[2])
@@ -173,37 +212,79 @@ static void reflect(const double v[3], const double h[3], double l[3])
         l[c] = 2 * voh * h[c] - v[c];
 }
 
-static void estimate(const job *j, const view_point *p, view_random *random, double sum[3])
+static void add_light(const vertex *v, view_random *random, double sum[3])
 {
-    const view_ball *ball = &j->balls[p->ball];
-    double xi[2], h[3], l[3], d[3];
+    double xi[2], d[3];
     draw(random, xi);
-    view_light_sample(&j->light, xi, d);
-    l[0] = dot(d, p->t);
-    l[1] = dot(d, p->b);
-    l[2] = dot(d, p->n);
-    add(j, p, l, sum);
+    view_light_sample(&v->j->light, xi, d);
+    const double l[3] = {dot(d, v->p->t), dot(d, v->p->b), dot(d, v->p->n)};
+    add(v, l, random, sum);
+}
+
+static void add_specular(const vertex *v, view_random *random, double sum[3])
+{
+    const view_point *p = v->p;
+    const view_ball *ball = &v->j->balls[p->ball];
+    double xi[2], h[3], l[3], d[3], f[3], radiance[3], up[3] = {0, 0, 1};
     draw(random, xi);
     if (ball->roughness > 0) {
         kiln_sample_visible(ball->roughness, p->v, xi, h);
         reflect(p->v, h, l);
-        add(j, p, l, sum);
-    } else { // a perfect mirror: no draw finds its peak
-        double radiance[3], f[3], up[3] = {0, 0, 1};
-        reflect(p->v, up, l);
-        to_world(p, l, d);
-        view_light_radiance(&j->light, d, radiance);
-        view_fresnel(ball, &j->energy, p->v[2], f);
-        for (int c = 0; c < 3 && !is_shaded(j, p, d); c++)
-            sum[c] += f[c] * radiance[c] * p->specular[c];
+        add(v, l, random, sum);
+        return;
     }
+    // A perfect mirror: no draw finds its peak.
+    reflect(p->v, up, l);
+    to_world(p, l, d);
+    incoming(v->j, p, v->depth, d, random, radiance);
+    view_fresnel(ball, &v->j->energy, p->v[2], f);
+    for (int c = 0; c < 3; c++)
+        sum[c] += v->share * f[c] * radiance[c] * p->specular[c];
+}
+
+static void add_diffuse(const vertex *v, view_random *random, double sum[3])
+{
+    double xi[2], l[3];
     draw(random, xi);
     kiln_sample_cosine(xi, l);
-    add(j, p, l, sum);
-    if (j->walks[p->ball]) {
-        view_walk walk = {ball, &j->light, &j->energy};
-        view_walk_add(&walk, p, random, sum);
-    }
+    add(v, l, random, sum);
+}
+
+static void walk_incoming(void *user, const double d[3], view_random *random, double radiance[3])
+{
+    const vertex *v = user;
+    incoming(v->j, v->p, v->depth, d, random, radiance);
+}
+
+static void add_walk(vertex *v, view_random *random, double sum[3])
+{
+    const job *j = v->j;
+    view_walk walk = {&j->balls[v->p->ball], &j->light, &j->energy, walk_incoming, v};
+    if (j->walks[v->p->ball])
+        view_walk_add(&walk, v->p, random, sum);
+}
+
+static void estimate(const job *j, const view_point *p, view_random *random, double sum[3])
+{
+    vertex v = {j, p, 1, 1};
+    add_light(&v, random, sum);
+    add_specular(&v, random, sum);
+    add_diffuse(&v, random, sum);
+    add_walk(&v, random, sum);
+}
+
+static void estimate_one(const job *j, const view_point *p, int depth, view_random *random,
+                         double sum[3])
+{
+    vertex v = {j, p, depth, 3};
+    double which = 3 * view_random_next(random);
+    if (which < 1)
+        add_light(&v, random, sum);
+    else if (which < 2)
+        add_specular(&v, random, sum);
+    else
+        add_diffuse(&v, random, sum);
+    add_walk(&v, random, sum);
 }
 
 // ------------------------------------------------------------------------------------------ pixels
@@ -256,7 +337,7 @@ static void pixel(job *j, int x, int y, view_reference_report *report, float *ou
         double d[3];
         int across = i % j->side, down = i / j->side;
         ray_at(j, x + (across + 0.5) / j->side, y + (down + 0.5) / j->side, d);
-        find_point(j, d, &points[waiting]);
+        find_point(j, j->eye, d, -1, &points[waiting]);
         if (!shines(j, &points[waiting], radiance))
             waiting++;
         for (int c = 0; c < 3; c++)
@@ -364,6 +445,8 @@ kiln_result view_reference(kiln_context *context, const view_options *options,
                                        : options->samples,
         .noise = def->noise > 0 ? def->noise : 0.01,
         .batch_limit = def->batch_limit > 1 ? def->batch_limit : 16384,
+        .bounces = def->bounces,
+        .alone = def->alone || white, // the dark row would be seen in the other
         .slope = tan(options->camera.fov / 2 * degree),
         .image = image,
     };

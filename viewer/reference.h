@@ -9,8 +9,11 @@
 typedef struct view_reference_def {
     double noise;    ///< wanted standard error of a pixel, relative, 1e-4 to 1; 0 for 0.01
     int batch_limit; ///< at most so many samples of each ray; 0 for 16384
-    bool walk; ///< bounces from the second one on by a random walk between the microfacets, in
-               ///< place of the method of those balls that have one
+    bool walk;   ///< bounces from the second one on by a random walk between the microfacets, in
+                 ///< place of the method of those balls that have one
+    int bounces; ///< light that would meet more balls than these is lost; 0 for all of it
+    bool alone;  ///< balls do not see one another, as the real-time picture has it; with occlusion
+                 ///< they are black to one another. Always so in the furnace
     int thread_count; ///< 1 to 256; 0 for one a core. The picture does not depend on it
     /// Called now and then from the calling thread. Returning false cancels. May be NULL.
     bool (*progress)(void *user, const char *stage, double fraction);

@@ -75,6 +75,9 @@ typedef struct view_walk {
     const view_ball *ball;
     const view_light *light;
     const view_energy *energy; ///< for a measured metal's F
+    /// What arrives from d; NULL for the light's radiance.
+    void (*incoming)(void *user, const double d[3], view_random *random, double radiance[3]);
+    void *user;
 } view_walk;
 
 void view_walk_add(const view_walk *walk, const view_point *point, view_random *random,

@@ -129,10 +129,10 @@ typedef struct view_environment {
     kiln_sh sh;          ///< of the radiance
 } view_environment;
 
-/// Bakes any map; a cube with levels is taken as baked already. `textbook` has the levels by 1024
-/// samples a texel instead. `size` 16 to 2048, 0 for 256.
+/// Bakes any map; a cube with levels is taken as baked already. with `samples` above
+/// 0 the levels are the textbook's, of so many samples a texel (it has 1024). `size` 16 to 2048, 0 for 256.
 KILN_CHECKED kiln_result view_bake(kiln_context *context, const kiln_map *source, int size,
-                                   bool textbook, view_environment *environment, kiln_error *error);
+                                   int samples, view_environment *environment, kiln_error *error);
 void view_environment_free(view_environment *environment);
 
 // ---------------------------------------------------------------------------------------- renderer

@@ -91,7 +91,7 @@ static double phase(double roughness, const double w[3], const double l[3], doub
 
 // What leaves along l after a bounce, over the densities of both ways to draw it.
 static void count(const view_walk *walk, const view_point *p, const ray *before, const double l[3],
-                  double sum[3])
+                  view_random *random, double sum[3])
 {
     double d[3], radiance[3], f[3], voh = 0, r = walk->ball->roughness;
     double out = leaving(r * r, before->below, l[2]);
@@ -101,7 +101,10 @@ static void count(const view_walk *walk, const view_point *p, const ray *before,
     for (int c = 0; c < 3; c++)
         d[c] = l[0] * p->t[c] + l[1] * p->b[c] + l[2] * p->n[c];
     double share = density * out / (density + view_light_pdf(walk->light, d));
-    view_light_radiance(walk->light, d, radiance);
+    if (walk->incoming)
+        walk->incoming(walk->user, d, random, radiance);
+    else
+        view_light_radiance(walk->light, d, radiance);
     view_fresnel(walk->ball, walk->energy, fmin(voh, 1), f);
     for (int c = 0; c < 3; c++)
         sum[c] += before->weight[c] * f[c] * share * radiance[c];
@@ -125,8 +128,8 @@ void view_walk_add(const view_walk *walk, const view_point *p, view_random *rand
             double xi[2] = {view_random_next(random), view_random_next(random)}, d[3];
             view_light_sample(walk->light, xi, d);
             const double drawn[3] = {dot(d, p->t), dot(d, p->b), dot(d, p->n)};
-            count(walk, p, &r, drawn, sum);
-            count(walk, p, &r, l, sum);
+            count(walk, p, &r, drawn, random, sum);
+            count(walk, p, &r, l, random, sum);
         }
         view_fresnel(ball, walk->energy, fmin(voh, 1), f);
         for (int c = 0; c < 3; c++) {

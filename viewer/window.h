@@ -15,7 +15,9 @@ typedef struct view_window_def {
     bool (*go_on)(void *user);
     void *user;
     bool has_environment; ///< scenes that need one can be chosen
-    bool has_textbook;    ///< compare too
+    /// Called once before compare is first drawn, to set the textbook's environment. NULL where compare
+    /// cannot be chosen.
+    kiln_result (*textbook)(void *user, view_renderer *renderer, kiln_error *error);
     /// Not NULL: draws one frame, reads the window's own pixels into it and returns.
     kiln_image *screenshot;
 } view_window_def;

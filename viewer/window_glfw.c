@@ -32,6 +32,7 @@
     X(SetMouseButtonCallback)                                                                      \
     X(SetScrollCallback)                                                                           \
     X(SetWindowRefreshCallback)                                                                    \
+    X(SetWindowTitle)                                                                              \
     X(SetWindowShouldClose)                                                                        \
     X(SetWindowUserPointer)                                                                        \
     X(SwapBuffers)                                                                                 \
@@ -246,9 +247,27 @@ static kiln_result shoot(kiln_context *context, int width, int height, kiln_imag
     return result;
 }
 
+// The textbook's bake takes a while: the title says so.
+static kiln_result bake_textbook(const window *w, const view_window_def *def,
+                                 view_renderer *renderer, kiln_error *error)
+{
+    const char *title = def->title ? def->title : "kiln";
+    char words[160];
+    if (!def->textbook)
+        return KILN_OK;
+    snprintf(words, sizeof words, "%.100s: baking as the textbook does, 1024 samples a texel",
+             title);
+    w->glfw.SetWindowTitle(w->handle, words);
+    w->glfw.WaitEventsTimeout(0.01); // so that it is seen
+    kiln_result result = def->textbook(def->user, renderer, error);
+    w->glfw.SetWindowTitle(w->handle, title);
+    return result;
+}
+
 static kiln_result loop(window *w, kiln_context *context, const view_window_def *def,
                         view_renderer *renderer, kiln_error *error)
 {
+    bool has_textbook = false;
     w->stale = true;
     while (!w->glfw.WindowShouldClose(w->handle) && (!def->go_on || def->go_on(def->user))) {
         int width, height;
@@ -258,6 +277,12 @@ static kiln_result loop(window *w, kiln_context *context, const view_window_def 
             if (w->dragging)
                 o.samples = 1;
             w->stale = false;
+            if (o.scene == VIEW_SCENE_COMPARE && !has_textbook) {
+                kiln_result result = bake_textbook(w, def, renderer, error);
+                if (result != KILN_OK)
+                    return result;
+                has_textbook = true;
+            }
             view_draw(renderer, &o, width, height);
             if (def->screenshot)
                 return shoot(context, width, height, def->screenshot, error);
@@ -270,9 +295,8 @@ static kiln_result loop(window *w, kiln_context *context, const view_window_def 
 
 kiln_result view_window(kiln_context *context, const view_window_def *def, kiln_error *error)
 {
-    window w = {
-        .options = def->options,
-        .allowed = {true, def->has_environment, true, def->has_environment, def->has_textbook}};
+    window w = {.options = def->options,
+                .allowed = {true, def->has_environment, true, def->has_environment, def->textbook}};
     view_renderer *renderer = NULL;
     kiln_result result = load(&w.glfw, error);
     if (result != KILN_OK)

@@ -186,10 +186,10 @@ const double *baker_harmonics(const baker *b)
     return &b->sh.c[0][0];
 }
 
-bool baker_scenery(baker *b, int size, bool textbook)
+bool baker_scenery(baker *b, int size, int samples)
 {
     view_environment_free(&b->scenery);
-    return !view_bake(b->context, &b->source, size, textbook, &b->scenery, &b->error);
+    return !view_bake(b->context, &b->source, size, samples, &b->scenery, &b->error);
 }
 
 int baker_scenery_levels(const baker *b)

@@ -32,9 +32,9 @@ BAKER double baker_roughness(const baker *b, int level);
 BAKER const float *baker_texels(const baker *b, int level);
 /// Coefficients [9][3] of the radiance.
 BAKER const double *baker_harmonics(const baker *b);
-/// Bakes what the view is lit by, as `kiln render` does: fewer levels, an irradiance cube, the same of
-/// the textbook where wanted. It is read as level -1 for the irradiance and from 0 on.
-BAKER bool baker_scenery(baker *b, int size, bool textbook);
+/// Bakes what the view is lit by, as `kiln render` does: fewer levels, an irradiance cube; by the
+/// textbook with so many samples a texel where that is above 0. It is read as level -1 for the irradiance and from 0 on.
+BAKER bool baker_scenery(baker *b, int size, int samples);
 BAKER int baker_scenery_levels(const baker *b);
 BAKER int baker_scenery_size(const baker *b, int level);
 BAKER double baker_scenery_roughness(const baker *b, int level);

@@ -71,10 +71,10 @@ export class Baker {
         };
     }
 
-    // Returns what the view is lit by, as Stage.light takes it.
-    scenery({ size = 256, textbook = false } = {}) {
+    // Returns what the view is lit by, as Stage.light takes it; the textbook's with `samples`.
+    scenery({ size = 256, samples = 0 } = {}) {
         const { module, self } = this, began = performance.now();
-        this.call('baker_scenery', size, textbook);
+        this.call('baker_scenery', size, samples);
         const seconds = (performance.now() - began) / 1000;
         const sh = module._baker_scenery_harmonics(self) >>> 3;
         const level = (k) => {

@@ -127,7 +127,7 @@ const bake = (file) => soon(async () => {
     }
     if (stage.ready && state.scene === 'compare' && key !== litByTextbook) {
         say('Baking as the textbook does, by 1024 samples a texel.');
-        stage.light(await engine.scenery({ size, textbook: true }), true);
+        stage.light(await engine.scenery({ size, samples: 1024 }), true);
         litByTextbook = key;
     }
     baked = made;

@@ -532,6 +532,7 @@ static kiln_result open_file(exr_file *f, kiln_error *error)
     exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
     init.error_handler_fn = say_nothing;
     init.user_data = f;
+    KI_EXR_MEMORY(&init, f->context);
     init.read_fn = read_memory;
     init.size_fn = memory_size;
     init.flags =

@@ -6,6 +6,11 @@
 
 #include <openexr.h>
 
+/// Which memory a header is read into: the library has its own.
+#ifndef KI_EXR_MEMORY
+#define KI_EXR_MEMORY(init, context) ((void)0)
+#endif
+
 /// Channels beyond this are refused; a picture has a handful.
 enum { KI_EXR_MAX_CHANNELS = 256 };
 

@@ -4,7 +4,6 @@
 #include "base/bytes.h"
 #include "codec/exr.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 enum {
@@ -37,6 +36,8 @@ typedef struct header_part {
 } header_part;
 
 struct exr_header {
+    kiln_context *memory;
+    bool starved; // an allocation failed
     uint8_t *bytes;
     size_t size;
     bool multipart;
@@ -54,11 +55,12 @@ static const char *read_text(ki_reader *r)
     return end ? (const char *)ki_read_bytes(r, (size_t)(end - r->at) + 1) : NULL;
 }
 
-static bool read_channels(ki_reader *r, exr_attr_chlist_t *list)
+static bool read_channels(exr_context_t h, ki_reader *r, exr_attr_chlist_t *list)
 {
-    free(list->entries);
+    ki_free(list->entries);
     list->num_channels = 0;
-    list->entries = calloc(MAX_CHANNELS, sizeof *list->entries);
+    list->entries = ki_alloc(h->memory, MAX_CHANNELS, sizeof *list->entries);
+    h->starved |= !list->entries;
     while (list->entries && ki_reader_left(r) > 1) {
         const char *name = read_text(r);
         exr_attr_chlist_entry_t *entry = &list->entries[list->num_channels];
@@ -103,8 +105,8 @@ static void read_storage(const uint8_t *bytes, size_t size, header_part *p)
 }
 
 // A string's text has no NUL in the file: kept as a copy.
-static bool keep(const char *name, const char *type, const uint8_t *bytes, size_t size,
-                 header_part *p)
+static bool keep(exr_context_t h, const char *name, const char *type, const uint8_t *bytes,
+                 size_t size, header_part *p)
 {
     for (int i = 0; i < KEPT; i++) {
         kept *k = &p->kept[i];
@@ -114,9 +116,11 @@ static bool keep(const char *name, const char *type, const uint8_t *bytes, size_
             memcpy(&k->number, bytes, 4);
             k->attribute.type = EXR_ATTR_FLOAT;
         } else if (!strcmp(type, "string") && size < 4096) {
-            k->copy = calloc(size + 1, 1);
-            if (!k->copy)
+            k->copy = ki_alloc(h->memory, size + 1, 1);
+            if (!k->copy) {
+                h->starved = true;
                 return false;
+            }
             memcpy(k->copy, bytes, size);
             k->string = (exr_attr_string_t){(int32_t)size, k->copy};
             k->attribute = (exr_attribute_t){EXR_ATTR_STRING, &k->string};
@@ -128,12 +132,12 @@ static bool keep(const char *name, const char *type, const uint8_t *bytes, size_
     return true;
 }
 
-static bool read_attribute(const char *name, const char *type, const uint8_t *bytes, size_t size,
-                           header_part *p)
+static bool read_attribute(exr_context_t h, const char *name, const char *type,
+                           const uint8_t *bytes, size_t size, header_part *p)
 {
     ki_reader r = ki_reader_make(bytes, size);
     if (!strcmp(name, "channels"))
-        return !strcmp(type, "chlist") && read_channels(&r, &p->list);
+        return !strcmp(type, "chlist") && read_channels(h, &r, &p->list);
     if (!strcmp(name, "compression") && size == 1) {
         p->compression = bytes[0];
         p->has_compression = true;
@@ -152,11 +156,11 @@ static bool read_attribute(const char *name, const char *type, const uint8_t *by
     } else if (!strcmp(name, "type") && !strcmp(type, "string")) {
         read_storage(bytes, size, p);
     }
-    return keep(name, type, bytes, size, p);
+    return keep(h, name, type, bytes, size, p);
 }
 
 // One header, up to the NUL that ends it.
-static bool read_part(ki_reader *r, uint32_t flags, header_part *p)
+static bool read_part(exr_context_t h, ki_reader *r, uint32_t flags, header_part *p)
 {
     p->chunk_count = -1;
     p->storage = flags & DEEP    ? EXR_STORAGE_DEEP_SCANLINE
@@ -171,7 +175,7 @@ static bool read_part(ki_reader *r, uint32_t flags, header_part *p)
         const char *type = read_text(r);
         uint32_t size = ki_read_u32(r);
         const uint8_t *bytes = type && size <= ki_reader_left(r) ? ki_read_bytes(r, size) : NULL;
-        if (!bytes || r->failed || !read_attribute(name, type, bytes, size, p))
+        if (!bytes || r->failed || !read_attribute(h, name, type, bytes, size, p))
             return false;
     }
     return p->list.num_channels > 0 && p->has_data && p->has_display && p->has_compression;
@@ -214,8 +218,8 @@ static exr_result_t parse(exr_context_t h)
         return EXR_ERR_BAD_HEADER;
     h->multipart = version & MULTIPART;
     do {
-        if (h->part_count == MAX_PARTS || !read_part(&r, version, &h->part[h->part_count]))
-            return EXR_ERR_BAD_HEADER;
+        if (h->part_count == MAX_PARTS || !read_part(h, &r, version, &h->part[h->part_count]))
+            return h->starved ? EXR_ERR_OUT_OF_MEMORY : EXR_ERR_BAD_HEADER;
         h->part_count++;
     } while (h->multipart && ki_reader_left(&r) && *r.at);
     if (h->multipart)
@@ -232,12 +236,13 @@ exr_result_t exr_start_read(exr_context_t *context, const char *name,
                             const exr_context_initializer_t *init)
 {
     (void)name;
-    exr_context_t h = *context = calloc(1, sizeof *h);
+    exr_context_t h = *context = ki_alloc(init->memory, 1, sizeof *h);
     if (!h)
         return EXR_ERR_OUT_OF_MEMORY;
+    h->memory = init->memory;
     int64_t size = init->size_fn(h, init->user_data);
     h->size = size > 0 ? (size_t)size : 0;
-    h->bytes = malloc(h->size + 1);
+    h->bytes = ki_alloc_raw(h->memory, h->size + 1, 1);
     if (!h->bytes)
         return EXR_ERR_OUT_OF_MEMORY;
     if (init->read_fn(h, init->user_data, h->bytes, h->size, 0, NULL) != size)
@@ -249,13 +254,13 @@ void exr_finish(exr_context_t *context)
 {
     exr_context_t h = *context;
     for (int i = 0; h && i < MAX_PARTS; i++) {
-        free(h->part[i].list.entries);
+        ki_free(h->part[i].list.entries);
         for (int k = 0; k < KEPT; k++)
-            free(h->part[i].kept[k].copy);
+            ki_free(h->part[i].kept[k].copy);
     }
     if (h)
-        free(h->bytes);
-    free(h);
+        ki_free(h->bytes);
+    ki_free(h);
     *context = NULL;
 }
 

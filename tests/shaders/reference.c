@@ -112,7 +112,7 @@ static void walks_lose_nothing(void **unused)
         view_point p = {.n = {0, 0, 1}, .t = {1, 0, 0}, .b = {0, 1, 0}};
         p.v[0] = sqrt(1 - nov * nov);
         p.v[2] = nov;
-        view_walk walk = {&ball, &white, NULL};
+        view_walk walk = {.ball = &ball, .light = &white};
         for (int k = 0; k < COUNT; k++)
             view_walk_add(&walk, &p, &random, sum);
         kiln_walk_def def = {.f0 = f0[i / 9]};
@@ -181,7 +181,7 @@ static void the_integral_is_the_sum(void **unused)
     (void)unused;
     enum { WIDTH = 16, HEIGHT = 9 };
     view_options o = view_defaults(VIEW_SCENE_IBL);
-    view_reference_def def = {.noise = 0.003, .batch_limit = 65536};
+    view_reference_def def = {.noise = 0.003, .batch_limit = 65536, .alone = true};
     kiln_map map;
     kiln_image image;
     kiln_error error = {0};
@@ -220,6 +220,134 @@ static void the_integral_is_the_sum(void **unused)
     print_message("%d pixels\n", seen);
     assert_true(seen >= 8);
     kiln_image_free(&image);
+    kiln_map_free(&map);
+}
+
+// By the cosine or the visible normals, one as often as the other; returns the density of both.
+static double draw_direction(double roughness, const double v[3], double which, const double xi[2],
+                             double l[3])
+{
+    double h[3];
+    if (which < 0.5) {
+        kiln_sample_cosine(xi, l);
+    } else {
+        kiln_sample_visible(roughness, v, xi, h);
+        double voh = dot(v, h);
+        for (int c = 0; c < 3; c++)
+            l[c] = 2 * voh * h[c] - v[c];
+    }
+    for (int c = 0; c < 3; c++)
+        h[c] = v[c] + l[c];
+    normalize(h);
+    double voh = fmax(dot(v, h), 0), noh = fmax(h[2], 0);
+    double specular = kiln_pdf_reflection(kiln_pdf_visible(roughness, v[2], noh, voh), voh);
+    return (kiln_pdf_cosine(fmax(l[2], 0)) + specular) / 2;
+}
+
+// Light among the balls, by the plainest of path tracers: no light is drawn, every path goes to its end.
+static void trace(const view_ball *balls, int count, const view_energy *energy, double at[3],
+                  double d[3], view_random *random, double sum[3])
+{
+    double weight[3] = {1, 1, 1};
+    int last = -1;
+    for (;;) {
+        double reach = 1e30;
+        view_point p = {.ball = -1};
+        for (int k = 0; k < count; k++) {
+            double from[3];
+            for (int c = 0; c < 3; c++)
+                from[c] = at[c] - balls[k].centre[c];
+            double b = dot(from, d), rest = b * b - dot(from, from) + 36 * 36;
+            double t = -b - sqrt(fmax(rest, 0));
+            if (k != last && rest > 0 && t > 0 && t < reach) {
+                reach = t;
+                p.ball = k;
+            }
+        }
+        if (p.ball < 0)
+            break;
+        const view_ball *ball = &balls[p.ball];
+        last = p.ball;
+        for (int c = 0; c < 3; c++) {
+            at[c] += reach * d[c];
+            p.n[c] = (at[c] - ball->centre[c]) / 36;
+        }
+        double side[3] = {fabs(p.n[0]) < 0.5, fabs(p.n[0]) >= 0.5, 0}, along = dot(side, p.n);
+        for (int c = 0; c < 3; c++)
+            p.t[c] = side[c] - along * p.n[c];
+        normalize(p.t);
+        for (int c = 0; c < 3; c++)
+            p.b[c] = p.n[(c + 1) % 3] * p.t[(c + 2) % 3] - p.n[(c + 2) % 3] * p.t[(c + 1) % 3];
+        p.v[0] = -dot(p.t, d);
+        p.v[1] = -dot(p.b, d);
+        p.v[2] = -dot(p.n, d);
+        view_point_prepare(ball, energy, &p);
+        double xi[2] = {view_random_next(random), view_random_next(random)}, l[3], f[3];
+        double pdf = draw_direction(ball->roughness, p.v, view_random_next(random), xi, l);
+        view_reflect(ball, energy, &p, l, f);
+        for (int c = 0; c < 3; c++) {
+            weight[c] *= f[c] / pdf;
+            d[c] = l[0] * p.t[c] + l[1] * p.b[c] + l[2] * p.n[c];
+        }
+    }
+    for (int c = 0; c < 3; c++) // white from above, dimmer from below
+        sum[c] += weight[c] * (1 + 0.5 * (d[1] > 0));
+}
+
+// Chalk, whose light is that of all directions: the mean over all pixels that show balls.
+static void balls_light_one_another(void **unused)
+{
+    (void)unused;
+    enum { WIDTH = 48, HEIGHT = 28, PATHS = 1500 };
+    view_options o = view_defaults(VIEW_SCENE_IBL);
+    view_ball balls[VIEW_MAX_BALLS];
+    view_energy energy;
+    view_random random;
+    kiln_map map;
+    kiln_error error = {0};
+    kiln_image image[3]; // alone, one bounce, all
+    o.samples = 1;
+    o.material = VIEW_MATERIAL_CHALK;
+    int count = view_balls(&o, balls), seen = 0;
+    CHECK_OK(kiln_map_create(context, KILN_SHAPE_PANORAMA, ROWS, 1, &map, &error));
+    for (size_t i = 0; i < 3 * kiln_map_texels(&map, 0); i++)
+        map.level[0][i] = i < 3 * kiln_map_texels(&map, 0) / 2 ? 1.5F : 1;
+    CHECK_OK(view_energy_create(context, &o, &energy, &error));
+    for (int i = 0; i < 3; i++) {
+        view_reference_def def = {.noise = 0.02, .alone = i == 0, .bounces = i == 1};
+        CHECK_OK(view_reference(context, &o, &map, WIDTH, HEIGHT, &def, &image[i], NULL, &error));
+    }
+    view_random_start(&random, 3);
+    double eye[3], right[3], up[3], back[3], sum[3] = {0}, got[3] = {0};
+    double slope = tan(o.camera.fov / 2 * 3.14159265358979 / 180);
+    view_camera_axes(&o.camera, eye, right, up, back);
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        double sx = (2 * (i % WIDTH + 0.5) / WIDTH - 1) * slope * WIDTH / HEIGHT;
+        double sy = (1 - 2 * (i / WIDTH + 0.5) / HEIGHT) * slope;
+        // The sky is 1 or 1.5 and as bright to all.
+        if ((double)image[0].pixels[3 * i] == 1 || (double)image[0].pixels[3 * i] == 1.5)
+            continue;
+        seen++;
+        for (int k = 0; k < 3; k++)
+            got[k] += (double)image[k].pixels[3 * i];
+        for (int k = 0; k < PATHS; k++) {
+            double from[3], d[3];
+            for (int c = 0; c < 3; c++) {
+                from[c] = eye[c];
+                d[c] = sx * right[c] + sy * up[c] - back[c];
+            }
+            normalize(d);
+            trace(balls, count, &energy, from, d, &random, sum);
+        }
+    }
+    print_message("%d pixels, %.4f: alone %.4f, once %.4f, all %.4f\n", seen, sum[0] / PATHS / seen,
+                  got[0] / seen, got[1] / seen, got[2] / seen);
+    assert_true(seen > 300);
+    CHECK_NEAR(got[2], sum[0] / PATHS, 0.003 * got[2]);
+    assert_true(got[0] > 1.02 * got[2] && got[1] < 0.9 * got[2]); // the test can tell
+    for (int i = 0; i < 3; i++)
+        kiln_image_free(&image[i]);
+    view_energy_free(&energy);
     kiln_map_free(&map);
 }
 
@@ -271,6 +399,7 @@ int main(void)
         cmocka_unit_test(white_balls_vanish_in_the_furnace),
         cmocka_unit_test(walks_lose_nothing),
         cmocka_unit_test(the_integral_is_the_sum),
+        cmocka_unit_test(balls_light_one_another),
         cmocka_unit_test(threads_do_not_matter),
         cmocka_unit_test(it_can_be_stopped),
     };

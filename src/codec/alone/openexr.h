@@ -81,7 +81,10 @@ typedef const struct exr_header *exr_const_context_t;
 typedef exr_result_t (*exr_stream_error_func_ptr_t)(exr_const_context_t context, exr_result_t code,
                                                     const char *format, ...);
 
+struct kiln_context;
+
 typedef struct {
+    struct kiln_context *memory; // what the header is allocated by
     void (*error_handler_fn)(exr_const_context_t context, exr_result_t code, const char *message);
     void *user_data;
     int64_t (*read_fn)(exr_const_context_t context, void *user_data, void *buffer, uint64_t size,
@@ -93,6 +96,8 @@ typedef struct {
     {                                                                                              \
         0                                                                                          \
     }
+
+#define KI_EXR_MEMORY(init, context) ((init)->memory = (context))
 
 #define exr_start_read ki_exr_start_read
 #define exr_finish ki_exr_finish
