@@ -149,7 +149,7 @@ demo)
 bench)
     need_all "$build_needs $bench_needs $web_needs"
     panoramas
-    npm_packages web tests/web tests/engines
+    npm_packages web tests/web tests/engines bench/blocks
     build release
     build wasm
     bench/run.sh "$@"

@@ -1,8 +1,8 @@
 #!/bin/sh
 # Makes the benches' inputs and runs them: bench/run.sh [--update] [CASE...]
 # Results go to bench/results/MACHINE/CASE.csv. Beside the cases of `bench --list` there is `count`,
-# the instructions of a fixed bake (--update makes today's count the reference), and `web`, kiln in a
-# browser's page beside three.js.
+# the instructions of a fixed bake (--update makes today's count the reference), `web`, kiln in a
+# browser's page beside three.js, and `blocks`, BC6H beside Basis Universal's.
 set -eu
 cd "$(dirname "$0")/.."
 bin=build/release/bin
@@ -18,7 +18,7 @@ if [ "${1:-}" = --update ]; then
     update=yes
     shift
 fi
-[ $# -gt 0 ] || set -- accuracy probe threads instructions files scaling peer memory tables display count web
+[ $# -gt 0 ] || set -- accuracy probe threads instructions files scaling peer memory tables display count web blocks
 for part in bench bench_reference kiln; do
     [ -x $bin/$part ] || fail "there is no $bin/$part: run ./do bench"
 done
@@ -73,6 +73,15 @@ web() {
         "$results/$($bin/bench --machine)/web.csv"
 }
 
+# BC6H beside another encoder's, both decoded by oiiotool.
+blocks() {
+    have oiiotool || fail "oiiotool is missing: install Debian's openimageio-tools"
+    [ -d bench/blocks/node_modules ] || fail "packages are missing: run  npm ci --prefix bench/blocks"
+    printf '\n'
+    node bench/blocks/blocks.mjs build/release/bin build/data/blender $inputs/blocks \
+        "$results/$($bin/bench --machine)/blocks.csv"
+}
+
 status=0
 for name; do
     case $name in
@@ -82,6 +91,10 @@ for name; do
         ;;
     web)
         web || status=1
+        continue
+        ;;
+    blocks)
+        blocks || status=1
         continue
         ;;
     peer)

@@ -1,0 +1,99 @@
+// What bench/blocks/blocks.mjs needs of kiln:
+//     bench_blocks save PANORAMA TRUTH.ktx2 BLOCKS.dds    bakes, writes floats and BC6H, prints the latter's
+//                                                         fewest CPU microseconds a texel
+//     bench_blocks error TRUTH.ktx2 LEVEL PICTURE         prints errors of six faces, one below the other
+#include <kiln/kiln.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+// Of the processor: one thread works.
+static double seconds(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static kiln_result save(kiln_context *context, char **argv, kiln_error *error)
+{
+    kiln_map panorama = {0}, cube = {0};
+    kiln_save_def floats = {.format = KILN_FORMAT_RGBA32F}, blocks = {.format = KILN_FORMAT_BC6H};
+    kiln_prefilter_def def = {.size = 256};
+    kiln_result result = kiln_map_load(context, argv[2], NULL, &panorama, error);
+    if (!result)
+        result = kiln_prefilter(context, &panorama, &def, &cube, error);
+    if (!result)
+        result = kiln_map_save(context, &cube, argv[3], &floats, NULL, error);
+    double fastest = 1e9, texels = 0;
+    for (int k = 0; k < cube.level_count; k++)
+        texels += (double)kiln_map_texels(&cube, k);
+    for (int i = 0; i < 5 && !result; i++) {
+        double begin = seconds();
+        result = kiln_map_save(context, &cube, argv[4], &blocks, NULL, error);
+        fastest = fmin(fastest, seconds() - begin);
+    }
+    if (!result)
+        printf("%.4f\n", fastest * 1e6 / texels);
+    kiln_map_free(&panorama);
+    kiln_map_free(&cube);
+    return result;
+}
+
+// A half float's bits as a number, between them as it goes: 1024 to an octave.
+static double code(double value)
+{
+    int exponent;
+    double mantissa = frexp(value, &exponent);
+    return value < ldexp(1, -14) ? ldexp(value, 24) : 1024 * (exponent + 14 + 2 * mantissa - 1);
+}
+
+static kiln_result compare(kiln_context *context, char **argv, kiln_error *error)
+{
+    kiln_map truth = {0};
+    kiln_image picture = {0};
+    int level = atoi(argv[3]);
+    kiln_result result = kiln_map_load(context, argv[2], NULL, &truth, error);
+    if (!result)
+        result = kiln_image_load(context, argv[4], &picture, error);
+    size_t count = result ? 0 : 3 * kiln_map_texels(&truth, level);
+    if (!result && (size_t)picture.width * (size_t)picture.height * 3 != count) {
+        fprintf(stderr, "%s: %d x %d\n", argv[4], picture.width, picture.height);
+        result = KILN_ERROR_FORMAT;
+        count = 0;
+    }
+    double codes = 0, off = 0, all = 0;
+    for (size_t i = 0; i < count; i++) {
+        double a = (double)truth.level[level][i], b = (double)picture.pixels[i];
+        codes += (code(a) - code(b)) * (code(a) - code(b));
+        off += (a - b) * (a - b);
+        all += a * a;
+    }
+    if (!result)
+        printf("%.6g %.6g\n", sqrt(codes / (double)count), sqrt(off / all));
+    kiln_map_free(&truth);
+    kiln_image_free(&picture);
+    return result;
+}
+
+int main(int argc, char **argv)
+{
+    kiln_context *context = NULL;
+    kiln_error error = {0};
+    if (argc != 5) {
+        fprintf(stderr, "bench_blocks save PANORAMA TRUTH BLOCKS | error TRUTH LEVEL PICTURE\n");
+        return 2;
+    }
+    kiln_result result =
+        kiln_context_create(&(kiln_context_def){.thread_count = 1}, &context, &error);
+    if (!result)
+        result =
+            !strcmp(argv[1], "save") ? save(context, argv, &error) : compare(context, argv, &error);
+    kiln_context_destroy(context);
+    if (result)
+        fprintf(stderr, "%s\n", error.message);
+    return result != KILN_OK;
+}

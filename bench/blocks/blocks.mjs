@@ -1,0 +1,99 @@
+// BC6H of a cube's levels by kiln and by Basis Universal (UASTC HDR 4x4 at its default effort, transcoded; npm
+// ktx2-encoder, WebAssembly), both decoded by oiiotool: node blocks.mjs BIN PANORAMAS FOLDER CSV
+import { execFileSync } from 'node:child_process';
+import fs from 'node:fs';
+import path from 'node:path';
+import BASIS from './node_modules/ktx2-encoder/dist/basis/basis_encoder.js';
+
+const [bin, panoramas, folder, csv] = process.argv.slice(2).map((name) => path.resolve(name));
+const NAMES = ['city', 'courtyard', 'studio'], LEVELS = 6, PEER_LEVELS = [0, 2, 4];
+const run = (program, ...args) => execFileSync(program, args, { encoding: 'utf8', cwd: folder });
+const ours = (...args) => run(path.join(bin, 'bench_blocks'), ...args).trim().split(' ').map(Number);
+
+fs.rmSync(folder, { recursive: true, force: true });
+fs.mkdirSync(folder, { recursive: true });
+const basis = await BASIS({ print() {} });
+basis.initializeBasis();
+
+// Levels of an rgba32f KTX2 cube: size, and each face's bytes.
+function readCube(name) {
+    const file = fs.readFileSync(path.join(folder, name));
+    return Array.from({ length: LEVELS }, (_, level) => {
+        const at = Number(file.readBigUInt64LE(80 + 24 * level)), size = file.readUInt32LE(20) >> level;
+        const bytes = 16 * size * size;
+        return { size, faces: Array.from({ length: 6 }, (__, face) =>
+            new Uint8Array(file.subarray(at + face * bytes, at + (face + 1) * bytes))) };
+    });
+}
+
+// A DDS of one level with the header that kiln wrote for the whole.
+function writeLevel(name, header, size, faces) {
+    const own = Buffer.from(header);
+    [size, size, faces[0].length].forEach((value, i) => own.writeUInt32LE(value, 12 + 4 * i));
+    own.writeUInt32LE(1, 28);
+    fs.writeFileSync(path.join(folder, name), Buffer.concat([own, ...faces]));
+}
+
+function basisFace(pixels, size) {
+    const encoder = new basis.BasisEncoder(), out = new Uint8Array(1 << 20);
+    encoder.setTexType(0); // 2-D
+    encoder.setHDR(true);
+    encoder.setUASTCHDRQualityLevel(1);
+    encoder.setCreateKTX2File(true);
+    encoder.setKTX2UASTCSupercompression(false);
+    encoder.setMipGen(false);
+    if (!encoder.setSliceSourceImageHDR(0, pixels, size, size, basis.hdr_image_type.cHITRGBAFloat.value, false, 100))
+        throw new Error('Basis takes no source');
+    const begin = process.cpuUsage(), length = encoder.encode(out);
+    const file = new basis.KTX2File(out.slice(0, length)), format = basis.transcoder_texture_format.cTFBC6H.value;
+    if (!length || !file.isValid() || !file.startTranscoding())
+        throw new Error('Basis encodes nothing');
+    const blocks = new Uint8Array(file.getImageTranscodedSizeInBytes(0, 0, 0, format));
+    file.transcodeImage(blocks, 0, 0, 0, format, 0, -1, -1);
+    const microseconds = process.cpuUsage(begin).user;
+    file.close();
+    file.delete();
+    encoder.delete();
+    return { blocks, microseconds };
+}
+
+// Root of the mean squared difference in half floats' bits, and relative to the level's radiance.
+function measure(name, truth, level) {
+    run('oiiotool', `${name}.dds`, '--fullpixels', '--scanline', '-o', `${name}.exr`);
+    return ours('error', truth, `${level}`, `${name}.exr`);
+}
+
+const rows = ['name,unit,median,minimum'];
+const add = (name, unit, value) => rows.push(`${name},${unit},${value},${value}`);
+console.log('blocks: RMSE in half floats\' bits (10 are nearly 1 %) | of the energy | CPU microseconds a texel');
+for (const name of NAMES) {
+    const truth = `${name}.ktx2`;
+    const [time] = ours('save', path.join(panoramas, `${name}.exr`), truth, `${name}.dds`);
+    const dds = fs.readFileSync(path.join(folder, `${name}.dds`)), header = dds.subarray(0, 148);
+    console.log(`  ${name}  kiln, all levels: ${time.toFixed(2)}`);
+    add(`${name} kiln`, 'us/texel', time);
+    const sizes = Array.from({ length: 9 }, (_, k) => 16 * Math.ceil((256 >> k || 1) / 4) ** 2);
+    const whole = sizes.reduce((a, b) => a + b);
+    readCube(truth).forEach(({ size, faces }, level) => {
+        const before = 148 + sizes.slice(0, level).reduce((a, b) => a + b, 0);
+        writeLevel('kiln.dds', header, size, faces.map((_, f) =>
+            dds.subarray(before + f * whole, before + f * whole + sizes[level])));
+        const [codes, energy] = measure('kiln', truth, level);
+        add(`${name} kiln level ${level}`, 'codes', codes);
+        add(`${name} kiln level ${level}`, 'relative', energy);
+        let line = `    level ${level}  kiln ${codes.toFixed(1)} | ${energy.toExponential(1)}`;
+        if (PEER_LEVELS.includes(level)) {
+            const made = faces.map((face) => basisFace(face, size));
+            writeLevel('basis.dds', header, size, made.map(({ blocks }) => blocks));
+            const [theirs, theirEnergy] = measure('basis', truth, level);
+            const us = made.reduce((sum, { microseconds }) => sum + microseconds, 0) / (6 * size * size);
+            add(`${name} basis level ${level}`, 'codes', theirs);
+            add(`${name} basis level ${level}`, 'relative', theirEnergy);
+            add(`${name} basis level ${level}`, 'us/texel', us);
+            line += `   Basis ${theirs.toFixed(1)} | ${theirEnergy.toExponential(1)} | ${us.toFixed(0)} (WebAssembly)`;
+        }
+        console.log(line);
+    });
+}
+fs.mkdirSync(path.dirname(csv), { recursive: true });
+fs.writeFileSync(csv, `${rows.join('\n')}\n`);
