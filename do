@@ -9,7 +9,6 @@ build_needs="cmake:cmake ninja:ninja-build cc:gcc pkg-config:pkg-config libc6-de
     libegl-dev libgles-dev libglfw3-dev libegl1 libgl1-mesa-dri"
 test_needs="node:nodejs npm:npm chromium:chromium mandoc:mandoc clang-format:clang-format script:bsdutils Xvfb:xvfb xauth:xauth
     oiiotool:openimageio-tools
-    glslangValidator:glslang-tools
     glslangValidator:glslang-tools"
 web_needs="cmake:cmake ninja:ninja-build emcc:emscripten node:nodejs npm:npm"
 bench_needs="cmgen:libfilament-tools oiiotool:openimageio-tools valgrind:valgrind chromium:chromium"
@@ -140,9 +139,17 @@ demo)
     need_all "$build_needs"
     panoramas || echo "No real panorama can be had: the demo shows the sky alone."
     build release
-    say "baking"
     set -- build/data/blender/city.exr
     [ -e "$1" ] || shift
+    mkdir -p build/demo
+    if [ $# -gt 0 ]; then
+        need_all "$web_needs $bench_needs"
+        npm_packages tests/web tests/engines
+        say "drawing in the engines"
+        node examples/gallery.mjs build/release/bin build/gallery build/demo/gallery.part \
+            build/data/blender/courtyard.exr build/data/blender/sunrise.exr
+    fi
+    say "baking"
     build/release/bin/demo build/demo "$@"
     say "open $PWD/build/demo/index.html"
     ;;

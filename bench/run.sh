@@ -2,7 +2,8 @@
 # Makes the benches' inputs and runs them: bench/run.sh [--update] [CASE...]
 # Results go to bench/results/MACHINE/CASE.csv. Beside the cases of `bench --list` there is `count`,
 # the instructions of a fixed bake (--update makes today's count the reference), `web`, kiln in a
-# browser's page beside three.js, and `blocks`, BC6H beside Basis Universal's.
+# browser's page beside three.js, `engines`, what engines show of kiln's files and of their own bakes, and
+# `blocks`, BC6H beside Basis Universal's.
 set -eu
 cd "$(dirname "$0")/.."
 bin=build/release/bin
@@ -18,7 +19,7 @@ if [ "${1:-}" = --update ]; then
     update=yes
     shift
 fi
-[ $# -gt 0 ] || set -- accuracy probe threads instructions files scaling peer memory tables display count web blocks
+[ $# -gt 0 ] || set -- accuracy probe threads instructions files scaling peer memory tables display count web engines blocks
 for part in bench bench_reference kiln; do
     [ -x $bin/$part ] || fail "there is no $bin/$part: run ./do bench"
 done
@@ -73,6 +74,18 @@ web() {
         "$results/$($bin/bench --machine)/web.csv"
 }
 
+# What engines show, by kiln's files and by their own filters.
+engines() {
+    have chromium || fail "chromium is missing: install Debian's chromium"
+    have cmgen || fail "cmgen is missing: install Debian's libfilament-tools"
+    for folder in tests/web tests/engines; do
+        [ -d $folder/node_modules ] || fail "packages are missing: run  npm ci --prefix $folder"
+    done
+    printf '\nengines: what they show, against brute force\n'
+    node bench/engines/displayed.mjs build/release/bin build/data/blender $inputs/engines \
+        "$results/$($bin/bench --machine)/engines.csv"
+}
+
 # BC6H beside another encoder's, both decoded by oiiotool.
 blocks() {
     have oiiotool || fail "oiiotool is missing: install Debian's openimageio-tools"
@@ -91,6 +104,10 @@ for name; do
         ;;
     web)
         web || status=1
+        continue
+        ;;
+    engines)
+        engines || status=1
         continue
         ;;
     blocks)

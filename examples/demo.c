@@ -49,6 +49,7 @@ typedef struct demo {
     demo_time load, bake, again, exact, textbook, irradiance_exact, irradiance_textbook;
 
     // Of all.
+    bool has_gallery;
     kiln_image row; ///< the first environment's balls
     demo_figures worst_exact, worst_textbook;
     double first_bake, first_textbook_ratio;
@@ -658,8 +659,8 @@ static kiln_result write_page(demo *d, const char *path, const char *sections, c
     fprintf(f,
             "<a href=\"#table\">The split-sum table</a>"
             "<a href=\"tables.html\">Exact tables</a>"
-            "<a href=\"assignment.html\">The assignment</a></nav>\n</div></header>\n<main>\n%s",
-            sections);
+            "<a href=\"assignment.html\">The assignment</a>%s</nav>\n</div></header>\n<main>\n%s",
+            d->has_gallery ? "<a href=\"gallery.html\">In the engines</a>" : "", sections);
     demo_page_foot(f, "Pictures are brought to the screen by one exposure a section and a filmic "
                       "curve; every number is computed from the linear values.");
     bool failed = ferror(f);
@@ -695,6 +696,8 @@ static kiln_result make_page(demo *d, const char *folder, char **names, int coun
         result = demo_assignment_page(d->context, folder, d->scratch, &d->error);
     if (!result)
         result = demo_tables_page(d->context, folder, d->scratch, &d->error);
+    if (!result)
+        result = demo_gallery_page(folder, &d->has_gallery, &d->error);
     if (!result)
         result = write_page(d, path, sections, names, count);
     free(sections);

@@ -3,6 +3,7 @@
 #define DEMO_H
 
 #include <kiln/kiln.h>
+#include <stdbool.h>
 #include <stdio.h>
 
 // ---------------------------------------------------------------------------------------- pictures
@@ -90,5 +91,9 @@ kiln_result demo_assignment_page(kiln_context *context, const char *folder, cons
                                  kiln_error *error);
 kiln_result demo_tables_page(kiln_context *context, const char *folder, const char *scratch,
                              kiln_error *error);
+
+/// What gallery.mjs leaves in `folder`. Where it is there, it becomes gallery.html.
+#define DEMO_GALLERY "gallery.part"
+kiln_result demo_gallery_page(const char *folder, bool *made, kiln_error *error);
 
 #endif

@@ -29,9 +29,9 @@ const mix = (a, b, t) => a.map((x, i) => x + t * (b[i] - x));
 export const COLUMNS = 32, CELL = 4;
 export const ROUGHNESS = [0.1, 0.2, 0.3, 0.45, 0.6, 0.8, 1];
 
-// Two views from opposite sides. `toEye` is the direction to the camera.
-export function makeViews() {
-    return [[0.31, 0.22, 0.92], [-0.4, -0.35, -0.85]].map((way) => {
+// Two views from opposite sides, or others. `toEye` is the direction to the camera.
+export function makeViews(ways = [[0.31, 0.22, 0.92], [-0.4, -0.35, -0.85]]) {
+    return ways.map((way) => {
         const toEye = normalize(way);
         const right = normalize(cross([0, 1, 0], toEye)), up = cross(toEye, right);
         // A spiral over the cap of n.v > 0.4.
@@ -78,8 +78,8 @@ function readLevel({ size, texels }, direction) {
     return sum;
 }
 
-function readCube(name) {
-    const bytes = fs.readFileSync(path.join(folder, name));
+export function readCube(name) {
+    const bytes = fs.readFileSync(path.resolve(folder, name));
     check(bytes.readUInt32LE(12) === 109, `${name} is not rgba32f`);
     return Array.from({ length: bytes.readUInt32LE(40) }, (_, level) => {
         const at = Number(bytes.readBigUInt64LE(80 + 24 * level));
@@ -105,7 +105,7 @@ const coded = (last, harmonics) => ({
                           : (n) => n.map((x) => (1 + last) * (2 + x)),
 });
 const white = { radiance: () => [1, 1, 1], irradiance: () => [1, 1, 1] };
-const baked = (levels) => ({
+export const baked = (levels) => ({
     radiance: (d, lod) => {
         const low = Math.min(Math.floor(lod), levels.length - 1);
         const high = Math.min(low + 1, levels.length - 1);
@@ -114,13 +114,12 @@ const baked = (levels) => ({
     irradiance: (n) => readLevel(levels.at(-1), n),
 });
 
-// model: { toKiln, lod, shade, clamp?, bend?, harmonics?, distance?, curve?, brightest?, told? } as stated in each
-// test; curve is what the engine does to radiance after reading it, brightest where it cuts its pixels off.
-function predict(model, asset, { toEye: forward, right, up, normals }, roughness) {
-    const row = ROUGHNESS.indexOf(roughness) - ROUGHNESS.length / 2, half = 0.5 + 0.5 / CELL;
+// What a model of models.mjs shows of an asset, at each normal of a row of patches.
+export function predict(model, asset, { toEye: forward, right, up, normals }, roughness, all = ROUGHNESS) {
+    const row = all.indexOf(roughness) - all.length / 2, half = 0.5 + 0.5 / CELL;
     return normals.map((n, i) => {
         // Babylon looks from the camera's place even where rays are parallel.
-        const place = add(right.map((x) => (i + half - COLUMNS / 2) * x), row + half, up);
+        const place = add(right.map((x) => (i + half - normals.length / 2) * x), row + half, up);
         const toEye = model.distance
             ? normalize(add(forward.map((x) => model.distance * x), -1, place)) : forward;
         const nov = dot(n, toEye), r = model.clamp ? model.clamp(roughness) : roughness;
@@ -131,8 +130,7 @@ function predict(model, asset, { toEye: forward, right, up, normals }, roughness
         const around = asset.irradiance(model.toKiln(n));
         const curve = model.curve ?? ((x) => x);
         return { way, nov, r, single, multiple, around,
-                 value: light.map((x, c) => Math.min(single * curve(x) + multiple * around[c],
-                                                    model.brightest ?? Infinity)) };
+                 value: light.map((x, c) => single * curve(x) + multiple * around[c]) };
     });
 }
 
@@ -238,34 +236,34 @@ export function engineOf(name) {
     return JSON.parse(kiln('engines', '--json')).find((row) => row.name === name);
 }
 
-// A and B at [roughness, n.v], by the texels' pairs of a table.
-export function tableReader(size, texel) {
-    return (x, y) => {
-        const at = (w) => Math.min(size - 1, Math.max(0, w * size - 0.5));
-        const [u, v] = [at(x), at(y)], i = Math.min(size - 2, Math.floor(u));
-        const j = Math.min(size - 2, Math.floor(v));
-        return mix(mix(texel(i, j), texel(i + 1, j), u - i),
-                   mix(texel(i, j + 1), texel(i + 1, j + 1), u - i), v - j);
-    };
-}
-
 const bakePlain = (file, size, roughness) =>
     kiln('bake', panorama, '-q', '-o', file, '--format', 'rgba32f', '--size', `${size}`,
          '--levels', `${roughness.length}`, '--roughness', roughness.join());
 
-// name: the engine's in kiln's table. page: its page, which defines draw(file, views, ROUGHNESS, CELL)
-// and resolves to numbers [view][roughness][normal][channel]. ending: of what kiln is told to write;
-// loads: of what the page loads.
+// Where pages find packages, loaders and themselves.
+export function makeSite(site) {
+    fs.rmSync(site, { recursive: true, force: true });
+    fs.mkdirSync(site, { recursive: true });
+    fs.symlinkSync(path.join(here, 'node_modules'), path.join(site, 'npm'));
+    fs.symlinkSync(path.join(here, '../../web/loaders'), path.join(site, 'loaders'));
+    fs.symlinkSync(here, path.join(site, 'pages'));
+}
+
+// The page of an engine defines draw(file, views, ROUGHNESS, CELL), which resolves to numbers
+// [view][roughness][normal][channel]. An .hdr is a panorama, which the engine filters by itself.
+export async function openEngine(browser, address, page) {
+    await browser.goto(`${address}pages/${page}`);
+    await browser.waitForFunction(() => window.draw);
+    return (file, views, roughness, cell) => browser.evaluate(
+        (args) => window.draw(...args), [`${address}${file}`, views, roughness, cell]);
+}
+
+// Takes an engine of models.mjs and
 // bounds.diffuse: the page draws diffuse light alone where its address ends in #diffuse.
 // format: its name and its number in kiln_format, where it is not the engine's first.
-// smallest: the size below which no level goes.
-export async function proveEngine({ name, page, ending, loads = ending, format, smallest = 0, model,
+export async function proveEngine({ name, page, ending, loads, format, smallest = 0, model,
                                     bounds }) {
-    fs.rmSync(folder, { recursive: true, force: true });
-    fs.mkdirSync(folder, { recursive: true });
-    fs.symlinkSync(path.join(here, 'node_modules'), path.join(folder, 'npm'));
-    fs.symlinkSync(path.join(here, '../../web/loaders'), path.join(folder, 'loaders'));
-    fs.symlinkSync(here, path.join(folder, 'pages'));
+    makeSite(folder);
     const { size, level_count: count } = engineOf(name);
     for (const what of ['coded', 'white'])
         run(writePath, name, what, `${size}`, `${what}${ending}`, ...(format ? [`${format[1]}`] : []));
@@ -281,10 +279,8 @@ export async function proveEngine({ name, page, ending, loads = ending, format, 
     const sh = JSON.parse(fs.readFileSync(path.join(folder, 'sh.json')));
     const views = makeViews(), made = model(count, size);
     await withPage(folder, async (browser, address) => {
-        await browser.goto(`${address}pages/${page}`);
-        await browser.waitForFunction(() => window.draw);
-        const draw = (file) => browser.evaluate((args) => window.draw(...args),
-                                                [`${address}${file}`, views, ROUGHNESS, CELL]);
+        const open = await openEngine(browser, address, page);
+        const draw = (file) => open(file, views, ROUGHNESS, CELL);
         console.log(name, format?.[0] ?? '');
         if (bounds.coded)
             checkCoded(made, views, count - 1, size, await draw(`coded${loads}`), bounds.coded);

@@ -1,5 +1,6 @@
 // Patches of white metal in three.js, whichever version a page calls 'three'.
 import * as THREE from 'three';
+import { HDRLoader } from 'three/addons/loaders/HDRLoader.js';
 
 function patches(view, row, rows, material) {
     const positions = [], normals = [], columns = view.normals.length;
@@ -16,8 +17,16 @@ function patches(view, row, rows, material) {
     return new THREE.Mesh(geometry, material);
 }
 
+const renderer = new THREE.WebGLRenderer();
+
+// What three.js itself makes of a panorama.
+export async function filterPanorama(file) {
+    const panorama = await new HDRLoader().setDataType(THREE.FloatType).loadAsync(file);
+    panorama.mapping = THREE.EquirectangularReflectionMapping;
+    return new THREE.PMREMGenerator(renderer).fromEquirectangular(panorama).texture;
+}
+
 export async function drawPatches(environment, views, roughness, cell) {
-    const renderer = new THREE.WebGLRenderer();
     return views.map((view) => {
         const columns = view.normals.length, rows = roughness.length;
         const scene = new THREE.Scene();

@@ -1,5 +1,17 @@
 import fs from 'node:fs';
-import { tableReader } from './rig.mjs';
+
+const mix = (a, b, t) => a.map((x, i) => x + t * (b[i] - x));
+
+// A and B at [roughness, n.v], by the texels' pairs of a table.
+function tableReader(size, texel) {
+    return (x, y) => {
+        const at = (w) => Math.min(size - 1, Math.max(0, w * size - 0.5));
+        const [u, v] = [at(x), at(y)], i = Math.min(size - 2, Math.floor(u));
+        const j = Math.min(size - 2, Math.floor(v));
+        return mix(mix(texel(i, j), texel(i + 1, j), u - i),
+                   mix(texel(i, j + 1), texel(i + 1, j + 1), u - i), v - j);
+    };
+}
 
 // A version's own split sum: 16 x 16 halves (A, B), x = roughness, y = n.v.
 export function readTable(name) {

@@ -1,0 +1,39 @@
+// The ways to light in an engine: its own filter, or cmgen's where it has none in the browser, and kiln's file.
+//   const ways = makeWays(BIN, FOLDER): of an engine of models.mjs, [{ maker, make }]; make(panorama) writes what
+//   the engine's page loads into FOLDER and names it.
+import { execFileSync } from 'node:child_process';
+import path from 'node:path';
+
+export function makeWays(bin, folder) {
+    const run = (program, ...args) =>
+        execFileSync(program, args, { cwd: folder, encoding: 'utf8', maxBuffer: 1 << 26 });
+    const own = { maker: 'its own', make: (panorama) => panorama };
+    const cmgen = {
+        maker: 'cmgen',
+        make: (panorama) => {
+            const { name } = path.parse(panorama);
+            run('cmgen', '-q', '--format=ktx', '--size=256', `--deploy=cmgen-${name}`, panorama);
+            return `cmgen-${name}/cmgen-${name}_ibl.ktx`;
+        },
+    };
+    const byKiln = (engine, maker, ...options) => ({
+        maker,
+        make: (panorama) => {
+            const name = `${path.parse(panorama).name}-${engine.name}${options.join('').replace(/\W/g, '')}`;
+            run(path.join(bin, 'kiln'), 'bake', panorama, '--for', engine.name, '-q',
+                '-o', `${name}${engine.ending}`, ...options);
+            return `${name}${engine.loads}`;
+        },
+    });
+    return (engine) => [engine.name === 'filament' ? cmgen : own, byKiln(engine, 'kiln')];
+}
+
+// What kiln knows of an engine.
+export const engineOf = (bin, name) =>
+    JSON.parse(execFileSync(path.join(bin, 'kiln'), ['engines', '--json'], { encoding: 'utf8' }))
+        .find((row) => row.name === name);
+
+// A panorama as .hdr, which every engine reads.
+export const makePanorama = (bin, folder, from, name) =>
+    execFileSync(path.join(bin, 'kiln'), ['bake', from, '--shape', 'panorama', '--roughness', '0', '--size', '512',
+                                          '-q', '-o', name], { cwd: folder });

@@ -1,0 +1,121 @@
+// The same panoramas in each engine, lit by kiln's file and by the engine's own filter, beside what the engine
+// would show were every light filtered exactly:
+//   node gallery.mjs BIN FOLDER FRAGMENT PANORAMA...
+// FRAGMENT is HTML, pictures inside, which the demo puts on a page of its own. FOLDER is for files on the way.
+import fs from 'node:fs';
+import path from 'node:path';
+import { engineOf, makePanorama, makeWays } from '../bench/engines/ways.mjs';
+import * as models from '../tests/engines/models.mjs';
+import { baked, makeSite, openEngine, predict, readCube } from '../tests/engines/rig.mjs';
+import { withPage } from '../tests/web/browser.mjs';
+import { execFileSync } from 'node:child_process';
+
+const [bin, folder, fragment, ...panoramas] = process.argv.slice(2).map((name) => path.resolve(name));
+const ROUGHNESS = [0.1, 0.25, 0.4, 0.6, 0.8, 1], PIXELS = 56, LOUDER = 8;
+const TITLES = { three: 'three.js', babylon: 'Babylon.js', filament: 'Filament', playcanvas: 'PlayCanvas' };
+
+// A ball of PIXELS across, seen from the +Z of kiln's panoramas' centre: a normal for each pixel inside.
+function makeBall(toEye, right, up) {
+    const inside = [], normals = [];
+    for (let i = 0; i < PIXELS * PIXELS; i++) {
+        const x = 2 * (i % PIXELS + 0.5) / PIXELS - 1, y = 1 - 2 * (Math.floor(i / PIXELS) + 0.5) / PIXELS;
+        const left = 1 - x * x - y * y;
+        if (left < 0.02)
+            continue; // the last grazing pixels say more of the rim than of the light
+        inside.push(i);
+        normals.push(toEye.map((_, c) => x * right[c] + y * up[c] + Math.sqrt(left) * toEye[c]));
+    }
+    // Patches lie along this right, which is the other one where the engine's world is left-handed.
+    const along = [0, 1, 2].map((i) => up[(i + 1) % 3] * toEye[(i + 2) % 3] - up[(i + 2) % 3] * toEye[(i + 1) % 3]);
+    return { inside, view: { toEye, right: along, up, normals } };
+}
+
+// Exact levels, one a roughness, as kiln bakes them without --for.
+function exactLevels(panorama) {
+    return ROUGHNESS.map((r, i) => {
+        const file = `exact-${i}.ktx2`;
+        execFileSync(path.join(bin, 'kiln'), ['bake', panorama, '-q', '-o', file, '--format', 'rgba32f', '--size',
+                                              '256', '--roughness', `${r}`], { cwd: folder });
+        return readCube(path.join(folder, file))[0];
+    });
+}
+
+// What the engine's shading makes of exact light.
+function truth(engine, view, levels) {
+    const { size, level_count: count } = engineOf(bin, engine.name);
+    const model = engine.model(count, size), around = baked([levels.at(-1)]).irradiance;
+    return ROUGHNESS.map((roughness, row) => predict(model, {
+        radiance: (d) => baked([levels[row]]).radiance(d, 0), irradiance: around,
+    }, view, roughness, ROUGHNESS).map((p) => p.value));
+}
+
+const rms = (shown, wanted) => {
+    let off = 0, whole = 0;
+    shown.forEach((pixel, i) => pixel.forEach((x, c) => {
+        off += (x - wanted[i][c]) ** 2;
+        whole += wanted[i][c] ** 2;
+    }));
+    return Math.sqrt(off / whole);
+};
+
+// A row of balls as a PNG: radiance through c / (c + 1) and 1 / 2.2; or differences from grey.
+const drawRow = (page, inside, balls, exposure, grey) => page.evaluate(([pixels, at, all, scale, middle]) => {
+    const canvas = document.createElement('canvas');
+    canvas.width = all.length * (pixels + 4);
+    canvas.height = pixels;
+    const context = canvas.getContext('2d'), image = context.createImageData(canvas.width, pixels);
+    all.forEach((ball, k) => ball.forEach((pixel, i) => {
+        const to = 4 * (Math.floor(at[i] / pixels) * canvas.width + k * (pixels + 4) + at[i] % pixels);
+        pixel.forEach((x, c) => {
+            const light = Math.max(0, x * scale);
+            image.data[to + c] = middle ? 128 + 127 * x * scale : 255 * (light / (1 + light)) ** (1 / 2.2);
+        });
+        image.data[to + 3] = 255;
+    }));
+    context.putImageData(image, 0, 0);
+    return canvas.toDataURL('image/png');
+}, [PIXELS, inside, balls, exposure, grey]);
+
+const percent = (x) => `${(100 * x).toPrecision(2)}`;
+const html = [];
+const figure = (source, caption) =>
+    html.push(`<figure><img class="wide" src="${source}" alt="Six balls"><figcaption>${caption}</figcaption></figure>`);
+
+makeSite(folder);
+const ways = makeWays(bin, folder);
+await withPage(folder, async (browser, address) => {
+    browser.setDefaultTimeout(300000);
+    for (const from of panoramas) {
+        const { name } = path.parse(from), file = `${name}.hdr`;
+        makePanorama(bin, folder, from, file);
+        const levels = exactLevels(file);
+        html.push(`<h2>${name}</h2>`);
+        for (const engine of [models.three, models.babylon, models.filament, models.playcanvas]) {
+            console.log(`  ${name} in ${TITLES[engine.name]}`);
+            // All engines look at the same side: their own +X is kiln's -Z, and so on.
+            const { toKiln } = engine.model(6, 256);
+            const axis = (d) => [0, 1, 2].map((i) => [0, 1, 2].reduce((sum, c) =>
+                sum + d[c] * toKiln([0, 1, 2].map((k) => Number(k === i)))[c], 0));
+            const { inside, view } = makeBall(axis([0, 0, 1]), axis([1, 0, 0]), axis([0, 1, 0]));
+            const wanted = truth(engine, view, levels);
+            const mean = wanted.at(-1).flat().reduce((sum, x) => sum + x, 0) / wanted.at(-1).length / 3;
+            const draw = await openEngine(browser, address, engine.page), shown = [];
+            for (const { maker, make } of ways(engine)) {
+                const [rows] = await draw(make(file), [view], ROUGHNESS, 2);
+                shown.push({ maker, rows, errors: rows.map((row, k) => rms(row, wanted[k])) });
+            }
+            html.push(`<div class="rows"><h3>${TITLES[engine.name]}</h3>`);
+            const cell = (values) => values.map(percent).join(' &nbsp; ');
+            for (const { maker, rows, errors } of shown) {
+                const title = maker === 'kiln' ? '<b>kiln\'s file</b>' : maker === 'cmgen' ? 'cmgen\'s bake' : 'its own bake';
+                figure(await drawRow(browser, inside, rows, 0.6 / mean, false), title);
+                figure(await drawRow(browser, inside,
+                                     rows.map((row, k) => row.map((p, i) => p.map((x, c) => x - wanted[k][i][c]))),
+                                     LOUDER / mean / 2, true),
+                       `error, ${LOUDER} times louder: ${cell(errors)} %`);
+            }
+            html.push('</div>');
+        }
+    }
+});
+fs.writeFileSync(fragment, `${html.join('\n')}\n`);
