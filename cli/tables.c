@@ -7,7 +7,9 @@
 
 static const struct poptOption options[] = {
     {"output", 'o', POPT_ARG_STRING, NULL, TABLES_OUTPUT,
-     "the table: .ktx2, .exr, .hdr, .png, .raw, .h or .glsl", "FILE"},
+     "the table: .ktx2, .exr, .hdr, .png, .raw, .h, .inc or .glsl", "FILE"},
+    {"for", 0, POPT_ARG_STRING, NULL, TABLES_FOR,
+     "what an engine looks up in place of its own: babylon (.png) or filament (.inc)", "ENGINE"},
     {"table", 0, POPT_ARG_STRING, NULL, TABLES_TABLE,
      "e (the default), eavg, dfg, dfg-multiscatter, sheen, e-dielectric, glass or e-walk", "KIND"},
     {"g", 0, POPT_ARG_STRING, NULL, TABLES_G,
@@ -24,8 +26,8 @@ static const struct poptOption options[] = {
      "the outermost texels stand on the edges, not half a texel inside", NULL},
     {"complement", 0, POPT_ARG_NONE, NULL, TABLES_COMPLEMENT, "1 - value", NULL},
     {"flip", 0, POPT_ARG_NONE, NULL, TABLES_FLIP, "the first row is roughness 1", NULL},
-    {"format", 0, POPT_ARG_STRING, NULL, TABLES_FORMAT, "of the numbers: f32, f16, u16 or u8",
-     "FORMAT"},
+    {"format", 0, POPT_ARG_STRING, NULL, TABLES_FORMAT,
+     "of the numbers: f32, f16, u16, u8 or, three in a PNG, rgbd", "FORMAT"},
     {"zstd", 0, POPT_ARG_STRING, NULL, TABLES_ZSTD, "compress KTX2 (3)", "[LEVEL]"},
     {"average", 0, POPT_ARG_STRING, NULL, TABLES_AVERAGE,
      "with --table e: E_avg of what looking it up shows, into a file of its own", "FILE"},
@@ -192,8 +194,8 @@ const cli_command cli_tables = {
         "      E and E_avg for Kulla and Conty's lobe, and the code that reads them\n"
         "  kiln tables -o dfg.ktx2 --table dfg\n"
         "      the split sum, as three.js, glTF viewers and most engines look it up\n"
-        "  kiln tables -o dfg.exr --table dfg-multiscatter --g smith --size 128\n"
-        "      Filament's\n"
+        "  kiln tables --for babylon -o brdf.png\n"
+        "      PBRMaterial.environmentBRDFTexture\n"
         "  kiln tables -o walk.ktx2 --table e-walk --lookup\n"
         "      what later bounces add to A and B, grazing axis and corners; 2 s\n"
         "  kiln tables -o e.h --table e --size 32 --axis grazing --corners\n"

@@ -26,6 +26,7 @@ enum {
     TABLES_SAMPLES,
     TABLES_THREADS,
     TABLES_JSON,
+    TABLES_FOR,
     TABLES_QUIET
 };
 

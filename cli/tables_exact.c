@@ -5,8 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const formats[] = {"auto", "f32", "f16", "u16", "u8", NULL};
-static const char *const endings[] = {"ktx2", "exr", "hdr", "png", "raw", "bin", "h", "glsl", NULL};
+static const char *const formats[] = {"auto", "f32", "f16", "u16", "u8", "rgbd", NULL};
+static const char *const endings[] = {"ktx2", "exr", "hdr", "png",  "raw",
+                                      "bin",  "h",   "inc", "glsl", NULL};
 
 typedef struct exact_job {
     const cli_arguments *a;
@@ -50,8 +51,8 @@ static int check_output(const cli_arguments *a, int option, const char *name)
         if (!strcmp(ending, endings[i]))
             return cli_check_folder(path);
     return cli_wrong(a->command,
-                     "%s %s: must end in .ktx2, .exr, .hdr, .png, .raw, .bin, .h or .glsl", name,
-                     path);
+                     "%s %s: must end in .ktx2, .exr, .hdr, .png, .raw, .bin, .h, .inc or .glsl",
+                     name, path);
 }
 
 // NAME_lookup.h and NAME_lookup.glsl.
@@ -86,6 +87,38 @@ static int read_choices(exact_job *job)
     job->def.flip = a->value[TABLES_FLIP];
     job->save.format = (kiln_table_format)format;
     job->save.name = a->value[TABLES_NAME];
+    return CLI_GO;
+}
+
+// --for: both engines look up the same three numbers, at n.v and roughness of texel centres.
+static int take_engine(exact_job *job)
+{
+    static const struct {
+        const char *name, *ending;
+        int size;
+        kiln_table_format format;
+    } engines[] = {{"babylon", "png", 256, KILN_TABLE_FORMAT_RGBD},
+                   {"filament", "inc", 128, KILN_TABLE_FORMAT_F16}};
+    static const int decided[] = {TABLES_TABLE,   TABLES_D,          TABLES_G,     TABLES_SIZE,
+                                  TABLES_AXIS,    TABLES_CORNERS,    TABLES_FLIP,  TABLES_FORMAT,
+                                  TABLES_AVERAGE, TABLES_COMPLEMENT, TABLES_LOOKUP};
+    const cli_arguments *a = job->a;
+    const char *name = a->value[TABLES_FOR];
+    if (!name)
+        return CLI_GO;
+    int i = !strcmp(name, engines[1].name);
+    if (strcmp(name, engines[i].name) != 0)
+        return cli_wrong(a->command, "--for is '%s', it must be babylon or filament", name);
+    for (size_t k = 0; k < sizeof decided / sizeof *decided; k++)
+        if (a->value[decided[k]])
+            return cli_wrong(a->command, "--for %s decides what --%s is, leave one of them out",
+                             name, cli_option_name(a->command, decided[k]));
+    if (strcmp(cli_ending(a->value[TABLES_OUTPUT]), engines[i].ending) != 0)
+        return cli_wrong(a->command, "--output %s: --for %s writes .%s", a->value[TABLES_OUTPUT],
+                         name, engines[i].ending);
+    job->def.kind = KILN_TABLE_DFG_MULTISCATTER;
+    job->def.width = job->def.height = engines[i].size;
+    job->save.format = engines[i].format;
     return CLI_GO;
 }
 
@@ -147,7 +180,7 @@ static int read_arguments(exact_job *job)
             CLI_GO ||
         (code = cli_integer(a, TABLES_THREADS, "--threads", 1, 256, &job->threads)) != CLI_GO)
         return code;
-    if ((code = check_kind(job)) != CLI_GO)
+    if ((code = take_engine(job)) != CLI_GO || (code = check_kind(job)) != CLI_GO)
         return code;
     if (a->value[TABLES_AVERAGE] && (code = check_output(a, TABLES_AVERAGE, "--average")) != CLI_GO)
         return code;

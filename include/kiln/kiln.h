@@ -835,11 +835,12 @@ KILN_API KILN_CHECKED kiln_result kiln_image_save(kiln_context *context, const k
 
 /// How a table's numbers are stored.
 typedef enum kiln_table_format {
-    KILN_TABLE_FORMAT_AUTO = 0, ///< halves in KTX2, 16 bits in PNG, else floats
+    KILN_TABLE_FORMAT_AUTO = 0, ///< halves in KTX2 and .inc, 16 bits in PNG, else floats
     KILN_TABLE_FORMAT_F32,
     KILN_TABLE_FORMAT_F16,
     KILN_TABLE_FORMAT_U16, ///< 0 to 1 in 65535 steps, clamped
-    KILN_TABLE_FORMAT_U8   ///< 0 to 1 in 255 steps, clamped
+    KILN_TABLE_FORMAT_U8,  ///< 0 to 1 in 255 steps, clamped
+    KILN_TABLE_FORMAT_RGBD ///< PNG of three channels, each (c D)^(1 / 2.2), and D: to 255, Babylon.js'
 } kiln_table_format;
 
 /// {0} is a good default.
@@ -854,6 +855,7 @@ typedef struct kiln_table_save_def {
 ///   .exr .hdr .png slices one below the other; two channels are red and green
 ///   .raw .bin      the numbers alone, little-endian
 ///   .h             a C array of floats, at most 4194304 of them
+///   .inc           halves as hexadecimal numbers with commas, as Filament's cmgen writes its table
 ///   .glsl          a constant array and its lookup, at most 65536 bytes
 /// `def` may be NULL.
 KILN_API KILN_CHECKED kiln_result kiln_table_save(kiln_context *context, const kiln_table *table,

@@ -5,6 +5,8 @@
 #include "base/file.h"
 #include "codec/codec.h"
 #include "codec/numbers.h"
+#include "codec/rgbx.h"
+#include "image/pack.h"
 
 #include <math.h>
 #include <string.h>
@@ -57,10 +59,11 @@ enum {
     F32 = 1 << KILN_TABLE_FORMAT_F32,
     F16 = 1 << KILN_TABLE_FORMAT_F16,
     U16 = 1 << KILN_TABLE_FORMAT_U16,
-    U8 = 1 << KILN_TABLE_FORMAT_U8
+    U8 = 1 << KILN_TABLE_FORMAT_U8,
+    RGBD = 1 << KILN_TABLE_FORMAT_RGBD
 };
 
-typedef enum file_kind { KTX2, EXR, HDR, PNG, RAW, HEADER, GLSL } file_kind;
+typedef enum file_kind { KTX2, EXR, HDR, PNG, RAW, HEADER, INC, GLSL } file_kind;
 
 static const struct ending {
     const char *text;
@@ -71,10 +74,11 @@ static const struct ending {
     {".ktx2", KTX2, KILN_TABLE_FORMAT_F16, F32 | F16 | U16 | U8},
     {".exr", EXR, KILN_TABLE_FORMAT_F32, F32 | F16},
     {".hdr", HDR, KILN_TABLE_FORMAT_F32, 0},
-    {".png", PNG, KILN_TABLE_FORMAT_U16, U16 | U8},
+    {".png", PNG, KILN_TABLE_FORMAT_U16, U16 | U8 | RGBD},
     {".raw", RAW, KILN_TABLE_FORMAT_F32, F32 | F16 | U16 | U8},
     {".bin", RAW, KILN_TABLE_FORMAT_F32, F32 | F16 | U16 | U8},
     {".h", HEADER, KILN_TABLE_FORMAT_F32, F32},
+    {".inc", INC, KILN_TABLE_FORMAT_F16, F16},
     {".glsl", GLSL, KILN_TABLE_FORMAT_F32, F32 | F16 | U16 | U8},
 };
 
@@ -88,11 +92,11 @@ static kiln_result find_ending(const char *path, const kiln_table_save_def *def,
             *ending = &endings[i];
     if (!*ending)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
-                       "%s: ends in none of .ktx2 .exr .hdr .png .raw .bin .h .glsl", path);
-    if ((unsigned)def->format > KILN_TABLE_FORMAT_U8)
+                       "%s: ends in none of .ktx2 .exr .hdr .png .raw .bin .h .inc .glsl", path);
+    if ((unsigned)def->format > KILN_TABLE_FORMAT_RGBD)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "format is %d, it must be 0 to %d",
-                       (int)def->format, (int)KILN_TABLE_FORMAT_U8);
-    static const char *const names[] = {"", "f32", "f16", "u16", "u8"};
+                       (int)def->format, (int)KILN_TABLE_FORMAT_RGBD);
+    static const char *const names[] = {"", "f32", "f16", "u16", "u8", "rgbd"};
     if (def->format && !((*ending)->formats & 1U << def->format))
         return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: a %s file has no format %s", path,
                        (*ending)->text, names[def->format]);
@@ -120,6 +124,25 @@ static kiln_result widen(kiln_context *context, const kiln_image *image, kiln_im
     return result;
 }
 
+// Three numbers that may exceed 1 in four of 8 bits.
+static kiln_result encode_rgbd(const kiln_image *image, const char *path, ki_writer *w,
+                               kiln_error *error)
+{
+    if (image->channels != 3)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: rgbd has three channels, the table %d",
+                       path, image->channels);
+    kiln_image four = {0};
+    kiln_result result =
+        kiln_image_create(w->context, image->width, image->height, 4, &four, error);
+    size_t count = result ? 0 : (size_t)image->width * (size_t)image->height;
+    for (size_t i = 0; i < count; i++)
+        ki_rgbd_from_float(image->pixels + 3 * i, four.pixels + 4 * i);
+    if (result == KILN_OK)
+        result = ki_png_encode(four.pixels, four.width, four.height, 4, KI_PNG_PLAIN8, w, error);
+    kiln_image_free(&four);
+    return result;
+}
+
 static kiln_result encode_picture(const kiln_table *table, file_kind kind, kiln_table_format format,
                                   const char *path, ki_writer *w, kiln_error *error)
 {
@@ -134,6 +157,8 @@ static kiln_result encode_picture(const kiln_table *table, file_kind kind, kiln_
         return ki_exr_encode(image->pixels, image->width, image->height, image->channels, &options,
                              w, error);
     }
+    if (format == KILN_TABLE_FORMAT_RGBD)
+        return encode_rgbd(image, path, w, error);
     kiln_image rgb = {0};
     kiln_result result = KILN_OK;
     if (image->channels == 2 || (kind == HDR && image->channels == 1)) {
@@ -166,6 +191,19 @@ static kiln_result encode_raw(const kiln_table *table, kiln_table_format format,
     return KILN_OK;
 }
 
+static void encode_inc(const kiln_table *table, ki_writer *w)
+{
+    const kiln_image *image = &table->image;
+    size_t count = (size_t)image->width * (size_t)image->height * (size_t)image->channels;
+    char text[KI_TABLE_TEXT];
+    ki_table_describe(&table->def, text);
+    ki_write_text(w, "// kiln %s: %s\n// halves, texel by texel, the first row first\n",
+                  kiln_version(), text);
+    for (size_t i = 0; i < count; i++)
+        ki_write_text(w, "0x%04x,%s", (unsigned)ki_half_from_float(image->pixels[i]),
+                      (i + 1) % 12 && i + 1 < count ? " " : "\n");
+}
+
 static kiln_result encode(const kiln_table *table, const char *path, const kiln_table_save_def *def,
                           ki_writer *w, kiln_error *error)
 {
@@ -191,6 +229,9 @@ static kiln_result encode(const kiln_table *table, const char *path, const kiln_
         return encode_raw(table, format, w, error);
     case HEADER:
         return ki_table_write_header(table, path, name.text, w, error);
+    case INC:
+        encode_inc(table, w);
+        return KILN_OK;
     case GLSL:
         return ki_table_write_glsl(table, format, path, name.text, w, error);
     }

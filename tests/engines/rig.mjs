@@ -231,6 +231,7 @@ function checkPixels(name, model, asset, views, shown, bounds) {
 const run = (program, ...args) =>
     execFileSync(program, args, { cwd: folder, encoding: 'utf8', maxBuffer: 1 << 26 });
 export const kiln = (...args) => run(kilnPath, ...args);
+export const write = (...args) => run(writePath, ...args);
 
 export function engineOf(name) {
     return JSON.parse(kiln('engines', '--json')).find((row) => row.name === name);

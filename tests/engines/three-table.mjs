@@ -3,7 +3,7 @@ import fs from 'node:fs';
 const mix = (a, b, t) => a.map((x, i) => x + t * (b[i] - x));
 
 // A and B at [roughness, n.v], by the texels' pairs of a table.
-function tableReader(size, texel) {
+export function tableReader(size, texel) {
     return (x, y) => {
         const at = (w) => Math.min(size - 1, Math.max(0, w * size - 0.5));
         const [u, v] = [at(x), at(y)], i = Math.min(size - 2, Math.floor(u));

@@ -260,7 +260,7 @@ static void what_cannot_be_saved_is_said(void **state)
     (void)state;
     kiln_table table, large = {.def = {.width = 256, .height = 65, .depth = 1}};
     CHECK_OK(lookup_table(context, 0, &table, &error));
-    refused(&table, "a.tga", NULL, "ends in none of .ktx2 .exr .hdr .png .raw .bin .h .glsl");
+    refused(&table, "a.tga", NULL, "ends in none of .ktx2 .exr .hdr .png .raw .bin .h .inc .glsl");
     refused(&table, "a.png", &(kiln_table_save_def){.format = KILN_TABLE_FORMAT_F16},
             "a .png file has no format f16");
     refused(&table, "a.hdr", &(kiln_table_save_def){.format = KILN_TABLE_FORMAT_F32},
@@ -269,8 +269,10 @@ static void what_cannot_be_saved_is_said(void **state)
             "a .exr file has no format u8");
     refused(&table, "a.h", &(kiln_table_save_def){.format = KILN_TABLE_FORMAT_F16},
             "a .h file has no format f16");
-    refused(&table, "a.ktx2", &(kiln_table_save_def){.format = (kiln_table_format)5},
-            "format is 5, it must be 0 to 4");
+    refused(&table, "a.ktx2", &(kiln_table_save_def){.format = (kiln_table_format)6},
+            "format is 6, it must be 0 to 5");
+    refused(&table, "a.ktx2", &(kiln_table_save_def){.format = KILN_TABLE_FORMAT_RGBD},
+            "a .ktx2 file has no format rgbd");
     refused(&table, "a.ktx2", &(kiln_table_save_def){.zstd = 23}, "zstd is 23, it must be 0 to 22");
     refused(&table, "a.raw", &(kiln_table_save_def){.zstd = 3}, "only KTX2 has zstd");
     static const char *const names[] = {"", "9a", "a-b", "_a", "a__b", "gl_a"};
