@@ -162,7 +162,7 @@ bench)
     bench/run.sh "$@"
     ;;
 lint)
-    need_all "$build_needs $lint_needs"
+    need_all "$build_needs $lint_needs $web_needs"
     say "layers" && scripts/layers.sh
     say "formatting" && scripts/format.sh --check
     say "shellcheck"
@@ -176,6 +176,11 @@ lint)
         --enable=warning,performance,portability --suppress=missingInclude $sources
     say "clang-tidy"
     printf '%s\n' "$sources" | xargs -n 1 -P 2 clang-tidy --quiet -p build/release 2>build/tidy.log
+    # The page's, by the commands that emcc is called with; these need not be run.
+    npm_packages web
+    cmake --preset wasm >build/wasm.log 2>&1 || { cat build/wasm.log; exit 1; }
+    clang-tidy --quiet -p build/wasm --extra-arg=--target=wasm32-unknown-emscripten \
+        --extra-arg=--sysroot="$(em-config CACHE)/sysroot" web/*.c 2>>build/tidy.log
     ;;
 format)
     need clang-format:clang-format

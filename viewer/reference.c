@@ -85,7 +85,7 @@ static void tangents(const double n[3], double t[3], double b[3])
     b[2] = -n[1];
 }
 
-// What a ray from `from` meets; it does not meet the ball that it leaves, or -1.
+// What a ray from `from` meets, but for the ball that it leaves; VIEW_MAX_BALLS for none.
 static void find_point(const job *j, const double from[3], const double d[3], int leaves,
                        view_point *p)
 {
@@ -337,7 +337,7 @@ static void pixel(job *j, int x, int y, view_reference_report *report, float *ou
         double d[3];
         int across = i % j->side, down = i / j->side;
         ray_at(j, x + (across + 0.5) / j->side, y + (down + 0.5) / j->side, d);
-        find_point(j, j->eye, d, -1, &points[waiting]);
+        find_point(j, j->eye, d, VIEW_MAX_BALLS, &points[waiting]);
         if (!shines(j, &points[waiting], radiance))
             waiting++;
         for (int c = 0; c < 3; c++)

@@ -1,5 +1,6 @@
 #include "baker.h"
 
+#include "reference.h"
 #include "viewer.h"
 
 #include <emscripten.h>
@@ -10,9 +11,11 @@
 struct baker {
     kiln_context *context;
     kiln_error error;
-    kiln_map source, baked;
+    kiln_map source, baked, irradiance;
     kiln_sh sh;
     view_environment scenery;
+    kiln_image truth;
+    double truth_noise;
 };
 
 EM_JS(void, tell, (const char *stage, double fraction), {
@@ -121,19 +124,45 @@ static kiln_result harmonics(baker *b, const kiln_map *source, const kiln_spectr
     return result;
 }
 
+// The irradiance that `kiln bake --irradiance` makes: the cosine is filtered up to degree 303.
+static kiln_result irradiance(baker *b, const kiln_map *source, const kiln_spectrum *spectrum,
+                              double rotation, kiln_map *map)
+{
+    enum { DEGREE = 320, SIZE = 64 };
+    kiln_spectrum *own = NULL;
+    kiln_lobe lambert = kiln_lobe_lambert();
+    kiln_result result = kiln_map_create(b->context, KILN_SHAPE_CUBE, SIZE, 1, map, &b->error);
+    if (!result && (!spectrum || kiln_spectrum_degree(spectrum) < DEGREE)) {
+        result = kiln_spectrum_analyze(b->context, source, DEGREE, &own, &b->error);
+        spectrum = own;
+    }
+    if (!result)
+        result = kiln_spectrum_filter(b->context, spectrum, &lambert, rotation, map, 0, &b->error);
+    kiln_spectrum_destroy(own);
+    map->roughness[0] = 1;
+    return result;
+}
+
+static kiln_result beside(baker *b, const kiln_map *source, const kiln_spectrum *spectrum,
+                          double rotation, kiln_map *diffuse)
+{
+    kiln_result result = harmonics(b, source, spectrum, rotation);
+    return result ? result : irradiance(b, source, spectrum, rotation, diffuse);
+}
+
 static kiln_result filter(baker *b, const kiln_map *source, const kiln_prefilter_def *def,
-                          kiln_map *map)
+                          kiln_map *map, kiln_map *diffuse)
 {
     kiln_plan *plan = NULL;
     kiln_result result;
     if (source->shape != KILN_SHAPE_PANORAMA) {
         result = kiln_prefilter(b->context, source, def, map, &b->error);
-        return result ? result : harmonics(b, source, NULL, def->rotation);
+        return result ? result : beside(b, source, NULL, def->rotation, diffuse);
     }
     if ((result = kiln_plan_create(b->context, source->size, def, &plan, &b->error)) == KILN_OK &&
         (result = kiln_plan_map(plan, map, &b->error)) == KILN_OK &&
         (result = kiln_plan_execute(plan, source, map, &b->error)) == KILN_OK)
-        result = harmonics(b, source, kiln_plan_spectrum(plan), def->rotation);
+        result = beside(b, source, kiln_plan_spectrum(plan), def->rotation, diffuse);
     kiln_plan_destroy(plan);
     return result;
 }
@@ -141,7 +170,7 @@ static kiln_result filter(baker *b, const kiln_map *source, const kiln_prefilter
 bool baker_bake(baker *b, int size, int levels, double rotation, double exposure)
 {
     kiln_prefilter_def def = {.size = size, .level_count = levels, .rotation = rotation};
-    kiln_map brighter = {0}, map = {0};
+    kiln_map brighter = {0}, map = {0}, diffuse = {0};
     kiln_sh before = b->sh;
     kiln_result result = KILN_OK;
     if (!b->source.size)
@@ -149,15 +178,18 @@ bool baker_bake(baker *b, int size, int levels, double rotation, double exposure
     else if (exposure != 0)
         result = exposed(b, exposure, &brighter);
     if (!result)
-        result = filter(b, exposure != 0 ? &brighter : &b->source, &def, &map);
+        result = filter(b, exposure != 0 ? &brighter : &b->source, &def, &map, &diffuse);
     kiln_map_free(&brighter);
     if (result) {
         kiln_map_free(&map);
+        kiln_map_free(&diffuse);
         b->sh = before;
         return false;
     }
     kiln_map_free(&b->baked);
     b->baked = map;
+    kiln_map_free(&b->irradiance);
+    b->irradiance = diffuse;
     return true;
 }
 
@@ -226,6 +258,35 @@ bool baker_table(baker *b, const char *path, int kind)
                 !kiln_table_save(b->context, &table, path, NULL, &b->error);
     kiln_table_free(&table);
     return good;
+}
+
+bool baker_truth(baker *b, const double *numbers, int width, int height, double noise, bool alone)
+{
+    view_options options = numbers_to(numbers);
+    view_reference_def def = {
+        .noise = noise, .alone = alone, .thread_count = 1, .progress = progress};
+    view_reference_report report = {0};
+    kiln_image_free(&b->truth);
+    bool good = !view_reference(b->context, &options, &b->source, width, height, &def, &b->truth,
+                                &report, &b->error);
+    b->truth_noise = report.noise;
+    return good;
+}
+
+const float *baker_truth_texels(const baker *b)
+{
+    return b->truth.pixels;
+}
+
+double baker_truth_noise(const baker *b)
+{
+    return b->truth_noise;
+}
+
+bool baker_save_irradiance(baker *b, const char *path, int format)
+{
+    kiln_save_def def = {.format = (kiln_format)format, .lobe = "lambert"};
+    return !kiln_map_save(b->context, &b->irradiance, path, &def, NULL, &b->error);
 }
 
 bool baker_save(baker *b, const char *path, int format)

@@ -4,6 +4,8 @@
 #ifndef BAKER_H
 #define BAKER_H
 
+#include "numbers.h"
+
 #include <emscripten.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -41,9 +43,19 @@ BAKER double baker_scenery_roughness(const baker *b, int level);
 BAKER const float *baker_scenery_texels(const baker *b, int level);
 BAKER const double *baker_scenery_harmonics(const baker *b);
 
+/// Integrates a view of what was opened, as `kiln render --reference` does, to a noise: RGB floats, row 0 at
+/// the top.
+BAKER bool baker_truth(baker *b, const double *numbers, int width, int height, double noise,
+                       bool alone);
+BAKER const float *baker_truth_texels(const baker *b);
+BAKER double baker_truth_noise(const baker *b);
+
 /// Writes a table of the reflection model, as `kiln tables --table` does by default: kind 0 is e, 1
 /// eavg, 2 dfg.
 BAKER bool baker_table(baker *b, const char *path, int kind);
+
+/// The irradiance beside what was baked, as `kiln bake --irradiance` writes it.
+BAKER bool baker_save_irradiance(baker *b, const char *path, int format);
 
 /// Writes a file by its name's ending: .ktx2 (format: kiln_format), .dds, or the harmonics as
 /// .json, .txt and .h.

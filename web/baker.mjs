@@ -90,6 +90,26 @@ export class Baker {
         };
     }
 
+    // A view of what was opened, integrated to a noise: RGB floats, and the noise that was reached.
+    truth({ numbers, width, height, noise, alone }) {
+        const { module, self } = this, at = module._malloc(8 * numbers.length);
+        try {
+            module.HEAPF64.set(numbers, at >>> 3);
+            this.call('baker_truth', at, width, height, noise, alone);
+        } finally {
+            module._free(at);
+        }
+        const from = module._baker_truth_texels(self) >>> 2;
+        return { width, height, noise: module._baker_truth_noise(self),
+                 texels: module.HEAPF32.slice(from, from + 3 * width * height) };
+    }
+
+    // The irradiance beside what was baked: .ktx2 .dds
+    irradiance(name, format = 'rgba16f') {
+        this.call('baker_save_irradiance', `/${name}`, FORMATS[format]);
+        return this.written(`/${name}`);
+    }
+
     // A file that the command would write, by the name's ending: .ktx2 .dds .json .txt .h
     file(name, format = 'rgba16f') {
         this.call('baker_save', `/${name}`, FORMATS[format]);

@@ -28,7 +28,9 @@ export function makeControls(container, state, words, changed) {
         add('see', 'asPrinted', 'as the handout prints it');
         add('see', 'auto', 'fit the brightness');
         add('see', 'samples', 'rays a pixel, squared', 1, 8, 1);
-        add('see', 'debug', 'show instead', words.debug.filter((word) => word !== 'level'));
+        add('see', 'debug', 'show instead', [...words.debug.filter((word) => word !== 'level'), 'error']);
+        add('see', 'noise', 'error: noise', 0.01, 0.5, 0.01);
+        add('see', 'alone', 'error: balls alone');
     }
     const only = { split: 'compare', asPrinted: 'assignment', method: null };
     return {
@@ -39,6 +41,8 @@ export function makeControls(container, state, words, changed) {
                 const scene = only[controller.property];
                 if (scene)
                     controller.show(state.scene === scene);
+                if (controller.property === 'noise' || controller.property === 'alone')
+                    controller.show(state.debug === 'error');
             }
         },
     };

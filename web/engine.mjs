@@ -1,6 +1,6 @@
 // The baker behind promises: engine.bake({...}) is done in the worker. A worker that breaks is
 // replaced by a new one, which has nothing open.
-const WORK = ['open', 'sky', 'bake', 'scenery', 'file', 'table'];
+const WORK = ['open', 'sky', 'bake', 'scenery', 'truth', 'file', 'irradiance', 'table'];
 
 export class Engine {
     constructor({ onProgress = () => {} } = {}) {

@@ -1,6 +1,7 @@
 // The page: takes a panorama, has it baked, shows and hands out what comes of it.
 import { makeControls } from './controls.mjs';
 import { Engine } from './engine.mjs';
+import { Later } from './later.mjs';
 import { Stage } from './stage.mjs';
 import { bounded, flag, fromHash, number, text, toHash, word } from './state.mjs';
 import makeStageModule from './stage.js';
@@ -44,7 +45,9 @@ function kindsOf(scene) {
         scene: word('ibl', ...words.scene),
         method: word(own.method, ...words.method),
         material: word(own.material, ...words.material),
-        debug: word('none', ...words.debug),
+        debug: word('none', ...words.debug, 'error'),
+        noise: number(0.05, 0.01, 0.5, 3), // at which the reference of the error is done
+        alone: flag(false), // it has no light among the balls
         azimuth: number(own.azimuth, -3600, 3600),
         elevation: number(own.elevation, -89, 89),
         distance: number(own.distance, 60, 3000, 1),
@@ -66,7 +69,7 @@ function readAddress() {
 
 const state = readAddress();
 let opened = null; // the file's own bytes and name; null for the sky
-let baked = null, lit = '', litByTextbook = '';
+let baked = null, lit = '';
 
 function remember() {
     history.replaceState(null, '', toHash(kindsOf(state.scene), state) || location.pathname);
@@ -125,11 +128,6 @@ const bake = (file) => soon(async () => {
         stage.light(await engine.scenery({ size }));
         lit = key;
     }
-    if (stage.ready && state.scene === 'compare' && key !== litByTextbook) {
-        say('Baking as the textbook does, by 1024 samples a texel.');
-        stage.light(await engine.scenery({ size, samples: 1024 }), true);
-        litByTextbook = key;
-    }
     baked = made;
     opened = file;
     state.source = file ? file.name : 'sky';
@@ -137,6 +135,112 @@ const bake = (file) => soon(async () => {
     showLevels();
     remember();
 });
+
+// ------------------------------------------------------------------------------------- what takes long
+
+const words = { textbook: '', truth: '' };
+const speak = (who) => (sentence) => {
+    words[who] = sentence;
+    get('later').textContent = Object.values(words).filter(Boolean).join('; ');
+    get('stop').hidden = !get('later').textContent;
+};
+
+const sourceKey = () => (opened ? opened.stamp : [state.sun, state.bearing, state.haze].join());
+const openIn = (worker) => (opened ? worker.open(opened.bytes, opened.name)
+    : worker.sky({ elevation: state.sun, azimuth: state.bearing, turbidity: state.haze }));
+
+// The textbook's bake for compare, with few samples first.
+const textbook = new Later({
+    onWords: speak('textbook'),
+    onFailure: (problem) => complain(problem.message),
+    onResult(scenery, _, last) {
+        stage.light(scenery, true);
+        canvas.dataset.textbook = last ? 'whole' : 'so far';
+        view.change();
+    },
+});
+
+function wantTextbook() {
+    if (state.scene !== 'compare' || !baked || stopped.textbook === lit) {
+        if (textbook.busy)
+            textbook.stop();
+        return;
+    }
+    const { size } = state;
+    textbook.start({
+        key: lit, source: sourceKey(), open: openIn,
+        steps: [16, 64, 256, 1024].map((samples) => ({
+            words: `The textbook bakes right of the handle, ${samples} of its 1024 samples a texel`,
+            work: (worker) => worker.scenery({ size, samples }),
+        })),
+    });
+}
+
+// The reference, with much noise first, and what the view's error against it is.
+const TRUTH_ROWS = 128;
+let wrong = null;
+const truth = new Later({
+    onWords: speak('truth'),
+    onFailure: (problem) => complain(problem.message),
+    onResult(integral, { key, seen }, last) {
+        wrong = { key, last, noise: integral.noise, ...stage.error(seen, integral) };
+        refresh();
+    },
+});
+
+// The picture whose error is wanted: one ray a pixel, and few of them.
+function wantedTruth() {
+    const box = get('stage'), height = TRUTH_ROWS;
+    const width = Math.max(1, Math.round(height * box.clientWidth / Math.max(1, box.clientHeight)));
+    const seen = { ...viewOf(), samples: 1 };
+    const { noise, alone } = state;
+    return { seen, width, height, noise, alone,
+             key: [lit, stage.numbers(seen), width, height, noise, alone].join() };
+}
+
+function wantTruth() {
+    clearTimeout(wantTruth.timer);
+    const wanted = state.debug === 'error' && stage.ready && baked ? wantedTruth() : null;
+    if (!wanted || wanted.key === stopped.truth) {
+        if (truth.busy)
+            truth.stop();
+        return;
+    }
+    const { seen, key, noise, ...rest } = wanted;
+    const numbers = stage.numbers(seen);
+    const noises = [8, 4, 2, 1].map((times) => Math.min(0.5, times * noise));
+    wantTruth.timer = setTimeout(() => truth.start({
+        key, source: sourceKey(), open: openIn,
+        steps: noises.filter((value, i) => value !== noises[i + 1]).map((value) => ({
+            key, seen,
+            words: `Integrating every path of light to a noise of ${Number(value.toPrecision(2))}` +
+                   (value > noise ? `, of ${noise} in the end` : ''),
+            work: (worker) => worker.truth({ numbers, ...rest, noise: value }),
+        })),
+    }), 250);
+}
+
+// What is not to be begun again until something changes.
+const stopped = { textbook: '', truth: '' };
+get('stop').onclick = () => {
+    if (textbook.busy)
+        stopped.textbook = lit;
+    if (truth.busy)
+        stopped.truth = wantedTruth().key;
+    textbook.stop();
+    truth.stop();
+};
+
+function paint({ colours, width, height }) {
+    const picture = new ImageData(width, height);
+    for (let i = 0; i < width * height; i++) {
+        for (let c = 0; c < 3; c++)
+            picture.data[4 * i + c] = 255 * colours[3 * i + c];
+        picture.data[4 * i + 3] = 255;
+    }
+    [flat.width, flat.height] = [width, height];
+    flat.getContext('2d').putImageData(picture, 0, 0);
+}
 
 let stamps = 0;
 async function take(file) {
@@ -175,13 +279,18 @@ function showLevels() {
 function viewOf() {
     const fit = state.auto && baked && state.scene !== 'furnace' && state.scene !== 'assignment';
     const exposure = fit ? Math.log2(middleGrey(baked.harmonics)) + FIT : state.stops;
-    return { ...stage.defaults(state.scene), ...state, level: 0, rotation: state.turn, exposure };
+    const debug = state.debug === 'error' ? 'none' : state.debug;
+    return { ...stage.defaults(state.scene), ...state, debug, level: 0, rotation: state.turn, exposure };
 }
 const FIT = 1.5; // stops, from the level strip's middle grey to the renderer's tone mapping
 
-function noteOf() {
+function noteOf(error) {
     if (!stage.ready)
         return stage.problem;
+    if (error)
+        return `Error against the reference, red too bright, blue too dark: ${error.screen.toFixed(1)} of ` +
+               `255 RMS, ${error.rms.toPrecision(2)} of the mean light, noise ` +
+               `${error.noise.toPrecision(2)}${error.last ? '' : ' so far'}`;
     if (state.scene === 'furnace') {
         const { largest, rms } = stage.furnace(viewOf(), 512, 256);
         return `Furnace: what is left of the balls is ${largest.toExponential(1)} at most, ` +
@@ -193,15 +302,24 @@ function noteOf() {
 function refresh() {
     const k = baked ? Math.min(state.shown, baked.levels.length - 1) : -1;
     const showsLevel = baked && (k >= 0 || !stage.ready);
-    flat.hidden = !showsLevel;
-    canvas.hidden = Boolean(showsLevel);
+    wantTextbook();
+    wantTruth();
+    const error = !showsLevel && state.debug === 'error' && baked && wrong?.key === wantedTruth().key
+        ? wrong : null;
+    flat.hidden = !showsLevel && !error;
+    canvas.hidden = !flat.hidden;
+    flat.dataset.error = !error ? '' : error.last ? 'whole' : 'so far';
+    flat.setAttribute('aria-label', error ? 'The error against the reference'
+                                          : 'A baked level, unrolled as a panorama');
+    if (error)
+        paint(error);
     [...get('levels').children].forEach((item, i) => {
         item.firstChild.setAttribute('aria-pressed', String(i === k));
     });
-    get('handle').hidden = showsLevel || state.scene !== 'compare';
+    get('handle').hidden = !flat.hidden || state.scene !== 'compare';
     get('handle').setAttribute('aria-valuenow', String(Math.round(100 * state.split)));
     try {
-        get('note').textContent = showsLevel && stage.ready ? `Level ${k}, unrolled` : noteOf();
+        get('note').textContent = showsLevel && stage.ready ? `Level ${k}, unrolled` : noteOf(error);
     } catch (problem) {
         get('note').textContent = problem.message;
     }
@@ -227,8 +345,6 @@ function changed(name) {
         const sky = ['sun', 'bearing', 'haze'].includes(name);
         changed.timer = setTimeout(() => bake(sky ? null : opened), 150);
         document.body.setAttribute('aria-busy', 'true');
-    } else if (name === 'scene' && state.scene === 'compare') {
-        bake(opened);
     }
     refresh();
 }
@@ -296,6 +412,7 @@ const addTable = (label, kind) =>
 addFile('Cube, KTX2', '.ktx2', 'rgba16f');
 addFile('Cube, KTX2 of 32 bits', '-32.ktx2', 'rgba32f');
 addFile('Cube, DDS', '.dds', 'rgba16f');
+addDownload('Irradiance, KTX2', () => `${stem()}-diffuse.ktx2`, (name) => engine.irradiance(name));
 addFile('Harmonics, JSON', '.json');
 addFile('Harmonics, C', '.h');
 addTable('Table of E', 'e');

@@ -1,5 +1,6 @@
 #include "stage.h"
 
+#include "reference.h"
 #include "viewer.h"
 
 #include <emscripten/html5.h>
@@ -11,6 +12,7 @@ struct stage {
     kiln_error error;
     view_renderer *renderer;
     view_environment coming;
+    kiln_image truth;
     double numbers[STAGE_NUMBERS];
 };
 
@@ -73,65 +75,18 @@ const char *stage_word(int kind, int index)
 void stage_defaults(stage *s, int scene)
 {
     view_options o = view_defaults((view_scene)scene);
-    double *n = s->numbers;
-    n[STAGE_SCENE] = (double)o.scene;
-    n[STAGE_METHOD] = (double)o.method;
-    n[STAGE_MATERIAL] = (double)o.material;
-    n[STAGE_TARGET_X] = o.camera.target[0];
-    n[STAGE_TARGET_Y] = o.camera.target[1];
-    n[STAGE_TARGET_Z] = o.camera.target[2];
-    n[STAGE_AZIMUTH] = o.camera.azimuth;
-    n[STAGE_ELEVATION] = o.camera.elevation;
-    n[STAGE_DISTANCE] = o.camera.distance;
-    n[STAGE_FOV] = o.camera.fov;
-    n[STAGE_ROTATION] = o.rotation;
-    n[STAGE_EXPOSURE] = o.exposure;
-    n[STAGE_DEBUG] = (double)o.debug;
-    n[STAGE_LEVEL] = o.debug_level;
-    n[STAGE_SPLIT] = o.split;
-    n[STAGE_BACKGROUND] = o.background;
-    n[STAGE_SAMPLES] = o.samples;
-    n[STAGE_AS_PRINTED] = o.as_printed;
-    n[STAGE_OCCLUSION] = o.occlusion;
-    n[STAGE_CUBE_DIFFUSE] = o.cube_diffuse;
-    n[STAGE_BENT] = o.bent;
-}
-
-static view_options options_of(const stage *s)
-{
-    const double *n = s->numbers;
-    return (view_options){
-        .scene = (view_scene)n[STAGE_SCENE],
-        .method = (view_method)n[STAGE_METHOD],
-        .material = (view_material)n[STAGE_MATERIAL],
-        .camera = {.target = {n[STAGE_TARGET_X], n[STAGE_TARGET_Y], n[STAGE_TARGET_Z]},
-                   .azimuth = n[STAGE_AZIMUTH],
-                   .elevation = n[STAGE_ELEVATION],
-                   .distance = n[STAGE_DISTANCE],
-                   .fov = n[STAGE_FOV]},
-        .rotation = n[STAGE_ROTATION],
-        .exposure = n[STAGE_EXPOSURE],
-        .debug = (view_debug)n[STAGE_DEBUG],
-        .debug_level = (int)n[STAGE_LEVEL],
-        .split = n[STAGE_SPLIT],
-        .background = n[STAGE_BACKGROUND],
-        .samples = (int)n[STAGE_SAMPLES],
-        .as_printed = n[STAGE_AS_PRINTED] != 0,
-        .occlusion = n[STAGE_OCCLUSION] != 0,
-        .cube_diffuse = n[STAGE_CUBE_DIFFUSE] != 0,
-        .bent = n[STAGE_BENT] != 0,
-    };
+    numbers_from(&o, s->numbers);
 }
 
 void stage_draw(stage *s, int width, int height)
 {
-    view_options options = options_of(s);
+    view_options options = numbers_to(s->numbers);
     view_draw(s->renderer, &options, width, height);
 }
 
 bool stage_furnace(stage *s, int width, int height, double *off)
 {
-    view_options options = options_of(s);
+    view_options options = numbers_to(s->numbers);
     return !view_furnace_residual(s->renderer, &options, width, height, &off[0], &off[1],
                                   &s->error);
 }
@@ -169,4 +124,34 @@ bool stage_light(stage *s, int slot)
                                       &s->coming.sh, &s->coming.irradiance, &s->error);
     view_environment_free(&s->coming);
     return good;
+}
+
+// ---------------------------------------------------------------------------------------- the error
+
+float *stage_truth(stage *s, int width, int height)
+{
+    kiln_image_free(&s->truth);
+    return kiln_image_create(s->context, width, height, 3, &s->truth, &s->error) ? NULL
+                                                                                 : s->truth.pixels;
+}
+
+bool stage_error(stage *s, double *off)
+{
+    view_options options = numbers_to(s->numbers);
+    kiln_image image;
+    if (view_picture(s->renderer, &options, s->truth.width, s->truth.height, true, &image,
+                     &s->error))
+        return false;
+    view_error e = view_compare(&options, &image, &s->truth, true);
+    kiln_image_free(&s->truth);
+    s->truth = image;
+    off[0] = e.rms;
+    off[1] = e.largest;
+    off[2] = e.screen;
+    return true;
+}
+
+const float *stage_colours(const stage *s)
+{
+    return s->truth.pixels;
 }

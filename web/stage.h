@@ -3,36 +3,12 @@
 #ifndef STAGE_H
 #define STAGE_H
 
+#include "numbers.h"
+
 #include <emscripten.h>
 #include <stdbool.h>
 
 #define STAGE EMSCRIPTEN_KEEPALIVE
-
-// A view as numbers, in this order; flags are 0 or 1.
-typedef enum stage_number {
-    STAGE_SCENE,
-    STAGE_METHOD,
-    STAGE_MATERIAL,
-    STAGE_TARGET_X,
-    STAGE_TARGET_Y,
-    STAGE_TARGET_Z,
-    STAGE_AZIMUTH,
-    STAGE_ELEVATION,
-    STAGE_DISTANCE,
-    STAGE_FOV,
-    STAGE_ROTATION,
-    STAGE_EXPOSURE,
-    STAGE_DEBUG,
-    STAGE_LEVEL,
-    STAGE_SPLIT,
-    STAGE_BACKGROUND,
-    STAGE_SAMPLES,
-    STAGE_AS_PRINTED,
-    STAGE_OCCLUSION,
-    STAGE_CUBE_DIFFUSE,
-    STAGE_BENT,
-    STAGE_NUMBERS
-} stage_number;
 
 typedef struct stage stage;
 
@@ -61,5 +37,12 @@ STAGE bool stage_light(stage *s, int slot);
 STAGE void stage_draw(stage *s, int width, int height);
 /// Largest and RMS difference from 1 of the furnace's compensated balls, in numbers 0 and 1 of `off`.
 STAGE bool stage_furnace(stage *s, int width, int height, double *off);
+
+/// Room for the truth of a picture of this size: RGB floats, row 0 at the top.
+STAGE float *stage_truth(stage *s, int width, int height);
+/// Draws the view at that size and compares. stage_colours then are those of its error, 0 to 1, and `off`
+/// receives RMS and largest relative to the truth's mean, and the RMS of 255 on a screen.
+STAGE bool stage_error(stage *s, double *off);
+STAGE const float *stage_colours(const stage *s);
 
 #endif

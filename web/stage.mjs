@@ -37,12 +37,13 @@ export class Stage {
         }));
     }
 
+    numbers(view) {
+        return NUMBERS.map((name) => (WORDS.includes(name) ? this.words[name].indexOf(view[name])
+                                                           : Number(view[name])));
+    }
+
     set(view) {
-        const at = this.module._stage_numbers(this.self) >>> 3;
-        NUMBERS.forEach((name, i) => {
-            this.module.HEAPF64[at + i] =
-                WORDS.includes(name) ? this.words[name].indexOf(view[name]) : Number(view[name]);
-        });
+        this.module.HEAPF64.set(this.numbers(view), this.module._stage_numbers(this.self) >>> 3);
     }
 
     draw(view, width, height) {
@@ -65,6 +66,23 @@ export class Stage {
         module.HEAPF64.set(harmonics, module._stage_harmonics(self) >>> 3);
         if (!module._stage_light(self, textbook ? 1 : 0))
             throw new Error(this.message());
+    }
+
+    // The error of what draw() shows against its truth: colours, RGB floats of 0 to 1, and figures.
+    error(view, { width, height, texels }) {
+        const { module, self } = this, at = module._stage_truth(self, width, height);
+        if (!at)
+            throw new Error(this.message());
+        module.HEAPF32.set(texels, at >>> 2);
+        this.set(view);
+        const off = module._malloc(24), good = module._stage_error(self, off);
+        const [rms, largest, screen] = module.HEAPF64.slice(off >>> 3, (off >>> 3) + 3);
+        module._free(off);
+        if (!good)
+            throw new Error(this.message());
+        const from = module._stage_colours(self) >>> 2;
+        return { rms, largest, screen, width, height,
+                 colours: module.HEAPF32.slice(from, from + 3 * width * height) };
     }
 
     // How far the furnace's compensated balls are from vanishing.

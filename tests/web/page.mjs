@@ -133,9 +133,84 @@ async function theAddressHoldsTheState(page, address) {
     check(/mine\.exr/.test(await text(page, 'error')), 'the missing file is not named');
 }
 
+// Every button's file is the command's.
+async function theFilesAreTheCommands(page, address) {
+    await page.goto('about:blank');
+    await page.goto(`${address}#size=64&samples=1`);
+    await idle(page);
+    kiln('sky', '-o', 'sky.exr', '--azimuth', '150');
+    const bake = (name, ...args) => kiln('bake', 'sky.exr', '-q', '--size', '64', '-o', name, ...args);
+    const files = {
+        'Cube, KTX2 of 32 bits': ['sky-32.ktx2', (name) => bake(name, '--format', 'rgba32f')],
+        'Cube, DDS': ['sky.dds', (name) => bake(name)],
+        'Irradiance, KTX2': ['sky-diffuse.ktx2', (name) => bake('other.ktx2', '--irradiance', name)],
+        'Harmonics, C': ['sky.h', (name) => bake('other.ktx2', '--sh', name)],
+        'Table of E': ['e.ktx2', (name) => kiln('tables', '-q', '-o', name)],
+        'Table of E_avg': ['eavg.ktx2', (name) => kiln('tables', '-q', '--table', 'eavg', '-o', name)],
+        'Table of A, B': ['dfg.ktx2', (name) => kiln('tables', '-q', '--table', 'dfg', '-o', name)],
+    };
+    for (const [label, [wanted, make]] of Object.entries(files)) {
+        const { name, bytes } = await downloaded(page, () => button(page, label).click());
+        check(name === wanted, `the download of "${label}" is called ${name}`);
+        make(name);
+        checkSame(bytes, read(name), name);
+    }
+    const labels = await page.locator('#downloads button').allTextContents();
+    const untried = labels.filter((label) => !files[label] &&
+                                  !['Cube, KTX2', 'Harmonics, JSON'].includes(label));
+    check(!untried.length, `nobody tries ${untried}`);
+}
+
+const flatError = (page, wanted) => page.waitForFunction(
+    (value) => document.getElementById('flat').dataset.error === value, wanted, { timeout: 240000 });
+
+// The figure under the picture is the command's, which has the same rays and random numbers.
+async function theErrorIsIntegrated(page, address) {
+    await page.goto('about:blank');
+    await page.goto(`${address}#size=64&samples=1&debug=error&noise=0.4&alone=1&sun=60`);
+    await idle(page);
+    await flatError(page, 'whole');
+    const note = await text(page, 'note');
+    const [, screen, rms] = note.match(/blue too dark: ([0-9.]+) of 255 RMS, ([0-9.]+) of the mean/) ?? [];
+    check(rms && Number(screen) > 0, `the note says "${note}"`);
+    const [width, height] = await page.evaluate(() => {
+        const flat = document.getElementById('flat');
+        return [flat.width, flat.height];
+    });
+    kiln('sky', '-o', 'high.exr', '--elevation', '60', '--azimuth', '150');
+    const said = kiln('render', 'high.exr', '-o', 'error.png', '--error', '--alone', '--noise', '0.4',
+                      '--samples', '1', '--bake-size', '64', '--size', `${width}x${height}`);
+    const [, wanted] = said.match(/error RMS ([0-9.]+)/);
+    check(Math.abs(rms / wanted - 1) < 0.03, `the page's error is ${rms}, the command's ${wanted}`);
+    // A change of the view is followed; what takes too long can be stopped, and the page lives on.
+    await page.evaluate(() => { location.hash = `${location.hash.replace('noise=0.4', 'noise=0.01')}&azimuth=30`; });
+    await idle(page);
+    await page.waitForFunction(() => /^Integrating/.test(document.getElementById('later').textContent),
+                               null, { timeout: 60000 });
+    await button(page, 'Stop').click();
+    check(await text(page, 'later') === '', 'it does not stop');
+    await page.waitForTimeout(600);
+    check(await text(page, 'later') === '' && !await page.isVisible('#error'), 'it begins again');
+    await cube(page);
+}
+
+// The textbook's half of compare comes by and by, and the page takes keys meanwhile.
+async function theTextbookTakesItsTime(page, address) {
+    await page.goto('about:blank');
+    await page.goto(`${address}#size=64&samples=1&scene=compare`);
+    await idle(page);
+    await page.waitForFunction(() => /^The textbook bakes/.test(document.getElementById('later').textContent));
+    await page.locator('#view').focus();
+    await page.keyboard.press('ArrowRight');
+    await page.waitForFunction(() => document.getElementById('view').dataset.textbook === 'whole',
+                               null, { timeout: 240000 });
+    check(/azimuth=5/.test(page.url()), `after a key the address is ${page.url()}`);
+}
+
 await withPage(site, async (page, address) => {
     for (const test of [theSkyIsBakedAtOnce, aFileIsDroppedAndBaked, aBrokenFileGivesASentence,
-                        theKeyboardSuffices, theAddressHoldsTheState]) {
+                        theKeyboardSuffices, theAddressHoldsTheState, theFilesAreTheCommands,
+                        theErrorIsIntegrated, theTextbookTakesItsTime]) {
         const began = Date.now();
         await test(page, address);
         console.log(`${test.name}: ${Date.now() - began} ms`);

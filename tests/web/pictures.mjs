@@ -82,6 +82,9 @@ await withPage(site, async (page, address) => {
             location.hash = wanted;
         }, hash.toString());
         await idle(page);
+        if (scene === 'compare')
+            await page.waitForFunction(() => document.getElementById('view').dataset.textbook === 'whole',
+                                       null, { timeout: 240000 });
         await drawn(page);
         const bare = scene === 'assignment' || scene === 'furnace';
         kiln('render', ...(bare ? [] : ['sky.exr', '--bake-size', '64']), '-q', '-o', 'native.png', '--scene', scene,

@@ -1,0 +1,67 @@
+// Work that takes long, in workers of its own while the page goes on: what there is so far comes first,
+// better comes later, and whatever is no longer wanted is stopped.
+import { Engine } from './engine.mjs';
+
+// A row of steps, each of which gives something to see. start({ key, open, steps }) does nothing where
+// that key is at work or done; open(engine) opens the environment in the worker.
+export class Later {
+    // onWords(sentence) while it works; '' when it no longer does. onResult(result, step, last).
+    constructor({ onWords, onResult, onFailure }) {
+        Object.assign(this, { onWords, onResult, onFailure, key: '', opened: '', round: 0, busy: false });
+    }
+
+    get works() {
+        return this.busy;
+    }
+
+    stop() {
+        this.round++;
+        this.key = '';
+        if (this.busy)
+            this.engine.restart('Stopped.'); // a new worker, which has nothing open
+        if (this.busy)
+            this.opened = '';
+        this.busy = false;
+        this.onWords('');
+    }
+
+    // steps: [{ words, work(engine) }]; `source` says what open() would open.
+    async start({ key, source, open, steps }) {
+        if (key === this.key)
+            return;
+        this.stop();
+        this.key = key;
+        this.busy = true;
+        const round = ++this.round;
+        this.engine ??= new Engine({
+            onProgress: (stage, fraction) => {
+                if (this.busy)
+                    this.onWords(`${this.words}, ${Math.round(100 * fraction)} %`);
+            },
+        });
+        try {
+            if (this.opened !== source) {
+                await open(this.engine);
+                this.opened = source;
+            }
+            for (const [i, step] of steps.entries()) {
+                if (round !== this.round)
+                    return;
+                this.words = step.words;
+                this.onWords(step.words);
+                const result = await step.work(this.engine);
+                if (round !== this.round)
+                    return;
+                this.onResult(result, step, i === steps.length - 1);
+            }
+        } catch (problem) {
+            if (round !== this.round)
+                return;
+            this.key = '';
+            this.opened = '';
+            this.onFailure(problem);
+        }
+        this.busy = false;
+        this.onWords('');
+    }
+}

@@ -1,0 +1,36 @@
+// A view as numbers, which the page hands to the baker and to the stage.
+#ifndef NUMBERS_H
+#define NUMBERS_H
+
+#include "viewer.h"
+
+// In this order; flags are 0 or 1.
+typedef enum stage_number {
+    STAGE_SCENE,
+    STAGE_METHOD,
+    STAGE_MATERIAL,
+    STAGE_TARGET_X,
+    STAGE_TARGET_Y,
+    STAGE_TARGET_Z,
+    STAGE_AZIMUTH,
+    STAGE_ELEVATION,
+    STAGE_DISTANCE,
+    STAGE_FOV,
+    STAGE_ROTATION,
+    STAGE_EXPOSURE,
+    STAGE_DEBUG,
+    STAGE_LEVEL,
+    STAGE_SPLIT,
+    STAGE_BACKGROUND,
+    STAGE_SAMPLES,
+    STAGE_AS_PRINTED,
+    STAGE_OCCLUSION,
+    STAGE_CUBE_DIFFUSE,
+    STAGE_BENT,
+    STAGE_NUMBERS
+} stage_number;
+
+void numbers_from(const view_options *options, double numbers[STAGE_NUMBERS]);
+view_options numbers_to(const double numbers[STAGE_NUMBERS]);
+
+#endif
