@@ -4,9 +4,11 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
-static const char *const names[] = {"courtyard", "interior", "studio", "forest",
-                                    "city",      "sunset",   "night",  "sunrise"};
+// From the calmest to the sunniest, but these two first.
+static const char *const names[] = {"courtyard", "sunrise", "city",   "interior",
+                                    "studio",    "forest",  "sunset", "night"};
 enum { NAME_COUNT = sizeof names / sizeof *names };
 
 typedef struct layout {
@@ -14,15 +16,17 @@ typedef struct layout {
     int size, level_count; // 0: the engine's own
 } layout;
 static const layout layouts[] = {
-    {"three", "three, 1024, 9 levels", 1024, 9},
+    {"three", "three of 9 levels from 1024", 1024, 9},
     {"three", "three", 0, 0},
     {"babylon", "babylon", 0, 0},
     {"filament", "filament", 0, 0},
 };
 enum { LAYOUT_COUNT = sizeof layouts / sizeof *layouts };
 
-static const char *const variants[] = {"none"};
-enum { VARIANT_COUNT = sizeof variants / sizeof *variants };
+// Exact levels, and those for what the engine shows.
+enum { NONE, SHARP, SOFT, FITS };
+static const char *const fits[] = {"none", "sharp", "soft"};
+static const double bar = 0.6, aim = 0.5, soft_aim = 0.25;
 
 // Roughness .05 to 1 in equal steps.
 enum { ROUGHNESS_COUNT = 39 };
@@ -31,22 +35,28 @@ typedef struct display {
     kiln_context *context;
     kiln_map source;
     kiln_spectrum *spectrum;
-    kiln_map maps[LAYOUT_COUNT][VARIANT_COUNT];
-    bench_figures figures[LAYOUT_COUNT][VARIANT_COUNT]; // rms as a sum of squares until the end
+    kiln_map maps[LAYOUT_COUNT][FITS];
+    double seconds[LAYOUT_COUNT][FITS];
+    bench_figures figures[LAYOUT_COUNT][FITS]; // rms as a mean square until the end
     double (*directions)[3], (*values)[3];
 } display;
 
 static bool bake(bench *b, display *d)
 {
     for (int i = 0; i < LAYOUT_COUNT; i++)
-        for (int v = 0; v < VARIANT_COUNT; v++) {
+        for (int v = 0; v < FITS; v++) {
             const layout *l = &layouts[i];
+            const kiln_engine *engine = kiln_engine_find(l->engine);
             float roughness[KILN_MAX_LEVELS];
             kiln_prefilter_def def;
-            if (kiln_engine_levels(kiln_engine_find(l->engine), l->size, l->level_count, roughness,
-                                   &def, &b->error) ||
-                kiln_prefilter(d->context, &d->source, &def, &d->maps[i][v], &b->error))
+            if (kiln_engine_levels(engine, l->size, l->level_count, roughness, &def, &b->error))
                 return false;
+            def.shown_by = v == NONE ? NULL : engine;
+            def.soft = v == SOFT;
+            double start = bench_cpu();
+            if (kiln_prefilter(d->context, &d->source, &def, &d->maps[i][v], &b->error))
+                return false;
+            d->seconds[i][v] = bench_cpu() - start;
         }
     return true;
 }
@@ -71,8 +81,8 @@ static bool compare(bench *b, display *d, double roughness)
                   !kiln_spectrum_filter(d->context, d->spectrum, &lobe, 0, &truth, 0, &b->error);
     for (int k = 0; k < count && done; k++)
         kiln_map_direction(&truth, 0, (size_t)k, d->directions[k]);
-    for (int m = 0; m < LAYOUT_COUNT * VARIANT_COUNT && done; m++) {
-        int i = m / VARIANT_COUNT, v = m % VARIANT_COUNT;
+    for (int m = 0; m < LAYOUT_COUNT * FITS && done; m++) {
+        int i = m / FITS, v = m % FITS;
         double off = 0, whole = 0;
         done = !kiln_engine_show(d->context, kiln_engine_find(layouts[i].engine), &d->maps[i][v],
                                  roughness, (const double(*)[3])d->directions, count, d->values,
@@ -88,9 +98,10 @@ static bool compare(bench *b, display *d, double roughness)
                 whole += weight * wanted * wanted;
             }
         }
-        double relative = sqrt(off / whole);
-        d->figures[i][v].rms += relative * relative / ROUGHNESS_COUNT;
-        d->figures[i][v].largest = fmax(d->figures[i][v].largest, relative);
+        // The trapezoidal rule's weight.
+        double part = (roughness < 0.051 || roughness > 0.999 ? 0.5 : 1) / (ROUGHNESS_COUNT - 1);
+        d->figures[i][v].rms += part * off / whole;
+        d->figures[i][v].largest = fmax(d->figures[i][v].largest, sqrt(off / whole));
     }
     kiln_map_free(&truth);
     return done;
@@ -98,19 +109,31 @@ static bool compare(bench *b, display *d, double roughness)
 
 static void report(bench *b, display *d, const char *name)
 {
-    printf("  %-10s", name);
-    for (int i = 0; i < LAYOUT_COUNT; i++)
-        for (int v = 0; v < VARIANT_COUNT; v++) {
+    for (int i = 0; i < LAYOUT_COUNT; i++) {
+        printf("  %-10s %-24s", i ? "" : name, layouts[i].title);
+        for (int v = 0; v < FITS; v++) {
             char row[96];
             bench_figures *f = &d->figures[i][v];
             f->rms = sqrt(f->rms);
-            printf("%8.2f /%6.1f", 100 * f->rms, 100 * f->largest);
-            snprintf(row, sizeof row, "%s: %s: %s rms", name, layouts[i].title, variants[v]);
+            printf("%8.2f /%5.1f (%4.1f s)", 100 * f->rms, 100 * f->largest, d->seconds[i][v]);
+            snprintf(row, sizeof row, "%s: %s: %s rms", name, layouts[i].title, fits[v]);
             bench_value(b, row, "relative", f->rms);
-            snprintf(row, sizeof row, "%s: %s: %s largest", name, layouts[i].title, variants[v]);
+            snprintf(row, sizeof row, "%s: %s: %s largest", name, layouts[i].title, fits[v]);
             bench_value(b, row, "relative", f->largest);
         }
-    puts("");
+        puts("");
+    }
+    fflush(stdout);
+    // Of the calm one and of the sunny one.
+    if (strcmp(name, "courtyard") != 0 && strcmp(name, "sunrise") != 0)
+        return;
+    const bench_figures *f = d->figures[0];
+    bench_bar(b, "rms of sharp over none, three, 9 levels", f[SHARP].rms / f[NONE].rms, "", bar,
+              false);
+    bench_aim("rms of sharp over none, three, 9 levels", f[SHARP].rms / f[NONE].rms, "", aim);
+    f = d->figures[2];
+    if (!strcmp(name, "sunrise"))
+        bench_aim("rms of soft over none, babylon", f[SOFT].rms / f[NONE].rms, "", soft_aim);
 }
 
 static bool check_environment(bench *b, display *d, const char *name)
@@ -126,7 +149,7 @@ static bool check_environment(bench *b, display *d, const char *name)
     if (done)
         report(b, d, name);
     for (int i = 0; i < LAYOUT_COUNT; i++)
-        for (int v = 0; v < VARIANT_COUNT; v++)
+        for (int v = 0; v < FITS; v++)
             kiln_map_free(&d->maps[i][v]);
     kiln_spectrum_destroy(d->spectrum);
     kiln_map_free(&d->source);
@@ -139,11 +162,12 @@ bool bench_display(bench *b)
     kiln_context *context = NULL;
     if (kiln_context_create(NULL, &context, &b->error))
         return false;
-    printf("  displayed error in %%, rms over roughness .05 to 1 / of the worst roughness\n  %-10s",
+    printf("  displayed error in %%: rms over roughness .05 to 1 / at the worst one (CPU of the "
+           "bake)\n"
+           "  %-35s",
            "");
-    for (int i = 0; i < LAYOUT_COUNT; i++)
-        for (int v = 0; v < VARIANT_COUNT; v++)
-            printf(" %s, %s", layouts[i].title, variants[v]);
+    for (int v = 0; v < FITS; v++)
+        printf("%14s%10s", fits[v], "");
     puts("");
     double(*directions)[3] = malloc(2 * MOST * sizeof *directions);
     bool done = directions != NULL || bench_fail(b, "no memory");

@@ -11,6 +11,7 @@
 enum {
     OUTPUT = 1,
     ENGINE,
+    FIT,
     SIZE,
     LEVELS,
     SHAPE,
@@ -59,6 +60,11 @@ static struct poptOption output_options[] = {
      "OUT"},
     VALUE("for", ENGINE,
           "what an engine loads: its levels, its axes, its files; see 'kiln engines'", "ENGINE"),
+    VALUE(
+        "fit", FIT,
+        "with --for: levels for what the engine shows; sharp keeps level 0 a mirror, none is exact "
+        "levels (by engine)",
+        "sharp|soft|none"),
     VALUE("size", SIZE, "texels along a face, rows of a panorama (256)", "N"),
     VALUE("levels", LEVELS, "levels of the chain (all, down to 1 texel)", "N"),
     VALUE("shape", SHAPE, "cube, panorama or octahedron (cube)", "SHAPE"),
@@ -112,6 +118,7 @@ static const struct poptOption options[] = {
 static const char *const lobes[] = {"ggx", "lambert", "charlie", "phong", NULL};
 static const char *const shapes[] = {"panorama", "cube", "octahedron", NULL};
 static const char *const methods[] = {"exact", "textbook", NULL};
+static const char *const fits[] = {"none", "sharp", "soft", NULL};
 static const char *const layouts[] = {"auto", "panorama", "cross", "strip", "octahedron", NULL};
 static const char *const formats[] = {"auto", "rgba16f", "rgba32f", "rgb9e5", "b10g11r11",
                                       "bc6h", "rgbm",    "rgbd",    "rgbp",   NULL};
@@ -120,7 +127,7 @@ typedef struct bake {
     cli_arguments arguments;
     const char *output, *irradiance_path, *sh_path;
     const kiln_engine *engine; // NULL without --for
-    int size, level_count, smallest, shape, format, zstd, lobe, textbook;
+    int size, level_count, smallest, shape, format, zstd, lobe, textbook, fit;
     int samples, phi_steps, theta_steps;
     int irradiance_size, sh_bands, layout, threads;
     double sh_window, rotation, exposure;
@@ -238,6 +245,7 @@ static int read_numbers(bake *b)
         (code = cli_choice(a, LOBE, "--lobe", lobes, &b->lobe)) != CLI_GO ||
         (code = cli_choice(a, SHAPE, "--shape", shapes, &b->shape)) != CLI_GO ||
         (code = cli_choice(a, METHOD, "--method", methods, &b->textbook)) != CLI_GO ||
+        (code = cli_choice(a, FIT, "--fit", fits, &b->fit)) != CLI_GO ||
         (code = cli_choice(a, LAYOUT, "--layout", layouts, &b->layout)) != CLI_GO ||
         (code = cli_choice(a, FORMAT, "--format", formats, &b->format)) != CLI_GO)
         return code;
@@ -327,6 +335,8 @@ static int take_engine(bake *b)
     static const int decided[] = {SHAPE, ZSTD, ROUGHNESS, LOBE, METHOD};
     const cli_arguments *a = &b->arguments;
     const char *name = a->value[ENGINE];
+    if (!name && a->value[FIT])
+        return cli_wrong(&cli_bake, "--fit needs --for ENGINE");
     if (!name)
         return CLI_GO;
     b->engine = kiln_engine_find(name);
@@ -352,6 +362,8 @@ static int take_engine(bake *b)
     b->smallest = def.smallest;
     b->has_roughness = true;
     b->stores_sh = true;
+    if (!a->value[FIT])
+        b->fit = b->engine->fit;
     return CLI_GO;
 }
 
@@ -501,6 +513,8 @@ static int filter_exactly(bake *b)
         .roughness = b->has_roughness ? b->roughness : NULL,
         .lobe = (enum kiln_lobe_kind)b->lobe,
         .rotation = b->rotation,
+        .shown_by = b->fit ? b->engine : NULL,
+        .soft = b->fit == 2,
     };
     int code = CLI_FAILED;
     kiln_plan *plan = NULL;
@@ -696,6 +710,8 @@ static int report_json(const bake *b)
     }
     cJSON_AddStringToObject(json, "method", methods[b->textbook]);
     cJSON_AddStringToObject(json, "lobe", lobes[b->lobe]);
+    if (b->engine)
+        cJSON_AddStringToObject(json, "fit", fits[b->fit]);
     if (b->degree)
         cJSON_AddNumberToObject(json, "degree", b->degree);
     cJSON_AddStringToObject(json, "cpu", kiln_context_cpu(b->job.context));
@@ -725,7 +741,7 @@ static int report(bake *b)
         snprintf(files, sizeof files, " in %d files", b->main_count);
     printf("%s: %s of %d, %d level%s%s, %s %s, from %s %s of %d x %d, %.2f s\n", b->output,
            shapes[b->map.shape], b->map.size, b->map.level_count, b->map.level_count > 1 ? "s" : "",
-           files, methods[b->textbook], lobes[b->lobe],
+           files, b->fit ? "fitted" : methods[b->textbook], lobes[b->lobe],
            b->source_shape == KILN_SHAPE_OCTAHEDRON ? "an" : "a", shapes[b->source_shape],
            b->source_width, b->source_height, total_seconds(b));
     if (!b->verbose)

@@ -37,7 +37,7 @@ static const cli_command *find(const char *name)
     return NULL;
 }
 
-// popt would take the word after a bare --zstd for its level; its own default is put in.
+// popt would take the word after a bare --zstd or --fit for its value; the default is put in.
 static const char **prepare(int argc, char **argv, const char *name)
 {
     const char **words = calloc((size_t)argc + 1, sizeof *words);
@@ -47,7 +47,11 @@ static const char **prepare(int argc, char **argv, const char *name)
     for (int i = 0; i < argc; i++) {
         if (!strcmp(argv[i], "--"))
             options = false;
-        words[i] = options && !strcmp(argv[i], "--zstd") ? "--zstd=3" : argv[i];
+        words[i] = argv[i];
+        if (options && !strcmp(argv[i], "--zstd"))
+            words[i] = "--zstd=3";
+        else if (options && !strcmp(argv[i], "--fit"))
+            words[i] = "--fit=sharp";
     }
     words[0] = name; // as it stands in the usage line
     return words;

@@ -326,6 +326,8 @@ KILN_API KILN_CHECKED kiln_result kiln_spectrum_filter(kiln_context *context,
 
 // --------------------------------------------------------------------------------------- prefilter
 
+typedef struct kiln_engine kiln_engine; // below, among the files
+
 /// {0} is a good default: a cube of 256, full chain, GGX, roughness from 0 to 1 in equal steps.
 typedef struct kiln_prefilter_def {
     kiln_shape shape;       ///< KILN_SHAPE_PANORAMA is 0; see has_shape
@@ -341,6 +343,13 @@ typedef struct kiln_prefilter_def {
     /// Where the spectrum is cut: the relative L2 error that a lone bright point would have, were it
     /// not summed exactly. 1e-6 to 0.01; 0 for 1.5e-4. Real environments err by a hundredth of it.
     double tolerance;
+    /// Levels for what this engine shows, instead of the exact ones: see kiln_engine_levels. It mixes two
+    /// levels linearly and reads texels bilinearly; these show the least error over roughness .05 to 1 in
+    /// this environment, relative to what is right at each. Level 0 is the mirror all the same, white
+    /// stays white, nothing is negative. NULL: exact levels. Source: docs/theory/display.md.
+    const kiln_engine *shown_by;
+    bool
+        soft; ///< with shown_by: level 0 may be softer than the mirror, where that shows less error
 } kiln_prefilter_def;
 
 /// Every level from one analysis. Roughness 0 with GGX is the mirror: true area weights. `def` may
@@ -880,7 +889,7 @@ KILN_API KILN_CHECKED kiln_result kiln_sh_save(kiln_context *context, const kiln
 
 /// What an engine wants of an environment. docs/engines/NAME.md says how it is loaded there, and
 /// what was shown by its pixels.
-typedef struct kiln_engine {
+struct kiln_engine {
     const char *name;    ///< "three"
     const char *title;   ///< "three.js from r187 on"
     const char *files;   ///< what is written: "NAME.ktx2"
@@ -892,7 +901,9 @@ typedef struct kiln_engine {
     kiln_format
         formats[4];    ///< to choose from, the first by default; KILN_FORMAT_AUTO behind the last
     const char *proof; ///< "pixels of VERSION", where seen; else "source of" or "manual of"
-} kiln_engine;
+    bool
+        fit; ///< kiln_prefilter_def.shown_by shows less error by our bench: so does kiln bake --for
+};
 
 /// The engines in the order of their table; NULL where the index is none.
 KILN_API const kiln_engine *kiln_engine_at(int index);

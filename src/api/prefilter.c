@@ -2,7 +2,26 @@
 #include "bake/prefilter.h"
 
 #include "bake/plan.h"
+#include "engine/engine.h"
 #include "image/image.h"
+
+// A plan whose def may name an engine.
+static kiln_result create_plan(kiln_context *context, int panorama_size, const kiln_map *source,
+                               const kiln_prefilter_def *def, kiln_plan **plan, kiln_error *error)
+{
+    *plan = NULL;
+    if (!def || !def->shown_by)
+        return ki_plan_create(context, panorama_size, source, def, NULL, plan, error);
+    const ki_recipe *recipe = ki_recipe_of(def->shown_by);
+    if (!recipe || !recipe->level)
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "shown_by is no engine of kiln's that reads levels");
+    ki_shown shown = {.level = recipe->level,
+                      .keep_last = recipe->keeps_last,
+                      .flat = recipe->flat,
+                      .soft = def->soft};
+    return ki_plan_create(context, panorama_size, source, def, &shown, plan, error);
+}
 
 kiln_result kiln_plan_create(kiln_context *context, int source_size, const kiln_prefilter_def *def,
                              kiln_plan **plan, kiln_error *error)
@@ -11,7 +30,7 @@ kiln_result kiln_plan_create(kiln_context *context, int source_size, const kiln_
     if (source_size < 1 || source_size > KILN_MAX_SIZE / 2)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "source_size is %d rows, it must be 1 to %d",
                        source_size, KILN_MAX_SIZE / 2);
-    return ki_plan_create(context, source_size, NULL, def, plan, error);
+    return create_plan(context, source_size, NULL, def, plan, error);
 }
 
 void kiln_plan_destroy(kiln_plan *plan)
@@ -79,7 +98,7 @@ kiln_result kiln_prefilter(kiln_context *context, const kiln_map *source,
         panorama = &made;
         result = kiln_map_convert(context, source, KILN_SHAPE_PANORAMA, size, 0, &made, error);
         if (result == KILN_OK)
-            result = ki_plan_create(context, size, source, def, &plan, error);
+            result = create_plan(context, size, source, def, &plan, error);
     }
     if (result == KILN_OK)
         result = kiln_plan_map(plan, map, error);

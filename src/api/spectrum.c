@@ -108,28 +108,6 @@ int kiln_spectrum_degree(const kiln_spectrum *spectrum)
     return spectrum->degree;
 }
 
-kiln_result kiln_spectrum_power(const kiln_spectrum *spectrum, double (*power)[3],
-                                kiln_error *error)
-{
-    int degree = spectrum->degree;
-    size_t count = ki_coefficient_count(degree);
-    memset(power, 0, ((size_t)degree + 1) * sizeof *power);
-    double *a = ki_alloc_raw(spectrum->context, count, sizeof *a);
-    if (!a)
-        return ki_fail_memory(spectrum->context, error, "a spectrum's power", count * sizeof *a);
-    memcpy(a, spectrum->a, count * sizeof *a);
-    kiln_result result = ki_spectrum_add_suns(spectrum, degree, a, error);
-    for (int m = 0; m <= degree && result == KILN_OK; m++) {
-        const double *row = a + ki_coefficient_row(degree, m);
-        for (int l = m; l <= degree; l++, row += KI_COMPONENTS)
-            for (size_t c = 0; c < 3; c++)
-                power[l][c] +=
-                    (m ? 2 : 1) * (row[2 * c] * row[2 * c] + row[2 * c + 1] * row[2 * c + 1]);
-    }
-    ki_free(a);
-    return result;
-}
-
 kiln_result kiln_spectrum_filter(kiln_context *context, const kiln_spectrum *spectrum,
                                  const kiln_lobe *lobe, double rotation, kiln_map *map, int level,
                                  kiln_error *error)

@@ -2,6 +2,7 @@
 #ifndef KI_PLAN_H
 #define KI_PLAN_H
 
+#include "bake/display.h"
 #include "image/resample.h"
 #include "sphere/level.h"
 #include "sphere/spectrum.h"
@@ -18,6 +19,7 @@ struct kiln_plan {
     ki_resample_plan *mirrors[KILN_MAX_LEVELS];
     bool direct[KILN_MAX_LEVELS];
     ki_level *levels[KILN_MAX_LEVELS];
+    ki_display *display; // of the others, or NULL
 };
 
 #endif

@@ -133,8 +133,26 @@ static kiln_result plan_mirror(kiln_plan *p, int level, const kiln_map *source, 
                                    &p->mirrors[level], error);
 }
 
+static bool is_fitted(const kiln_plan *p, int level)
+{
+    return p->display && ki_display_fits(p->display, level);
+}
+
+static kiln_result plan_display(kiln_plan *p, const ki_shown *shown, const kiln_lobe *first,
+                                kiln_error *error)
+{
+    if (!ki_is_mirror(first))
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "levels for display are of GGX, the first a mirror");
+    if (p->def.size & (p->def.size - 1))
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "size is %d, for display it must be a power of two", p->def.size);
+    return ki_display_create(p->context, &p->def, p->roughness, shown, &p->display, error);
+}
+
 kiln_result ki_plan_create(kiln_context *context, int panorama_size, const kiln_map *source,
-                           const kiln_prefilter_def *def, kiln_plan **plan, kiln_error *error)
+                           const kiln_prefilter_def *def, const ki_shown *shown, kiln_plan **plan,
+                           kiln_error *error)
 {
     static const char stage[] = "planning";
     kiln_result result = KILN_OK;
@@ -153,8 +171,14 @@ kiln_result ki_plan_create(kiln_context *context, int panorama_size, const kiln_
 
     // Short spectra cost little, and with more rings a constant is kept to the last float.
     int degree = p->def.tolerance < 1e-3 ? 192 : 64;
+    if (shown) {
+        result = plan_display(p, shown, &lobes[0], error);
+        if (result != KILN_OK)
+            goto done;
+        degree = ki_max(degree, ki_display_degree(p->display));
+    }
     for (int i = 0; i < p->def.level_count; i++) {
-        if (ki_is_mirror(&lobes[i]))
+        if (ki_is_mirror(&lobes[i]) || is_fitted(p, i))
             continue;
         result = ki_lobe_spectrum(context, &lobes[i], p->def.tolerance, true, &zonals[i],
                                   &spectra[i], error);
@@ -179,7 +203,7 @@ kiln_result ki_plan_create(kiln_context *context, int panorama_size, const kiln_
             result = ki_fail_cancelled(error, stage);
         else if (ki_is_mirror(&lobes[i]))
             result = plan_mirror(p, i, source, error);
-        else
+        else if (!is_fitted(p, i))
             result = ki_level_create(context, &p->analysis->legendre, &zonals[i], &spectra[i],
                                      p->def.shape, size, &p->levels[i], error);
     }
@@ -208,7 +232,9 @@ kiln_result ki_plan_execute(kiln_plan *p, const kiln_map *panorama, const kiln_m
         if (!ki_progress(p->context, stage, done))
             return ki_fail_cancelled(error, stage);
         ki_stage part = {stage, done, done + (1 - done) / 2};
-        if (!p->mirrors[i])
+        if (!p->mirrors[i] && !p->levels[i])
+            ; // for display, below
+        else if (!p->mirrors[i])
             result = ki_level_execute(p->levels[i], p->spectrum, panorama, p->def.rotation, map, i,
                                       &part, error);
         else if (!ki_resample_execute(p->mirrors[i],
@@ -218,6 +244,9 @@ kiln_result ki_plan_execute(kiln_plan *p, const kiln_map *panorama, const kiln_m
         map->roughness[i] = p->roughness[i];
         done = part.to;
     }
+    if (result == KILN_OK && p->display)
+        result = ki_display_execute(p->display, &p->analysis->legendre, p->spectrum,
+                                    p->def.rotation, map, NULL, error);
     if (result == KILN_OK && !ki_progress(p->context, stage, 1))
         return ki_fail_cancelled(error, stage);
     return result;
@@ -231,6 +260,7 @@ void ki_plan_destroy(kiln_plan *plan)
         ki_resample_plan_destroy(plan->mirrors[i]);
         ki_level_destroy(plan->levels[i]);
     }
+    ki_display_destroy(plan->display);
     kiln_spectrum_destroy(plan->spectrum);
     ki_intake_destroy(plan->intake);
     ki_analysis_destroy(plan->analysis);

@@ -2,7 +2,7 @@
 #ifndef KI_PREFILTER_H
 #define KI_PREFILTER_H
 
-#include "base/base.h"
+#include "bake/display.h"
 #include "sphere/spectrum.h"
 #include "sphere/zonal.h"
 
@@ -25,9 +25,10 @@ kiln_result ki_lobe_spectrum(kiln_context *context, const kiln_lobe *lobe, doubl
                              kiln_error *error);
 
 /// `source` (its shape and size are used) is what `panorama_size` rows of panorama will be made from,
-/// or NULL where it is a panorama of these itself.
+/// or NULL where it is a panorama of these itself. `shown`, where levels are made for display, or NULL.
 kiln_result ki_plan_create(kiln_context *context, int panorama_size, const kiln_map *source,
-                           const kiln_prefilter_def *def, kiln_plan **plan, kiln_error *error);
+                           const kiln_prefilter_def *def, const ki_shown *shown, kiln_plan **plan,
+                           kiln_error *error);
 /// `panorama` has the plan's size; `source` as the plan was created with.
 kiln_result ki_plan_execute(kiln_plan *plan, const kiln_map *panorama, const kiln_map *source,
                             kiln_map *map, kiln_error *error);

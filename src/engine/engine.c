@@ -84,38 +84,6 @@ void ki_turn_sh(const kiln_sh *source, const ki_axes *axes, kiln_sh *turned)
     }
 }
 
-// Texel (x, y) of a face, which may lie one beyond its edge: then it is the neighbour's that is
-// nearest.
-static const float *texel_at(const kiln_map *cube, int level, int face, int x, int y)
-{
-    int n = kiln_map_level_size(cube, level);
-    if (x < 0 || y < 0 || x >= n || y >= n) {
-        double direction[3], s, t;
-        ki_face_direction(face, (2 * x + 1.0) / n - 1, (2 * y + 1.0) / n - 1, direction);
-        face = ki_direction_face(direction, &s, &t);
-        x = (int)ki_clamp(floor((s + 1) / 2 * n), 0, n - 1);
-        y = (int)ki_clamp(floor((t + 1) / 2 * n), 0, n - 1);
-    }
-    size_t texel = ((size_t)face * (size_t)n + (size_t)y) * (size_t)n + (size_t)x;
-    return cube->level[level] + 3 * texel;
-}
-
-void ki_cube_read(const kiln_map *cube, int level, const double direction[3], double rgb[3])
-{
-    double s, t;
-    int n = kiln_map_level_size(cube, level), face = ki_direction_face(direction, &s, &t);
-    double u = (s + 1) / 2 * n - 0.5, v = (t + 1) / 2 * n - 0.5;
-    int x = (int)floor(u), y = (int)floor(v);
-    u -= x;
-    v -= y;
-    const float *at[4] = {texel_at(cube, level, face, x, y), texel_at(cube, level, face, x + 1, y),
-                          texel_at(cube, level, face, x, y + 1),
-                          texel_at(cube, level, face, x + 1, y + 1)};
-    for (int c = 0; c < 3; c++)
-        rgb[c] = (1 - v) * ((1 - u) * (double)at[0][c] + u * (double)at[1][c]) +
-                 v * ((1 - u) * (double)at[2][c] + u * (double)at[3][c]);
-}
-
 kiln_result ki_export_add(ki_export *to, const char *path, const ki_writer *bytes,
                           kiln_error *error)
 {

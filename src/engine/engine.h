@@ -4,6 +4,7 @@
 
 #include "base/bytes.h"
 #include "base/file.h"
+#include "image/image.h"
 
 /// A signed permutation of axes. An engine that samples in direction e shall show what arrives from d:
 /// d[i] = sign[i] e[axis[i]]. It makes the engine show a panorama where its own loader shows it.
@@ -34,6 +35,8 @@ typedef struct ki_recipe {
     double (*roughness)(int level, int level_count, int size);
     /// The inverse as its shader has it: the level, a fraction, that it reads for a roughness.
     double (*level)(double roughness, int level_count, int size);
+    bool keeps_last; ///< the last level is its diffuse light
+    bool flat;       ///< it reads other pictures than cubes, made from this one
     kiln_result (*write)(ki_export *to, kiln_error *error);
 } ki_recipe;
 
@@ -50,9 +53,6 @@ int ki_recipe_levels(const ki_recipe *recipe, int size);
 void ki_turn_cube(const kiln_map *source, const ki_axes *axes, kiln_map *turned);
 /// The same for harmonics of at most three bands.
 void ki_turn_sh(const kiln_sh *source, const ki_axes *axes, kiln_sh *turned);
-
-/// The radiance of a cube's level in a direction that is not 0, bilinear across faces.
-void ki_cube_read(const kiln_map *cube, int level, const double direction[3], double rgb[3]);
 
 /// Adds a file to the set that `to` writes.
 kiln_result ki_export_add(ki_export *to, const char *path, const ki_writer *bytes,

@@ -109,6 +109,7 @@ const ki_recipe ki_filament = {
               .files = "NAME_ibl.ktx, NAME_skybox.ktx and sh.txt",
               .ending = "",
               .mapping = "r = 1 - sqrt(1 - k / (n - 1))",
+              .fit = true,
               .size = 256,
               .level_count = 5,
               .limit = 65504,
@@ -121,5 +122,6 @@ const ki_recipe ki_filament = {
     .level_count_min = 2,
     .roughness = roughness,
     .level = level,
+    .keeps_last = true,
     .write = write,
 };

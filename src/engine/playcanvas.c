@@ -191,6 +191,7 @@ const ki_recipe ki_playcanvas = {
     .level_count_max = LEVELS,
     .roughness = roughness,
     .level = level,
+    .flat = true,
     .write = write_rgbp,
 };
 

@@ -40,6 +40,7 @@ const ki_recipe ki_three = {
               .files = "NAME.ktx2",
               .ending = "ktx2",
               .mapping = "r = 1 - sqrt(1 - k / (n - 1))",
+              .fit = true,
               .size = 256,
               .level_count = 6,
               .limit = 65504,
@@ -52,5 +53,6 @@ const ki_recipe ki_three = {
     .level_count_min = 2,
     .roughness = roughness,
     .level = level,
+    .keeps_last = true,
     .write = write,
 };

@@ -144,6 +144,7 @@ const ki_recipe ki_three_cubeuv = {
     .size_max = 2048,
     .last_size = FINER * LAST,
     .smallest = FINER * LAST,
+    .flat = true,
     .extra_levels = EXTRA,
     .roughness = roughness,
     .level = level,

@@ -38,6 +38,12 @@ void ki_level_extent(const kiln_map *map, int level, int *width, int *height);
 /// Fails unless the map's own numbers are in range and its levels are there.
 kiln_result ki_map_check(const kiln_map *map, kiln_error *error);
 
+/// A cube of `size` read bilinearly across faces, as graphics processors do, in a direction that is not
+/// 0: four texels and their weights.
+void ki_cube_taps(int size, const double direction[3], size_t texels[4], double weights[4]);
+/// The radiance of a cube's level, read so.
+void ki_cube_read(const kiln_map *cube, int level, const double direction[3], double rgb[3]);
+
 /// Resamples by area: see kiln_map_convert. `target` is allocated, its level `level` is written.
 kiln_result ki_map_resample(kiln_context *context, const kiln_map *source, double rotation,
                             kiln_map *target, int level, kiln_error *error);

@@ -457,8 +457,9 @@ static void fill_row(void *data, int index)
             add_suns(v, first, count, rgb);
         if (v->zonal.outer > 0)
             add_surroundings(v, first, count, rgb);
+        // A mixture may be negative.
         for (int i = 0; i < 3 * count; i++)
-            out[i] = rgb[i] < 0 ? 0 : rgb[i];
+            out[i] = rgb[i] < 0 && !v->zonal.mixture ? 0 : rgb[i];
     }
 }
 

@@ -105,10 +105,43 @@ void ki_points_destroy(ki_points *points)
     *points = (ki_points){0};
 }
 
+// The kernel suns_ggx's rule, lane by lane.
+static void add_mixture(const ki_points *points, const double *directions, double *sum)
+{
+    const ki_sun_points *suns = &points->suns;
+    for (int j = 0; j < KI_LANES; j++) {
+        const double at[3] = {directions[j], directions[8 + j], directions[16 + j]};
+        double rgb[3] = {0};
+        for (size_t i = 0; i < (size_t)suns->count; i++) {
+            const double(*list)[6] = (const double(*)[6])suns->centre + i;
+            double away = versine(at, *list);
+            int count = 1;
+            if (away < suns->near_versine || fabs(1 - away) < suns->horizon) {
+                count = suns->near_count;
+                list = (const double(*)[6])suns->near + (size_t)count * i;
+            } else if (away < suns->far_versine) {
+                count = 4;
+                list = (const double(*)[6])suns->pairs + 4 * i;
+            }
+            for (int n = 0; n < count; n++) {
+                double weight = ki_mixture_weight(points->zonal.mixture, versine(at, list[n]));
+                for (int c = 0; c < 3; c++)
+                    rgb[c] += weight * list[n][3 + c];
+            }
+        }
+        for (int c = 0; c < 3; c++)
+            sum[8 * c + j] += rgb[c];
+    }
+}
+
 void ki_points_add(const ki_points *points, const double *directions, double *sum)
 {
     const ki_sun_points *suns = &points->suns;
     const kiln_lobe *lobe = &points->zonal.lobe;
+    if (points->zonal.mixture) {
+        add_mixture(points, directions, sum);
+        return;
+    }
     bool ggx = lobe->kind == KILN_LOBE_GGX && points->zonal.outer <= 0;
     if (ggx || lobe->kind == KILN_LOBE_LAMBERT) {
         points->kernels->suns_ggx(suns, ggx ? lobe->parameter : 1, directions, sum);

@@ -127,3 +127,31 @@ void ki_sh_evaluate(const kiln_sh *sh, const double direction[3], double value[3
             value[c] += y[k] * sh->c[k][c];
     }
 }
+
+kiln_result ki_spectrum_power(const kiln_spectrum *spectrum, bool suns, double (*power)[3],
+                              kiln_error *error)
+{
+    int degree = spectrum->degree;
+    size_t count = ki_coefficient_count(degree);
+    memset(power, 0, ((size_t)degree + 1) * sizeof *power);
+    double *a = ki_alloc_raw(spectrum->context, count, sizeof *a);
+    if (!a)
+        return ki_fail_memory(spectrum->context, error, "a spectrum's power", count * sizeof *a);
+    memcpy(a, spectrum->a, count * sizeof *a);
+    kiln_result result = suns ? ki_spectrum_add_suns(spectrum, degree, a, error) : KILN_OK;
+    for (int m = 0; m <= degree && result == KILN_OK; m++) {
+        const double *row = a + ki_coefficient_row(degree, m);
+        for (int l = m; l <= degree; l++, row += KI_COMPONENTS)
+            for (size_t c = 0; c < 3; c++)
+                power[l][c] +=
+                    (m ? 2 : 1) * (row[2 * c] * row[2 * c] + row[2 * c + 1] * row[2 * c + 1]);
+    }
+    ki_free(a);
+    return result;
+}
+
+kiln_result kiln_spectrum_power(const kiln_spectrum *spectrum, double (*power)[3],
+                                kiln_error *error)
+{
+    return ki_spectrum_power(spectrum, true, power, error);
+}

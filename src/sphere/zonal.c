@@ -21,6 +21,8 @@ double ki_zonal_step(const ki_zonal *zonal, double one_minus_cos)
 
 double ki_zonal_weight(const ki_zonal *zonal, double one_minus_cos)
 {
+    if (zonal->mixture)
+        return ki_mixture_weight(zonal->mixture, one_minus_cos);
     double step = ki_zonal_step(zonal, one_minus_cos);
     return step > 0 ? step * ki_lobe_weight(&zonal->lobe, one_minus_cos) : 0;
 }

@@ -2,12 +2,14 @@
 #ifndef KI_ZONAL_H
 #define KI_ZONAL_H
 
-#include "base/base.h"
+#include "sphere/mixture.h"
 
 /// A lobe, whole or without its centre: the weight is multiplied by a smooth step that is 0 below
 /// `inner` and 1 above `outer` radians. Both 0: the whole lobe.
 typedef struct ki_zonal {
     kiln_lobe lobe;
+    const ki_mixture
+        *mixture; ///< or NULL: this is the weight, and the lobe's width the narrowest's
     double inner, outer;
 } ki_zonal;
 

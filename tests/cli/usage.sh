@@ -43,6 +43,8 @@ expect 1 "there is no folder nowhere" bake in.exr -o out.ktx2 --sh nowhere/sh.js
 
 # Engines.
 expect 2 "is 'frob', which is no engine" bake in.exr -o out.ktx2 --for frob
+expect 2 "--fit needs --for ENGINE" bake in.exr -o out.ktx2 --fit
+expect 2 "--fit" bake in.exr -o out.ktx2 --for three --fit=hard
 expect 2 "out.dds: --for three writes .ktx2" bake in.exr -o out.dds --for three
 expect 2 "decides what --lobe is" bake in.exr -o out.ktx2 --for three --lobe ggx
 expect 2 "for filament takes --format rgba16f or b10g11r11, not bc6h" \

@@ -268,7 +268,7 @@ export async function proveEngine({ name, page, ending, loads, format, smallest 
     const { size, level_count: count } = engineOf(name);
     for (const what of ['coded', 'white'])
         run(writePath, name, what, `${size}`, `${what}${ending}`, ...(format ? [`${format[1]}`] : []));
-    const report = JSON.parse(kiln('bake', panorama, '--for', name, '-o', `real${ending}`, '--json',
+    const report = JSON.parse(kiln('bake', panorama, '--for', name, '--fit=none', '-o', `real${ending}`, '--json',
                                     ...(format ? ['--format', format[0]] : [])));
     const roughness = report.output.levels.map((level) => level.roughness);
     const levels = roughness.flatMap((r, k) => (size >> k > smallest ? [] : [r]));

@@ -1,0 +1,311 @@
+#include "bake/display_read.h"
+
+#include "image/image.h"
+
+#include <math.h>
+#include <string.h>
+
+// Texels x are read at points as B x, four taps each. With W the points' solid angles the normal
+// equations B' W B x = B' W goal are solved by conjugate gradients, preconditioned by their diagonal.
+// The matrix is that of bilinear hats, of condition 9 or so, so few steps do. Texels that come out
+// negative are held at 0 and the others solved again.
+enum { STEPS = 14, ROUNDS = 3, CHUNK = 2048 };
+
+typedef struct tap {
+    uint32_t at; // a texel of a point, or a point of a texel
+    float weight;
+} tap;
+
+typedef struct reads {
+    kiln_context *context;
+    const kiln_map *goal;
+    size_t texel_count, point_count;
+    tap (*taps)[4];     // by point
+    uint32_t *start;    // [texels + 1], into shares
+    tap *shares;        // by texel
+    float *solid;       // of the points of a face
+    double (*shown)[3]; // W B x by point
+    // By texel.
+    double (*x)[3], (*rest)[3], (*way)[3], (*product)[3], *diagonal;
+    bool (*held)[3];
+    double (*sums)[2][3]; // by chunk of texels or points
+    double scale[3];
+} reads;
+
+static int chunks(size_t count)
+{
+    return (int)((count + CHUNK - 1) / CHUNK);
+}
+
+static size_t chunk_end(int index, size_t count)
+{
+    size_t end = ((size_t)index + 1) * CHUNK;
+    return end < count ? end : count;
+}
+
+static void add_up(const reads *r, size_t count, int which, double sum[3])
+{
+    for (int c = 0; c < 3; c++) {
+        sum[c] = 0;
+        for (int i = 0; i < chunks(count); i++)
+            sum[c] += r->sums[i][which][c];
+    }
+}
+
+// ------------------------------------------------------------------------------------------- set up
+
+// Task: a chunk of points' taps.
+static void lay_taps(void *data, int index)
+{
+    reads *r = data;
+    size_t face = r->point_count / 6;
+    int size = (int)(sqrt((double)r->texel_count / 6) + 0.5);
+    for (size_t p = (size_t)index * CHUNK; p < chunk_end(index, r->point_count); p++) {
+        double direction[3], weights[4];
+        size_t texels[4];
+        kiln_map_direction(r->goal, 0, p, direction);
+        ki_cube_taps(size, direction, texels, weights);
+        for (int i = 0; i < 4; i++)
+            r->taps[p][i] = (tap){(uint32_t)texels[i], (float)weights[i]};
+        // Of a texel, up to a factor: 1 / (distance of the face's point)^3.
+        double largest = fmax(fabs(direction[0]), fmax(fabs(direction[1]), fabs(direction[2])));
+        if (p < face)
+            r->solid[p] = (float)(largest * largest * largest);
+    }
+}
+
+// The transpose: each texel's points in their order.
+static void lay_shares(reads *r)
+{
+    for (size_t p = 0; p < r->point_count; p++)
+        for (int i = 0; i < 4; i++)
+            r->start[r->taps[p][i].at + 1]++;
+    for (size_t t = 0; t < r->texel_count; t++)
+        r->start[t + 1] += r->start[t];
+    for (size_t p = 0; p < r->point_count; p++)
+        for (int i = 0; i < 4; i++) {
+            const tap *to = &r->taps[p][i];
+            r->shares[r->start[to->at]++] = (tap){(uint32_t)p, to->weight};
+        }
+    for (size_t t = r->texel_count; t > 0; t--)
+        r->start[t] = r->start[t - 1];
+    r->start[0] = 0;
+}
+
+static bool allocate(reads *r)
+{
+    kiln_context *k = r->context;
+    size_t texels = r->texel_count, points = r->point_count;
+    r->taps = ki_alloc(k, points, sizeof *r->taps);
+    r->start = ki_alloc(k, texels + 1, sizeof *r->start);
+    r->shares = ki_alloc(k, 4 * points, sizeof *r->shares);
+    r->solid = ki_alloc(k, points / 6, sizeof *r->solid);
+    r->shown = ki_alloc(k, points, sizeof *r->shown);
+    r->x = ki_alloc(k, texels, sizeof *r->x);
+    r->rest = ki_alloc(k, texels, sizeof *r->rest);
+    r->way = ki_alloc(k, texels, sizeof *r->way);
+    r->product = ki_alloc(k, texels, sizeof *r->product);
+    r->diagonal = ki_alloc(k, texels, sizeof *r->diagonal);
+    r->held = ki_alloc(k, texels, sizeof *r->held);
+    r->sums = ki_alloc(k, (size_t)chunks(points), sizeof *r->sums);
+    return r->taps && r->start && r->shares && r->solid && r->shown && r->x && r->rest && r->way &&
+           r->product && r->diagonal && r->held && r->sums;
+}
+
+static void release(reads *r)
+{
+    ki_free(r->taps);
+    ki_free(r->start);
+    ki_free(r->shares);
+    ki_free(r->solid);
+    ki_free(r->shown);
+    ki_free(r->x);
+    ki_free(r->rest);
+    ki_free(r->way);
+    ki_free(r->product);
+    ki_free(r->diagonal);
+    ki_free(r->held);
+    ki_free(r->sums);
+}
+
+// Task: the diagonal, and the goal's means as a first guess.
+static void begin(void *data, int index)
+{
+    reads *r = data;
+    size_t face = r->point_count / 6;
+    for (size_t t = (size_t)index * CHUNK; t < chunk_end(index, r->texel_count); t++) {
+        double weights = 0, sum[3] = {0};
+        for (uint32_t i = r->start[t]; i < r->start[t + 1]; i++) {
+            size_t p = r->shares[i].at;
+            double share = (double)r->shares[i].weight, weight = share * (double)r->solid[p % face];
+            r->diagonal[t] += share * weight;
+            weights += weight;
+            for (size_t c = 0; c < 3; c++)
+                sum[c] += weight * (double)r->goal->level[0][3 * p + c];
+        }
+        for (int c = 0; c < 3; c++)
+            r->x[t][c] = sum[c] / weights > 0 ? sum[c] / weights : 0;
+    }
+}
+
+// --------------------------------------------------------------------------------------- the solver
+
+typedef struct product {
+    reads *r;
+    const double (*from)[3]; // by texel
+    double (*to)[3];
+    bool rest; // B' W (goal - B from) instead of B' W B from
+} product;
+
+// Task: W B x, or W (goal - B x), at a chunk of points, and the sums of both the goal and B x.
+static void show_points(void *data, int index)
+{
+    const product *a = data;
+    reads *r = a->r;
+    size_t face = r->point_count / 6;
+    double(*sums)[3] = r->sums[index];
+    memset(sums, 0, sizeof r->sums[index]);
+    for (size_t p = (size_t)index * CHUNK; p < chunk_end(index, r->point_count); p++) {
+        double solid = (double)r->solid[p % face];
+        const tap *taps = r->taps[p];
+        for (size_t c = 0; c < 3; c++) {
+            double shown = 0, goal = (double)r->goal->level[0][3 * p + c];
+            for (int i = 0; i < 4; i++)
+                shown += (double)taps[i].weight * a->from[taps[i].at][c];
+            sums[0][c] += solid * goal;
+            sums[1][c] += solid * shown;
+            r->shown[p][c] = solid * (a->rest ? goal - shown : shown);
+        }
+    }
+}
+
+// Task: B' times that, at a chunk of texels, and the products that the steps need.
+static void gather(void *data, int index)
+{
+    const product *a = data;
+    reads *r = a->r;
+    double(*sums)[3] = r->sums[index];
+    memset(sums, 0, sizeof r->sums[index]);
+    for (size_t t = (size_t)index * CHUNK; t < chunk_end(index, r->texel_count); t++) {
+        double sum[3] = {0};
+        for (uint32_t i = r->start[t]; i < r->start[t + 1]; i++)
+            for (int c = 0; c < 3; c++)
+                sum[c] += (double)r->shares[i].weight * r->shown[r->shares[i].at][c];
+        for (int c = 0; c < 3; c++) {
+            a->to[t][c] = r->held[t][c] ? 0 : sum[c];
+            sums[0][c] += a->to[t][c] * a->from[t][c];
+            sums[1][c] += a->to[t][c] * a->to[t][c] / r->diagonal[t];
+        }
+    }
+}
+
+static void multiply(reads *r, const double (*from)[3], double (*to)[3], bool rest)
+{
+    product a = {r, from, to, rest};
+    ki_parallel_for(r->context, chunks(r->point_count), show_points, &a);
+    ki_parallel_for(r->context, chunks(r->texel_count), gather, &a);
+}
+
+typedef struct step {
+    reads *r;
+    double length[3], turn[3];
+} step;
+
+// Task: along the way, and what rests then.
+static void take_step(void *data, int index)
+{
+    const step *s = data;
+    reads *r = s->r;
+    double(*sums)[3] = r->sums[index];
+    memset(sums, 0, sizeof r->sums[index]);
+    for (size_t t = (size_t)index * CHUNK; t < chunk_end(index, r->texel_count); t++)
+        for (int c = 0; c < 3; c++) {
+            r->x[t][c] += s->length[c] * r->way[t][c];
+            r->rest[t][c] -= s->length[c] * r->product[t][c];
+            sums[1][c] += r->rest[t][c] * r->rest[t][c] / r->diagonal[t];
+        }
+}
+
+// Task: the next way.
+static void turn_way(void *data, int index)
+{
+    const step *s = data;
+    reads *r = s->r;
+    for (size_t t = (size_t)index * CHUNK; t < chunk_end(index, r->texel_count); t++)
+        for (int c = 0; c < 3; c++)
+            r->way[t][c] = r->rest[t][c] / r->diagonal[t] + s->turn[c] * r->way[t][c];
+}
+
+// Conjugate gradients of the texels that are not held, each channel for itself.
+static void solve(reads *r)
+{
+    int texel_chunks = chunks(r->texel_count);
+    double rest[3], next[3], along[3];
+    step s = {.r = r};
+    multiply(r, (const double(*)[3])r->x, r->rest, true);
+    add_up(r, r->texel_count, 1, rest);
+    ki_parallel_for(r->context, texel_chunks, turn_way, &s);
+    for (int i = 0; i < STEPS; i++) {
+        multiply(r, (const double(*)[3])r->way, r->product, false);
+        add_up(r, r->texel_count, 0, along);
+        for (int c = 0; c < 3; c++)
+            s.length[c] = along[c] > 0 ? rest[c] / along[c] : 0;
+        ki_parallel_for(r->context, texel_chunks, take_step, &s);
+        add_up(r, r->texel_count, 1, next);
+        for (int c = 0; c < 3; c++) {
+            s.turn[c] = rest[c] > 0 ? next[c] / rest[c] : 0;
+            rest[c] = next[c];
+        }
+        ki_parallel_for(r->context, texel_chunks, turn_way, &s);
+    }
+}
+
+// Task: negative texels become 0 and stay it; counts them.
+static void hold(void *data, int index)
+{
+    reads *r = data;
+    r->sums[index][0][0] = 0;
+    for (size_t t = (size_t)index * CHUNK; t < chunk_end(index, r->texel_count); t++)
+        for (int c = 0; c < 3; c++) {
+            r->way[t][c] = 0;
+            if (r->x[t][c] >= 0)
+                continue;
+            r->x[t][c] = 0;
+            r->held[t][c] = true;
+            r->sums[index][0][0]++;
+        }
+}
+
+kiln_result ki_fit_reads(kiln_context *context, const kiln_map *goal, kiln_map *map, int index,
+                         kiln_error *error)
+{
+    reads r = {.context = context,
+               .goal = goal,
+               .texel_count = kiln_map_texels(map, index),
+               .point_count = kiln_map_texels(goal, 0)};
+    if (!allocate(&r)) {
+        release(&r);
+        return ki_fail_memory(context, error, "a level's reads", r.point_count * sizeof *r.taps);
+    }
+    ki_parallel_for(context, chunks(r.point_count), lay_taps, &r);
+    lay_shares(&r);
+    ki_parallel_for(context, chunks(r.texel_count), begin, &r);
+    double held[3] = {1};
+    for (int i = 0; i < ROUNDS && held[0] > 0; i++) {
+        solve(&r);
+        ki_parallel_for(context, chunks(r.texel_count), hold, &r);
+        add_up(&r, r.texel_count, 0, held);
+    }
+    product whole = {&r, (const double(*)[3])r.x, NULL, false};
+    double sums[2][3];
+    ki_parallel_for(context, chunks(r.point_count), show_points, &whole);
+    add_up(&r, r.point_count, 0, sums[0]);
+    add_up(&r, r.point_count, 1, sums[1]);
+    for (int c = 0; c < 3; c++) {
+        double scale = sums[0][c] > 0 && sums[1][c] > 0 ? sums[0][c] / sums[1][c] : 1;
+        for (size_t t = 0; t < r.texel_count; t++)
+            map->level[index][3 * t + (size_t)c] = (float)(r.x[t][c] * scale);
+    }
+    release(&r);
+    return KILN_OK;
+}

@@ -1,0 +1,53 @@
+#include "sphere/mixture.h"
+
+#include <string.h>
+
+enum { STEP_BITS = 5, FIRST_OCTAVE = -20 };
+_Static_assert(1 << STEP_BITS == KI_MIXTURE_STEPS, "steps are a mantissa's first bits");
+static const double offset = 0x1p-20;
+
+// Without the cosine, which has a kink at the horizon.
+static double exact(const double *alphas, const double *weights, const double *integrals, int count,
+                    double versine)
+{
+    double sum = 0;
+    for (int i = 0; i < count; i++) {
+        double a2 = alphas[i] * alphas[i], d = a2 / (a2 + (1 - a2) * 0.5 * versine);
+        sum += weights[i] / integrals[i] * d * d;
+    }
+    return sum;
+}
+
+void ki_mixture_create(ki_mixture *mixture, const double *alphas, const double *weights,
+                       const double *integrals, int count)
+{
+    double start = offset;
+    for (int i = 0; i < KI_MIXTURE_STEPS * KI_MIXTURE_OCTAVES; i++) {
+        if (i > 0 && i % KI_MIXTURE_STEPS == 0)
+            start *= 2;
+        double f[4], *c = mixture->cubic[i];
+        for (int k = 0; k < 4; k++) {
+            double part = (i % KI_MIXTURE_STEPS + k / 3.0) / KI_MIXTURE_STEPS;
+            f[k] = exact(alphas, weights, integrals, count, start * (1 + part) - offset);
+        }
+        // Through the four, by t = 0, 1/3, 2/3, 1.
+        c[0] = f[0];
+        c[1] = -5.5 * f[0] + 9 * f[1] - 4.5 * f[2] + f[3];
+        c[2] = 9 * f[0] - 22.5 * f[1] + 18 * f[2] - 4.5 * f[3];
+        c[3] = -4.5 * f[0] + 13.5 * f[1] - 13.5 * f[2] + 4.5 * f[3];
+    }
+}
+
+double ki_mixture_weight(const ki_mixture *mixture, double one_minus_cos)
+{
+    if (!(one_minus_cos < 1))
+        return 0;
+    double x = (one_minus_cos > 0 ? one_minus_cos : 0) + offset;
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    // Exponent and first bits of the mantissa choose the cubic, the others are its argument.
+    uint64_t first = (uint64_t)(1023 + FIRST_OCTAVE) << STEP_BITS;
+    const double *c = mixture->cubic[(bits >> (52 - STEP_BITS)) - first];
+    double t = (double)(bits & ((UINT64_C(1) << (52 - STEP_BITS)) - 1)) * 0x1p-47;
+    return (1 - one_minus_cos) * (c[0] + t * (c[1] + t * (c[2] + t * c[3])));
+}

@@ -1,0 +1,318 @@
+// Levels for what an engine shows: nearer to the truth than exact ones, by brute force.
+#include "bake_test.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static kiln_error error;
+
+// A ramp with blobs, and with `sun` a texel that outshines it all.
+static kiln_map make_environment(kiln_context *context, int size, bool sun)
+{
+    kiln_map map = make_panorama(context, size);
+    uint64_t seed = 3;
+    for (int y = 0; y < size; y++)
+        for (int x = 0; x < 2 * size; x++)
+            for (int c = 0; c < 3; c++) {
+                double d[3];
+                panorama_direction(size, x + 0.5, y + 0.5, d);
+                double wave = sin(9 * d[0] + c) * cos(7 * d[2]) + 0.3 * random_number(&seed);
+                texel_at(&map, x, y)[c] = (float)(1.5 + d[1] + wave);
+            }
+    for (int c = 0; c < 3 && sun; c++)
+        texel_at(&map, size + 5, size / 3)[c] = (float)(3e4 + 1e3 * c);
+    return map;
+}
+
+static kiln_map bake(kiln_context *context, const kiln_map *source, const char *engine, int size,
+                     int level_count, bool fit, bool soft)
+{
+    float roughness[KILN_MAX_LEVELS];
+    kiln_prefilter_def def;
+    kiln_map map;
+    CHECK_OK(
+        kiln_engine_levels(kiln_engine_find(engine), size, level_count, roughness, &def, &error));
+    def.shown_by = fit ? kiln_engine_find(engine) : NULL;
+    def.soft = soft;
+    CHECK_OK(kiln_prefilter(context, source, &def, &map, &error));
+    return map;
+}
+
+static void white_stays_white(void **state)
+{
+    (void)state;
+    kiln_context *context = make_context(0);
+    kiln_map white = make_panorama(context, 32);
+    for (size_t i = 0; i < 3 * kiln_map_texels(&white, 0); i++)
+        white.level[0][i] = 1;
+    static const char *const engines[] = {"three", "babylon", "filament"};
+    for (int e = 0; e < 3; e++) {
+        for (int soft = 0; soft < 2; soft++) {
+            kiln_map map = bake(context, &white, engines[e], 64, 0, true, soft);
+            for (int k = 0; k < map.level_count; k++)
+                for (size_t i = 0; i < 3 * kiln_map_texels(&map, k); i++)
+                    CHECK_NEAR((double)map.level[k][i], 1, 1e-6);
+            kiln_map_free(&map);
+        }
+    }
+    kiln_map_free(&white);
+    kiln_context_destroy(context);
+}
+
+// A sun on black is the hardest: kernels have negative parts. The first level is the plain mirror, bit
+// for bit, and no light is won or lost.
+static void nothing_is_negative_under_a_sun(void **state)
+{
+    (void)state;
+    kiln_context *context = make_context(0);
+    kiln_map sun = make_panorama(context, 64);
+    for (int c = 0; c < 3; c++)
+        texel_at(&sun, 70, 20)[c] = 1e6F;
+    static const char *const engines[] = {"three", "babylon"};
+    for (int e = 0; e < 2; e++) {
+        kiln_map plain = bake(context, &sun, engines[e], 64, 0, false, false);
+        for (int soft = 0; soft < 2; soft++) {
+            kiln_map map = bake(context, &sun, engines[e], 64, 0, true, soft);
+            bool same =
+                !memcmp(map.level[0], plain.level[0], 3 * kiln_map_texels(&map, 0) * sizeof(float));
+            assert_true(same == !soft);
+            for (int k = 0; k < map.level_count; k++) {
+                double mean[2] = {0}, weights = 0;
+                for (size_t i = 0; i < kiln_map_texels(&map, k); i++) {
+                    double d[3];
+                    kiln_map_direction(&map, k, i, d);
+                    double weight = pow(fmax(fabs(d[0]), fmax(fabs(d[1]), fabs(d[2]))), 3);
+                    assert_true(map.level[k][3 * i] >= 0);
+                    mean[0] += weight * (double)map.level[k][3 * i];
+                    mean[1] += weight * (double)plain.level[k][3 * i];
+                    weights += weight;
+                }
+                // Coarse texels at their centres are not the mean of what is between them.
+                if (map.size >> k >= 16)
+                    CHECK_NEAR(mean[0] / mean[1], 1, 0.02);
+            }
+            kiln_map_free(&map);
+        }
+        kiln_map_free(&plain);
+    }
+    kiln_map_free(&sun);
+    kiln_context_destroy(context);
+}
+
+// Half of the directions are spread evenly, half around the sun's as wide as the lobe.
+enum { DIRECTIONS = 160, STEPS = 9 };
+
+static void choose_directions(double alpha, int size, double (*directions)[3], double *weights)
+{
+    uint64_t seed = 11;
+    double sun[3], reach = fmin(1, 6 * alpha * alpha + 1e-3); // 1 - cos
+    panorama_direction(size, size + 5.5, size / 3 + 0.5, sun);
+    for (int i = 0; i < DIRECTIONS; i++) {
+        double d[3], dot = 2;
+        do {
+            random_direction(&seed, d);
+            dot = d[0] * sun[0] + d[1] * sun[1] + d[2] * sun[2];
+            if (i % 2) {
+                // Towards the sun until within reach, evenly over the cap.
+                double versine = reach * random_number(&seed), side = 0;
+                double s = sqrt(versine * (2 - versine));
+                for (int k = 0; k < 3; k++)
+                    d[k] -= dot * sun[k];
+                side = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+                for (int k = 0; k < 3; k++)
+                    d[k] = (1 - versine) * sun[k] + s * d[k] / side;
+                dot = 1 - versine;
+            }
+        } while (!(i % 2) && dot > 1 - reach);
+        memcpy(directions[i], d, sizeof d);
+        weights[i] = i % 2 ? reach / 2 : 1 - reach / 2;
+    }
+}
+
+// Mean over roughness of the squared relative error of what is shown.
+static double displayed_error(kiln_context *context, const kiln_map *source, const char *engine,
+                              const kiln_map *map)
+{
+    static double directions[DIRECTIONS][3], truth[DIRECTIONS][3], shown[DIRECTIONS][3],
+        weights[DIRECTIONS];
+    double sum = 0;
+    for (int k = 0; k < STEPS; k++) {
+        double r = 0.1 + 0.9 * (k + 0.5) / STEPS, off = 0, whole = 0;
+        kiln_lobe lobe = kiln_lobe_ggx(r * r);
+        choose_directions(r * r, source->size, directions, weights);
+        CHECK_OK(kiln_reference_filter(context, source, &lobe, 0, (const double(*)[3])directions,
+                                       DIRECTIONS, truth, &error));
+        CHECK_OK(kiln_engine_show(context, kiln_engine_find(engine), map, r,
+                                  (const double(*)[3])directions, DIRECTIONS, shown, &error));
+        for (int i = 0; i < DIRECTIONS; i++)
+            for (int c = 0; c < 3; c++) {
+                double d = shown[i][c] - truth[i][c];
+                off += weights[i] * d * d;
+                whole += weights[i] * truth[i][c] * truth[i][c];
+            }
+        sum += off / whole / STEPS;
+    }
+    return sqrt(sum);
+}
+
+static void fitted_levels_show_less_error(void **state)
+{
+    (void)state;
+    static const char *const engines[] = {"three", "babylon"};
+    kiln_context *context = make_context(0);
+    for (int sun = 0; sun < 2; sun++) {
+        kiln_map source = make_environment(context, 32, sun);
+        for (int e = 0; e < 2; e++) {
+            kiln_map plain = bake(context, &source, engines[e], 128, 0, false, false);
+            kiln_map sharp = bake(context, &source, engines[e], 128, 0, true, false);
+            double before = displayed_error(context, &source, engines[e], &plain);
+            double after = displayed_error(context, &source, engines[e], &sharp);
+            print_message("%s, %s: %.4f, fitted %.4f\n", engines[e], sun ? "sunny" : "calm", before,
+                          after);
+            assert_true(after < 0.9 * before);
+            kiln_map_free(&plain);
+            kiln_map_free(&sharp);
+        }
+        kiln_map_free(&source);
+    }
+    kiln_context_destroy(context);
+}
+
+static void every_thread_count_gives_the_same_bits(void **state)
+{
+    (void)state;
+    kiln_map maps[2];
+    kiln_context *contexts[2];
+    for (int i = 0; i < 2; i++) {
+        contexts[i] = make_context(1 + 2 * i);
+        kiln_map source = make_environment(contexts[i], 32, true);
+        maps[i] = bake(contexts[i], &source, "babylon", 32, 0, true, true);
+        kiln_map_free(&source);
+    }
+    for (int k = 0; k < maps[0].level_count; k++)
+        assert_memory_equal(maps[0].level[k], maps[1].level[k],
+                            3 * kiln_map_texels(&maps[0], k) * sizeof(float));
+    for (int i = 0; i < 2; i++) {
+        kiln_map_free(&maps[i]);
+        kiln_context_destroy(contexts[i]);
+    }
+}
+
+// The same plan again, and another environment between: nothing of the last one stays.
+static void a_plan_may_be_executed_again(void **state)
+{
+    (void)state;
+    kiln_context *context = make_context(0);
+    kiln_map source[2] = {make_environment(context, 32, true),
+                          make_environment(context, 32, false)};
+    float roughness[KILN_MAX_LEVELS];
+    kiln_prefilter_def def;
+    kiln_plan *plan;
+    kiln_map first, again;
+    CHECK_OK(kiln_engine_levels(kiln_engine_find("three"), 32, 0, roughness, &def, &error));
+    def.shown_by = kiln_engine_find("three");
+    CHECK_OK(kiln_plan_create(context, 32, &def, &plan, &error));
+    CHECK_OK(kiln_plan_map(plan, &first, &error));
+    CHECK_OK(kiln_plan_map(plan, &again, &error));
+    CHECK_OK(kiln_plan_execute(plan, &source[0], &first, &error));
+    CHECK_OK(kiln_plan_execute(plan, &source[1], &again, &error));
+    CHECK_OK(kiln_plan_execute(plan, &source[0], &again, &error));
+    for (int k = 0; k < first.level_count; k++)
+        assert_memory_equal(first.level[k], again.level[k],
+                            3 * kiln_map_texels(&first, k) * sizeof(float));
+    kiln_map_free(&first);
+    kiln_map_free(&again);
+    kiln_plan_destroy(plan);
+    kiln_map_free(&source[0]);
+    kiln_map_free(&source[1]);
+    kiln_context_destroy(context);
+}
+
+static void what_cannot_be_fitted_is_said(void **state)
+{
+    (void)state;
+    kiln_context *context = make_context(1);
+    kiln_map source = make_environment(context, 16, false), map;
+    kiln_engine stranger = {.name = "stranger"};
+    kiln_prefilter_def def = {.size = 16, .shown_by = &stranger};
+    assert_int_equal(kiln_prefilter(context, &source, &def, &map, &error), KILN_ERROR_ARGUMENT);
+    def.shown_by = kiln_engine_find("three");
+    def.size = 24;
+    assert_int_equal(kiln_prefilter(context, &source, &def, &map, &error), KILN_ERROR_ARGUMENT);
+    def.size = 16;
+    def.lobe = KILN_LOBE_LAMBERT;
+    assert_int_equal(kiln_prefilter(context, &source, &def, &map, &error), KILN_ERROR_ARGUMENT);
+    kiln_map_free(&source);
+    kiln_context_destroy(context);
+}
+
+// An allocator whose n-th call fails; it counts what is held.
+typedef struct failing {
+    long calls, fail_at, held;
+} failing;
+
+static void *failing_allocate(void *user, size_t size)
+{
+    failing *f = user;
+    if (++f->calls == f->fail_at)
+        return NULL;
+    f->held++;
+    return aligned_alloc(64, (size + 63) / 64 * 64);
+}
+
+static void failing_release(void *user, void *memory, size_t size)
+{
+    (void)size;
+    ((failing *)user)->held--;
+    free(memory);
+}
+
+static void a_failing_allocation_leaks_nothing(void **state)
+{
+    (void)state;
+    failing f = {0};
+    kiln_context_def own = {.allocate = failing_allocate,
+                            .release = failing_release,
+                            .allocator_user = &f,
+                            .thread_count = 1};
+    kiln_context *context;
+    CHECK_OK(kiln_context_create(&own, &context, &error));
+    kiln_map source = make_environment(context, 8, true), map;
+    float roughness[KILN_MAX_LEVELS];
+    kiln_prefilter_def def;
+    CHECK_OK(kiln_engine_levels(kiln_engine_find("three"), 16, 3, roughness, &def, &error));
+    def.shown_by = kiln_engine_find("three");
+    def.soft = true;
+    def.tolerance = 0.01;
+    long held = f.held, n = 0;
+    kiln_result result;
+    do {
+        f.calls = 0;
+        f.fail_at = ++n;
+        result = kiln_prefilter(context, &source, &def, &map, &error);
+        if (result != KILN_OK) {
+            assert_int_equal(result, KILN_ERROR_MEMORY);
+            assert_true(f.held == held);
+        }
+    } while (result != KILN_OK);
+    assert_true(n > 50);
+    f.fail_at = 0;
+    kiln_map_free(&map);
+    kiln_map_free(&source);
+    kiln_context_destroy(context);
+    assert_true(f.held == 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(white_stays_white),
+        cmocka_unit_test(nothing_is_negative_under_a_sun),
+        cmocka_unit_test(fitted_levels_show_less_error),
+        cmocka_unit_test(every_thread_count_gives_the_same_bits),
+        cmocka_unit_test(a_plan_may_be_executed_again),
+        cmocka_unit_test(what_cannot_be_fitted_is_said),
+        cmocka_unit_test(a_failing_allocation_leaks_nothing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
