@@ -169,7 +169,7 @@ bool bench_display(bench *b)
     for (int v = 0; v < FITS; v++)
         printf("%14s%10s", fits[v], "");
     puts("");
-    double(*directions)[3] = malloc(2 * MOST * sizeof *directions);
+    double(*directions)[3] = malloc((size_t)2 * MOST * sizeof *directions);
     bool done = directions != NULL || bench_fail(b, "no memory");
     for (int i = 0; i < NAME_COUNT && done; i++) {
         display d = {.context = context, .directions = directions, .values = directions + MOST};

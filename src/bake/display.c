@@ -338,9 +338,11 @@ static kiln_result make_target(ki_display *d, const ki_legendre *legendre,
 // One beyond the last level is none.
 static bool is_read(const ki_display *d, int level)
 {
-    return level < d->level_count && (d->fitted[level] || (level > 0 && d->pinned[level])) &&
-           d->shape == KILN_SHAPE_CUBE && !d->shown.flat && size_at(d, level) <= MOST_READS &&
-           size_at(d, level) > 1;
+    if (level >= d->level_count || level >= KILN_MAX_LEVELS)
+        return false;
+    int size = size_at(d, level);
+    bool made = d->fitted[level] || (level != 0 && d->pinned[level]);
+    return made && d->shape == KILN_SHAPE_CUBE && !d->shown.flat && size <= MOST_READS && size > 1;
 }
 
 typedef struct correction {

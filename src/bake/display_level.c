@@ -19,7 +19,7 @@ static void halve_row(void *data, int row)
 {
     const halving *h = data;
     size_t width = (size_t)h->width;
-    const float *above = h->from + 3 * 2 * width * 2 * (size_t)row, *below = above + 3 * 2 * width;
+    const float *above = h->from + 12 * width * (size_t)row, *below = above + 6 * width;
     float *to = h->to + 3 * width * (size_t)row;
     for (size_t x = 0; x < width; x++)
         for (size_t c = 0; c < 3; c++)

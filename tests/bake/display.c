@@ -77,7 +77,7 @@ static void nothing_is_negative_under_a_sun(void **state)
                 !memcmp(map.level[0], plain.level[0], 3 * kiln_map_texels(&map, 0) * sizeof(float));
             assert_true(same == !soft);
             for (int k = 0; k < map.level_count; k++) {
-                double mean[2] = {0}, weights = 0;
+                double mean[2] = {0};
                 for (size_t i = 0; i < kiln_map_texels(&map, k); i++) {
                     double d[3];
                     kiln_map_direction(&map, k, i, d);
@@ -85,7 +85,6 @@ static void nothing_is_negative_under_a_sun(void **state)
                     assert_true(map.level[k][3 * i] >= 0);
                     mean[0] += weight * (double)map.level[k][3 * i];
                     mean[1] += weight * (double)plain.level[k][3 * i];
-                    weights += weight;
                 }
                 // Coarse texels at their centres are not the mean of what is between them.
                 if (map.size >> k >= 16)
@@ -106,9 +105,10 @@ static void choose_directions(double alpha, int size, double (*directions)[3], d
 {
     uint64_t seed = 11;
     double sun[3], reach = fmin(1, 6 * alpha * alpha + 1e-3); // 1 - cos
-    panorama_direction(size, size + 5.5, size / 3 + 0.5, sun);
+    int row = size / 3;
+    panorama_direction(size, size + 5.5, row + 0.5, sun);
     for (int i = 0; i < DIRECTIONS; i++) {
-        double d[3], dot = 2;
+        double d[3] = {0}, dot = 2;
         do {
             random_direction(&seed, d);
             dot = d[0] * sun[0] + d[1] * sun[1] + d[2] * sun[2];
