@@ -1,10 +1,10 @@
 // The ways to light in an engine: its own filter, or cmgen's where it has none in the browser, and kiln's file.
-//   const ways = makeWays(BIN, FOLDER): of an engine of models.mjs, [{ maker, make }]; make(panorama) writes what
-//   the engine's page loads into FOLDER and names it.
+//   const ways = makeWays(BIN, FOLDER, ['--fit=none']): of an engine of models.mjs, [{ maker, make }]; make(panorama)
+//   writes what the engine's page loads into FOLDER and names it.
 import { execFileSync } from 'node:child_process';
 import path from 'node:path';
 
-export function makeWays(bin, folder) {
+export function makeWays(bin, folder, more = []) {
     const run = (program, ...args) =>
         execFileSync(program, args, { cwd: folder, encoding: 'utf8', maxBuffer: 1 << 26 });
     const own = { maker: 'its own', make: (panorama) => panorama };
@@ -25,7 +25,7 @@ export function makeWays(bin, folder) {
             return `${name}${engine.loads}`;
         },
     });
-    return (engine) => [engine.name === 'filament' ? cmgen : own, byKiln(engine, 'kiln')];
+    return (engine) => [engine.name === 'filament' ? cmgen : own, byKiln(engine, 'kiln'), ...more.map((fit) => byKiln(engine, `kiln ${fit}`, fit))];
 }
 
 // What kiln knows of an engine.
