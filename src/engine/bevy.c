@@ -8,18 +8,6 @@
 #include "codec/codec.h"
 #include "image/image.h"
 
-static double roughness(int level, int level_count, int size)
-{
-    (void)size;
-    return level_count > 1 ? (double)level / (level_count - 1) : 0;
-}
-
-static double level(double roughness, int level_count, int size)
-{
-    (void)size;
-    return (level_count - 1) * roughness;
-}
-
 static kiln_result add(ki_export *to, const kiln_map *map, const char *lobe, const char *ending,
                        kiln_error *error)
 {
@@ -64,7 +52,7 @@ const ki_recipe ki_bevy = {
     .size_max = 4096,
     .last_size = 16,
     .level_count_min = 2,
-    .roughness = roughness,
-    .level = level,
+    .roughness = ki_even_roughness,
+    .level = ki_even_level,
     .write = write,
 };

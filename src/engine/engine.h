@@ -40,6 +40,13 @@ typedef struct ki_recipe {
     kiln_result (*write)(ki_export *to, kiln_error *error);
 } ki_recipe;
 
+/// Levels at even steps of roughness, r = k / (n - 1).
+double ki_even_roughness(int level, int level_count, int size);
+double ki_even_level(double roughness, int level_count, int size);
+/// Levels at k / (n - 1) = r (2 - r), for materials no smoother than 0.045: three.js and Filament.
+double ki_quadratic_roughness(int level, int level_count, int size);
+double ki_quadratic_level(double roughness, int level_count, int size);
+
 extern const ki_recipe ki_three, ki_babylon, ki_babylon_dds, ki_filament, ki_playcanvas,
     ki_playcanvas_dds, ki_three_cubeuv, ki_gltf, ki_bevy, ki_unity, ki_godot, ki_unreal;
 

@@ -11,20 +11,6 @@
 #include <math.h>
 #include <string.h>
 
-static double roughness(int level, int level_count, int size)
-{
-    (void)size;
-    return level_count > 1 ? 1 - sqrt(1 - (double)level / (level_count - 1)) : 0;
-}
-
-// Its materials are no smoother than 0.045.
-static double level(double roughness, int level_count, int size)
-{
-    (void)size;
-    double r = fmax(roughness, 0.045);
-    return (level_count - 1) * r * (2 - r);
-}
-
 // Irradiance / pi: factors to 1, y, z, x, xy, yz, 3z^2 - 1, zx, x^2 - y^2.
 static void make_factors(const kiln_sh *sh, double factors[9][3])
 {
@@ -120,8 +106,8 @@ const ki_recipe ki_filament = {
     .size_max = 4096,
     .last_size = 16,
     .level_count_min = 2,
-    .roughness = roughness,
-    .level = level,
+    .roughness = ki_quadratic_roughness,
+    .level = ki_quadratic_level,
     .keeps_last = true,
     .write = write,
 };

@@ -8,18 +8,6 @@
 #include "codec/gltf.h"
 #include "math/math.h"
 
-static double roughness(int level, int level_count, int size)
-{
-    (void)size;
-    return level_count > 1 ? (double)level / (level_count - 1) : 0;
-}
-
-static double level(double roughness, int level_count, int size)
-{
-    (void)size;
-    return (level_count - 1) * roughness;
-}
-
 static kiln_result write(ki_export *to, kiln_error *error)
 {
     static const double cosine[9] = {1,     -2.0 / 3, 2.0 / 3, -2.0 / 3, 0.25,
@@ -51,7 +39,7 @@ const ki_recipe ki_gltf = {
     .size_max = 2048,
     .last_size = 16,
     .level_count_min = 2,
-    .roughness = roughness,
-    .level = level,
+    .roughness = ki_even_roughness,
+    .level = ki_even_level,
     .write = write,
 };

@@ -19,18 +19,6 @@
 
 enum { ATLAS = 512, LEVELS = 6, STEPS = 12 };
 
-static double roughness(int level, int level_count, int size)
-{
-    (void)size;
-    return (double)level / (level_count - 1);
-}
-
-static double level(double roughness, int level_count, int size)
-{
-    (void)size;
-    return (level_count - 1) * roughness;
-}
-
 // An equirectangular picture of a level.
 typedef struct view {
     const kiln_map *map;
@@ -189,8 +177,8 @@ const ki_recipe ki_playcanvas = {
     .size_max = 2 * ATLAS,
     .last_size = 16,
     .level_count_max = LEVELS,
-    .roughness = roughness,
-    .level = level,
+    .roughness = ki_even_roughness,
+    .level = ki_even_level,
     .flat = true,
     .write = write_rgbp,
 };
@@ -210,7 +198,8 @@ const ki_recipe ki_playcanvas_dds = {
     .size_max = 2 * ATLAS,
     .last_size = 16,
     .level_count_max = LEVELS,
-    .roughness = roughness,
-    .level = level,
+    .roughness = ki_even_roughness,
+    .level = ki_even_level,
+    .flat = true,
     .write = write_halfs,
 };

@@ -7,22 +7,6 @@
 
 #include "codec/codec.h"
 
-#include <math.h>
-
-static double roughness(int level, int level_count, int size)
-{
-    (void)size;
-    return level_count > 1 ? 1 - sqrt(1 - (double)level / (level_count - 1)) : 0;
-}
-
-// Its materials are no smoother than 0.045.
-static double level(double roughness, int level_count, int size)
-{
-    (void)size;
-    double r = fmax(roughness, 0.045);
-    return (level_count - 1) * r * (2 - r);
-}
-
 static kiln_result write(ki_export *to, kiln_error *error)
 {
     ki_writer bytes = {.context = to->context};
@@ -51,8 +35,8 @@ const ki_recipe ki_three = {
     .size_max = 4096,
     .last_size = 8,
     .level_count_min = 2,
-    .roughness = roughness,
-    .level = level,
+    .roughness = ki_quadratic_roughness,
+    .level = ki_quadratic_level,
     .keeps_last = true,
     .write = write,
 };

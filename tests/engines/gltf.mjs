@@ -18,9 +18,7 @@ const model = (count, size) => ({
 const bounds = { coded: { axes: 0.01, lod: 0.01 }, white: { rms: 1e-3, most: 2e-3 },
                  real: { rms: 5e-3, most: 0.03 } };
 
-await proveEngine({ name: 'gltf', page: 'babylon.html?linear', ending: '.glb', loads: '.glb', model, bounds });
-console.log('as it is loaded:');
-await proveEngine({
+await proveEngine({ name: 'gltf', page: 'babylon.html?linear', ending: '.glb', loads: '.glb', model, bounds }, { // and as it is loaded
     name: 'gltf', page: 'babylon.html', ending: '.glb', loads: '.glb', bounds: { real: { rms: 1e-2, most: 0.06 } },
     model: (...size) => ({ ...model(...size), curve: (x) => x ** 2.2 }),
 });

@@ -6,5 +6,4 @@ import { proveEngine } from './rig.mjs';
 const bounds = { coded: { axes: 0.01, lod: 0.01 }, white: { rms: 1e-6, most: 1e-6 },
                  real: [{ rows: [0.2, 0.8], rms: 4e-3, most: 0.05 }, { rms: 0.012 }],
                  diffuse: { rms: 4e-3, most: 0.05 } };
-await proveEngine({ ...playcanvas, bounds });
-await proveEngine({ ...playcanvasDds, bounds });
+await proveEngine({ ...playcanvas, bounds }, { ...playcanvasDds, bounds });

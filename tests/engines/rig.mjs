@@ -259,12 +259,10 @@ export async function openEngine(browser, address, page) {
         (args) => window.draw(...args), [`${address}${file}`, views, roughness, cell]);
 }
 
-// Takes an engine of models.mjs and
+// Takes an engine of models.mjs, bounds of its errors, and
 // bounds.diffuse: the page draws diffuse light alone where its address ends in #diffuse.
 // format: its name and its number in kiln_format, where it is not the engine's first.
-export async function proveEngine({ name, page, ending, loads, format, smallest = 0, model,
-                                    bounds }) {
-    makeSite(folder);
+async function prove(browser, address, { name, page, ending, loads, format, smallest = 0, model, bounds }) {
     const { size, level_count: count } = engineOf(name);
     for (const what of ['coded', 'white'])
         run(writePath, name, what, `${size}`, `${what}${ending}`, ...(format ? [`${format[1]}`] : []));
@@ -279,26 +277,33 @@ export async function proveEngine({ name, page, ending, loads, format, smallest 
          '--sh-irradiance');
     const sh = JSON.parse(fs.readFileSync(path.join(folder, 'sh.json')));
     const views = makeViews(), made = model(count, size);
+    const open = await openEngine(browser, address, page);
+    const draw = (file) => open(file, views, ROUGHNESS, CELL);
+    console.log(name, format?.[0] ?? '');
+    if (bounds.coded)
+        checkCoded(made, views, count - 1, size, await draw(`coded${loads}`), bounds.coded);
+    if (bounds.white)
+        checkPixels('furnace', made, white, views, await draw(`white${loads}`), bounds.white);
+    const real = baked([...readCube('plain.ktx2'),
+                        ...levels.flatMap((_, i) => (smallest ? readCube(`plain${i}.ktx2`) : []))]);
+    if (made.harmonics)
+        real.irradiance = (n) => readHarmonics(sh, n);
+    const shown = await draw(`real${loads}`);
+    [bounds.real].flat().forEach((bound) => checkPixels('real', made, real, views, shown, bound));
+    if (bounds.diffuse) {
+        await browser.evaluate(() => { location.hash = 'diffuse'; });
+        const matt = { ...made, shade: () => [0, 1] };
+        checkPixels('diffuse, coded', matt, coded(count - 1, made.harmonics), views,
+                    await draw(`coded${loads}`), bounds.diffuse);
+        checkPixels('diffuse, real', matt, real, views, await draw(`real${loads}`), bounds.diffuse);
+    }
+}
+
+// Proves one after the other, in one browser.
+export async function proveEngine(...engines) {
+    makeSite(folder);
     await withPage(folder, async (browser, address) => {
-        const open = await openEngine(browser, address, page);
-        const draw = (file) => open(file, views, ROUGHNESS, CELL);
-        console.log(name, format?.[0] ?? '');
-        if (bounds.coded)
-            checkCoded(made, views, count - 1, size, await draw(`coded${loads}`), bounds.coded);
-        if (bounds.white)
-            checkPixels('furnace', made, white, views, await draw(`white${loads}`), bounds.white);
-        const real = baked([...readCube('plain.ktx2'),
-                            ...levels.flatMap((_, i) => (smallest ? readCube(`plain${i}.ktx2`) : []))]);
-        if (made.harmonics)
-            real.irradiance = (n) => readHarmonics(sh, n);
-        const shown = await draw(`real${loads}`);
-        [bounds.real].flat().forEach((bound) => checkPixels('real', made, real, views, shown, bound));
-        if (bounds.diffuse) {
-            await browser.evaluate(() => { location.hash = 'diffuse'; });
-            const matt = { ...made, shade: () => [0, 1] };
-            checkPixels('diffuse, coded', matt, coded(count - 1, made.harmonics), views,
-                        await draw(`coded${loads}`), bounds.diffuse);
-            checkPixels('diffuse, real', matt, real, views, await draw(`real${loads}`), bounds.diffuse);
-        }
+        for (const engine of engines)
+            await prove(browser, address, engine);
     });
 }
