@@ -8,12 +8,12 @@
 #include <math.h>
 #include <string.h>
 
-static const ki_recipe *const recipes[] = {
+enum { RECIPES = 12 };
+static const ki_recipe *const recipes[RECIPES] = {
     &ki_three,    &ki_three_cubeuv, &ki_babylon,        &ki_babylon_dds,
     &ki_filament, &ki_playcanvas,   &ki_playcanvas_dds, &ki_gltf,
     &ki_bevy,     &ki_unity,        &ki_godot,          &ki_unreal,
 };
-enum { RECIPES = sizeof recipes / sizeof *recipes };
 
 double ki_even_roughness(int level, int level_count, int size)
 {
