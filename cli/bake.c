@@ -583,14 +583,9 @@ static double format_limit(const bake *b, const char *path)
     const char *ending = cli_ending(path);
     if (b->engine && path == b->output && b->format != KILN_FORMAT_B10G11R11)
         return b->engine->limit;
-    if (!strcmp(ending, "png"))
-        return b->format == KILN_FORMAT_RGBD ? 255 : b->format > KILN_FORMAT_BC6H ? 64 : 1;
-    if (!strcmp(ending, "hdr"))
-        return 0;
-    return b->format == KILN_FORMAT_RGBA32F     ? 0
-           : b->format == KILN_FORMAT_RGB9E5    ? 65408
-           : b->format == KILN_FORMAT_B10G11R11 ? 64512
-                                                : 65504;
+    if (!strcmp(ending, "png") && b->format < KILN_FORMAT_RGBM)
+        return 1;
+    return strcmp(ending, "hdr") ? kiln_format_limit((kiln_format)b->format) : 0;
 }
 
 static void warn_of_clamping(bake *b, const kiln_map *map, const char *path)

@@ -2,13 +2,13 @@
 // would show were every light filtered exactly:
 //   node gallery.mjs BIN FOLDER FRAGMENT PANORAMA...
 // FRAGMENT is HTML, pictures inside, which the demo puts on a page of its own. FOLDER is for files on the way.
+import { execFileSync } from 'node:child_process';
 import fs from 'node:fs';
 import path from 'node:path';
 import { engineOf, makePanorama, makeWays } from '../bench/engines/ways.mjs';
 import * as models from '../tests/engines/models.mjs';
 import { baked, makeSite, openEngine, predict, readCube } from '../tests/engines/rig.mjs';
 import { withPage } from '../tests/web/browser.mjs';
-import { execFileSync } from 'node:child_process';
 
 const [bin, folder, fragment, ...panoramas] = process.argv.slice(2).map((name) => path.resolve(name));
 const ROUGHNESS = [0.1, 0.25, 0.4, 0.6, 0.8, 1], PIXELS = 56, LOUDER = 8;

@@ -348,8 +348,8 @@ typedef struct kiln_prefilter_def {
     /// this environment, relative to what is right at each. Level 0 is the mirror all the same, white
     /// stays white, nothing is negative. NULL: exact levels. Source: docs/theory/display.md.
     const kiln_engine *shown_by;
-    bool
-        soft; ///< with shown_by: level 0 may be softer than the mirror, where that shows less error
+    /// With shown_by: level 0 may be softer than the mirror, where that shows less error.
+    bool soft;
 } kiln_prefilter_def;
 
 /// Every level from one analysis. Roughness 0 with GGX is the mirror: true area weights. `def` may
@@ -821,6 +821,8 @@ typedef enum kiln_format {
     KILN_FORMAT_RGBD,
     KILN_FORMAT_RGBP
 } kiln_format;
+/// The largest radiance that a format holds; more is cut off. 0 where floats hold all.
+KILN_API double kiln_format_limit(kiln_format format);
 
 /// {0} is a good default.
 typedef struct kiln_save_def {
@@ -898,11 +900,11 @@ struct kiln_engine {
     int size;            ///< of a face, where nothing else is asked for
     int level_count;     ///< then
     double limit;        ///< the largest radiance that the files hold
-    kiln_format
-        formats[4];    ///< to choose from, the first by default; KILN_FORMAT_AUTO behind the last
+    /// To choose from, the first by default; KILN_FORMAT_AUTO behind the last.
+    kiln_format formats[4];
     const char *proof; ///< "pixels of VERSION", where seen; else "source of" or "manual of"
-    bool
-        fit; ///< kiln_prefilter_def.shown_by shows less error by our bench: so does kiln bake --for
+    /// kiln_prefilter_def.shown_by shows less error, as measured: `kiln bake --for` uses it.
+    bool fit;
 };
 
 /// The engines in the order of their table; NULL where the index is none.

@@ -9,6 +9,26 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+double kiln_format_limit(kiln_format format)
+{
+    switch (format) {
+    case KILN_FORMAT_RGBA32F:
+        return 0;
+    case KILN_FORMAT_RGB9E5:
+        return 65408;
+    case KILN_FORMAT_B10G11R11:
+        return 64512; // blue's
+    case KILN_FORMAT_RGBM:
+        return KI_RGBM_MAX;
+    case KILN_FORMAT_RGBD:
+        return KI_RGBD_MAX;
+    case KILN_FORMAT_RGBP:
+        return KI_RGBP_MAX;
+    default:
+        return 65504; // of half floats
+    }
+}
+
 // ------------------------------------------------------------------------------------------- names
 
 // Text that grows; a failed allocation shows as `failed`.

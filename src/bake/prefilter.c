@@ -232,12 +232,12 @@ kiln_result ki_plan_execute(kiln_plan *p, const kiln_map *panorama, const kiln_m
         if (!ki_progress(p->context, stage, done))
             return ki_fail_cancelled(error, stage);
         ki_stage part = {stage, done, done + (1 - done) / 2};
-        if (!p->mirrors[i] && !p->levels[i])
-            ; // for display, below
-        else if (!p->mirrors[i])
+        // A level for display is neither; it follows when all others are there.
+        if (p->levels[i])
             result = ki_level_execute(p->levels[i], p->spectrum, panorama, p->def.rotation, map, i,
                                       &part, error);
-        else if (!ki_resample_execute(p->mirrors[i],
+        else if (p->mirrors[i] &&
+                 !ki_resample_execute(p->mirrors[i],
                                       p->direct[i] ? source->level[0] : panorama->level[0],
                                       map->level[i], &part))
             result = ki_fail_cancelled(error, stage);

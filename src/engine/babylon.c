@@ -60,25 +60,6 @@ static kiln_result write_env(ki_export *to, kiln_error *error)
     return result;
 }
 
-static kiln_result write_dds(ki_export *to, kiln_error *error)
-{
-    ki_writer bytes = {.context = to->context};
-    kiln_save_def def = {.format = KILN_FORMAT_RGBA16F};
-    kiln_result result = ki_dds_encode(to->map, &def, &bytes, error);
-    if (result == KILN_OK)
-        result = ki_export_add(to, to->path, &bytes, error);
-    ki_writer_free(&bytes);
-    return result;
-}
-
-#define BABYLON_AXES                                                                               \
-    {                                                                                              \
-        {0, 1, 2},                                                                                 \
-        {                                                                                          \
-            1, 1, -1                                                                               \
-        }                                                                                          \
-    }
-
 const ki_recipe ki_babylon = {
     .about = {.name = "babylon",
               .title = "Babylon.js 9, .env",
@@ -90,7 +71,7 @@ const ki_recipe ki_babylon = {
               .level_count = 9,
               .limit = 255,
               .proof = "pixels of Babylon.js 9.34.0"},
-    .axes = BABYLON_AXES,
+    .axes = {{0, 1, 2}, {1, 1, -1}},
     .size_min = 16,
     .size_max = 2048,
     .last_size = 1,
@@ -110,11 +91,11 @@ const ki_recipe ki_babylon_dds = {
               .level_count = 9,
               .limit = 65504,
               .proof = "pixels of Babylon.js 9.34.0"},
-    .axes = BABYLON_AXES,
+    .axes = {{0, 1, 2}, {1, 1, -1}},
     .size_min = 16,
     .size_max = 2048,
     .last_size = 1,
     .roughness = roughness,
     .level = level,
-    .write = write_dds,
+    .write = ki_export_dds,
 };

@@ -1,6 +1,7 @@
 // The table of recipes, and a cube turned to an engine's axes.
 #include "engine/engine.h"
 
+#include "codec/codec.h"
 #include "image/image.h"
 #include "math/math.h"
 #include "sphere/sh.h"
@@ -116,4 +117,15 @@ kiln_result ki_export_add(ki_export *to, const char *path, const ki_writer *byte
         return ki_fail_memory(to->context, error, path, bytes->size);
     to->file_count++;
     return ki_file_set_add(to->set, path, bytes->bytes, bytes->size, error);
+}
+
+kiln_result ki_export_dds(ki_export *to, kiln_error *error)
+{
+    ki_writer bytes = {.context = to->context};
+    kiln_save_def def = {.format = to->format};
+    kiln_result result = ki_dds_encode(to->map, &def, &bytes, error);
+    if (result == KILN_OK)
+        result = ki_export_add(to, to->path, &bytes, error);
+    ki_writer_free(&bytes);
+    return result;
 }

@@ -65,4 +65,7 @@ void ki_turn_sh(const kiln_sh *source, const ki_axes *axes, kiln_sh *turned);
 kiln_result ki_export_add(ki_export *to, const char *path, const ki_writer *bytes,
                           kiln_error *error);
 
+/// The whole export of an engine that takes one .dds in `to`'s format.
+kiln_result ki_export_dds(ki_export *to, kiln_error *error);
+
 #endif

@@ -5,8 +5,6 @@
 // Its world is left-handed. Its panoramas (Skybox/Panoramic) have +X in the centre and -Z to the right.
 #include "engine/engine.h"
 
-#include "codec/codec.h"
-
 #include <math.h>
 
 enum { STEPS = 6 };
@@ -23,17 +21,6 @@ static double level(double roughness, int level_count, int size)
     (void)level_count;
     (void)size;
     return STEPS * roughness * (1.7 - 0.7 * roughness);
-}
-
-static kiln_result write(ki_export *to, kiln_error *error)
-{
-    ki_writer bytes = {.context = to->context};
-    kiln_save_def def = {.format = to->format};
-    kiln_result result = ki_dds_encode(to->map, &def, &bytes, error);
-    if (result == KILN_OK)
-        result = ki_export_add(to, to->path, &bytes, error);
-    ki_writer_free(&bytes);
-    return result;
 }
 
 const ki_recipe ki_unity = {
@@ -53,5 +40,5 @@ const ki_recipe ki_unity = {
     .last_size = 1,
     .roughness = roughness,
     .level = level,
-    .write = write,
+    .write = ki_export_dds,
 };

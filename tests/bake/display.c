@@ -1,5 +1,6 @@
 // Levels for what an engine shows: nearer to the truth than exact ones, by brute force.
 #include "bake_test.h"
+#include "failing.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -246,37 +247,11 @@ static void what_cannot_be_fitted_is_said(void **state)
     kiln_context_destroy(context);
 }
 
-// An allocator whose n-th call fails; it counts what is held.
-typedef struct failing {
-    long calls, fail_at, held;
-} failing;
-
-static void *failing_allocate(void *user, size_t size)
-{
-    failing *f = user;
-    if (++f->calls == f->fail_at)
-        return NULL;
-    f->held++;
-    return aligned_alloc(64, (size + 63) / 64 * 64);
-}
-
-static void failing_release(void *user, void *memory, size_t size)
-{
-    (void)size;
-    ((failing *)user)->held--;
-    free(memory);
-}
-
 static void a_failing_allocation_leaks_nothing(void **state)
 {
     (void)state;
-    failing f = {0};
-    kiln_context_def own = {.allocate = failing_allocate,
-                            .release = failing_release,
-                            .allocator_user = &f,
-                            .thread_count = 1};
-    kiln_context *context;
-    CHECK_OK(kiln_context_create(&own, &context, &error));
+    failing f;
+    kiln_context *context = failing_context(&f);
     kiln_map source = make_environment(context, 8, true), map;
     float roughness[KILN_MAX_LEVELS];
     kiln_prefilter_def def;

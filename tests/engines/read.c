@@ -5,24 +5,22 @@
 
 #include <unistd.h>
 
-static kiln_context *context;
+#include "context.h"
+
 static kiln_error error;
 static char folder[] = "/tmp/kiln-read-XXXXXX";
 
 enum { LEVELS_SHOWN = 40, WAYS = 60 };
 static const double pi = 3.14159265358979323846;
 
-static int set_up(void **state)
+static int set_up_folder(void **state)
 {
-    (void)state;
-    return !mkdtemp(folder) || kiln_context_create(NULL, &context, &error) != KILN_OK;
+    return !mkdtemp(folder) || set_up(state);
 }
 
-static int tear_down(void **state)
+static int tear_down_folder(void **state)
 {
-    (void)state;
-    kiln_context_destroy(context);
-    return rmdir(folder);
+    return rmdir(folder) || tear_down(state);
 }
 
 static const char *path_of(const char *name)
@@ -217,5 +215,5 @@ int main(void)
         cmocka_unit_test(unity_reads_each_level_where_it_lies),
         cmocka_unit_test(panoramas_lie_as_they_were_read),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, set_up_folder, tear_down_folder);
 }

@@ -4,21 +4,19 @@
 #include <png.h>
 #include <unistd.h>
 
-static kiln_context *context;
+#include "context.h"
+
 static kiln_error error;
 static char folder[] = "/tmp/kiln-tables-XXXXXX";
 
-static int set_up(void **state)
+static int set_up_folder(void **state)
 {
-    (void)state;
-    return !mkdtemp(folder) || kiln_context_create(NULL, &context, &error) != KILN_OK;
+    return !mkdtemp(folder) || set_up(state);
 }
 
-static int tear_down(void **state)
+static int tear_down_folder(void **state)
 {
-    (void)state;
-    kiln_context_destroy(context);
-    return rmdir(folder);
+    return rmdir(folder) || tear_down(state);
 }
 
 static void save(int size, kiln_table_format format, const char *path)
@@ -132,5 +130,5 @@ int main(void)
         cmocka_unit_test(babylons_picture_is_the_integrals),
         cmocka_unit_test(other_numbers_of_channels_are_refused),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, set_up_folder, tear_down_folder);
 }

@@ -8,23 +8,9 @@
 
 #include <zstd.h>
 
-static kiln_context *context;
+#include "context.h"
+
 static kiln_error error;
-
-static int set_up(void **state)
-{
-    (void)state;
-    return kiln_context_create(NULL, &context, &error) != KILN_OK;
-}
-
-static int tear_down(void **state)
-{
-    (void)state;
-    size_t held = 0;
-    kiln_context_memory(context, &held, NULL);
-    kiln_context_destroy(context);
-    return held != 0;
-}
 
 static void make_cube(int size, int levels, kiln_map *map)
 {

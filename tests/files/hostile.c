@@ -1,47 +1,12 @@
 // Hostile bytes and missing memory: every decoder returns, says which file, and leaks nothing.
-#include "check.h"
 #include "codec/codec.h"
+#include "failing.h"
 
 #include <dirent.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 static kiln_error error;
-
-// An allocator whose n-th call fails; it counts what is held.
-typedef struct failing {
-    long calls, fail_at; // 0 for never
-    long held;
-} failing;
-
-static void *failing_allocate(void *user, size_t size)
-{
-    failing *f = user;
-    if (++f->calls == f->fail_at)
-        return NULL;
-    f->held++;
-    return aligned_alloc(64, (size + 63) / 64 * 64);
-}
-
-static void failing_release(void *user, void *memory, size_t size)
-{
-    (void)size;
-    ((failing *)user)->held--;
-    free(memory);
-}
-
-static kiln_context *make_context(failing *f)
-{
-    *f = (failing){0};
-    kiln_context *context;
-    kiln_context_def def = {.allocate = failing_allocate,
-                            .release = failing_release,
-                            .allocator_user = f,
-                            .memory_limit = (size_t)512 << 20,
-                            .thread_count = 1};
-    CHECK_OK(kiln_context_create(&def, &context, &error));
-    return context;
-}
 
 typedef struct sample {
     char name[64];
@@ -170,7 +135,7 @@ static void bad_files_are_refused(void **state)
     read_folder(KILN_BAD_FILES, bad, &count);
     assert_true(count > 60);
     failing f;
-    kiln_context *context = make_context(&f);
+    kiln_context *context = failing_context(&f);
     for (int i = 0; i < count; i++) {
         kiln_result result = decode(context, &f, bad[i].bytes, bad[i].size, bad[i].name);
         if (result != KILN_ERROR_FORMAT)
@@ -184,7 +149,7 @@ static void cut_files_are_refused(void **state)
 {
     (void)state;
     failing f;
-    kiln_context *context = make_context(&f);
+    kiln_context *context = failing_context(&f);
     for (int i = 0; i < good_count; i++) {
         const sample *s = &good[i];
         assert_int_equal(decode(context, &f, s->bytes, s->size, s->name), KILN_OK);
@@ -203,7 +168,7 @@ static void damaged_files_do_no_harm(void **state)
 {
     (void)state;
     failing f;
-    kiln_context *context = make_context(&f);
+    kiln_context *context = failing_context(&f);
     uint32_t seed = 1;
     for (int i = 0; i < good_count; i++) {
         sample *s = &good[i];
@@ -232,7 +197,7 @@ static void check_allocations(const char *what, attempt *call, const char *path)
     long most = 0;
     for (long n = 1;; n++) {
         failing f;
-        kiln_context *context = make_context(&f);
+        kiln_context *context = failing_context(&f);
         f.calls = 0;
         f.fail_at = n;
         kiln_result result = call(context, path);
