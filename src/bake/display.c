@@ -1,6 +1,7 @@
 #include "bake/display.h"
 
 #include "bake/display_level.h"
+#include "bake/display_mix.h"
 #include "bake/display_read.h"
 #include "bake/prefilter.h"
 #include "image/image.h"
@@ -10,15 +11,6 @@
 #include <math.h>
 #include <string.h>
 
-// Gauss nodes between two levels, and the least roughness that counts.
-enum { NODES = 4, MOST_NODES = NODES * KILN_MAX_LEVELS, MOST_BASIS = MOST_NODES + 2 };
-static const double least_roughness = 0.05;
-// What a level costs where no roughness shows it: it should be what it is in the exact chain.
-static const double prior = 1e-3;
-// Level 0 free: the share of the mirror in it, as if so much roughness showed it alone.
-static const double mirror_share = 1e-3;
-// Weights below this are left out.
-static const double least_weight = 1e-5;
 // A degree whose power is less than this of the mean's is the rounding of a float: it is not sharpened.
 static const double rounding = 1e-14;
 // Faces up to this size are made for bilinear reads; the coarse ones at 4 x 4 points a texel, else 2 x 2.
@@ -30,54 +22,16 @@ struct ki_display {
     kiln_shape shape;
     int size, smallest, level_count;
     double tolerance;
-    bool fitted[KILN_MAX_LEVELS], pinned[KILN_MAX_LEVELS];
-    // The basis: an environment seen through GGX at each node, at the last level's roughness, and by a
-    // mirror.
-    int node_count;
-    double roughness[MOST_BASIS], width[MOST_BASIS], level[MOST_BASIS];
-    ki_zonal_spectrum spectra[MOST_BASIS];
-    int nearest[KILN_MAX_LEVELS]; // node to a level's own roughness
+    bool pinned[KILN_MAX_LEVELS];
+    ki_palette palette;
     // Of an execution.
-    double weights[KILN_MAX_LEVELS][MOST_BASIS];
-    double (*power)[3];               // by degree, without the suns
-    double coupling[KILN_MAX_LEVELS]; // A_i,i+1 / A_ii
+    ki_mixtures mixtures;
+    double (*power)[3]; // by degree, without the suns, and then with them
 };
 
 static int size_at(const ki_display *d, int level)
 {
     return ki_max(d->smallest, d->size >> level);
-}
-
-static double level_at(const ki_display *d, double roughness)
-{
-    return d->shown.level(roughness, d->level_count, d->size);
-}
-
-// Roughness from the least to 1, cut where the shader comes to another pair of levels.
-static void lay_nodes(ki_display *d)
-{
-    static const double x[NODES] = {-0.86113631159405257522, -0.33998104358485626480,
-                                    0.33998104358485626480, 0.86113631159405257522};
-    static const double w[NODES] = {0.34785484513745385737, 0.65214515486254614263,
-                                    0.65214515486254614263, 0.34785484513745385737};
-    double from = least_roughness;
-    while (from < 1 && d->node_count + NODES <= MOST_NODES) {
-        // The largest roughness that is shown by the same two levels, by halving.
-        double next = floor(level_at(d, from + 1e-9)) + 1, low = from, high = 1;
-        if (level_at(d, 1) <= next)
-            low = 1;
-        for (int i = 0; i < 60 && low < 1; i++) {
-            double middle = 0.5 * (low + high);
-            *(level_at(d, middle) <= next ? &low : &high) = middle;
-        }
-        for (int i = 0; i < NODES && low > from; i++) {
-            int n = d->node_count++;
-            d->roughness[n] = from + 0.5 * (1 + x[i]) * (low - from);
-            d->width[n] = 0.5 * w[i] * (low - from);
-            d->level[n] = ki_clamp(level_at(d, d->roughness[n]), 0, d->level_count - 1);
-        }
-        from = low > from ? low : from + 1e-6;
-    }
 }
 
 // Texels of a cube's face show degrees up to twice its size; twice that do for points between them.
@@ -86,13 +40,14 @@ static int most_degree(int size)
     return ki_min(ki_max(4 * size, KI_LEAST_DEGREE), KILN_MAX_DEGREE);
 }
 
-static kiln_result analyze_nodes(ki_display *d, kiln_error *error)
+static kiln_result analyze_lobes(ki_display *d, kiln_error *error)
 {
     kiln_result result = KILN_OK;
-    for (int n = 0; n <= d->node_count && result == KILN_OK; n++) {
-        ki_zonal zonal = {.lobe = kiln_lobe_ggx(d->roughness[n] * d->roughness[n])};
+    ki_palette *p = &d->palette;
+    for (int n = 0; n <= p->count && result == KILN_OK; n++) {
+        ki_zonal zonal = {.lobe = kiln_lobe_ggx(p->roughness[n] * p->roughness[n])};
         result = ki_zonal_analyze(d->context, &zonal, d->tolerance, most_degree(d->size),
-                                  &d->spectra[n], error);
+                                  &p->spectra[n], error);
     }
     return result;
 }
@@ -111,25 +66,26 @@ kiln_result ki_display_create(kiln_context *context, const kiln_prefilter_def *d
     d->smallest = ki_max(1, def->smallest);
     d->level_count = def->level_count;
     d->tolerance = def->tolerance;
-    lay_nodes(d);
+    ki_palette *p = &d->palette;
+    ki_palette_lay(p, shown->level, d->level_count, d->size);
     int last = d->level_count - 1;
-    d->roughness[d->node_count] = (double)roughness[last];
-    for (int n = 0; n < d->node_count; n++) {
-        int i = (int)d->level[n];
-        d->fitted[i] = true;
-        if (d->level[n] > i)
-            d->fitted[i + 1] = true;
+    p->roughness[p->count] = (double)roughness[last];
+    for (int n = 0; n < p->count; n++) {
+        int i = (int)p->level[n];
+        p->fitted[i] = true;
+        if (p->level[n] > i)
+            p->fitted[i + 1] = true;
     }
     d->pinned[0] = !shown->soft;
     d->pinned[last] = d->pinned[last] || shown->keep_last;
     for (int i = 0; i <= last; i++) {
-        d->fitted[i] = d->fitted[i] && !d->pinned[i];
-        for (int n = 0; n < d->node_count; n++)
-            if (fabs(d->roughness[n] - (double)roughness[i]) <
-                fabs(d->roughness[d->nearest[i]] - (double)roughness[i]))
-                d->nearest[i] = n;
+        p->fitted[i] = p->fitted[i] && !d->pinned[i];
+        for (int n = 0; n < p->count; n++)
+            if (fabs(p->roughness[n] - (double)roughness[i]) <
+                fabs(p->roughness[p->nearest[i]] - (double)roughness[i]))
+                p->nearest[i] = n;
     }
-    kiln_result result = analyze_nodes(d, error);
+    kiln_result result = analyze_lobes(d, error);
     if (result != KILN_OK) {
         ki_display_destroy(d);
         *display = NULL;
@@ -141,8 +97,8 @@ void ki_display_destroy(ki_display *d)
 {
     if (!d)
         return;
-    for (int n = 0; n <= d->node_count; n++)
-        ki_zonal_free(&d->spectra[n]);
+    for (int n = 0; n <= d->palette.count; n++)
+        ki_zonal_free(&d->palette.spectra[n]);
     ki_free(d->power);
     ki_free(d);
 }
@@ -150,113 +106,31 @@ void ki_display_destroy(ki_display *d)
 int ki_display_degree(const ki_display *d)
 {
     int degree = 0;
-    for (int n = 0; n <= d->node_count; n++)
-        degree = ki_max(degree, d->spectra[n].degree);
+    for (int n = 0; n <= d->palette.count; n++)
+        degree = ki_max(degree, d->palette.spectra[n].degree);
     return degree;
 }
 
 bool ki_display_fits(const ki_display *d, int level)
 {
-    return d->fitted[level];
+    return d->palette.fitted[level];
 }
 
-// ---------------------------------------------------------------------------------------- weights
-
-// 1 / |T_r|^2 of each node, and last of the mirror.
-static kiln_result weigh_nodes(ki_display *d, const kiln_spectrum *spectrum, double *w,
-                               kiln_error *error)
+static kiln_result choose_mixtures(ki_display *d, const kiln_spectrum *spectrum, kiln_error *error)
 {
-    int degree = spectrum->degree;
-    double(*power)[3] = ki_alloc(d->context, 2 * ((size_t)degree + 1), sizeof *power);
-    if (!power)
-        return ki_fail_memory(d->context, error, "a spectrum's power",
-                              2 * (size_t)degree * sizeof *power);
+    size_t count = (size_t)spectrum->degree + 1;
     ki_free(d->power);
-    d->power = power;
-    kiln_result result = ki_spectrum_power(spectrum, false, power, error);
-    power += degree + 1;
+    d->power = ki_alloc(d->context, 2 * count, sizeof *d->power);
+    if (!d->power)
+        return ki_fail_memory(d->context, error, "a spectrum's power",
+                              2 * count * sizeof *d->power);
+    kiln_result result = ki_spectrum_power(spectrum, false, d->power, error);
     if (result == KILN_OK)
-        result = ki_spectrum_power(spectrum, true, power, error);
-    for (int n = 0; n <= d->node_count && result == KILN_OK; n++) {
-        const ki_zonal_spectrum *s = &d->spectra[n < d->node_count ? n : 0];
-        double sum = 0;
-        for (int l = 0; l <= degree && (l <= s->degree || n == d->node_count); l++) {
-            double k = n < d->node_count ? s->k[l] : 1;
-            sum += k * k * (power[l][0] + power[l][1] + power[l][2]);
-        }
-        // Relative to the mean radiance, so that no unit overflows; black is as good as white.
-        double mean = power[0][0] + power[0][1] + power[0][2];
-        w[n] = sum > 0 && mean > 0 ? mean / sum : 1;
-    }
+        result = ki_spectrum_power(spectrum, true, d->power + count, error);
+    if (result == KILN_OK)
+        result = ki_palette_mix(d->context, &d->palette, spectrum, (const double(*)[3])d->power,
+                                &d->mixtures, error);
     return result;
-}
-
-typedef struct equations {
-    double diagonal[KILN_MAX_LEVELS], next[KILN_MAX_LEVELS];
-    double right[KILN_MAX_LEVELS][MOST_BASIS];
-} equations;
-
-static void lay_equations(ki_display *d, const double *w, equations *e)
-{
-    int last = d->level_count - 1, mirror = d->node_count + 1;
-    memset(e, 0, sizeof *e);
-    for (int n = 0; n < d->node_count; n++) {
-        int i = ki_min((int)d->level[n], last);
-        double t = d->level[n] - i, weight = w[n] * d->width[n];
-        e->diagonal[i] += weight * (1 - t) * (1 - t);
-        e->right[i][n] += weight * (1 - t);
-        if (i < last) {
-            e->diagonal[i + 1] += weight * t * t;
-            e->next[i] += weight * t * (1 - t);
-            e->right[i + 1][n] += weight * t;
-        }
-    }
-    for (int i = 0; i <= last; i++) {
-        double own = i ? prior * (e->diagonal[i] + e->next[i] + e->next[i - 1])
-                       : mirror_share * w[d->node_count];
-        e->diagonal[i] += own;
-        e->right[i][i ? d->nearest[i] : mirror] += own;
-    }
-    for (int i = 0; i <= last; i++)
-        d->coupling[i] = e->diagonal[i] > 0 ? e->next[i] / e->diagonal[i] : 0;
-    // What stays as it is goes to the right.
-    for (int i = 0; i <= last; i++) {
-        if (d->fitted[i])
-            continue;
-        int as = i == 0 ? mirror : i == last ? d->node_count : d->nearest[i];
-        memset(e->right[i], 0, sizeof e->right[i]);
-        e->right[i][as] = e->diagonal[i] = 1;
-        if (i > 0)
-            e->right[i - 1][as] -= e->next[i - 1];
-        if (i < last && d->fitted[i + 1])
-            e->right[i + 1][as] -= e->next[i];
-        if (i > 0)
-            e->next[i - 1] = 0;
-        e->next[i] = 0;
-    }
-}
-
-static void solve_equations(ki_display *d, equations *e)
-{
-    int last = d->level_count - 1, count = d->node_count + 2;
-    for (int i = 0; i < last; i++) {
-        double factor = e->next[i] / e->diagonal[i];
-        e->diagonal[i + 1] -= factor * e->next[i];
-        for (int n = 0; n < count; n++)
-            e->right[i + 1][n] -= factor * e->right[i][n];
-    }
-    for (int i = last; i >= 0; i--) {
-        double sum = 0, *to = d->weights[i];
-        for (int n = 0; n < count; n++) {
-            double after = i < last ? e->next[i] * d->weights[i + 1][n] : 0;
-            to[n] = (e->right[i][n] - after) / e->diagonal[i];
-            if (fabs(to[n]) < least_weight)
-                to[n] = 0;
-            sum += to[n];
-        }
-        for (int n = 0; n < count; n++)
-            to[n] /= sum; // white stays white
-    }
 }
 
 // ----------------------------------------------------------------------------------------- levels
@@ -270,22 +144,22 @@ static double power_at(const ki_display *d, int l)
 static kiln_result make_kernel(const ki_display *d, int level, ki_zonal *zonal, ki_mixture *mixture,
                                ki_zonal_spectrum *spectrum, kiln_error *error)
 {
-    double alphas[MOST_BASIS], weights[MOST_BASIS], integrals[MOST_BASIS];
+    double alphas[KI_MOST_LOBES], weights[KI_MOST_LOBES], integrals[KI_MOST_LOBES];
     int count = 0, degree = ki_display_degree(d);
     *spectrum = (ki_zonal_spectrum){.integral = 1};
     spectrum->k = ki_alloc(d->context, (size_t)degree + 1, sizeof *spectrum->k);
     if (!spectrum->k)
         return ki_fail_memory(d->context, error, "a level's kernel",
                               (size_t)degree * sizeof *spectrum->k);
-    for (int n = 0; n <= d->node_count; n++) {
-        double weight = d->weights[level][n];
+    for (int n = 0; n <= d->palette.count; n++) {
+        double weight = d->mixtures.weights[level][n];
         if (weight == 0)
             continue;
-        alphas[count] = d->roughness[n] * d->roughness[n];
+        alphas[count] = d->palette.roughness[n] * d->palette.roughness[n];
         weights[count] = weight;
-        integrals[count++] = d->spectra[n].integral;
-        for (int l = 0; l <= d->spectra[n].degree; l++)
-            spectrum->k[l] += weight * d->spectra[n].k[l];
+        integrals[count++] = d->palette.spectra[n].integral;
+        for (int l = 0; l <= d->palette.spectra[n].degree; l++)
+            spectrum->k[l] += weight * d->palette.spectra[n].k[l];
     }
     double all = 0, left = 0;
     for (int l = 0; l <= degree; l++)
@@ -329,7 +203,8 @@ static kiln_result make_target(ki_display *d, const ki_legendre *legendre,
     if (result == KILN_OK)
         result = ki_level_execute(plan, spectrum, NULL, rotation, map, index, stage, error);
     if (result == KILN_OK)
-        ki_add_mirror(d->context, mirror, d->weights[level][d->node_count + 1], map, index);
+        ki_add_mirror(d->context, mirror, d->mixtures.weights[level][d->palette.count + 1], map,
+                      index);
     ki_level_destroy(plan);
     ki_free(mixture);
     return result;
@@ -341,7 +216,7 @@ static bool is_read(const ki_display *d, int level)
     if (level >= d->level_count || level >= KILN_MAX_LEVELS)
         return false;
     int size = size_at(d, level);
-    bool made = d->fitted[level] || (level != 0 && d->pinned[level]);
+    bool made = d->palette.fitted[level] || (level != 0 && d->pinned[level]);
     return made && d->shape == KILN_SHAPE_CUBE && !d->shown.flat && size <= MOST_READS && size > 1;
 }
 
@@ -388,8 +263,8 @@ static kiln_result make_read(ki_display *d, const ki_legendre *legendre,
     if (result != KILN_OK)
         return result;
     memcpy(goal.level[0], target->level[0], 3 * kiln_map_texels(target, 0) * sizeof(float));
-    if (d->fitted[level] && is_read(d, level + 1)) {
-        correction a = {&goal, map, &targets[level + 1], level + 1, d->coupling[level]};
+    if (d->palette.fitted[level] && is_read(d, level + 1)) {
+        correction a = {&goal, map, &targets[level + 1], level + 1, d->mixtures.coupling[level]};
         ki_parallel_for(d->context, 6 * goal.size, correct_row, &a);
     }
     result = ki_fit_reads(d->context, &goal, map, level, error);
@@ -401,19 +276,15 @@ kiln_result ki_display_execute(ki_display *d, const ki_legendre *legendre,
                                const kiln_spectrum *spectrum, double rotation, kiln_map *map,
                                const ki_stage *stage, kiln_error *error)
 {
-    double w[MOST_BASIS];
-    equations e;
     kiln_map mirror = {.shape = d->shape, .size = d->size, .level_count = 1};
     while (d->size >> mirror.level_count >= d->smallest && mirror.level_count < d->level_count)
         mirror.level_count++;
     kiln_map targets[KILN_MAX_LEVELS] = {{0}};
-    kiln_result result = weigh_nodes(d, spectrum, w, error);
+    kiln_result result = choose_mixtures(d, spectrum, error);
     if (result == KILN_OK)
         result = ki_map_allocate(d->context, &mirror, error);
     if (result != KILN_OK)
         return result;
-    lay_equations(d, w, &e);
-    solve_equations(d, &e);
     ki_make_mirrors(d->context, map, &mirror);
     // From coarse to fine: a fine level can make up for what a coarse one cannot show.
     for (int i = d->level_count - 1; i >= 0 && result == KILN_OK; i--) {
@@ -422,7 +293,7 @@ kiln_result ki_display_execute(ki_display *d, const ki_legendre *legendre,
                 make_read(d, legendre, spectrum, rotation, i, &mirror, map, targets, stage, error);
             if (i + 1 < d->level_count)
                 kiln_map_free(&targets[i + 1]);
-        } else if (d->fitted[i]) {
+        } else if (d->palette.fitted[i]) {
             result = make_target(d, legendre, spectrum, rotation, i, &mirror, map, i, stage, error);
             if (result == KILN_OK)
                 result = ki_clear_negative(d->context, map, i, error);

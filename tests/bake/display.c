@@ -21,7 +21,7 @@ static kiln_map make_environment(kiln_context *context, int size, bool sun)
                 texel_at(&map, x, y)[c] = (float)(1.5 + d[1] + wave);
             }
     for (int c = 0; c < 3 && sun; c++)
-        texel_at(&map, size + 5, size / 3)[c] = (float)(3e4 + 1e3 * c);
+        texel_at(&map, size + 5, size / 3)[c] = (float)(3e3 + 1e2 * c);
     return map;
 }
 
@@ -100,7 +100,7 @@ static void nothing_is_negative_under_a_sun(void **state)
 }
 
 // Half of the directions are spread evenly, half around the sun's as wide as the lobe.
-enum { DIRECTIONS = 160, STEPS = 9 };
+enum { DIRECTIONS = 160, STEPS = 12 };
 
 static void choose_directions(double alpha, int size, double (*directions)[3], double *weights)
 {
@@ -130,47 +130,63 @@ static void choose_directions(double alpha, int size, double (*directions)[3], d
     }
 }
 
-// Mean over roughness of the squared relative error of what is shown.
-static double displayed_error(kiln_context *context, const kiln_map *source, const char *engine,
-                              const kiln_map *map)
+// Relative rms over roughness, `from` to 1, of what is shown: everywhere, and farther than .1415 from the sun.
+static void displayed_error(kiln_context *context, const kiln_map *source, const char *engine,
+                            const kiln_map *map, double from, double error_of[2])
 {
+    double sun[3];
+    panorama_direction(source->size, source->size + 5.5, source->size / 3 + 0.5, sun);
     static double directions[DIRECTIONS][3], truth[DIRECTIONS][3], shown[DIRECTIONS][3],
         weights[DIRECTIONS];
-    double sum = 0;
+    error_of[0] = error_of[1] = 0;
     for (int k = 0; k < STEPS; k++) {
-        double r = 0.1 + 0.9 * (k + 0.5) / STEPS, off = 0, whole = 0;
+        double r = from + (1 - from) * (k + 0.5) / STEPS, off[2] = {0}, whole[2] = {0};
         kiln_lobe lobe = kiln_lobe_ggx(r * r);
         choose_directions(r * r, source->size, directions, weights);
         CHECK_OK(kiln_reference_filter(context, source, &lobe, 0, (const double(*)[3])directions,
                                        DIRECTIONS, truth, &error));
         CHECK_OK(kiln_engine_show(context, kiln_engine_find(engine), map, r,
                                   (const double(*)[3])directions, DIRECTIONS, shown, &error));
-        for (int i = 0; i < DIRECTIONS; i++)
+        for (int i = 0; i < DIRECTIONS; i++) {
+            const double *at = directions[i];
+            double dot = at[0] * sun[0] + at[1] * sun[1] + at[2] * sun[2];
+            double away = dot < cos(0.1415) ? weights[i] : 0;
             for (int c = 0; c < 3; c++) {
                 double d = shown[i][c] - truth[i][c];
-                off += weights[i] * d * d;
-                whole += weights[i] * truth[i][c] * truth[i][c];
+                off[0] += weights[i] * d * d;
+                whole[0] += weights[i] * truth[i][c] * truth[i][c];
+                off[1] += away * d * d;
+                whole[1] += away * truth[i][c] * truth[i][c];
             }
-        sum += off / whole / STEPS;
+        }
+        for (int i = 0; i < 2; i++) {
+            error_of[i] += off[i] / whole[i] / STEPS;
+        }
     }
-    return sqrt(sum);
+    for (int i = 0; i < 2; i++)
+        error_of[i] = sqrt(error_of[i]);
 }
 
 static void fitted_levels_show_less_error(void **state)
 {
     (void)state;
     static const char *const engines[] = {"three", "babylon"};
+    // With faces of 128 Babylon reads next to nothing but the mirror below .1.
+    static const double from[] = {0.05, 0.1};
     kiln_context *context = make_context(0);
     for (int sun = 0; sun < 2; sun++) {
         kiln_map source = make_environment(context, 32, sun);
         for (int e = 0; e < 2; e++) {
             kiln_map plain = bake(context, &source, engines[e], 128, 0, false, false);
             kiln_map sharp = bake(context, &source, engines[e], 128, 0, true, false);
-            double before = displayed_error(context, &source, engines[e], &plain);
-            double after = displayed_error(context, &source, engines[e], &sharp);
-            print_message("%s, %s: %.4f, fitted %.4f\n", engines[e], sun ? "sunny" : "calm", before,
-                          after);
-            assert_true(after < 0.9 * before);
+            double before[2], after[2];
+            displayed_error(context, &source, engines[e], &plain, from[e], before);
+            displayed_error(context, &source, engines[e], &sharp, from[e], after);
+            for (int i = 0; i < 2; i++) {
+                print_message("%s, %s%s: %.4f, fitted %.4f\n", engines[e], sun ? "sunny" : "calm",
+                              i ? ", away from it" : "", before[i], after[i]);
+                assert_true(after[i] < 0.9 * before[i]);
+            }
             kiln_map_free(&plain);
             kiln_map_free(&sharp);
         }
