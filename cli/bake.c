@@ -120,8 +120,6 @@ static const char *const shapes[] = {"panorama", "cube", "octahedron", NULL};
 static const char *const methods[] = {"exact", "textbook", NULL};
 static const char *const fits[] = {"none", "sharp", "soft", NULL};
 static const char *const layouts[] = {"auto", "panorama", "cross", "strip", "octahedron", NULL};
-static const char *const formats[] = {"auto", "rgba16f", "rgba32f", "rgb9e5", "b10g11r11",
-                                      "bc6h", "rgbm",    "rgbd",    "rgbp",   NULL};
 
 typedef struct bake {
     cli_arguments arguments;
@@ -202,10 +200,10 @@ static int check_output(const bake *b, const char *option, const char *path)
     bool packed = b->format >= KILN_FORMAT_RGB9E5 && !bytes;
     if (packed && !texture)
         return cli_wrong(&cli_bake, "%s %s: --format %s is for .ktx2 and .dds", option, path,
-                         formats[b->format]);
+                         kiln_format_names()[b->format]);
     if (bytes && strcmp(ending, "png") != 0)
         return cli_wrong(&cli_bake, "%s %s: --format %s is for .png", option, path,
-                         formats[b->format]);
+                         kiln_format_names()[b->format]);
     if (b->format != KILN_FORMAT_AUTO && !texture && !exr && !bytes)
         return cli_wrong(&cli_bake, "%s %s: .%s has one format only, leave --format out", option,
                          path, ending);
@@ -247,7 +245,7 @@ static int read_numbers(bake *b)
         (code = cli_choice(a, METHOD, "--method", methods, &b->textbook)) != CLI_GO ||
         (code = cli_choice(a, FIT, "--fit", fits, &b->fit)) != CLI_GO ||
         (code = cli_choice(a, LAYOUT, "--layout", layouts, &b->layout)) != CLI_GO ||
-        (code = cli_choice(a, FORMAT, "--format", formats, &b->format)) != CLI_GO)
+        (code = cli_choice(a, FORMAT, "--format", kiln_format_names(), &b->format)) != CLI_GO)
         return code;
     return read_roughness(b);
 }
@@ -310,25 +308,6 @@ static int check_combinations(const bake *b)
     return CLI_GO;
 }
 
-// Whether an engine takes the format.
-static int check_engine_format(const bake *b)
-{
-    const kiln_format *all = b->engine->formats;
-    char names[64] = "";
-    if (b->format == KILN_FORMAT_AUTO)
-        return CLI_GO;
-    for (int i = 0; i < 4 && all[i]; i++) {
-        if (all[i] == (kiln_format)b->format)
-            return CLI_GO;
-        size_t length = strlen(names);
-        snprintf(names + length, sizeof names - length, "%s%s", i ? " or " : "", formats[all[i]]);
-    }
-    if (!names[0])
-        return cli_wrong(&cli_bake, "--for %s has one format, leave --format out", b->engine->name);
-    return cli_wrong(&cli_bake, "--for %s takes --format %s, not %s", b->engine->name, names,
-                     formats[b->format]);
-}
-
 // --for decides the lobe and each level's roughness, and which formats there are.
 static int take_engine(bake *b)
 {
@@ -347,9 +326,9 @@ static int take_engine(bake *b)
         if (a->value[decided[i]])
             return cli_wrong(&cli_bake, "--for %s decides what --%s is, leave one of them out",
                              name, cli_option_name(&cli_bake, decided[i]));
-    int code = check_engine_format(b);
-    if (code != CLI_GO)
-        return code;
+    kiln_format format = (kiln_format)b->format;
+    if (kiln_engine_format(b->engine, &format, &b->job.error))
+        return cli_wrong(&cli_bake, "--for %s", b->job.error.message);
     if (b->engine->ending[0] && strcmp(cli_ending(b->output), b->engine->ending) != 0)
         return cli_wrong(&cli_bake, "--output %s: --for %s writes .%s", b->output, name,
                          b->engine->ending);

@@ -25,10 +25,29 @@ static int list_json(void)
         cJSON_AddNumberToObject(row, "size", engine->size);
         cJSON_AddNumberToObject(row, "level_count", engine->level_count);
         cJSON_AddNumberToObject(row, "limit", engine->limit);
+        cJSON *formats = cJSON_AddArrayToObject(row, "formats");
+        for (int k = 0; formats && k < 4 && engine->formats[k]; k++)
+            cJSON_AddItemToArray(formats,
+                                 cJSON_CreateString(kiln_format_names()[engine->formats[k]]));
+        cJSON_AddStringToObject(row, "fit", engine->fit ? "sharp" : "none");
         cJSON_AddStringToObject(row, "proof", engine->proof);
         cJSON_AddItemToArray(json, row);
     }
     return cli_print_json(json);
+}
+
+static void print(const kiln_engine *engine)
+{
+    printf("%-14s %s\n  writes       %s, by default %d level%s of %d%s\n", engine->name,
+           engine->title, engine->files, engine->level_count, engine->level_count > 1 ? "s" : "",
+           engine->size, engine->fit ? ", fitted" : "");
+    if (engine->formats[0]) {
+        printf("  format       ");
+        for (int k = 0; k < 4 && engine->formats[k]; k++)
+            printf("%s%s", k ? " or " : "", kiln_format_names()[engine->formats[k]]);
+        puts("");
+    }
+    printf("  roughness    %s\n  proof        %s\n", engine->mapping, engine->proof);
 }
 
 static int run(int argc, const char **argv)
@@ -42,11 +61,7 @@ static int run(int argc, const char **argv)
     if (code == CLI_GO) {
         const kiln_engine *engine;
         for (int i = 0; (engine = kiln_engine_at(i)) != NULL; i++)
-            printf("%-14s %s\n  writes       %s, by default %d level%s of %d\n  roughness    %s\n"
-                   "  proof        %s\n",
-                   engine->name, engine->title, engine->files, engine->level_count,
-                   engine->level_count > 1 ? "s" : "", engine->size, engine->mapping,
-                   engine->proof);
+            print(engine);
         code = CLI_DONE;
     }
     cli_arguments_free(&arguments);
@@ -58,7 +73,9 @@ const cli_command cli_engines = {
     .arguments = "[OPTION...]",
     .summary = "Lists the engines that 'kiln bake --for' knows.",
     .details =
-        "Level k of n, of a size of w texels, is filtered for roughness r. The proof of a file is\n"
+        "Level k of n, of a size of w texels, is filtered for roughness r; fitted levels differ\n"
+        "from that where the engine then shows less error (kiln bake --fit). The proof of a file "
+        "is\n"
         "what the engine's own pixels show in kiln's tests, or else what was read of it.\n"
         "\n"
         "Examples:\n"

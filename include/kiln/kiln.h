@@ -821,6 +821,8 @@ typedef enum kiln_format {
     KILN_FORMAT_RGBD,
     KILN_FORMAT_RGBP
 } kiln_format;
+/// "auto", "rgba16f", ...: in the order of the enum, NULL behind the last.
+KILN_API const char *const *kiln_format_names(void);
 /// The largest radiance that a format holds; more is cut off. 0 where floats hold all.
 KILN_API double kiln_format_limit(kiln_format format);
 
@@ -917,6 +919,9 @@ KILN_API KILN_CHECKED kiln_result kiln_engine_levels(const kiln_engine *engine, 
                                                      int level_count,
                                                      float roughness[KILN_MAX_LEVELS],
                                                      kiln_prefilter_def *def, kiln_error *error);
+/// Whether `format` is one of the engine's; KILN_FORMAT_AUTO becomes its first, if it has any.
+KILN_API KILN_CHECKED kiln_result kiln_engine_format(const kiln_engine *engine, kiln_format *format,
+                                                     kiln_error *error);
 /// The level, a fraction, that the engine's shader reads for a roughness; -1 where the engine is none
 /// of kiln's or reads no levels.
 KILN_API double kiln_engine_level(const kiln_engine *engine, double roughness, int size,

@@ -83,6 +83,33 @@ double kiln_engine_level(const kiln_engine *engine, double roughness, int size, 
     return recipe && recipe->level ? recipe->level(roughness, level_count, size) : -1;
 }
 
+kiln_result kiln_engine_format(const kiln_engine *engine, kiln_format *format, kiln_error *error)
+{
+    const ki_recipe *recipe;
+    kiln_result result = find_recipe(engine, &recipe, error);
+    if (result != KILN_OK)
+        return result;
+    const kiln_format *formats = engine->formats;
+    char names[64] = "";
+    if (*format == KILN_FORMAT_AUTO) {
+        *format = formats[0];
+        return KILN_OK;
+    }
+    for (int i = 0; i < 4 && formats[i]; i++) {
+        if (*format == formats[i])
+            return KILN_OK;
+        size_t length = strlen(names);
+        snprintf(names + length, sizeof names - length, "%s%s", i ? " or " : "",
+                 ki_format_names[formats[i]]);
+    }
+    if (!names[0])
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: has one format and takes no other",
+                       engine->name);
+    bool known = *format > KILN_FORMAT_AUTO && *format <= KILN_FORMAT_RGBP;
+    return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: format is %s, it must be %s", engine->name,
+                   known ? ki_format_names[*format] : "none of kiln's", names);
+}
+
 // What is shown at some roughness.
 typedef struct view {
     const kiln_map *map;
@@ -162,28 +189,6 @@ static kiln_result check_map(const ki_recipe *recipe, const kiln_map *map, const
     return check_levels(recipe, map->size, map->level_count, error);
 }
 
-// The recipe's first format for KILN_FORMAT_AUTO.
-static kiln_result choose_format(const ki_recipe *recipe, kiln_format *format, kiln_error *error)
-{
-    const kiln_format *formats = recipe->about.formats;
-    char names[64] = "";
-    if (*format == KILN_FORMAT_AUTO) {
-        *format = formats[0];
-        return KILN_OK;
-    }
-    for (int i = 0; i < 4 && formats[i]; i++) {
-        if (*format == formats[i])
-            return KILN_OK;
-        size_t length = strlen(names);
-        snprintf(names + length, sizeof names - length, "%s%s", i ? " or " : "",
-                 ki_texel_of_format(formats[i])->name);
-    }
-    const ki_texel *texel = ki_texel_of_format(*format);
-    return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: format is %s, it %s%s", recipe->about.name,
-                   texel ? texel->name : "none of kiln's",
-                   names[0] ? "must be " : "has one format and takes no other", names);
-}
-
 kiln_result kiln_engine_save(kiln_context *context, const kiln_engine *engine, const kiln_map *map,
                              const kiln_sh *sh, kiln_format format, const char *path,
                              int *file_count, kiln_error *error)
@@ -194,7 +199,7 @@ kiln_result kiln_engine_save(kiln_context *context, const kiln_engine *engine, c
     kiln_result result = find_recipe(engine, &recipe, error);
     if (result != KILN_OK || (result = check_path(recipe, path, error)) != KILN_OK ||
         (result = check_map(recipe, map, sh, error)) != KILN_OK ||
-        (result = choose_format(recipe, &format, error)) != KILN_OK)
+        (result = kiln_engine_format(engine, &format, error)) != KILN_OK)
         return result;
     kiln_map turned = {.shape = KILN_SHAPE_CUBE,
                        .size = map->size,

@@ -2,12 +2,18 @@
 #include "base/file.h"
 #include "codec/codec.h"
 #include "codec/rgbx.h"
+#include "codec/texel.h"
 
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+const char *const *kiln_format_names(void)
+{
+    return ki_format_names;
+}
 
 double kiln_format_limit(kiln_format format)
 {

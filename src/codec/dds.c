@@ -166,7 +166,7 @@ kiln_result ki_dds_decode(kiln_context *context, const uint8_t *bytes, size_t si
                        "%s: its levels need %llu bytes, %zu are left behind the header", name,
                        (unsigned long long)wanted, ki_reader_left(&r));
     snprintf(info->format, sizeof info->format, "dds");
-    snprintf(info->encoding, sizeof info->encoding, "%s", h.texel->name);
+    snprintf(info->encoding, sizeof info->encoding, "%s", ki_format_names[h.texel->format]);
     info->width = info->height = (int)h.width;
     info->face_count = 6;
     info->level_count = (int)h.levels;

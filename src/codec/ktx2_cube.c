@@ -150,7 +150,8 @@ static kiln_result read_level(kiln_context *context, const ki_ktx2_source *s, co
 static void describe(const ki_ktx2_source *s, const ki_texel *texel, kiln_file_info *info)
 {
     snprintf(info->format, sizeof info->format, "ktx2");
-    snprintf(info->encoding, sizeof info->encoding, "%s%s", texel->name, s->zstd ? ", zstd" : "");
+    snprintf(info->encoding, sizeof info->encoding, "%s%s", ki_format_names[texel->format],
+             s->zstd ? ", zstd" : "");
     info->width = info->height = (int)s->width;
     info->face_count = 6;
     info->level_count = (int)s->level_count;

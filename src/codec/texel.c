@@ -8,12 +8,15 @@
 
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "files are written as memory is");
 
+const char *const ki_format_names[] = {"auto", "rgba16f", "rgba32f", "rgb9e5", "b10g11r11",
+                                       "bc6h", "rgbm",    "rgbd",    "rgbp",   NULL};
+
 const ki_texel ki_texels[KI_TEXELS] = {
-    {KILN_FORMAT_RGBA16F, "rgba16f", 97, 10, 8, 2, 1, 4},
-    {KILN_FORMAT_RGBA32F, "rgba32f", 109, 2, 16, 4, 1, 4},
-    {KILN_FORMAT_RGB9E5, "rgb9e5", 123, 67, 4, 4, 1, 3},
-    {KILN_FORMAT_B10G11R11, "b10g11r11", 122, 26, 4, 4, 1, 3},
-    {KILN_FORMAT_BC6H, "bc6h", 143, 95, KI_BC6H_BYTES, 1, 4, 3},
+    {KILN_FORMAT_RGBA16F, 97, 10, 8, 2, 1, 4},
+    {KILN_FORMAT_RGBA32F, 109, 2, 16, 4, 1, 4},
+    {KILN_FORMAT_RGB9E5, 123, 67, 4, 4, 1, 3},
+    {KILN_FORMAT_B10G11R11, 122, 26, 4, 4, 1, 3},
+    {KILN_FORMAT_BC6H, 143, 95, KI_BC6H_BYTES, 1, 4, 3},
 };
 
 const ki_texel *ki_texel_of_format(kiln_format format)

@@ -4,9 +4,11 @@
 
 #include "base/base.h"
 
+/// In the order of kiln_format, NULL behind the last.
+extern const char *const ki_format_names[];
+
 typedef struct ki_texel {
     kiln_format format;
-    const char *name;
     uint32_t vk, dxgi;
     int bytes;     // of a texel, or of a block
     int type_size; // of what is swapped for byte order

@@ -45,4 +45,8 @@ void ki_double_exponential(int count, double reach, double *nodes, double *weigh
 /// overwritten. False where the columns are dependent to 14 digits.
 bool ki_least_squares(double *a, double *b, int rows, int columns, double *x);
 
+/// Eigenvalues of a symmetric matrix, count x count, and the unit vectors that go with them, the rows of
+/// `axes`. `a` is overwritten.
+void ki_symmetric_axes(int count, double *a, double *axes, double *values);
+
 #endif

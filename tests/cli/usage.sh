@@ -47,9 +47,9 @@ expect 2 "--fit needs --for ENGINE" bake in.exr -o out.ktx2 --fit
 expect 2 "--fit" bake in.exr -o out.ktx2 --for three --fit=hard
 expect 2 "out.dds: --for three writes .ktx2" bake in.exr -o out.dds --for three
 expect 2 "decides what --lobe is" bake in.exr -o out.ktx2 --for three --lobe ggx
-expect 2 "for filament takes --format rgba16f or b10g11r11, not bc6h" \
+expect 2 "for filament: format is bc6h, it must be rgba16f or b10g11r11" \
     bake in.exr -o out --for filament --format bc6h
-expect 2 "for babylon has one format" bake in.exr -o out.env --for babylon --format rgba16f
+expect 2 "for babylon: has one format and takes no other" bake in.exr -o out.env --for babylon --format rgba16f
 expect 2 "three: size is 100, it must be a power of two from 16 to 4096" \
     bake in.exr -o out.ktx2 --for three --size 100
 expect 2 "three: 1 levels, a size of 32 may have 2 to 6" \

@@ -224,8 +224,7 @@ static void what_an_engine_does_not_take_is_said(void **state)
     assert_int_equal(
         kiln_engine_save(context, babylon, &chain, &sh, KILN_FORMAT_RGB9E5, "x.env", NULL, &error),
         KILN_ERROR_ARGUMENT);
-    assert_string_equal(error.message,
-                        "babylon: format is rgb9e5, it has one format and takes no other");
+    assert_string_equal(error.message, "babylon: has one format and takes no other");
     kiln_map_free(&chain);
     map.shape = KILN_SHAPE_OCTAHEDRON;
     assert_int_equal(

@@ -92,7 +92,7 @@ static void every_format_comes_back(void **state)
     for (int format = KILN_FORMAT_RGBA16F; format <= KILN_FORMAT_BC6H; format++)
         for (int zstd = 0; zstd < 2; zstd++) {
             kiln_save_def def = {.format = (kiln_format)format, .zstd = zstd * 5};
-            const char *name = ki_texel_of_format(def.format)->name;
+            const char *name = ki_format_names[def.format ? def.format : KILN_FORMAT_RGBA16F];
             char encoding[48];
             snprintf(encoding, sizeof encoding, "%s%s", name, zstd ? ", zstd" : "");
             there_and_back(ki_ktx2_encode, &def, 16, 0, encoding);

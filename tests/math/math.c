@@ -4,6 +4,7 @@
 #include "math/math.h"
 
 #include <float.h>
+#include <string.h>
 
 static uint64_t state = 88172645463325252u;
 
@@ -158,6 +159,48 @@ static void gauss_legendre_is_exact_to_its_degree(void **unused)
     }
 }
 
+// A known matrix: turned about random axes, the eigenvalues come back and the axes with them.
+static void axes_of_symmetric_matrices(void **unused)
+{
+    (void)unused;
+    enum { COUNT = 34 };
+    static double a[COUNT][COUNT], kept[COUNT][COUNT], axes[COUNT][COUNT], values[COUNT];
+    // From 1 down to 1e-8.
+    for (int i = 0; i < COUNT; i++)
+        a[i][i] = pow(10, -8.0 * i / (COUNT - 1));
+    for (int turn = 0; turn < 20; turn++) {
+        double v[COUNT], norm2 = 0;
+        for (int i = 0; i < COUNT; i++) {
+            v[i] = uniform(-0.5, 0.5);
+            norm2 += v[i] * v[i];
+        }
+        for (int side = 0; side < 2; side++)
+            for (int i = 0; i < COUNT; i++) {
+                double dot = 0;
+                for (int k = 0; k < COUNT; k++)
+                    dot += 2 / norm2 * v[k] * (side ? a[i][k] : a[k][i]);
+                for (int k = 0; k < COUNT; k++)
+                    *(side ? &a[i][k] : &a[k][i]) -= dot * v[k];
+            }
+    }
+    memcpy(kept, a, sizeof a);
+    ki_symmetric_axes(COUNT, &a[0][0], &axes[0][0], values);
+    for (int i = 0; i < COUNT; i++) {
+        double nearest = 1;
+        for (int k = 0; k < COUNT; k++) {
+            double dot = 0, product = 0;
+            for (int j = 0; j < COUNT; j++) {
+                dot += axes[i][j] * axes[k][j];
+                product += kept[k][j] * axes[i][j];
+            }
+            CHECK_NEAR(dot, i == k, 1e-13);
+            CHECK_NEAR(product, values[i] * axes[i][k], 1e-14);
+            nearest = fmin(nearest, fabs(values[i] - pow(10, -8.0 * k / (COUNT - 1))));
+        }
+        CHECK_NEAR(nearest, 0, 1e-13);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -167,6 +210,7 @@ int main(void)
         cmocka_unit_test(double_exponential_ignores_ends),
         cmocka_unit_test(ends_of_the_ranges),
         cmocka_unit_test(gauss_legendre_is_exact_to_its_degree),
+        cmocka_unit_test(axes_of_symmetric_matrices),
     };
     return cmocka_run_group_tests_name("math", tests, NULL, NULL);
 }

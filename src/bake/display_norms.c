@@ -1,0 +1,190 @@
+#include "bake/display_norms.h"
+
+#include "math/math.h"
+#include "sphere/points.h"
+
+#include <math.h>
+#include <string.h>
+
+// Added to the lobes' squares, relatively: they are nearly dependent.
+static const double ridge = 1e-8;
+// Radians around a sun that the second norm leaves out, a 200th of the sphere.
+static const double aside = 0.1415;
+
+// Adds sum over degrees of power k_i k_j; the last lobe is a mirror.
+static void add_power(const ki_palette *p, const double (*power)[3], int degree, double mean,
+                      double *products)
+{
+    int count = p->count + 2, mirror = p->count + 1;
+    for (int i = 0; i < count; i++)
+        for (int j = 0; j < count; j++) {
+            int last = degree;
+            if (i < mirror)
+                last = ki_min(last, p->spectra[i].degree);
+            if (j < mirror)
+                last = ki_min(last, p->spectra[j].degree);
+            double sum = 0;
+            for (int l = 0; l <= last; l++) {
+                double k = i < mirror ? p->spectra[i].k[l] : 1;
+                k *= j < mirror ? p->spectra[j].k[l] : 1;
+                sum += k * (power[l][0] + power[l][1] + power[l][2]);
+            }
+            products[i * count + j] += sum / mean;
+        }
+}
+
+// The squares of the suns' light, of neighbours together.
+static kiln_result square_suns(kiln_context *context, const kiln_spectrum *spectrum, double *sum,
+                               kiln_error *error)
+{
+    ki_zonal any = {.lobe = kiln_lobe_ggx(1)};
+    ki_points points;
+    *sum = 0;
+    if (!spectrum->sun_count)
+        return KILN_OK;
+    kiln_result result = ki_points_create(spectrum, &any, 1, 0, &points, error);
+    if (result != KILN_OK)
+        return result;
+    // Each goes to the first that is near enough, whose direction stays.
+    double(*suns)[6] = ki_alloc(context, (size_t)spectrum->sun_count, sizeof *suns);
+    int count = 0;
+    for (int i = 0; i < spectrum->sun_count && suns; i++) {
+        const double *sun = points.suns.centre[i];
+        int to = 0;
+        for (; to < count; to++)
+            if (ki_acos(ki_clamp(sun[0] * suns[to][0] + sun[1] * suns[to][1] + sun[2] * suns[to][2],
+                                 -1, 1)) < aside)
+                break;
+        if (to == count)
+            memcpy(suns[count++], sun, 3 * sizeof *sun);
+        for (int c = 3; c < 6; c++)
+            suns[to][c] += sun[c];
+    }
+    for (int i = 0; i < count; i++)
+        for (int c = 3; c < 6; c++)
+            *sum += suns[i][c] * suns[i][c];
+    ki_points_destroy(&points);
+    result = suns ? KILN_OK
+                  : ki_fail_memory(context, error, "the suns",
+                                   (size_t)spectrum->sun_count * sizeof *suns);
+    ki_free(suns);
+    return result;
+}
+
+// Adds the light of suns seen from afar: the integral of the tails' products over the sphere without what
+// is near, by a midpoint rule over the angle's logarithm. A mirror has no tail.
+static void add_tails(const ki_palette *p, double light, double *products)
+{
+    enum { STEPS = 128 };
+    double reach = ki_log(0.5 * KI_PI / aside), tails[KI_MOST_LOBES] = {0};
+    int count = p->count + 2;
+    for (int s = 0; s < STEPS; s++) {
+        double angle = aside * ki_exp(reach * (s + 0.5) / STEPS), sine, cosine;
+        ki_sincos(angle, &sine, &cosine);
+        double area = 2 * KI_PI * sine * angle * reach / STEPS;
+        for (int i = 0; i <= p->count; i++) {
+            ki_zonal zonal = {.lobe = kiln_lobe_ggx(p->roughness[i] * p->roughness[i])};
+            tails[i] = ki_zonal_weight(&zonal, 1 - cosine) / p->spectra[i].integral;
+        }
+        for (int i = 0; i < count; i++)
+            for (int j = 0; j < count; j++)
+                products[i * count + j] += light * area * tails[i] * tails[j];
+    }
+}
+
+// L of a matrix L L', in its place, with zeros above.
+static void factor(int count, double *a)
+{
+    for (int i = 0; i < count; i++)
+        for (int j = 0; j < count; j++) {
+            double sum = j <= i ? a[i * count + j] : 0;
+            for (int k = 0; k < j && j <= i; k++)
+                sum -= a[i * count + k] * a[j * count + k];
+            a[i * count + j] = i == j ? sqrt(sum) : j < i ? sum / a[j * count + j] : 0;
+        }
+}
+
+// L^-1 a L^-T of a symmetric matrix, in its place.
+static void divide(int count, const double *lower, double *a)
+{
+    for (int side = 0; side < 2; side++) {
+        for (int j = 0; j < count; j++)
+            for (int i = 0; i < count; i++) {
+                double sum = a[i * count + j];
+                for (int k = 0; k < i; k++)
+                    sum -= lower[i * count + k] * a[k * count + j];
+                a[i * count + j] = sum / lower[i * count + i];
+            }
+        for (int i = 0; i < count; i++)
+            for (int j = 0; j < i; j++) {
+                double swap = a[i * count + j];
+                a[i * count + j] = a[j * count + i];
+                a[j * count + i] = swap;
+            }
+    }
+}
+
+// With the first norm's matrix L L' and an axis q of L^-1 away L^-T: along = L^-T q, across = L q.
+static void turn_axes(ki_norms *n, const double *lower, const double *axes)
+{
+    int count = n->count;
+    for (int a = 0; a < count; a++) {
+        const double *q = axes + a * count;
+        double *along = n->along + a * count, *across = n->across + a * count;
+        for (int i = count - 1; i >= 0; i--) {
+            across[i] = 0;
+            along[i] = q[i];
+            for (int j = 0; j <= i; j++)
+                across[i] += lower[i * count + j] * q[j];
+            for (int j = i + 1; j < count; j++)
+                along[i] -= lower[j * count + i] * along[j];
+            along[i] /= lower[i * count + i];
+        }
+    }
+}
+
+kiln_result ki_norms_create(kiln_context *context, const ki_palette *p,
+                            const kiln_spectrum *spectrum, const double (*power)[3], ki_norms *n,
+                            kiln_error *error)
+{
+    const double(*all)[3] = power + spectrum->degree + 1, black[1][3] = {{1}};
+    double light, mean = all[0][0] + all[0][1] + all[0][2];
+    *n = (ki_norms){.count = p->count + 2};
+    size_t count = (size_t)n->count, size = count * count;
+    kiln_result result = square_suns(context, spectrum, &light, error);
+    if (result != KILN_OK)
+        return result;
+    double *lower = ki_alloc(context, 3 * size, sizeof *lower);
+    n->along = ki_alloc(context, 2 * size, sizeof *n->along);
+    if (!lower || !n->along) {
+        ki_free(lower);
+        ki_norms_destroy(n);
+        return ki_fail_memory(context, error, "a display's norms", 5 * size * sizeof *lower);
+    }
+    double *away = lower + size, *axes = away + size;
+    n->across = n->along + size;
+    // Relative to the mean radiance, so that no unit overflows; black is as good as white.
+    bool dark = !(mean > 0);
+    add_power(p, dark ? black : all, dark ? 0 : spectrum->degree, dark ? 1 : mean, lower);
+    add_power(p, dark ? black : power, dark ? 0 : spectrum->degree, dark ? 1 : mean, away);
+    if (!dark)
+        add_tails(p, light / mean, away);
+    for (size_t i = 0; i < count; i++) {
+        n->whole[i] = lower[i * count + i] *= 1 + ridge;
+        n->away[i] = away[i * count + i] *= 1 + ridge;
+    }
+    factor(n->count, lower);
+    divide(n->count, lower, away);
+    ki_symmetric_axes(n->count, away, axes, n->ratio);
+    for (size_t i = 0; i < count; i++)
+        n->ratio[i] = fmax(n->ratio[i], 0);
+    turn_axes(n, lower, axes);
+    ki_free(lower);
+    return KILN_OK;
+}
+
+void ki_norms_destroy(ki_norms *n)
+{
+    ki_free(n->along);
+    n->along = n->across = NULL;
+}
