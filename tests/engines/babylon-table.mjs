@@ -1,20 +1,9 @@
 // Babylon.js with its table replaced by kiln's: grey metals in a white furnace show the albedo
 // (f0 A + B) (1 + f0 (1 / (A + B) - 1)) of exact A and B, but for the 8 bits of the picture.
-import fs from 'node:fs';
-import path from 'node:path';
-import { withPage } from '../web/browser.mjs';
 import { tableReader } from './three-table.mjs';
-import { CELL, ROUGHNESS, check, kiln, makeSite, makeViews, openEngine, write } from './rig.mjs';
+import { CELL, ROUGHNESS, check, kiln, makeViews, readFile, write } from './rig.mjs';
 
 const SIZE = 512, F0 = 0.5;
-const folder = path.resolve(process.argv[5]);
-makeSite(folder);
-write('babylon', 'white', '256', 'white.env');
-kiln('tables', '--for', 'babylon', '-q', '-o', 'brdf.png');
-kiln('tables', '--table', 'dfg', '--size', `${SIZE}`, '-q', '-o', 'exact.raw');
-const numbers = new Float32Array(new Uint8Array(fs.readFileSync(path.join(folder, 'exact.raw'))).buffer);
-const exact = tableReader(SIZE, (x, y) => [...numbers.subarray(2 * (y * SIZE + x), 2 * (y * SIZE + x) + 2)]);
-
 const views = makeViews();
 // Babylon looks from the camera's place, 20000 away, even where rays are parallel.
 function novOf({ toEye, right, up, normals }, row, i) {
@@ -23,7 +12,7 @@ function novOf({ toEye, right, up, normals }, row, i) {
     return way.reduce((sum, e, c) => sum + e * normals[i][c], 0) / Math.hypot(...way);
 }
 
-function compare(name, shown) {
+function compare(say, name, exact, shown) {
     let most = 0, squares = 0, count = 0;
     views.forEach((view, side) => ROUGHNESS.forEach((roughness, row) => view.normals.forEach((_, i) => {
         const [a, b] = exact(novOf(view, row, i), roughness);
@@ -34,23 +23,27 @@ function compare(name, shown) {
             count++;
         }
     })));
-    console.log(`  ${name}: ${count} values, rms ${Math.sqrt(squares / count).toExponential(1)}, ` +
-                `${most.toExponential(1)} at most`);
-    return { most, rms: Math.sqrt(squares / count) };
+    const rms = Math.sqrt(squares / count);
+    say(`${name}: ${count} values, rms ${rms.toExponential(1)}, ${most.toExponential(1)} at most`);
+    return { most, rms };
 }
 
-async function draw(query) {
-    let shown;
-    await withPage(folder, async (browser, address) => {
-        const show = await openEngine(browser, address, `babylon.html?${query.replace('@', address)}`);
-        shown = await show('white.env', views, ROUGHNESS, CELL);
-    });
-    return shown;
-}
-
-const own = compare("Babylon's own table", await draw('grey'));
-const ours = compare("kiln's table", await draw('grey&brdf=@brdf.png'));
-// Half a step of the root is up to 0.0043 of A + B; f0 A + B moves by half of it, its factor back by a
-// quarter.
-check(ours.most < 2e-3 && ours.rms < 7e-4, `kiln's table is off by ${ours.most}, ${ours.rms} rms`);
-check(ours.rms < own.rms, `Babylon's own table is nearer: ${own.rms}`);
+export default [{
+    name: 'babylon-table', page: 'babylon.html',
+    prepare: async () => {
+        await write('babylon', 'white', 256, 'furnace.env');
+        await kiln('tables', '--for', 'babylon', '-q', '-o', 'brdf.png');
+        await kiln('tables', '--table', 'dfg', '--size', SIZE, '-q', '-o', 'exact.raw');
+        const numbers = new Float32Array(new Uint8Array(readFile('exact.raw')).buffer);
+        return tableReader(SIZE, (x, y) => [...numbers.subarray(2 * (y * SIZE + x), 2 * (y * SIZE + x) + 2)]);
+    },
+    check: async (exact, draw, say) => {
+        const grey = (more) => draw('furnace.env', views, ROUGHNESS, CELL, { grey: true, ...more });
+        const own = compare(say, "Babylon's own table", exact, await grey());
+        const ours = compare(say, "kiln's table", exact, await grey({ brdf: 'brdf.png' }));
+        // Half a step of the root is up to 0.0043 of A + B; f0 A + B moves by half of it, its factor back by a
+        // quarter.
+        check(ours.most < 2e-3 && ours.rms < 7e-4, `kiln's table is off by ${ours.most}, ${ours.rms} rms`);
+        check(ours.rms < own.rms, `Babylon's own table is nearer: ${own.rms}`);
+    },
+}];

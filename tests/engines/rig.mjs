@@ -1,12 +1,12 @@
-// What the engines' tests share. Each is run as: node NAME.mjs KILN WRITE PANORAMA FOLDER
+// What the engines' proofs share; prove.mjs runs them.
 //
 // An engine draws flat patches of white metal, each with a normal of its own and lit by the file
 // alone, in orthographic views: a pixel is a known direction, roughness and n.v. A model says in JS what
 // the engine should then show: value = single * L(direction, lod) + multiple * I(normal).
-import { execFileSync } from 'node:child_process';
+import { execFile } from 'node:child_process';
 import fs from 'node:fs';
 import path from 'node:path';
-import { withPage } from '../web/browser.mjs';
+import { promisify } from 'node:util';
 
 const [kilnPath, writePath, panorama, folder] =
     process.argv.slice(2).map((name) => path.resolve(name));
@@ -58,8 +58,8 @@ function faceOf([x, y, z]) {
     return [z > 0 ? 4 : 5, z > 0 ? x / az : -x / az, -y / az];
 }
 
-// A level of an rgba32f KTX2 cube, read bilinearly across faces.
-function readLevel({ size, texels }, direction) {
+// A level of a cube, read bilinearly across faces. row(i) has the rgba of row i of all faces' rows.
+function readLevel({ size, row }, direction) {
     const [face, s, t] = faceOf(direction);
     const u = (s + 1) / 2 * size - 0.5, v = (t + 1) / 2 * size - 0.5;
     const sum = [0, 0, 0];
@@ -72,20 +72,29 @@ function readLevel({ size, texels }, direction) {
             const place = (w) => Math.min(size - 1, Math.max(0, Math.floor((w + 1) / 2 * size)));
             [f, x, y] = [other, place(p), place(q)];
         }
+        const texels = row(f * size + y);
         for (let c = 0; c < 3; c++)
-            sum[c] += weight * texels[4 * ((f * size + y) * size + x) + c];
+            sum[c] += weight * texels[4 * x + c];
     }
     return sum;
 }
 
+// Of an rgba32f KTX2 cube. Few of its texels are asked for, so that rows are read when they are.
 export function readCube(name) {
-    const bytes = fs.readFileSync(path.resolve(folder, name));
-    check(bytes.readUInt32LE(12) === 109, `${name} is not rgba32f`);
-    return Array.from({ length: bytes.readUInt32LE(40) }, (_, level) => {
-        const at = Number(bytes.readBigUInt64LE(80 + 24 * level));
-        const size = bytes.readUInt32LE(20) >> level;
-        const data = bytes.subarray(at, at + 96 * size * size);
-        return { size, texels: new Float32Array(new Uint8Array(data).buffer) };
+    const file = fs.openSync(path.resolve(folder, name)), head = Buffer.alloc(80 + 24 * 32);
+    fs.readSync(file, head, 0, head.length, 0);
+    check(head.readUInt32LE(12) === 109, `${name} is not rgba32f`);
+    return Array.from({ length: head.readUInt32LE(40) }, (_, level) => {
+        const at = Number(head.readBigUInt64LE(80 + 24 * level));
+        const size = head.readUInt32LE(20) >> level, rows = new Map();
+        const row = (i) => {
+            if (!rows.has(i)) {
+                rows.set(i, new Float32Array(4 * size));
+                fs.readSync(file, rows.get(i), 0, 16 * size, at + 16 * size * i);
+            }
+            return rows.get(i);
+        };
+        return { size, row };
     });
 }
 
@@ -163,12 +172,10 @@ function readDirection(way, size) {
     if (size > 64)
         return way;
     if (!told.has(size)) {
-        const texels = new Float32Array(24 * size * size), at = (i) => 2 * (i + 0.5) / size - 1;
-        for (let i = 0; i < 6 * size * size; i++) {
-            const face = Math.floor(i / size / size), y = Math.floor(i / size) % size;
-            texels.set(normalize(FACES[face](at(i % size), at(y))), 4 * i);
-        }
-        told.set(size, { size, texels });
+        const at = (i) => 2 * (i + 0.5) / size - 1;
+        const rows = Array.from({ length: 6 * size }, (_, i) => Array.from({ length: size }, (_, x) =>
+            [...normalize(FACES[Math.floor(i / size)](at(x), at(i % size))), 0]).flat());
+        told.set(size, { size, row: (i) => rows[i] });
     }
     return readLevel(told.get(size), way);
 }
@@ -181,7 +188,7 @@ function readMixed(model, way, lod, size) {
 }
 
 // From the pixels alone: which axes each channel follows, and which level was read.
-function checkCoded(model, views, last, size, shown, bounds) {
+function checkCoded(say, model, views, last, size, shown, bounds) {
     const asset = coded(last, model.harmonics), worst = { axes: 0, lod: 0 };
     ROUGHNESS.forEach((roughness, row) => {
         const rows = [], channels = [[], [], []];
@@ -202,13 +209,13 @@ function checkCoded(model, views, last, size, shown, bounds) {
             worst.axes = Math.max(worst.axes, Math.abs(fit[1 + i] / level - model.toKiln(axis)[c]));
         }));
     });
-    console.log(`  coded: axes to ${worst.axes.toFixed(4)}, level to ${worst.lod.toFixed(4)}`);
+    say(`coded: axes to ${worst.axes.toFixed(4)}, level to ${worst.lod.toFixed(4)}`);
     check(worst.axes < bounds.axes && worst.lod < bounds.lod,
           `axes are off by ${worst.axes} (${bounds.axes}), the level by ${worst.lod} (${bounds.lod})`);
 }
 
 // Of the rows whose roughness lies within bounds.rows.
-function checkPixels(name, model, asset, views, shown, bounds) {
+function checkPixels(say, name, model, asset, views, shown, bounds) {
     let most = 0, squares = 0, count = 0, scale = 0;
     const [from, to] = bounds.rows ?? [0, 1];
     views.forEach((view, side) => ROUGHNESS.forEach((roughness, row) =>
@@ -220,7 +227,7 @@ function checkPixels(name, model, asset, views, shown, bounds) {
             count++;
         }))));
     const rms = Math.sqrt(squares / scale);
-    console.log(`  ${name}: ${count} values, rms ${rms.toExponential(1)}, ${most.toExponential(1)} at most`);
+    say(`${name}: ${count} values, rms ${rms.toExponential(1)}, ${most.toExponential(1)} at most`);
     const limit = bounds.most ?? Infinity;
     check(rms < bounds.rms && most < limit,
           `${name} is off by ${rms} rms (${bounds.rms}), ${most} at most (${limit})`);
@@ -228,18 +235,40 @@ function checkPixels(name, model, asset, views, shown, bounds) {
 
 // --------------------------------------------------------------------------------------------- files
 
-const run = (program, ...args) =>
-    execFileSync(program, args, { cwd: folder, encoding: 'utf8', maxBuffer: 1 << 26 });
-export const kiln = (...args) => run(kilnPath, ...args);
-export const write = (...args) => run(writePath, ...args);
+// In turn, two at a time: kiln takes every core by itself, but waits for the disk.
+const lanes = [Promise.resolve(), Promise.resolve()];
+let turn = 0;
+function run(program, args) {
+    const lane = turn++ % lanes.length;
+    const job = lanes[lane].then(() =>
+        promisify(execFile)(program, args.map(String), { cwd: folder, maxBuffer: 1 << 26 }));
+    lanes[lane] = job.catch(() => {});
+    return job.then(({ stdout }) => stdout);
+}
+// What was asked for before is there already.
+const made = new Map();
+function once(program, args) {
+    const key = [program, ...args].join('\n');
+    if (!made.has(key))
+        made.set(key, run(program, args));
+    return made.get(key);
+}
+export const kiln = (...args) => once(kilnPath, args);
+export const write = (...args) => once(writePath, args);
 
-export function engineOf(name) {
-    return JSON.parse(kiln('engines', '--json')).find((row) => row.name === name);
+export const readFile = (name) => fs.readFileSync(path.join(folder, name));
+
+async function engineOf(name) {
+    return JSON.parse(await kiln('engines', '--json')).find((row) => row.name === name);
 }
 
-const bakePlain = (file, size, roughness) =>
-    kiln('bake', panorama, '-q', '-o', file, '--format', 'rgba32f', '--size', `${size}`,
-         '--levels', `${roughness.length}`, '--roughness', roughness.join());
+// Levels as kiln bakes them without --for.
+async function bakePlain(size, roughness) {
+    const file = `plain-${size}-${roughness.map((r) => Math.round(1e6 * r)).join('-')}.ktx2`;
+    await kiln('bake', panorama, '-q', '-o', file, '--format', 'rgba32f', '--size', size, '--levels', roughness.length,
+               '--roughness', roughness.join());
+    return readCube(file);
+}
 
 // Where pages find packages, loaders and themselves.
 export function makeSite(site) {
@@ -250,60 +279,70 @@ export function makeSite(site) {
     fs.symlinkSync(here, path.join(site, 'pages'));
 }
 
-// The page of an engine defines draw(file, views, ROUGHNESS, CELL), which resolves to numbers
+// The page of an engine defines draw(file, views, ROUGHNESS, CELL, asked), which resolves to numbers
 // [view][roughness][normal][channel]. An .hdr is a panorama, which the engine filters by itself.
 export async function openEngine(browser, address, page) {
     await browser.goto(`${address}pages/${page}`);
     await browser.waitForFunction(() => window.draw);
-    return (file, views, roughness, cell) => browser.evaluate(
-        (args) => window.draw(...args), [`${address}${file}`, views, roughness, cell]);
+    return (file, views, roughness, cell, asked = {}) => browser.evaluate(
+        (args) => window.draw(...args), [`${address}${file}`, views, roughness, cell, asked]);
 }
 
-// Takes an engine of models.mjs, bounds of its errors, and
-// bounds.diffuse: the page draws diffuse light alone where its address ends in #diffuse.
-// format: its name and its number in kiln_format, where it is not the engine's first.
-async function prove(browser, address, { name, page, ending, loads, format, smallest = 0, model, bounds }) {
-    const { size, level_count: count } = engineOf(name);
+// The files of an engine that prove() draws, and the levels that its model reads.
+export async function makeFiles({ name, ending, format, smallest = 0, bounds, model }) {
+    const { size, level_count: count } = await engineOf(name);
+    const files = [name, ...(format ? [format[0]] : [])].join('-');
+    const bake = async (what, ...more) => JSON.parse(await kiln(
+        'bake', panorama, '--for', name, '-o', `${files}-${what}${ending}`, '--json', ...more,
+        ...(format ? ['--format', format[0]] : [])));
     for (const what of ['coded', 'white'])
-        run(writePath, name, what, `${size}`, `${what}${ending}`, ...(format ? [`${format[1]}`] : []));
-    const report = JSON.parse(kiln('bake', panorama, '--for', name, '--fit=none', '-o', `real${ending}`, '--json',
-                                    ...(format ? ['--format', format[0]] : [])));
+        if (bounds[what])
+            await write(name, what, size, `${files}-${what}${ending}`, ...(format ? [format[1]] : []));
+    const report = await bake('real', '--fit=none');
     const roughness = report.output.levels.map((level) => level.roughness);
-    const levels = roughness.flatMap((r, k) => (size >> k > smallest ? [] : [r]));
-    bakePlain('plain.ktx2', size, smallest ? roughness.slice(0, -levels.length) : roughness);
-    if (smallest) // those that all have the smallest size
-        levels.forEach((r, i) => bakePlain(`plain${i}.ktx2`, smallest, [r]));
-    kiln('bake', panorama, '-q', '-o', 'plain.hdr', '--size', '8', '--levels', '1', '--sh', 'sh.json',
-         '--sh-irradiance');
-    const sh = JSON.parse(fs.readFileSync(path.join(folder, 'sh.json')));
-    const views = makeViews(), made = model(count, size);
-    const open = await openEngine(browser, address, page);
-    const draw = (file) => open(file, views, ROUGHNESS, CELL);
-    console.log(name, format?.[0] ?? '');
-    if (bounds.coded)
-        checkCoded(made, views, count - 1, size, await draw(`coded${loads}`), bounds.coded);
-    if (bounds.white)
-        checkPixels('furnace', made, white, views, await draw(`white${loads}`), bounds.white);
-    const real = baked([...readCube('plain.ktx2'),
-                        ...levels.flatMap((_, i) => (smallest ? readCube(`plain${i}.ktx2`) : []))]);
-    if (made.harmonics)
-        real.irradiance = (n) => readHarmonics(sh, n);
-    const shown = await draw(`real${loads}`);
-    [bounds.real].flat().forEach((bound) => checkPixels('real', made, real, views, shown, bound));
-    if (bounds.diffuse) {
-        await browser.evaluate(() => { location.hash = 'diffuse'; });
-        const matt = { ...made, shade: () => [0, 1] };
-        checkPixels('diffuse, coded', matt, coded(count - 1, made.harmonics), views,
-                    await draw(`coded${loads}`), bounds.diffuse);
-        checkPixels('diffuse, real', matt, real, views, await draw(`real${loads}`), bounds.diffuse);
+    const small = roughness.filter((_, k) => size >> k <= smallest); // those that all have the smallest size
+    const levels = await bakePlain(size, roughness.slice(0, roughness.length - small.length));
+    for (const r of small)
+        levels.push(...await bakePlain(smallest, [r]));
+    let light = baked;
+    if (model(count, size).harmonics) {
+        await kiln('bake', panorama, '-q', '-o', 'plain.hdr', '--size', 8, '--levels', 1, '--sh', 'sh.json',
+                   '--sh-irradiance');
+        const sh = JSON.parse(readFile('sh.json'));
+        light = (cube) => ({ ...baked(cube), irradiance: (n) => readHarmonics(sh, n) });
     }
+    const found = { files, size, count, real: light(levels) };
+    if (!bounds.byDefault)
+        return found;
+    await bake('default');
+    await write(name, 'default', panorama, `${files}-levels.ktx2`);
+    return { ...found, byDefault: light(readCube(`${files}-levels.ktx2`)) };
 }
 
-// Proves one after the other, in one browser.
-export async function proveEngine(...engines) {
-    makeSite(folder);
-    await withPage(folder, async (browser, address) => {
-        for (const engine of engines)
-            await prove(browser, address, engine);
-    });
+// Takes an engine of models.mjs with bounds of its errors, its files, its page's draw() and what to do with a
+// line of report.
+// bounds.byDefault: drawn is also the file that kiln bakes when told the engine alone; its levels are read.
+// bounds.diffuse: the page draws diffuse light alone where it is asked for that.
+// format: its name and its number in kiln_format, where it is not the engine's first.
+// asked: what else the page is told.
+export async function prove({ loads, model, bounds, asked }, { files, size, count, real, byDefault }, show, say) {
+    const views = makeViews(), shading = model(count, size);
+    const draw = (what, more) => show(`${files}-${what}${loads}`, views, ROUGHNESS, CELL, { ...asked, ...more });
+    if (bounds.coded)
+        checkCoded(say, shading, views, count - 1, size, await draw('coded'), bounds.coded);
+    if (bounds.white)
+        checkPixels(say, 'furnace', shading, white, views, await draw('white'), bounds.white);
+    const shown = await draw('real');
+    [bounds.real].flat().forEach((bound) => checkPixels(say, 'real', shading, real, views, shown, bound));
+    if (bounds.byDefault) {
+        const pixels = await draw('default');
+        [bounds.byDefault].flat().forEach((bound) =>
+            checkPixels(say, 'by default', shading, byDefault, views, pixels, bound));
+    }
+    if (bounds.diffuse) {
+        const matt = { ...shading, shade: () => [0, 1] }, diffuse = { diffuse: true };
+        checkPixels(say, 'diffuse, coded', matt, coded(count - 1, shading.harmonics), views,
+                    await draw('coded', diffuse), bounds.diffuse);
+        checkPixels(say, 'diffuse, real', matt, real, views, await draw('real', diffuse), bounds.diffuse);
+    }
 }

@@ -1,6 +1,7 @@
-// Writes an engine's file of known content. engine_write ENGINE WHAT SIZE PATH
+// Writes an engine's file of known content. engine_write ENGINE WHAT SIZE PATH [FORMAT]
 //   coded  level k in direction d has the radiance (1 + k) (2 + d): red has d.x, green d.y, blue d.z
 //   white  1 everywhere
+// engine_write ENGINE default PANORAMA PATH: the levels that kiln bake --for ENGINE makes, as a cube of floats.
 #include <kiln/kiln.h>
 
 #include <stdio.h>
@@ -32,34 +33,73 @@ static kiln_sh harmonics(bool coded)
     return sh;
 }
 
+static kiln_result save_default(kiln_context *context, const kiln_engine *engine,
+                                const char *panorama, const char *path, kiln_error *error)
+{
+    const kiln_save_def save = {.format = KILN_FORMAT_RGBA32F};
+    kiln_prefilter_def def;
+    kiln_map source = {0}, map = {0};
+    float roughness[KILN_MAX_LEVELS];
+    kiln_result result = kiln_engine_levels(engine, 0, 0, roughness, &def, error);
+    if (!result)
+        result = kiln_map_load(context, panorama, NULL, &source, error);
+    if (!result) {
+        def.shown_by = engine->fit ? engine : NULL;
+        result = kiln_prefilter(context, &source, &def, &map, error);
+    }
+    if (!result)
+        result = kiln_map_save(context, &map, path, &save, NULL, error);
+    kiln_map_free(&map);
+    kiln_map_free(&source);
+    return result;
+}
+
+static kiln_result save_known(kiln_context *context, const kiln_engine *engine, bool coded,
+                              int size, const char *path, kiln_format format, kiln_error *error)
+{
+    kiln_map map = {0};
+    kiln_plan *plan = NULL; // knows how the levels are laid out, and is quick where all are rough
+    kiln_prefilter_def def;
+    float roughness[KILN_MAX_LEVELS], rough[KILN_MAX_LEVELS];
+    kiln_sh sh = harmonics(coded);
+    kiln_result result = kiln_engine_levels(engine, size, 0, roughness, &def, error);
+    for (int k = 0; k < KILN_MAX_LEVELS; k++)
+        rough[k] = 1;
+    def.roughness = rough;
+    if (!result)
+        result = kiln_plan_create(context, 16, &def, &plan, error);
+    if (!result)
+        result = kiln_plan_map(plan, &map, error);
+    if (!result) {
+        memcpy(map.roughness, roughness, (size_t)map.level_count * sizeof *roughness);
+        paint(&map, coded);
+        result = kiln_engine_save(context, engine, &map, &sh, format, path, NULL, error);
+    }
+    kiln_map_free(&map);
+    kiln_plan_destroy(plan);
+    return result;
+}
+
 int main(int argc, char **argv)
 {
     kiln_context *context = NULL;
     kiln_error error = {0};
-    kiln_map map = {0};
-    kiln_plan *plan = NULL; // knows how the levels are laid out
-    kiln_prefilter_def def;
-    float roughness[KILN_MAX_LEVELS];
     const kiln_engine *engine = argc >= 5 && argc <= 6 ? kiln_engine_find(argv[1]) : NULL;
+    bool by_default = engine && !strcmp(argv[2], "default");
     bool coded = engine && !strcmp(argv[2], "coded");
-    if (!engine || (!coded && strcmp(argv[2], "white") != 0)) {
-        fprintf(stderr, "engine_write ENGINE coded|white SIZE PATH [FORMAT]\n");
+    if (!engine || (!by_default && !coded && strcmp(argv[2], "white") != 0)) {
+        fprintf(stderr, "engine_write ENGINE coded|white SIZE PATH [FORMAT]\n"
+                        "engine_write ENGINE default PANORAMA PATH\n");
         return 2;
     }
-    int size = (int)strtol(argv[3], NULL, 10), format = argc == 6 ? atoi(argv[5]) : 0;
-    kiln_sh sh = harmonics(coded);
-    if (!kiln_context_create(NULL, &context, &error) &&
-        !kiln_engine_levels(engine, size, 0, roughness, &def, &error) &&
-        !kiln_plan_create(context, 16, &def, &plan, &error) && !kiln_plan_map(plan, &map, &error)) {
-        paint(&map, coded);
-        if (!kiln_engine_save(context, engine, &map, &sh, (kiln_format)format, argv[4], NULL,
-                              &error))
-            error.result = KILN_OK;
-    }
-    kiln_map_free(&map);
-    kiln_plan_destroy(plan);
+    kiln_result result = kiln_context_create(NULL, &context, &error);
+    if (!result && by_default)
+        result = save_default(context, engine, argv[3], argv[4], &error);
+    else if (!result)
+        result = save_known(context, engine, coded, atoi(argv[3]), argv[4],
+                            argc == 6 ? (kiln_format)atoi(argv[5]) : KILN_FORMAT_AUTO, &error);
     kiln_context_destroy(context);
-    if (error.result)
+    if (result)
         fprintf(stderr, "%s\n", error.message);
-    return error.result != KILN_OK;
+    return result != KILN_OK;
 }

@@ -7,25 +7,35 @@ const FLAGS = ['--no-sandbox', '--disable-quic', '--no-first-run', '--disable-ba
                '--disable-component-update', '--disable-sync', '--ignore-gpu-blocklist',
                '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'];
 
-// work(page, address): on the served page, which must say nothing on the console and ask nobody
-// but its own server for anything.
-export async function withPage(site, work) {
+// work(visit, address): with a browser and a served folder. visit(show, of) has show(page, fault) on a page of
+// its own, which must say nothing on the console and ask nobody but its own server for anything. Every fault
+// is reported, `of()` before it. All pages share what can be shared.
+export async function withBrowser(site, work, flags = []) {
     const { server, address } = await serve(site);
-    const browser = await chromium.launch({ executablePath: '/usr/bin/chromium', args: FLAGS });
+    const browser = await chromium.launch({ executablePath: '/usr/bin/chromium', args: [...FLAGS, ...flags] });
+    const context = await browser.newContext({ viewport: { width: 900, height: 640 } });
     const faults = [];
-    try {
-        const page = await browser.newPage({ viewport: { width: 900, height: 640 } });
-        page.on('pageerror', (error) => faults.push(`error: ${error.message}`));
+    const visit = async (show, of = () => '') => {
+        const fault = (text) => faults.push(`${of()}${text}`);
+        const page = await context.newPage();
+        page.on('pageerror', (error) => fault(`error: ${error.message}`));
         page.on('console', (line) => {
             if (line.type() === 'error')
-                faults.push(`console: ${line.text()}`);
+                fault(`console: ${line.text()}`);
         });
         page.on('request', (request) => {
             const url = request.url();
             if (!url.startsWith(address) && !/^(blob|data):/.test(url))
-                faults.push(`request to ${url}`);
+                fault(`request to ${url}`);
         });
-        await work(page, address);
+        try {
+            await show(page, fault);
+        } catch (error) {
+            fault(error.stack);
+        }
+    };
+    try {
+        await work(visit, address);
     } catch (error) {
         faults.push(error.stack);
     } finally {
@@ -35,6 +45,10 @@ export async function withPage(site, work) {
     if (faults.length)
         throw new Error(faults.join('\n'));
 }
+
+// The same for one page.
+export const withPage = (site, work) =>
+    withBrowser(site, (visit, address) => visit((page) => work(page, address)));
 
 export const idle = (page) => page.waitForFunction(
     () => document.body.getAttribute('aria-busy') === 'false', null, { timeout: 60000 });
