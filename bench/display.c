@@ -39,6 +39,8 @@ typedef struct display {
     double seconds[LAYOUT_COUNT][FITS];
     bench_figures figures[LAYOUT_COUNT][FITS]; // rms as a mean square until the end
     double far[LAYOUT_COUNT][FITS];            // the same without the brightest directions
+    double seen[LAYOUT_COUNT][FITS];           // and of x / (x + mean)
+    double mean;                               // radiance
     double (*directions)[3], (*values)[3];
 } display;
 
@@ -110,7 +112,7 @@ static bool compare(bench *b, display *d, double roughness)
     double bright = done ? find_bright(&truth) : 0;
     for (int m = 0; m < LAYOUT_COUNT * FITS && done; m++) {
         int i = m / FITS, v = m % FITS;
-        double off = 0, whole = 0, far_off = 0, far_whole = 0;
+        double off = 0, whole = 0, far_off = 0, far_whole = 0, seen_off = 0, sphere = 0;
         done = !kiln_engine_show(d->context, kiln_engine_find(layouts[i].engine), &d->maps[i][v],
                                  roughness, (const double(*)[3])d->directions, count, d->values,
                                  &b->error);
@@ -119,9 +121,12 @@ static bool compare(bench *b, display *d, double roughness)
             const double *at = d->directions[k];
             double weight = pow(fabs(at[0]) + fabs(at[1]) + fabs(at[2]), 3);
             bool far = brightness(truth.level[0] + 3 * k) < bright;
+            sphere += 3 * weight;
             for (int c = 0; c < 3; c++) {
                 double wanted = (double)truth.level[0][3 * k + c];
                 double error = d->values[k][c] - wanted;
+                double seen = d->mean * error / ((d->mean + wanted) * (d->mean + d->values[k][c]));
+                seen_off += weight * seen * seen;
                 off += weight * error * error;
                 whole += weight * wanted * wanted;
                 far_off += far ? weight * error * error : 0;
@@ -132,6 +137,7 @@ static bool compare(bench *b, display *d, double roughness)
         double part = (roughness < 0.051 || roughness > 0.999 ? 0.5 : 1) / (ROUGHNESS_COUNT - 1);
         d->figures[i][v].rms += part * off / whole;
         d->far[i][v] += part * far_off / far_whole;
+        d->seen[i][v] += part * seen_off / sphere;
         d->figures[i][v].largest = fmax(d->figures[i][v].largest, sqrt(off / whole));
     }
     kiln_map_free(&truth);
@@ -147,14 +153,17 @@ static void report(bench *b, display *d, const char *name)
             bench_figures *f = &d->figures[i][v];
             f->rms = sqrt(f->rms);
             d->far[i][v] = sqrt(d->far[i][v]);
-            printf("%7.2f /%5.1f,%6.2f (%4.1f s)", 100 * f->rms, 100 * f->largest,
-                   100 * d->far[i][v], d->seconds[i][v]);
+            d->seen[i][v] = sqrt(d->seen[i][v]);
+            printf("%6.2f /%5.1f,%6.2f,%5.2f (%4.1f s)", 100 * f->rms, 100 * f->largest,
+                   100 * d->far[i][v], 100 * d->seen[i][v], d->seconds[i][v]);
             snprintf(row, sizeof row, "%s: %s: %s rms", name, layouts[i].title, fits[v]);
             bench_value(b, row, "relative", f->rms);
             snprintf(row, sizeof row, "%s: %s: %s largest", name, layouts[i].title, fits[v]);
             bench_value(b, row, "relative", f->largest);
             snprintf(row, sizeof row, "%s: %s: %s far rms", name, layouts[i].title, fits[v]);
             bench_value(b, row, "relative", d->far[i][v]);
+            snprintf(row, sizeof row, "%s: %s: %s seen rms", name, layouts[i].title, fits[v]);
+            bench_value(b, row, "of white", d->seen[i][v]);
         }
         puts("");
     }
@@ -179,6 +188,13 @@ static bool check_environment(bench *b, display *d, const char *name)
         !kiln_map_load(d->context, path, NULL, &d->source, &b->error) &&
         !kiln_spectrum_analyze(d->context, &d->source, KILN_MAX_DEGREE, &d->spectrum, &b->error) &&
         bake(b, d);
+    double(*power)[3] = malloc((KILN_MAX_DEGREE + 1) * sizeof *power);
+    done = done && (power || bench_fail(b, "no memory")) &&
+           !kiln_spectrum_power(d->spectrum, power, &b->error);
+    // The mean of the channels' squared means, 4 pi of which are the power of degree 0.
+    if (done)
+        d->mean = sqrt((power[0][0] + power[0][1] + power[0][2]) / (12 * acos(-1)));
+    free(power);
     for (int k = 0; k < ROUGHNESS_COUNT && done; k++)
         done = compare(b, d, 0.05 + 0.95 * k / (ROUGHNESS_COUNT - 1));
     if (done)
@@ -199,11 +215,12 @@ bool bench_display(bench *b)
         return false;
     printf(
         "  displayed error in %%: rms over roughness .05 to 1 / at the worst one, rms without the\n"
-        "  brightest 200th of the directions (CPU of the bake)\n"
+        "  brightest 200th of the directions, rms of x / (x + mean) in %% of white (CPU of the "
+        "bake)\n"
         "  %-35s",
         "");
     for (int v = 0; v < FITS; v++)
-        printf("%17s%13s", fits[v], "");
+        printf("%18s%17s", fits[v], "");
     puts("");
     double(*directions)[3] = malloc((size_t)2 * MOST * sizeof *directions);
     bool done = directions != NULL || bench_fail(b, "no memory");

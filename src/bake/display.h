@@ -7,7 +7,8 @@
 //     sum_j A_ij c_j = sum_r w h_i T_r,    A_ij = sum_r w h_i h_j.
 // A does not depend on the degree of a harmonic, so each level is the environment through one kernel, a
 // mixture of GGX lobes and of the mirror whose weights, some negative, add up to 1. The environment
-// enters by its power per degree, which gives |T_r|.
+// enters by its power per degree, which gives |T_r|. In two norms at once (display_mix.h) there is such
+// a system for each of their common axes.
 #ifndef KI_DISPLAY_H
 #define KI_DISPLAY_H
 
