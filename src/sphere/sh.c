@@ -134,11 +134,17 @@ kiln_result ki_spectrum_power(const kiln_spectrum *spectrum, bool suns, double (
     int degree = spectrum->degree;
     size_t count = ki_coefficient_count(degree);
     memset(power, 0, ((size_t)degree + 1) * sizeof *power);
-    double *a = ki_alloc_raw(spectrum->context, count, sizeof *a);
-    if (!a)
-        return ki_fail_memory(spectrum->context, error, "a spectrum's power", count * sizeof *a);
-    memcpy(a, spectrum->a, count * sizeof *a);
-    kiln_result result = suns ? ki_spectrum_add_suns(spectrum, degree, a, error) : KILN_OK;
+    const double *a = spectrum->a;
+    double *all = NULL;
+    kiln_result result = KILN_OK;
+    if (suns && spectrum->sun_count) {
+        a = all = ki_alloc_raw(spectrum->context, count, sizeof *all);
+        if (!all)
+            return ki_fail_memory(spectrum->context, error, "a spectrum's power",
+                                  count * sizeof *all);
+        memcpy(all, spectrum->a, count * sizeof *all);
+        result = ki_spectrum_add_suns(spectrum, degree, all, error);
+    }
     for (int m = 0; m <= degree && result == KILN_OK; m++) {
         const double *row = a + ki_coefficient_row(degree, m);
         for (int l = m; l <= degree; l++, row += KI_COMPONENTS)
@@ -146,7 +152,7 @@ kiln_result ki_spectrum_power(const kiln_spectrum *spectrum, bool suns, double (
                 power[l][c] +=
                     (m ? 2 : 1) * (row[2 * c] * row[2 * c] + row[2 * c + 1] * row[2 * c + 1]);
     }
-    ki_free(a);
+    ki_free(all);
     return result;
 }
 
