@@ -40,9 +40,9 @@ async function validate({ files }, say) {
 }
 
 const gltf = { name: 'gltf', page: 'babylon.html', ending: '.glb', loads: '.glb', model, bounds, asked: { linear: true } };
-export default [gltf, { // and as it is loaded
-    ...gltf, asked: {}, bounds: { real: { rms: 1e-2, most: 0.06 } },
+export default [gltf, {
+    ...gltf, title: 'gltf as loaded', asked: {}, bounds: { real: { rms: 1e-2, most: 0.06 } },
     model: (...size) => ({ ...model(...size), curve: (x) => x ** 2.2 }),
 }, {
-    ...gltf, prepare: () => makeFiles(gltf), check: (files, _, say) => validate(files, say),
+    ...gltf, title: 'gltf for its validator', prepare: () => makeFiles(gltf), check: (files, _, say) => validate(files, say),
 }];
