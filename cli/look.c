@@ -152,12 +152,11 @@ int look_load(cli_job *job, const look *l, kiln_map *source)
     return CLI_GO;
 }
 
-int look_bake_slot(cli_job *job, const look *l, const kiln_map *source, view_slot slot,
+int look_bake_slot(cli_job *job, const look *l, const kiln_map *source, view_slot slot, int samples,
                    view_renderer *renderer)
 {
     view_environment e;
-    if (view_bake(job->context, source, l->bake_size, slot == VIEW_SLOT_TEXTBOOK ? 1024 : 0, &e,
-                  &job->error) != KILN_OK)
+    if (view_bake(job->context, source, l->bake_size, samples, &e, &job->error) != KILN_OK)
         return CLI_FAILED;
     kiln_result result =
         view_set_environment(renderer, slot, &e.levels, &e.sh, &e.irradiance, &job->error);
@@ -167,8 +166,8 @@ int look_bake_slot(cli_job *job, const look *l, const kiln_map *source, view_slo
 
 int look_bake(cli_job *job, const look *l, const kiln_map *source, view_renderer *renderer)
 {
-    int code = look_bake_slot(job, l, source, VIEW_SLOT_EXACT, renderer);
+    int code = look_bake_slot(job, l, source, VIEW_SLOT_EXACT, 0, renderer);
     if (code == CLI_GO && l->options.scene == VIEW_SCENE_COMPARE)
-        code = look_bake_slot(job, l, source, VIEW_SLOT_TEXTBOOK, renderer);
+        code = look_bake_slot(job, l, source, VIEW_SLOT_TEXTBOOK, LOOK_TEXTBOOK_SAMPLES, renderer);
     return code;
 }

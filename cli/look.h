@@ -45,8 +45,11 @@ int look_read(const cli_arguments *a, look *l);
 bool look_has_environment(const look *l);
 /// Loads the environment, or makes a sky. CLI_GO or CLI_FAILED.
 int look_load(cli_job *job, const look *l, kiln_map *source);
-/// Bakes it for the renderer, one slot or all that the scene needs. CLI_GO or CLI_FAILED.
-int look_bake_slot(cli_job *job, const look *l, const kiln_map *source, view_slot slot,
+/// Samples a texel of the textbook's bake.
+enum { LOOK_TEXTBOOK_SAMPLES = 1024 };
+/// Bakes it for the renderer, one slot (`samples` 0: exactly) or all that the scene needs. CLI_GO or
+/// CLI_FAILED.
+int look_bake_slot(cli_job *job, const look *l, const kiln_map *source, view_slot slot, int samples,
                    view_renderer *renderer);
 int look_bake(cli_job *job, const look *l, const kiln_map *source, view_renderer *renderer);
 

@@ -5,6 +5,9 @@
 #include "controls.h"
 #include "window.h"
 
+#include <pthread.h>
+#include <signal.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -19,26 +22,102 @@ static const struct poptOption options[] = {
     POPT_TABLEEND,
 };
 
+// The textbook's bake takes a minute or more: it goes on behind the window.
+typedef struct textbook {
+    pthread_t thread;
+    bool begun, set;
+    atomic_bool stop, finished;
+    atomic_int thousandths;
+    kiln_context *context;
+    view_environment environment;
+    kiln_result result;
+    kiln_error error;
+} textbook;
+
 typedef struct show {
     cli_job *job;
     const look *look;
     const kiln_map *source;
+    int threads;
+    textbook textbook;
 } show;
+
+static bool note_progress(void *user, const char *stage, double fraction)
+{
+    textbook *t = user;
+    (void)stage;
+    atomic_store(&t->thousandths, (int)(1000 * fraction));
+    return !atomic_load(&t->stop);
+}
+
+static void *bake(void *user)
+{
+    show *s = user;
+    textbook *t = &s->textbook;
+    t->result = view_bake(t->context, s->source, s->look->bake_size, LOOK_TEXTBOOK_SAMPLES,
+                          &t->environment, &t->error);
+    atomic_store(&t->finished, true);
+    return NULL;
+}
+
+static kiln_result begin_textbook(show *s, view_renderer *renderer, kiln_error *error)
+{
+    textbook *t = &s->textbook;
+    const kiln_context_def def = {
+        .thread_count = s->threads, .progress = note_progress, .progress_user = t};
+    // Until then both halves are exact.
+    if (look_bake_slot(s->job, s->look, s->source, VIEW_SLOT_TEXTBOOK, 0, renderer) != CLI_GO) {
+        *error = s->job->error;
+        return error->result;
+    }
+    // Signals are for the window's thread.
+    sigset_t all, old;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &old);
+    kiln_result result = kiln_context_create(&def, &t->context, error);
+    t->begun = result == KILN_OK && !pthread_create(&t->thread, NULL, bake, s);
+    pthread_sigmask(SIG_SETMASK, &old, NULL);
+    if (result == KILN_OK && !t->begun) {
+        snprintf(error->message, sizeof error->message, "no thread for the textbook's bake");
+        result = error->result = KILN_ERROR_MEMORY;
+    }
+    return result;
+}
+
+static kiln_result ask_textbook(void *user, view_renderer *renderer, bool wait, double *done,
+                                kiln_error *error)
+{
+    show *s = user;
+    textbook *t = &s->textbook;
+    kiln_result result = t->begun ? KILN_OK : begin_textbook(s, renderer, error);
+    *done = atomic_load(&t->thousandths) / 1001.0;
+    if (result != KILN_OK || (!wait && !atomic_load(&t->finished)))
+        return result;
+    pthread_join(t->thread, NULL);
+    t->set = true;
+    *done = 1;
+    const view_environment *e = &t->environment;
+    if (t->result == KILN_OK)
+        return view_set_environment(renderer, VIEW_SLOT_TEXTBOOK, &e->levels, &e->sh,
+                                    &e->irradiance, error);
+    *error = t->error;
+    return t->result;
+}
+
+static void end_textbook(textbook *t)
+{
+    atomic_store(&t->stop, true);
+    if (t->begun && !t->set)
+        pthread_join(t->thread, NULL);
+    view_environment_free(&t->environment);
+    kiln_context_destroy(t->context);
+}
 
 // The job keeps the sentence where the work was its own.
 static kiln_result prepare(void *user, view_renderer *renderer, kiln_error *error)
 {
     const show *s = user;
-    if (look_bake_slot(s->job, s->look, s->source, VIEW_SLOT_EXACT, renderer) == CLI_GO)
-        return KILN_OK;
-    *error = s->job->error;
-    return error->result;
-}
-
-static kiln_result textbook(void *user, view_renderer *renderer, kiln_error *error)
-{
-    const show *s = user;
-    if (look_bake_slot(s->job, s->look, s->source, VIEW_SLOT_TEXTBOOK, renderer) == CLI_GO)
+    if (look_bake_slot(s->job, s->look, s->source, VIEW_SLOT_EXACT, 0, renderer) == CLI_GO)
         return KILN_OK;
     *error = s->job->error;
     return error->result;
@@ -50,11 +129,11 @@ static bool go_on(void *user)
     return !cli_interrupted();
 }
 
-static int open_window(cli_job *job, const look *l, const char *screenshot)
+static int open_window(cli_job *job, const look *l, int threads, const char *screenshot)
 {
     kiln_map source = {0};
     kiln_image image = {0};
-    show s = {job, l, &source};
+    show s = {.job = job, .look = l, .source = &source, .threads = threads};
     view_window_def def = {.title = l->input ? l->input : "kiln",
                            .width = l->width,
                            .height = l->height,
@@ -63,11 +142,12 @@ static int open_window(cli_job *job, const look *l, const char *screenshot)
                            .go_on = go_on,
                            .user = &s,
                            .has_environment = true,
-                           .textbook = textbook,
+                           .textbook = ask_textbook,
                            .screenshot = screenshot ? &image : NULL};
     int code = look_load(job, l, &source);
     if (code == CLI_GO)
         code = view_window(job->context, &def, &job->error) ? CLI_FAILED : CLI_DONE;
+    end_textbook(&s.textbook);
     if (code == CLI_DONE && cli_interrupted())
         code = CLI_FAILED; // closed by a signal, as the exit code will say
     if (code == CLI_DONE && screenshot)
@@ -96,7 +176,7 @@ static int run(int argc, const char **argv)
     if (code == CLI_GO) {
         code = cli_job_begin(&job, threads, false);
         if (code == CLI_GO)
-            code = open_window(&job, &l, a.value[SCREENSHOT]);
+            code = open_window(&job, &l, threads, a.value[SCREENSHOT]);
         code = cli_job_end(&job, code);
     }
     cli_arguments_free(&a);

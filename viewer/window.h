@@ -15,9 +15,11 @@ typedef struct view_window_def {
     bool (*go_on)(void *user);
     void *user;
     bool has_environment; ///< scenes that need one can be chosen
-    /// Called once before compare is first drawn, to set the textbook's environment. NULL where compare
-    /// cannot be chosen.
-    kiln_result (*textbook)(void *user, view_renderer *renderer, kiln_error *error);
+    /// Asked in compare, ten times a second, until the textbook's environment is set and `done` is 1;
+    /// before that it is the share that is. `wait`: to return only then. NULL where compare cannot be
+    /// chosen.
+    kiln_result (*textbook)(void *user, view_renderer *renderer, bool wait, double *done,
+                            kiln_error *error);
     /// Not NULL: draws one frame, reads the window's own pixels into it and returns.
     kiln_image *screenshot;
 } view_window_def;

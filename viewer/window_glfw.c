@@ -247,42 +247,37 @@ static kiln_result shoot(kiln_context *context, int width, int height, kiln_imag
     return result;
 }
 
-// The textbook's bake takes a while: the title says so.
-static kiln_result bake_textbook(const window *w, const view_window_def *def,
-                                 view_renderer *renderer, kiln_error *error)
+// The textbook's bake takes a while: the title says how far it is.
+static kiln_result ask_textbook(window *w, const view_window_def *def, view_renderer *renderer,
+                                double *done, kiln_error *error)
 {
     const char *title = def->title ? def->title : "kiln";
     char words[160];
-    if (!def->textbook)
-        return KILN_OK;
-    snprintf(words, sizeof words, "%.100s: baking as the textbook does, 1024 samples a texel",
-             title);
-    w->glfw.SetWindowTitle(w->handle, words);
-    w->glfw.WaitEventsTimeout(0.01); // so that it is seen
-    kiln_result result = def->textbook(def->user, renderer, error);
-    w->glfw.SetWindowTitle(w->handle, title);
+    kiln_result result = def->textbook(def->user, renderer, def->screenshot != NULL, done, error);
+    snprintf(words, sizeof words, "%.100s: the textbook bakes, %.0f %%", title, 100 * *done);
+    w->glfw.SetWindowTitle(w->handle, *done < 1 ? words : title);
+    w->stale |= *done == 1;
     return result;
 }
 
 static kiln_result loop(window *w, kiln_context *context, const view_window_def *def,
                         view_renderer *renderer, kiln_error *error)
 {
-    bool has_textbook = false;
+    double textbook = def->textbook ? 0 : 1;
     w->stale = true;
     while (!w->glfw.WindowShouldClose(w->handle) && (!def->go_on || def->go_on(def->user))) {
         int width, height;
+        if (w->options.scene == VIEW_SCENE_COMPARE && textbook < 1) {
+            kiln_result result = ask_textbook(w, def, renderer, &textbook, error);
+            if (result != KILN_OK)
+                return result;
+        }
         w->glfw.GetFramebufferSize(w->handle, &width, &height);
         if (w->stale && width > 0 && height > 0) {
             view_options o = w->options;
             if (w->dragging)
                 o.samples = 1;
             w->stale = false;
-            if (o.scene == VIEW_SCENE_COMPARE && !has_textbook) {
-                kiln_result result = bake_textbook(w, def, renderer, error);
-                if (result != KILN_OK)
-                    return result;
-                has_textbook = true;
-            }
             view_draw(renderer, &o, width, height);
             if (def->screenshot)
                 return shoot(context, width, height, def->screenshot, error);
