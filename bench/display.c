@@ -120,7 +120,7 @@ static bool compare(bench *b, display *d, double roughness)
             // The solid angle of an octahedron's texel goes by the cube of its |x| + |y| + |z|.
             const double *at = d->directions[k];
             double weight = pow(fabs(at[0]) + fabs(at[1]) + fabs(at[2]), 3);
-            bool far = brightness(truth.level[0] + 3 * k) < bright;
+            bool far = brightness(truth.level[0] + 3 * (size_t)k) < bright;
             sphere += 3 * weight;
             for (int c = 0; c < 3; c++) {
                 double wanted = (double)truth.level[0][3 * k + c];
@@ -189,8 +189,9 @@ static bool check_environment(bench *b, display *d, const char *name)
         !kiln_spectrum_analyze(d->context, &d->source, KILN_MAX_DEGREE, &d->spectrum, &b->error) &&
         bake(b, d);
     double(*power)[3] = malloc((KILN_MAX_DEGREE + 1) * sizeof *power);
-    done = done && (power || bench_fail(b, "no memory")) &&
-           !kiln_spectrum_power(d->spectrum, power, &b->error);
+    if (!power)
+        done = bench_fail(b, "no memory");
+    done = done && !kiln_spectrum_power(d->spectrum, power, &b->error);
     // The mean of the channels' squared means, 4 pi of which are the power of degree 0.
     if (done)
         d->mean = sqrt((power[0][0] + power[0][1] + power[0][2]) / (12 * acos(-1)));

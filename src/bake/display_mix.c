@@ -111,10 +111,11 @@ static void solve_equations(const ki_palette *p, equations *e)
 }
 
 // Adds what of a solution lies on an axis.
-static void add_part(const ki_norms *n, int axis, const equations *e, int level_count,
+static void add_part(const ki_norms *n, size_t axis, const equations *e, int level_count,
                      ki_mixtures *to)
 {
-    const double *across = n->across + axis * n->count, *along = n->along + axis * n->count;
+    const double *across = n->across + axis * (size_t)n->count;
+    const double *along = n->along + axis * (size_t)n->count;
     for (int i = 0; i < level_count; i++) {
         double part = 0;
         for (int j = 0; j < n->count; j++)
@@ -151,7 +152,7 @@ kiln_result ki_palette_mix(kiln_context *context, const ki_palette *p,
     memset(mixtures, 0, sizeof *mixtures);
     for (int k = 0; k < n.count; k++) {
         // A roughness counts by the inverse of its own light, in each norm.
-        double w[KI_MOST_LOBES];
+        double w[KI_MOST_LOBES] = {0};
         equations e;
         for (int i = 0; i < n.count; i++)
             w[i] = 1 / n.whole[i];
@@ -161,7 +162,7 @@ kiln_result ki_palette_mix(kiln_context *context, const ki_palette *p,
             w[i] += far_share * n.ratio[k] / (n.away[i] + dark);
         lay_equations(p, w, NULL, &e);
         solve_equations(p, &e);
-        add_part(&n, k, &e, p->level_count, mixtures);
+        add_part(&n, (size_t)k, &e, p->level_count, mixtures);
     }
     finish(p, mixtures);
     ki_norms_destroy(&n);

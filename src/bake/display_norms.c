@@ -11,7 +11,7 @@ static const double ridge = 1e-8;
 // Radians around a sun that the second norm leaves out, a 200th of the sphere.
 static const double aside = 0.1415;
 
-// Adds sum over degrees of power k_i k_j; the last lobe is a mirror.
+// Adds sum over degrees of power k_i k_j; the last lobe is a mirror. `power` NULL: uniform light.
 static void add_power(const ki_palette *p, const double (*power)[3], int degree, double mean,
                       double *products)
 {
@@ -23,8 +23,8 @@ static void add_power(const ki_palette *p, const double (*power)[3], int degree,
                 last = ki_min(last, p->spectra[i].degree);
             if (j < mirror)
                 last = ki_min(last, p->spectra[j].degree);
-            double sum = 0;
-            for (int l = 0; l <= last; l++) {
+            double sum = power ? 0 : mean;
+            for (int l = 0; power && l <= last; l++) {
                 double k = i < mirror ? p->spectra[i].k[l] : 1;
                 k *= j < mirror ? p->spectra[j].k[l] : 1;
                 sum += k * (power[l][0] + power[l][1] + power[l][2]);
@@ -127,16 +127,16 @@ static void divide(int count, const double *lower, double *a)
 // With the first norm's matrix L L' and an axis q of L^-1 away L^-T: along = L^-T q, across = L q.
 static void turn_axes(ki_norms *n, const double *lower, const double *axes)
 {
-    int count = n->count;
-    for (int a = 0; a < count; a++) {
+    size_t count = (size_t)n->count;
+    for (size_t a = 0; a < count; a++) {
         const double *q = axes + a * count;
         double *along = n->along + a * count, *across = n->across + a * count;
-        for (int i = count - 1; i >= 0; i--) {
+        for (size_t i = count; i-- > 0;) {
             across[i] = 0;
             along[i] = q[i];
-            for (int j = 0; j <= i; j++)
+            for (size_t j = 0; j <= i; j++)
                 across[i] += lower[i * count + j] * q[j];
-            for (int j = i + 1; j < count; j++)
+            for (size_t j = i + 1; j < count; j++)
                 along[i] -= lower[j * count + i] * along[j];
             along[i] /= lower[i * count + i];
         }
@@ -147,7 +147,7 @@ kiln_result ki_norms_create(kiln_context *context, const ki_palette *p,
                             const kiln_spectrum *spectrum, const double (*power)[3], ki_norms *n,
                             kiln_error *error)
 {
-    const double(*all)[3] = power + spectrum->degree + 1, black[1][3] = {{1}};
+    const double(*all)[3] = power + spectrum->degree + 1;
     double light, mean = all[0][0] + all[0][1] + all[0][2];
     *n = (ki_norms){.count = p->count + 2};
     size_t count = (size_t)n->count, size = count * count;
@@ -165,8 +165,8 @@ kiln_result ki_norms_create(kiln_context *context, const ki_palette *p,
     n->across = n->along + size;
     // Relative to the mean radiance, so that no unit overflows; black is as good as white.
     bool dark = !(mean > 0);
-    add_power(p, dark ? black : all, dark ? 0 : spectrum->degree, dark ? 1 : mean, lower);
-    add_power(p, dark ? black : power, dark ? 0 : spectrum->degree, dark ? 1 : mean, away);
+    add_power(p, dark ? NULL : all, spectrum->degree, dark ? 1 : mean, lower);
+    add_power(p, dark ? NULL : power, spectrum->degree, dark ? 1 : mean, away);
     if (!dark)
         add_tails(p, light / mean, away);
     for (size_t i = 0; i < count; i++) {

@@ -135,7 +135,8 @@ static void displayed_error(kiln_context *context, const kiln_map *source, const
                             const kiln_map *map, double from, double error_of[2])
 {
     double sun[3];
-    panorama_direction(source->size, source->size + 5.5, source->size / 3 + 0.5, sun);
+    int row = source->size / 3;
+    panorama_direction(source->size, source->size + 5.5, row + 0.5, sun);
     static double directions[DIRECTIONS][3], truth[DIRECTIONS][3], shown[DIRECTIONS][3],
         weights[DIRECTIONS];
     error_of[0] = error_of[1] = 0;

@@ -86,9 +86,12 @@ static kiln_result light_up(void *user, view_renderer *renderer, kiln_error *err
 
 static int textbook_count;
 
-static kiln_result light_by_textbook(void *user, view_renderer *renderer, kiln_error *error)
+static kiln_result light_by_textbook(void *user, view_renderer *renderer, bool wait, double *done,
+                                     kiln_error *error)
 {
     (void)user;
+    assert_true(wait); // a screenshot is of the whole
+    *done = 1;
     textbook_count++;
     return light_slot(renderer, VIEW_SLOT_TEXTBOOK, error);
 }
@@ -103,7 +106,7 @@ static void draw_headless(const view_options *o, kiln_image *image)
     CHECK_OK(view_headless_create(&headless, &error));
     CHECK_OK(view_create(context, view_headless_lookup, &renderer, &error));
     CHECK_OK(light_up(NULL, renderer, &error));
-    CHECK_OK(light_by_textbook(NULL, renderer, &error));
+    CHECK_OK(light_by_textbook(NULL, renderer, true, &(double){0}, &error));
     CHECK_OK(view_picture(renderer, o, WIDTH, HEIGHT, false, image, &error));
     view_destroy(renderer);
     view_headless_destroy(headless);
