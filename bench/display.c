@@ -193,7 +193,7 @@ static bool check_environment(bench *b, display *d, const char *name)
         done = bench_fail(b, "no memory");
     done = done && !kiln_spectrum_power(d->spectrum, power, &b->error);
     // The mean of the channels' squared means, 4 pi of which are the power of degree 0.
-    if (done)
+    if (done && power)
         d->mean = sqrt((power[0][0] + power[0][1] + power[0][2]) / (12 * acos(-1)));
     free(power);
     for (int k = 0; k < ROUGHNESS_COUNT && done; k++)
