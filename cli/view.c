@@ -194,7 +194,8 @@ const cli_command cli_view = {
                "  kiln view city.exr\n"
                "      gold in a city\n"
                "  kiln view city.exr --scene compare\n"
-               "      the exact bake beside the textbook's, [ and ] move the handle\n"
+               "      the exact bake beside the textbook's, which bakes meanwhile; [ and ] move "
+               "the handle\n"
                "  kiln view\n"
                "      the assignment's two rows\n",
     .options = options,
