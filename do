@@ -151,6 +151,7 @@ demo)
     fi
     say "baking"
     build/release/bin/demo build/demo "$@"
+    rm -f build/demo/gallery.part
     say "open $PWD/build/demo/index.html"
     ;;
 bench)
