@@ -263,11 +263,11 @@ static kiln_result ask_textbook(window *w, const view_window_def *def, view_rend
 static kiln_result loop(window *w, kiln_context *context, const view_window_def *def,
                         view_renderer *renderer, kiln_error *error)
 {
-    double textbook = def->textbook ? 0 : 1;
+    double textbook = 0; // how much of its bake is done
     w->stale = true;
     while (!w->glfw.WindowShouldClose(w->handle) && (!def->go_on || def->go_on(def->user))) {
         int width, height;
-        if (w->options.scene == VIEW_SCENE_COMPARE && textbook < 1) {
+        if (w->options.scene == VIEW_SCENE_COMPARE && def->textbook && textbook < 1) {
             kiln_result result = ask_textbook(w, def, renderer, &textbook, error);
             if (result != KILN_OK)
                 return result;

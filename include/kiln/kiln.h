@@ -335,10 +335,10 @@ typedef struct kiln_prefilter_def {
     int size;               ///< 1 to KILN_MAX_SIZE; 0 for 256
     int level_count;        ///< 1 to KILN_MAX_LEVELS; 0 for all down to 1
     int smallest;           ///< of the map: only with it may there be more levels than down to 1
-    const float *roughness; ///< level_count numbers in [0, 1]; NULL for level / (level_count - 1),
-                            ///< or 1 for Lambert, which has none
     kiln_lobe_kind lobe;    ///< GGX (alpha = roughness^2), Lambert, Charlie (the same alpha,
                             ///< 0.01 at least) or Phong (exponent 2 / alpha^2 - 2, 1 at least)
+    const float *roughness; ///< level_count numbers in [0, 1]; NULL for level / (level_count - 1),
+                            ///< or 1 for Lambert, which has none
     double rotation;        ///< degrees about +Y
     /// Where the spectrum is cut: the relative L2 error that a lone bright point would have, were it
     /// not summed exactly. 1e-6 to 0.01; 0 for 1.5e-4. Real environments err by a hundredth of it.

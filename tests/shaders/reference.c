@@ -321,9 +321,10 @@ static void balls_light_one_another(void **unused)
     double eye[3], right[3], up[3], back[3], sum[3] = {0}, got[3] = {0};
     double slope = tan(o.camera.fov / 2 * 3.14159265358979 / 180);
     view_camera_axes(&o.camera, eye, right, up, back);
-    for (int i = 0; i < WIDTH * HEIGHT; i++) {
-        double sx = (2 * (i % WIDTH + 0.5) / WIDTH - 1) * slope * WIDTH / HEIGHT;
-        double sy = (1 - 2 * (i / WIDTH + 0.5) / HEIGHT) * slope;
+    for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++) {
+        int x = (int)(i % WIDTH), y = (int)(i / WIDTH);
+        double sx = (2 * (x + 0.5) / WIDTH - 1) * slope * WIDTH / HEIGHT;
+        double sy = (1 - 2 * (y + 0.5) / HEIGHT) * slope;
         // The sky is 1 or 1.5 and as bright to all.
         if ((double)image[0].pixels[3 * i] == 1 || (double)image[0].pixels[3 * i] == 1.5)
             continue;
