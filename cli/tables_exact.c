@@ -6,9 +6,6 @@
 #include <string.h>
 
 static const char *const formats[] = {"auto", "f32", "f16", "u16", "u8", "rgbd", NULL};
-static const char *const endings[] = {"ktx2", "exr", "hdr", "png",  "raw",
-                                      "bin",  "h",   "inc", "glsl", NULL};
-
 typedef struct exact_job {
     const cli_arguments *a;
     kiln_table_def def;
@@ -44,15 +41,13 @@ static int read_size(const cli_arguments *a, kiln_table_def *def)
     return CLI_GO;
 }
 
-static int check_output(const cli_arguments *a, int option, const char *name)
+// Whether a file of that name can be written, and hold what is asked for.
+static int check_output(const exact_job *job, const char *path)
 {
-    const char *path = a->value[option], *ending = cli_ending(path);
-    for (int i = 0; endings[i]; i++)
-        if (!strcmp(ending, endings[i]))
-            return cli_check_folder(path);
-    return cli_wrong(a->command,
-                     "%s %s: must end in .ktx2, .exr, .hdr, .png, .raw, .bin, .h, .inc or .glsl",
-                     name, path);
+    kiln_error error = {0};
+    if (kiln_table_save_check(path, &job->save, &error))
+        return cli_wrong(job->a->command, "%s", error.message);
+    return cli_check_folder(path);
 }
 
 // NAME_lookup.h and NAME_lookup.glsl.
@@ -174,7 +169,6 @@ static int read_arguments(exact_job *job)
         return cli_wrong(a->command, "--samples is for --assignment and --method textbook: what "
                                      "--table makes is not sampled");
     if ((code = read_choices(job)) != CLI_GO ||
-        (code = check_output(a, TABLES_OUTPUT, "--output")) != CLI_GO ||
         (code = cli_integer(a, TABLES_ZSTD, "--zstd", 1, 22, &job->save.zstd)) != CLI_GO ||
         (code = cli_integer(a, TABLES_PATHS, "--paths", 16, 1 << 24, &job->def.path_count)) !=
             CLI_GO ||
@@ -182,7 +176,9 @@ static int read_arguments(exact_job *job)
         return code;
     if ((code = take_engine(job)) != CLI_GO || (code = check_kind(job)) != CLI_GO)
         return code;
-    if (a->value[TABLES_AVERAGE] && (code = check_output(a, TABLES_AVERAGE, "--average")) != CLI_GO)
+    if ((code = check_output(job, a->value[TABLES_OUTPUT])) != CLI_GO)
+        return code;
+    if (a->value[TABLES_AVERAGE] && (code = check_output(job, a->value[TABLES_AVERAGE])) != CLI_GO)
         return code;
     if (a->value[TABLES_LOOKUP] && (code = name_lookup(job)) != CLI_GO)
         return code;

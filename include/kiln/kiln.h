@@ -863,6 +863,11 @@ typedef struct kiln_table_save_def {
     const char *name; ///< what names in .h and .glsl begin with; NULL for the file's own name
 } kiln_table_save_def;
 
+/// Whether a file of that ending can be saved so: kiln_table_save asks it first. `def` may be NULL.
+KILN_API KILN_CHECKED kiln_result kiln_table_save_check(const char *path,
+                                                        const kiln_table_save_def *def,
+                                                        kiln_error *error);
+
 /// Writes a table whole or not at all. By ending (docs/tables.md says what is in each):
 ///   .ktx2          a 2-D texture, or a 3-D one where there are slices
 ///   .exr .hdr .png slices one below the other; two channels are red and green

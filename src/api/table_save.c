@@ -92,7 +92,8 @@ static kiln_result find_ending(const char *path, const kiln_table_save_def *def,
             *ending = &endings[i];
     if (!*ending)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
-                       "%s: ends in none of .ktx2 .exr .hdr .png .raw .bin .h .inc .glsl", path);
+                       "%s: must be a name in .ktx2 .exr .hdr .png .raw .bin .h .inc or .glsl",
+                       path);
     if ((unsigned)def->format > KILN_TABLE_FORMAT_RGBD)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "format is %d, it must be 0 to %d",
                        (int)def->format, (int)KILN_TABLE_FORMAT_RGBD);
@@ -248,6 +249,14 @@ static kiln_result put(kiln_result result, const char *path, ki_writer *w, kiln_
         result = ki_file_write(w->context, path, w->bytes, w->size, error);
     ki_writer_free(w);
     return result;
+}
+
+kiln_result kiln_table_save_check(const char *path, const kiln_table_save_def *def,
+                                  kiln_error *error)
+{
+    const struct ending *ending;
+    kiln_table_format format;
+    return find_ending(path, def ? def : &(kiln_table_save_def){0}, &ending, &format, error);
 }
 
 kiln_result kiln_table_save(kiln_context *context, const kiln_table *table, const char *path,

@@ -260,7 +260,8 @@ static void what_cannot_be_saved_is_said(void **state)
     (void)state;
     kiln_table table, large = {.def = {.width = 256, .height = 65, .depth = 1}};
     CHECK_OK(lookup_table(context, 0, &table, &error));
-    refused(&table, "a.tga", NULL, "ends in none of .ktx2 .exr .hdr .png .raw .bin .h .inc .glsl");
+    refused(&table, "a.tga", NULL,
+            "must be a name in .ktx2 .exr .hdr .png .raw .bin .h .inc or .glsl");
     refused(&table, "a.png", &(kiln_table_save_def){.format = KILN_TABLE_FORMAT_F16},
             "a .png file has no format f16");
     refused(&table, "a.hdr", &(kiln_table_save_def){.format = KILN_TABLE_FORMAT_F32},
