@@ -6,6 +6,7 @@
 #include <string.h>
 
 static const char *const formats[] = {"auto", "f32", "f16", "u16", "u8", "rgbd", NULL};
+
 typedef struct exact_job {
     const cli_arguments *a;
     kiln_table_def def;

@@ -90,7 +90,7 @@ static kiln_result ask_textbook(void *user, view_renderer *renderer, bool wait, 
     show *s = user;
     textbook *t = &s->textbook;
     kiln_result result = t->begun ? KILN_OK : begin_textbook(s, renderer, error);
-    *done = atomic_load(&t->thousandths) / 1001.0;
+    *done = atomic_load(&t->thousandths) / 1001.0; // 1 is for when it is set
     if (result != KILN_OK || (!wait && !atomic_load(&t->finished)))
         return result;
     pthread_join(t->thread, NULL);

@@ -345,8 +345,9 @@ typedef struct kiln_prefilter_def {
     double tolerance;
     /// Levels for what this engine shows, instead of the exact ones: see kiln_engine_levels. It mixes two
     /// levels linearly and reads texels bilinearly; these show the least error over roughness .05 to 1 in
-    /// this environment, relative to what is right at each. Level 0 is the mirror all the same, white
-    /// stays white, nothing is negative. NULL: exact levels. Source: docs/theory/display.md.
+    /// this environment, relative to what is right at each, near suns and away from them. Level 0 is the
+    /// mirror all the same, white stays white, nothing is negative. NULL: exact levels. Source:
+    /// docs/theory/display.md.
     const kiln_engine *shown_by;
     /// With shown_by: level 0 may be softer than the mirror, where that shows less error.
     bool soft;
@@ -863,7 +864,7 @@ typedef struct kiln_table_save_def {
     const char *name; ///< what names in .h and .glsl begin with; NULL for the file's own name
 } kiln_table_save_def;
 
-/// Whether a file of that ending can be saved so: kiln_table_save asks it first. `def` may be NULL.
+/// Fails, as kiln_table_save would, where a file of that ending cannot be saved so. `def` may be NULL.
 KILN_API KILN_CHECKED kiln_result kiln_table_save_check(const char *path,
                                                         const kiln_table_save_def *def,
                                                         kiln_error *error);
@@ -924,7 +925,7 @@ KILN_API KILN_CHECKED kiln_result kiln_engine_levels(const kiln_engine *engine, 
                                                      int level_count,
                                                      float roughness[KILN_MAX_LEVELS],
                                                      kiln_prefilter_def *def, kiln_error *error);
-/// Whether `format` is one of the engine's; KILN_FORMAT_AUTO becomes its first, if it has any.
+/// Fails where `format` is none of the engine's; KILN_FORMAT_AUTO becomes its first, if it has any.
 KILN_API KILN_CHECKED kiln_result kiln_engine_format(const kiln_engine *engine, kiln_format *format,
                                                      kiln_error *error);
 /// The level, a fraction, that the engine's shader reads for a roughness; -1 where the engine is none

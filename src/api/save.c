@@ -3,6 +3,7 @@
 #include "codec/codec.h"
 #include "codec/rgbx.h"
 #include "codec/texel.h"
+#include "image/pack.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -21,9 +22,9 @@ double kiln_format_limit(kiln_format format)
     case KILN_FORMAT_RGBA32F:
         return 0;
     case KILN_FORMAT_RGB9E5:
-        return 65408;
+        return KI_RGB9E5_MAX;
     case KILN_FORMAT_B10G11R11:
-        return 64512; // blue's
+        return KI_B10G11R11_MAX;
     case KILN_FORMAT_RGBM:
         return KI_RGBM_MAX;
     case KILN_FORMAT_RGBD:
@@ -31,7 +32,7 @@ double kiln_format_limit(kiln_format format)
     case KILN_FORMAT_RGBP:
         return KI_RGBP_MAX;
     default:
-        return 65504; // of half floats
+        return KI_HALF_MAX;
     }
 }
 

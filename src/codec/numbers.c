@@ -82,7 +82,7 @@ void ki_numbers_unpack(kiln_table_format format, const uint8_t *bytes, size_t co
             value = ki_float_from_half(number);
             break;
         }
-        float most = format == KILN_TABLE_FORMAT_F32 ? FLT_MAX : 65504;
+        float most = format == KILN_TABLE_FORMAT_F32 ? FLT_MAX : KI_HALF_MAX;
         values[i] = value > most ? most : value < -most ? -most : value == value ? value : 0;
     }
 }

@@ -133,19 +133,19 @@ static void unpack(const ki_texel *texel, const uint8_t *bytes, size_t count, fl
         case KILN_FORMAT_RGB9E5:
             memcpy(&word, from, sizeof word);
             ki_float_from_rgb9e5(word, value);
-            largest[0] = largest[1] = largest[2] = 65408;
+            largest[0] = largest[1] = largest[2] = KI_RGB9E5_MAX;
             break;
         case KILN_FORMAT_B10G11R11:
             memcpy(&word, from, sizeof word);
             ki_float_from_b10g11r11(word, value);
             largest[0] = largest[1] = 65024;
-            largest[2] = 64512;
+            largest[2] = KI_B10G11R11_MAX;
             break;
         case KILN_FORMAT_RGBA16F:
         default:
             memcpy(halfs, from, sizeof halfs);
             ki_floats_from_halfs(halfs, 4, value);
-            largest[0] = largest[1] = largest[2] = 65504;
+            largest[0] = largest[1] = largest[2] = KI_HALF_MAX;
             break;
         }
         for (int c = 0; c < 3; c++)

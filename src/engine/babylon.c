@@ -7,6 +7,8 @@
 #include "engine/engine.h"
 
 #include "codec/env.h"
+#include "codec/rgbx.h"
+#include "image/pack.h"
 #include "math/math.h"
 
 #include <math.h>
@@ -69,7 +71,7 @@ const ki_recipe ki_babylon = {
               .fit = true,
               .size = 256,
               .level_count = 9,
-              .limit = 255,
+              .limit = KI_RGBD_MAX,
               .proof = "pixels of Babylon.js 9.34.0"},
     .axes = {{0, 1, 2}, {1, 1, -1}},
     .size_min = 16,
@@ -89,7 +91,7 @@ const ki_recipe ki_babylon_dds = {
               .fit = true,
               .size = 256,
               .level_count = 9,
-              .limit = 65504,
+              .limit = KI_HALF_MAX,
               .proof = "pixels of Babylon.js 9.34.0"},
     .axes = {{0, 1, 2}, {1, 1, -1}},
     .size_min = 16,

@@ -7,6 +7,7 @@
 
 #include "codec/codec.h"
 #include "image/image.h"
+#include "image/pack.h"
 
 static kiln_result add(ki_export *to, const kiln_map *map, const char *lobe, const char *ending,
                        kiln_error *error)
@@ -44,7 +45,7 @@ const ki_recipe ki_bevy = {
               .mapping = "r = k / (n - 1)",
               .size = 256,
               .level_count = 5,
-              .limit = 65408,
+              .limit = KI_RGB9E5_MAX,
               .formats = {KILN_FORMAT_RGB9E5, KILN_FORMAT_RGBA16F, KILN_FORMAT_BC6H},
               .proof = "source of Bevy 0.19.1"},
     .axes = {{0, 1, 2}, {1, 1, -1}},

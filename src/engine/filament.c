@@ -6,6 +6,7 @@
 #include "engine/engine.h"
 
 #include "codec/ktx1.h"
+#include "image/pack.h"
 #include "math/math.h"
 
 #include <math.h>
@@ -98,7 +99,7 @@ const ki_recipe ki_filament = {
               .fit = true,
               .size = 256,
               .level_count = 5,
-              .limit = 65504,
+              .limit = KI_HALF_MAX,
               .formats = {KILN_FORMAT_RGBA16F, KILN_FORMAT_B10G11R11},
               .proof = "pixels of Filament's web build 1.53.4"},
     .axes = {{0, 1, 2}, {-1, 1, -1}},

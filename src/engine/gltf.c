@@ -6,6 +6,7 @@
 #include "engine/engine.h"
 
 #include "codec/gltf.h"
+#include "codec/rgbx.h"
 #include "math/math.h"
 
 static kiln_result write(ki_export *to, kiln_error *error)
@@ -32,7 +33,7 @@ const ki_recipe ki_gltf = {
               .mapping = "r = k / (n - 1)",
               .size = 256,
               .level_count = 5,
-              .limit = 255,
+              .limit = KI_RGBD_MAX,
               .proof = "pixels of Babylon.js 9.34.0, told that they are linear"},
     .axes = {{0, 1, 2}, {1, 1, 1}},
     .size_min = 32,

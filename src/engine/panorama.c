@@ -5,6 +5,7 @@
 
 #include "codec/codec.h"
 #include "image/image.h"
+#include "image/pack.h"
 
 static double roughness(int level, int level_count, int size)
 {
@@ -61,7 +62,7 @@ const ki_recipe ki_godot = {
               .mapping = "r = 0, unfiltered",
               .size = 512,
               .level_count = 1,
-              .limit = 65504,
+              .limit = KI_HALF_MAX,
               .proof = "source of Godot 0095d7d"},
     .axes = {{0, 1, 2}, {1, 1, 1}},
     .size_min = 32,

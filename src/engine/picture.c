@@ -1,5 +1,6 @@
 #include "engine/picture.h"
 
+#include "image/pack.h"
 #include "math/math.h"
 
 #include <math.h>
@@ -112,7 +113,7 @@ static void correct_row(void *data, int row)
             total += weight * (double)p->room[WANTED * (fy * across + fx) + 3];
         }
         for (int c = 0; c < 3 && total > 0; c++)
-            to[c] = (float)ki_clamp((double)to[c] + sum[c] / total, 0, 65504);
+            to[c] = (float)ki_clamp((double)to[c] + sum[c] / total, 0, KI_HALF_MAX);
     }
 }
 

@@ -6,6 +6,7 @@
 #include "engine/engine.h"
 
 #include "codec/codec.h"
+#include "image/pack.h"
 
 static kiln_result write(ki_export *to, kiln_error *error)
 {
@@ -27,7 +28,7 @@ const ki_recipe ki_three = {
               .fit = true,
               .size = 256,
               .level_count = 6,
-              .limit = 65504,
+              .limit = KI_HALF_MAX,
               .formats = {KILN_FORMAT_RGBA16F},
               .proof = "pixels of three.js 0.187.0"},
     .axes = {{2, 1, 0}, {1, 1, -1}},

@@ -10,6 +10,7 @@
 #include "codec/codec.h"
 #include "engine/picture.h"
 #include "image/image.h"
+#include "image/pack.h"
 #include "math/math.h"
 
 #include <math.h>
@@ -138,7 +139,7 @@ const ki_recipe ki_three_cubeuv = {
               .fit = true,
               .size = 512,
               .level_count = 11,
-              .limit = 65504,
+              .limit = KI_HALF_MAX,
               .proof = "pixels of three.js 0.183.2"},
     .axes = {{2, 1, 0}, {1, 1, -1}},
     .size_min = 64,

@@ -5,6 +5,8 @@
 // Its world is left-handed. Its panoramas (Skybox/Panoramic) have +X in the centre and -Z to the right.
 #include "engine/engine.h"
 
+#include "image/pack.h"
+
 #include <math.h>
 
 enum { STEPS = 6 };
@@ -31,7 +33,7 @@ const ki_recipe ki_unity = {
               .mapping = "k = 6 r (1.7 - 0.7 r), 1 behind",
               .size = 512,
               .level_count = 10,
-              .limit = 65504,
+              .limit = KI_HALF_MAX,
               .formats = {KILN_FORMAT_RGBA16F, KILN_FORMAT_BC6H},
               .proof = "source of Unity's shaders, Graphics 0c658a0"},
     .axes = {{2, 1, 0}, {-1, 1, -1}},

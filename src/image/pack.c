@@ -87,7 +87,7 @@ void ki_floats_from_halfs(const uint16_t *restrict halfs, size_t count, float *r
 // with which the largest mantissa, rounded, still fits into 9 bits.
 uint32_t ki_rgb9e5_from_float(const float rgb[3])
 {
-    const float largest = 65408; // 511 / 512 * 2^16
+    const float largest = KI_RGB9E5_MAX; // 511 / 512 * 2^16
     float c[3], most = 0;
     for (int i = 0; i < 3; i++) {
         c[i] = rgb[i] > 0 ? rgb[i] : 0;

@@ -6,6 +6,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/// The largest finite values; blue's of b10g11r11 is the least of its three.
+enum { KI_HALF_MAX = 65504, KI_RGB9E5_MAX = 65408, KI_B10G11R11_MAX = 64512 };
+
 uint16_t ki_half_from_float(float value);
 float ki_float_from_half(uint16_t half);
 /// Many at once, fast.

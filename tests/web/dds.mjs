@@ -117,6 +117,7 @@ await withPage(folder, async (page, address) => {
             assert.ok(Math.abs(x - wanted) <= bounds[name](wanted, c, Math.max(...rgb)),
                       `${name}: ${x} in picture ${part}, texel ${i >> 2}, channel ${c}, wanted ${wanted}`);
         }));
+        assert.ok(whole > 0, `${name} is black`);
         console.log(`  ${name}: rms ${Math.sqrt(squares / whole).toExponential(1)}, ${most.toExponential(1)} at most`);
     }
 });
