@@ -28,7 +28,7 @@
 #include <stdint.h>
 
 #define KILN_VERSION_MAJOR 0
-#define KILN_VERSION_MINOR 1
+#define KILN_VERSION_MINOR 2
 #define KILN_VERSION_PATCH 0
 
 #if defined(_WIN32) && defined(KILN_SHARED)
@@ -71,7 +71,7 @@ typedef struct kiln_error {
     char message[512];
 } kiln_error;
 
-/// The version of the library that is running, "0.1.0".
+/// The version of the library that is running, "0.2.0".
 KILN_API const char *kiln_version(void);
 
 // ---------------------------------------------------------------------------------------- context
@@ -221,7 +221,7 @@ typedef struct kiln_file_info {
     int channel_count;
     uint64_t byte_count;
     float roughness[KILN_MAX_LEVELS]; ///< of each level, where the file says; else -1
-    char writer[64];                  ///< "kiln 0.1.0", or empty
+    char writer[64];                  ///< "kiln 0.2.0", or empty
     char orientation[16];             ///< as the file states it, or empty
     char table[160];                  ///< what a table that kiln wrote is: "kind=e d=ggx ..."
     int sh_bands;                     ///< 0 where the file holds no spherical harmonics

@@ -242,7 +242,7 @@ static void metadata_comes_back(void **state)
     kiln_file_info info;
     CHECK_OK(ki_decode(context, w.bytes, w.size, "cube", &decoded, &info, &error));
     assert_string_equal(info.format, "ktx2");
-    assert_string_equal(info.writer, "kiln 0.1.0");
+    assert_string_equal(info.writer, "kiln 0.2.0");
     assert_string_equal(info.orientation, "rd");
     assert_int_equal(info.sh_bands, 3);
     for (int i = 0; i < 27; i++)

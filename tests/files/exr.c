@@ -339,7 +339,7 @@ static void what_is_written_comes_back(void **state)
             ki_decoded decoded;
             kiln_file_info info;
             CHECK_OK(ki_decode(context, w.bytes, w.size, "back.exr", &decoded, &info, &error));
-            assert_string_equal(info.writer, "kiln 0.1.0");
+            assert_string_equal(info.writer, "kiln 0.2.0");
             CHECK_NEAR((double)info.roughness[0], 0.25, 0);
             exr_pixel_type_t type = half ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT;
             for (int i = 0; i < W * H; i++)

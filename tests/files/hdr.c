@@ -179,7 +179,7 @@ static void what_is_written_comes_back(void **state)
         ki_decoded decoded;
         kiln_file_info info;
         CHECK_OK(ki_decode(context, w.bytes, w.size, "back.hdr", &decoded, &info, &error));
-        assert_string_equal(info.writer, "kiln 0.1.0");
+        assert_string_equal(info.writer, "kiln 0.2.0");
         assert_string_equal(info.encoding, width < 8 ? "rgbe, uncompressed" : "rgbe, rle");
         for (int k = 0; k < width * 5; k++) {
             double most = 0;
