@@ -16,8 +16,11 @@ status=$(
         may["codec"] = "base math image codec"
         may["sphere"] = "base math image sphere"
         may["brdf"] = "base math brdf"
-        may["bake"] = "base math image sphere brdf bake"
-        may["engine"] = "base math image codec sphere brdf bake engine"
+        may["tune"] = "base math image sphere tune"
+        may["table"] = "base math image codec brdf table"
+        may["course"] = "base math image brdf course"
+        may["bake"] = "base math image sphere brdf tune bake"
+        may["engine"] = "base math image codec sphere brdf tune table course bake engine"
         may["api"] = may["engine"] " api"
     }
     /^[ \t]*#[ \t]*include/ {

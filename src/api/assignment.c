@@ -1,5 +1,5 @@
 // The assignment's tables as the caller sees them.
-#include "bake/assignment.h"
+#include "course/assignment.h"
 
 #include <math.h>
 

@@ -1,5 +1,5 @@
 // Closed forms as the caller sees them.
-#include "bake/fit.h"
+#include "table/fit.h"
 
 #include "api/table_source.h"
 #include "base/file.h"

@@ -1,6 +1,6 @@
 // Tables as the caller sees them.
-#include "bake/table.h"
-#include "bake/table_text.h"
+#include "table/table.h"
+#include "table/table_text.h"
 
 const char *const *kiln_d_names(void)
 {

@@ -1,12 +1,12 @@
 // Tables as files, and the source code of their lookups.
 #include "api/table_source.h"
-#include "bake/table.h"
-#include "bake/table_text.h"
 #include "base/file.h"
 #include "codec/codec.h"
 #include "codec/numbers.h"
 #include "codec/rgbx.h"
 #include "image/pack.h"
+#include "table/table.h"
+#include "table/table_text.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,9 +1,9 @@
 #include "api/table_source.h"
 
-#include "bake/table_code.h"
-#include "bake/table_text.h"
 #include "codec/codec.h"
 #include "codec/numbers.h"
+#include "table/table_code.h"
+#include "table/table_text.h"
 
 #include <stdio.h>
 #include <string.h>

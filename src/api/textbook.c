@@ -1,5 +1,5 @@
 // The textbook's methods and the brute-force reference as the caller sees them.
-#include "bake/textbook.h"
+#include "course/textbook.h"
 #include "bake/reference.h"
 #include "image/image.h"
 #include "sphere/lobe.h"

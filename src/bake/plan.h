@@ -2,10 +2,10 @@
 #ifndef KI_PLAN_H
 #define KI_PLAN_H
 
-#include "bake/display.h"
 #include "image/resample.h"
 #include "sphere/level.h"
 #include "sphere/spectrum.h"
+#include "tune/tune.h"
 
 struct kiln_plan {
     kiln_context *context;

@@ -2,9 +2,9 @@
 #ifndef KI_PREFILTER_H
 #define KI_PREFILTER_H
 
-#include "bake/display.h"
 #include "sphere/spectrum.h"
 #include "sphere/zonal.h"
+#include "tune/tune.h"
 
 /// What a level leaves out by stopping at a degree, as part of the L2 norm for a lone bright point.
 /// Bright points are kept out of the spectrum (spectrum.h), so the error of a real environment is a

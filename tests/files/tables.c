@@ -1,9 +1,9 @@
 // Tables as files: every format there and back, what files say of themselves, and what is refused.
 #include "lookup/tables.h"
-#include "bake/table_text.h"
 #include "check.h"
 #include "codec/codec.h"
 #include "image/pack.h"
+#include "table/table_text.h"
 
 #include <dirent.h>
 #include <png.h>

@@ -1,8 +1,8 @@
 // Closed forms: what they promise holds at points they have not seen, and they have no poles.
 #include "bake_test.h"
 
-#include "bake/fit.h"
 #include "math/math.h"
+#include "table/fit.h"
 
 static kiln_error error;
 

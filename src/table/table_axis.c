@@ -1,4 +1,4 @@
-#include "bake/table_axis.h"
+#include "table/table_axis.h"
 
 #include "base/base.h"
 #include "brdf/surface.h"

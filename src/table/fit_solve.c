@@ -1,6 +1,6 @@
 // One closed form of given degrees.
-#include "bake/fit.h"
 #include "math/math.h"
+#include "table/fit.h"
 
 #include <math.h>
 

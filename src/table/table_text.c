@@ -1,4 +1,4 @@
-#include "bake/table_text.h"
+#include "table/table_text.h"
 
 #include <limits.h>
 #include <stdio.h>

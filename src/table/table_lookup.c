@@ -1,8 +1,8 @@
 // Reading tables, between texels and in the mean.
-#include "bake/table.h"
+#include "table/table.h"
 
-#include "bake/table_axis.h"
 #include "math/math.h"
+#include "table/table_axis.h"
 
 #include <math.h>
 

@@ -1,6 +1,6 @@
 // The texels of levels that are made for display.
-#ifndef KI_DISPLAY_LEVEL_H
-#define KI_DISPLAY_LEVEL_H
+#ifndef KI_TUNE_LEVEL_H
+#define KI_TUNE_LEVEL_H
 
 #include "base/base.h"
 

@@ -1,10 +1,10 @@
 // Where closed forms are fitted and where they are checked, and how far off they are there.
-#include "bake/fit.h"
-#include "bake/table_axis.h"
 #include "brdf/brdf.h"
 #include "brdf/energy.h"
 #include "brdf/sheen.h"
 #include "math/math.h"
+#include "table/fit.h"
+#include "table/table_axis.h"
 
 #include <math.h>
 

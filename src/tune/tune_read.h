@@ -1,6 +1,6 @@
 // Texels for bilinear reads: what a cube shows between its texels should be nearest to a target too.
-#ifndef KI_DISPLAY_READ_H
-#define KI_DISPLAY_READ_H
+#ifndef KI_TUNE_READ_H
+#define KI_TUNE_READ_H
 
 #include "base/base.h"
 

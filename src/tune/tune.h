@@ -9,8 +9,8 @@
 // mixture of GGX lobes and of the mirror whose weights, some negative, add up to 1. The environment
 // enters by its power per degree, which gives |T_r|. In two norms at once (display_mix.h) there is such
 // a system for each of their common axes.
-#ifndef KI_DISPLAY_H
-#define KI_DISPLAY_H
+#ifndef KI_TUNE_H
+#define KI_TUNE_H
 
 #include "sphere/level.h"
 

@@ -1,4 +1,4 @@
-// What the programs of this folder share: a context, reproducible numbers, directions.
+// What the programs of the bake, tune, table and course folders share: a context, reproducible numbers, directions.
 #ifndef KILN_BAKE_TEST_H
 #define KILN_BAKE_TEST_H
 

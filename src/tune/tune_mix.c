@@ -1,4 +1,4 @@
-#include "bake/display_norms.h"
+#include "tune/tune_norms.h"
 
 #include "math/math.h"
 

@@ -1,4 +1,4 @@
-#include "bake/display_level.h"
+#include "tune/tune_level.h"
 
 #include "image/image.h"
 #include "math/math.h"

@@ -1,6 +1,6 @@
-#include "bake/fit.h"
+#include "table/fit.h"
 
-#include "bake/table_axis.h"
+#include "table/table_axis.h"
 
 #include <math.h>
 

@@ -2,7 +2,7 @@
 //
 // The textbook's axes are kiln's after a quarter turn about +Y: its (x, y, z) is kiln's (z, y, -x).
 // With that, a column is the same fraction of the picture's width in both.
-#include "bake/textbook.h"
+#include "course/textbook.h"
 
 #include "brdf/brdf.h"
 #include "image/image.h"

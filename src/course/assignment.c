@@ -1,6 +1,6 @@
 // The assignment's estimators. mu = n.v and roughness stand at texel centres, (i + 0.5) / size; the
 // view is (sqrt(1 - mu^2), 0, mu), the normal +z, F = 1.
-#include "bake/assignment.h"
+#include "course/assignment.h"
 
 #include "brdf/brdf.h"
 #include "math/math.h"

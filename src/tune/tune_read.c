@@ -1,4 +1,4 @@
-#include "bake/display_read.h"
+#include "tune/tune_read.h"
 
 #include "image/image.h"
 

@@ -1,11 +1,11 @@
-#include "bake/table.h"
+#include "table/table.h"
 
-#include "bake/table_axis.h"
 #include "brdf/dielectric.h"
 #include "brdf/energy.h"
 #include "brdf/sheen.h"
 #include "brdf/surface.h"
 #include "brdf/walk.h"
+#include "table/table_axis.h"
 
 int ki_table_channels(kiln_table_kind kind)
 {

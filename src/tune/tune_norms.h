@@ -1,8 +1,8 @@
 // Two norms of what levels show: over the whole sphere, and away from suns.
-#ifndef KI_DISPLAY_NORMS_H
-#define KI_DISPLAY_NORMS_H
+#ifndef KI_TUNE_NORMS_H
+#define KI_TUNE_NORMS_H
 
-#include "bake/display_mix.h"
+#include "tune/tune_mix.h"
 
 /// The environment seen through a palette's lobes has scalar products in both norms. They have common
 /// axes: in the first norm each is 1 long, in the second the root of its ratio, and all are at right

@@ -1,8 +1,8 @@
 // The mixtures that levels for an engine are: of lobes at nodes of roughness, by least squares in two
 // norms. The first is over the whole sphere. Under a sun that is the sun's own spot and little else, so
 // the second leaves out what is near suns, where most of a surface looks: only the lobes' tails reach it.
-#ifndef KI_DISPLAY_MIX_H
-#define KI_DISPLAY_MIX_H
+#ifndef KI_TUNE_MIX_H
+#define KI_TUNE_MIX_H
 
 #include "sphere/spectrum.h"
 #include "sphere/zonal.h"

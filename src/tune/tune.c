@@ -1,12 +1,11 @@
-#include "bake/display.h"
+#include "tune/tune.h"
 
-#include "bake/display_level.h"
-#include "bake/display_mix.h"
-#include "bake/display_read.h"
-#include "bake/prefilter.h"
 #include "image/image.h"
 #include "math/math.h"
 #include "sphere/sh.h"
+#include "tune/tune_level.h"
+#include "tune/tune_mix.h"
+#include "tune/tune_read.h"
 
 #include <math.h>
 #include <string.h>

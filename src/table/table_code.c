@@ -1,9 +1,9 @@
 // The same steps as ki_table_lookup, with the def's choices made: arguments to places in [0, 1]
 // (table_axis.h), places to texels, texels interpolated. Tests hold the two together.
-#include "bake/table_code.h"
+#include "table/table_code.h"
 
-#include "bake/table.h"
-#include "bake/table_axis.h"
+#include "table/table.h"
+#include "table/table_axis.h"
 
 #include <string.h>
 
