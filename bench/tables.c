@@ -1,6 +1,7 @@
 // Tables of E beside importance sampling done as well as it can be, in one thread.
 #include "bench.h"
 
+#include <kiln/brdf.h>
 #include <math.h>
 #include <stdint.h>
 #include <string.h>

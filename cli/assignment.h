@@ -4,6 +4,7 @@
 
 #include "cli.h"
 
+#include <kiln/course.h>
 #include <stdio.h>
 
 struct assignment;

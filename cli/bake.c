@@ -2,6 +2,7 @@
 // harmonics beside it.
 #include "cli.h"
 
+#include <kiln/course.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

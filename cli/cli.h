@@ -3,7 +3,7 @@
 #ifndef KILN_CLI_H
 #define KILN_CLI_H
 
-#include <kiln/kiln.h>
+#include <kiln/brdf.h>
 
 #include <cjson/cJSON.h>
 #include <popt.h>

@@ -27,7 +27,8 @@ target_link_libraries(kiln_shared PRIVATE "$<BUILD_INTERFACE:${KILN_USES}>")
 add_library(kiln::kiln ALIAS kiln_shared)
 add_library(kiln::kiln_static ALIAS kiln_static)
 
-install(FILES include/kiln/kiln.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/kiln)
+install(FILES include/kiln/kiln.h include/kiln/brdf.h include/kiln/course.h
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/kiln)
 install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 configure_package_config_file(cmake/kiln-config.cmake.in kiln-config.cmake
                               INSTALL_DESTINATION ${KILN_CMAKE_DIR})

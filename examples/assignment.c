@@ -1,6 +1,7 @@
 // The page of the assignment: its figures as its methods give them, beside the integrals.
 #include "demo.h"
 
+#include <kiln/course.h>
 #include <math.h>
 
 enum { SIZE = 128, MC = 0, FREE, IS, SPLIT, EXACT, TABLES };

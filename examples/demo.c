@@ -3,6 +3,7 @@
 #include "demo.h"
 
 #include <errno.h>
+#include <kiln/course.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,7 @@
 // The page: style, words that never change, and pictures inside the HTML.
 #include "demo.h"
 
+#include <kiln/course.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

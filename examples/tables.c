@@ -2,6 +2,7 @@
 #include "demo.h"
 
 #include <errno.h>
+#include <kiln/course.h>
 #include <math.h>
 #include <string.h>
 #include <time.h>

@@ -1,6 +1,7 @@
 // From a panorama to what the shaders read.
 #include "parts.h"
 
+#include <kiln/course.h>
 #include <string.h>
 
 enum { SIZE = 256, SMALLEST = 8, IRRADIANCE_SIZE = 32, BANDS = 3 };

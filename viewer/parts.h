@@ -4,6 +4,8 @@
 
 #include "viewer.h"
 
+#include <kiln/brdf.h>
+
 /// Writes the sentence unless `error` is NULL.
 void view_describe(kiln_error *error, kiln_result result, const char *format, ...)
     __attribute__((format(printf, 3, 4)));

@@ -4,6 +4,8 @@
 
 #include "viewer.h"
 
+#include <kiln/brdf.h>
+
 // ----------------------------------------------------------------------------------- random numbers
 
 /// PCG-XSH-RR, O'Neill 2014: one stream a pixel, so that no thread can matter.

@@ -7,7 +7,7 @@
 #ifndef KILN_VIEWER_H
 #define KILN_VIEWER_H
 
-#include <kiln/kiln.h>
+#include <kiln/brdf.h>
 
 // ----------------------------------------------------------------------------------------- options
 

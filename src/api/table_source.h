@@ -4,6 +4,8 @@
 
 #include "base/bytes.h"
 
+#include <kiln/brdf.h>
+
 /// What names begin with: `wanted`, or made from the file's own name where that is NULL.
 typedef struct ki_source_name {
     char text[64];

@@ -4,6 +4,7 @@
 #include "image/image.h"
 #include "sphere/lobe.h"
 
+#include <kiln/course.h>
 #include <math.h>
 #include <string.h>
 

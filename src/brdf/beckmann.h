@@ -2,7 +2,7 @@
 #ifndef KI_BECKMANN_H
 #define KI_BECKMANN_H
 
-#include <kiln/kiln.h>
+#include <kiln/brdf.h>
 
 /// exp(-tan^2 theta_h / alpha^2) / (pi alpha^2 cos^4 theta_h). Walter et al. 2007, eq. 25. 0 at
 /// noh = 0; infinite where alpha is 0 and noh 1.

@@ -3,7 +3,7 @@
 #ifndef KI_BRDF_H
 #define KI_BRDF_H
 
-#include <kiln/kiln.h>
+#include <kiln/brdf.h>
 
 #include <stdint.h>
 

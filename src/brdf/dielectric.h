@@ -2,7 +2,7 @@
 #ifndef KI_DIELECTRIC_H
 #define KI_DIELECTRIC_H
 
-#include <kiln/kiln.h>
+#include <kiln/brdf.h>
 
 /// Reflected and transmitted flux for light (or a view) at n.v, by one interaction with a microfacet,
 /// to rt[0] and rt[1]; ior = n beyond / n on the side of v, below 1 from the inside of glass. Arguments

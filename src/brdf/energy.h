@@ -5,6 +5,8 @@
 
 #include "base/base.h"
 
+#include <kiln/brdf.h>
+
 /// E(n.v) with F = 1; error below 1e-11, with Beckmann's D 1e-8. roughness and nov in [0, 1]; the corners are
 /// limits: roughness to 0 at this nov, then nov to 0.
 double ki_energy(const kiln_model *model, double roughness, double nov);

@@ -2,7 +2,7 @@
 #ifndef KI_SHEEN_H
 #define KI_SHEEN_H
 
-#include <kiln/kiln.h>
+#include <kiln/brdf.h>
 
 /// (2 + 1/alpha) sin(theta_h)^(1/alpha) / (2 pi). Estevez and Kulla 2017, eq. 2.
 double ki_sheen_d(double alpha, double noh);

@@ -8,6 +8,8 @@
 
 #include "base/base.h"
 
+#include <kiln/brdf.h>
+
 enum { KI_SURFACE_NOV = 48, KI_SURFACE_ROUGHNESS = 40 };
 
 typedef struct ki_surface {

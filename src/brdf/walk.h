@@ -2,7 +2,7 @@
 #ifndef KI_WALK_H
 #define KI_WALK_H
 
-#include <kiln/kiln.h>
+#include <kiln/brdf.h>
 
 #include <stdint.h>
 

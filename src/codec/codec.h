@@ -7,6 +7,8 @@
 #include "base/bytes.h"
 #include "image/image.h"
 
+#include <kiln/brdf.h>
+
 /// What a decoder finds: a flat picture of three channels, or (KTX2, DDS) a cube with its levels, or
 /// (KTX2) a table in `image`, its slices one below the other, of 1, 2 or 4 channels that may be negative.
 typedef struct ki_decoded {

@@ -4,6 +4,8 @@
 
 #include "base/base.h"
 
+#include <kiln/brdf.h>
+
 /// Bytes of a number: 4, 2, 2 or 1. Not for KILN_TABLE_FORMAT_AUTO.
 int ki_number_bytes(kiln_table_format format);
 

@@ -5,6 +5,8 @@
 
 #include "base/base.h"
 
+#include <kiln/course.h>
+
 /// `def` is complete: nothing is left 0 for a default. `table` is allocated: size x size, one channel.
 kiln_result ki_assignment_energy(kiln_context *context, kiln_assignment_method method,
                                  const kiln_assignment_def *def, kiln_image *table,

@@ -5,6 +5,8 @@
 
 #include "base/base.h"
 
+#include <kiln/brdf.h>
+
 /// Fills the defaults in and checks every number.
 kiln_result ki_fit_complete(kiln_fit_def *def, kiln_error *error);
 /// The search, def being complete.

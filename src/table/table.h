@@ -4,6 +4,8 @@
 
 #include "base/base.h"
 
+#include <kiln/brdf.h>
+
 /// Channels of a kind's texels, 1 to 4.
 int ki_table_channels(kiln_table_kind kind);
 

@@ -3,7 +3,7 @@
 #ifndef KI_TABLE_AXIS_H
 #define KI_TABLE_AXIS_H
 
-#include <kiln/kiln.h>
+#include <kiln/brdf.h>
 
 /// Roughness below which the grazing axis is that of this roughness: its layer would have no width.
 #define KI_GRAZING_MIN 1e-6

@@ -4,6 +4,8 @@
 
 #include "base/bytes.h"
 
+#include <kiln/brdf.h>
+
 typedef enum ki_table_code {
     KI_TABLE_C,            ///< a function on an array of floats
     KI_TABLE_GLSL_TEXTURE, ///< on a sampler2D or, where there are slices, a sampler3D

@@ -3,7 +3,7 @@
 #ifndef KI_TABLE_TEXT_H
 #define KI_TABLE_TEXT_H
 
-#include <kiln/kiln.h>
+#include <kiln/brdf.h>
 
 enum { KI_TABLE_TEXT = 160 };
 

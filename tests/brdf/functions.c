@@ -2,6 +2,7 @@
 #include "brdf_test.h"
 
 #include <float.h>
+#include <kiln/brdf.h>
 
 static const kiln_g all_g[] = {KILN_G_SMITH, KILN_G_SMITH_UNCORRELATED, KILN_G_SCHLICK_K2,
                                KILN_G_SCHLICK_TEXT};

@@ -1,6 +1,8 @@
 // Tables of sheen, cloth and glass hold what the functions of the header give, where they say.
 #include "check.h"
 
+#include <kiln/brdf.h>
+
 static void check_texel(const kiln_table *table, int x, int y, int slice)
 {
     const kiln_table_def *def = &table->def;

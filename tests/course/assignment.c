@@ -4,6 +4,7 @@
 
 #include "image/pack.h"
 
+#include <kiln/course.h>
 #include <unistd.h>
 
 #include "context.h"

@@ -5,6 +5,8 @@
 
 #include "context.h"
 
+#include <kiln/course.h>
+
 // ------------------------------------------------------------------------------------------- brdf
 
 static void radical_inverse_mirrors_bits(void **state)

@@ -1,6 +1,7 @@
 // Tables for engines: what --for writes, decoded again, is the integrals.
 #include "check.h"
 
+#include <kiln/brdf.h>
 #include <png.h>
 #include <unistd.h>
 

@@ -36,5 +36,5 @@ plant viewer/a.c '"brdf/brdf.h"'
 # And what is allowed passes.
 mkdir -p "$work/tree/src/api" "$work/tree/cli"
 printf '#include "codec/codec.h"\n#include <kiln/kiln.h>\n#include <stdio.h>\n' >"$work/tree/src/api/a.c"
-printf '#include "cli.h"\n#include <kiln/kiln.h>\n#include <sys/stat.h>\n' >"$work/tree/cli/a.c"
+printf '#include "cli.h"\n#include <kiln/kiln.h>\n#include <kiln/brdf.h>\n#include <kiln/course.h>\n#include <sys/stat.h>\n' >"$work/tree/cli/a.c"
 "$root/scripts/layers.sh" "$work/tree"

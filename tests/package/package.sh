@@ -39,9 +39,31 @@ say "pkg-config, static: $("$work/static")"
 
 [ "$("$prefix/bin/kiln" --version)" = "kiln $(pkg-config --modversion kiln)" ]
 [ -s "$prefix/share/man/man1/kiln.1" ]
-# A program in C++ can include the header.
-if command -v c++ >/dev/null; then
-    printf '#include <kiln/kiln.h>\nint main() { return kiln_version() == nullptr; }\n' >"$work/a.cpp"
+
+# Each header stands alone, in C and in C++, where its functions keep their C names.
+compile() {
+    language=$1
+    header=$2
+    call=$3
+    printf '#include <kiln/%s.h>\n#include <kiln/%s.h>\nint main(void) { return (%s); }\n' \
+        "$header" "$header" "$call" >"$work/alone.$language"
+    case $language in
+        c) set -- cc -std=c17 ;;
+        *) set -- c++ -std=c++17 ;;
+    esac
     # shellcheck disable=SC2046
-    c++ -std=c++17 -Wall -Wextra -Wpedantic -Werror -fsyntax-only $(pkg-config --cflags kiln) "$work/a.cpp"
-fi
+    "$@" -Wall -Wextra -Wpedantic -Werror $(pkg-config --cflags kiln) -c "$work/alone.$language" \
+        -o "$work/alone.o"
+    nm "$work/alone.o" | grep -q " U ${call%%(*}\$" ||
+        { say "kiln/$header.h in .$language: ${call%%(*} is not a C function"; exit 1; }
+}
+headers=$(cd "$prefix/include/kiln" && echo *.h)
+[ "$headers" = "brdf.h course.h kiln.h" ] || { say "installed headers: $headers"; exit 1; }
+languages=c
+if command -v c++ >/dev/null; then languages="c cpp"; fi
+for language in $languages; do
+    compile "$language" kiln 'kiln_version() == 0'
+    compile "$language" brdf 'kiln_turquin(1, 1) < 0'
+    compile "$language" course 'kiln_textbook_brdf(0, 2, 1, 0, 0) == KILN_OK'
+done
+say "each header alone: $languages"

@@ -1,6 +1,6 @@
 // Writes KTX2 cubes and tables of every format, with and without zstd, for check.mjs and libktx.mjs, and
 // for oiiotool a DDS of random blocks, with what kiln reads of it.
-#include <kiln/kiln.h>
+#include <kiln/brdf.h>
 
 #include <stdio.h>
 

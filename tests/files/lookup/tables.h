@@ -3,7 +3,7 @@
 #ifndef KILN_LOOKUP_TABLES_H
 #define KILN_LOOKUP_TABLES_H
 
-#include <kiln/kiln.h>
+#include <kiln/brdf.h>
 
 enum { LOOKUP_TABLES = 72, LOOKUP_KINDS = KILN_TABLE_E_WALK + 1 };
 
