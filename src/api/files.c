@@ -1,12 +1,11 @@
 // Loading: what a file or a set of files holds, laid out on the sphere.
 #include "base/file.h"
+#include "base/os.h"
 #include "codec/codec.h"
 
-#include <dirent.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 // ---------------------------------------------------------------------------------------- layouts
 
@@ -226,24 +225,31 @@ static bool goes_before(const char *a, const char *b)
     return strcmp(a, b) < 0;
 }
 
+// The two names of a folder that go before all others.
+typedef struct face_search {
+    char best[256], other[256];
+} face_search;
+
+static void consider(void *user, const char *name)
+{
+    face_search *found = user;
+    if (strlen(name) >= sizeof found->best || !face_in(name))
+        return;
+    if (!found->best[0] || goes_before(name, found->best)) {
+        memcpy(found->other, found->best, sizeof found->other);
+        snprintf(found->best, sizeof found->best, "%s", name);
+    } else if (!found->other[0] || goes_before(name, found->other)) {
+        snprintf(found->other, sizeof found->other, "%s", name);
+    }
+}
+
 static kiln_result search_folder(kiln_context *context, const char *path, face_paths *paths,
                                  kiln_error *error)
 {
-    DIR *folder = opendir(path);
-    if (!folder)
+    face_search found = {"", ""};
+    if (!ki_os_list_folder(path, consider, &found))
         return ki_fail(error, KILN_ERROR_IO, "%s: the folder cannot be opened", path);
-    char best[256] = "", other[256] = "";
-    for (struct dirent *entry; (entry = readdir(folder));) {
-        if (strlen(entry->d_name) >= sizeof best || !face_in(entry->d_name))
-            continue;
-        if (!best[0] || goes_before(entry->d_name, best)) {
-            memcpy(other, best, sizeof best);
-            snprintf(best, sizeof best, "%s", entry->d_name);
-        } else if (!other[0] || goes_before(entry->d_name, other)) {
-            snprintf(other, sizeof other, "%s", entry->d_name);
-        }
-    }
-    closedir(folder);
+    const char *best = found.best, *other = found.other;
     if (!best[0])
         return ki_fail(error, KILN_ERROR_IO,
                        "%s: holds no face named px.exr, NAME_px.exr or the like (exr, hdr, png)",
@@ -253,7 +259,7 @@ static kiln_result search_folder(kiln_context *context, const char *path, face_p
                        "%s: holds both %.64s and %.64s; name the faces by a pattern with %%s", path,
                        best, other);
     size_t length = strlen(path);
-    bool slash = length && path[length - 1] == '/';
+    bool slash = length && ki_os_is_separator(path[length - 1]);
     size_t room = length + strlen(best) + 2;
     char *full = ki_alloc(context, room, 1);
     if (!full)
@@ -316,8 +322,7 @@ kiln_result kiln_map_load(kiln_context *context, const char *path, const kiln_lo
 
     face_paths paths = {0};
     const char *braces = strstr(path, "{face}"), *percent = strstr(path, "%s");
-    struct stat status;
-    bool folder = stat(path, &status) == 0 && S_ISDIR(status.st_mode);
+    bool folder = ki_os_kind_of(path) == KI_OS_FOLDER;
     if (braces || percent || folder) {
         result = folder ? search_folder(context, path, &paths, error)
                         : split_path(context, path, braces ? braces : percent, braces ? 6 : 2,

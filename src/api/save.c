@@ -1,5 +1,6 @@
 // Saving: a map as one file or a set of them, pictures and spherical harmonics.
 #include "base/file.h"
+#include "base/os.h"
 #include "codec/codec.h"
 #include "codec/rgbx.h"
 #include "codec/texel.h"
@@ -8,8 +9,6 @@
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 const char *const *kiln_format_names(void)
 {
@@ -179,7 +178,7 @@ static kiln_result save_pictures(kiln_context *context, const kiln_map *map, con
     kiln_result result = make_template(path, map, &template, error);
     bool made = false;
     if (result == KILN_OK && ki_ends_with(path, "/")) {
-        made = mkdir(path, 0777) == 0;
+        made = ki_os_make_folder(path);
         if (!made && errno != EEXIST)
             result = ki_fail(error, KILN_ERROR_IO, "%s: the folder cannot be made: %s", path,
                              strerror(errno));
@@ -187,7 +186,7 @@ static kiln_result save_pictures(kiln_context *context, const kiln_map *map, con
     if (result == KILN_OK && template.bytes)
         result = write_set(context, map, (const char *)template.bytes, def, file_count, error);
     if (result != KILN_OK && made)
-        rmdir(path);
+        ki_os_remove_folder(path);
     ki_writer_free(&template);
     return result;
 }

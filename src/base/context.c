@@ -4,7 +4,6 @@
 
 #include <stdalign.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define KI_STR_(x) #x
@@ -40,14 +39,14 @@ bool ki_mul_size(size_t a, size_t b, size_t *product)
 static void *system_allocate(void *user, size_t size)
 {
     (void)user;
-    return aligned_alloc(64, (size + 63) & ~(size_t)63);
+    return ki_os_allocate(size);
 }
 
 static void system_release(void *user, void *memory, size_t size)
 {
     (void)user;
     (void)size;
-    free(memory);
+    ki_os_release(memory);
 }
 
 void *ki_alloc_raw(kiln_context *context, size_t count, size_t size)
@@ -127,7 +126,7 @@ kiln_result kiln_context_create(const kiln_context_def *def, kiln_context **cont
     if (d.cpu == KILN_CPU_BEST || d.cpu > best)
         d.cpu = best;
     if (d.thread_count == 0)
-        d.thread_count = ki_core_count();
+        d.thread_count = ki_min(ki_os_core_count(), KI_MAX_THREADS);
 
     kiln_context *c = d.allocate(d.allocator_user, sizeof *c);
     if (!c)

@@ -3,17 +3,18 @@
 #define KI_CONTEXT_H
 
 #include "base/base.h"
+#include "base/os.h"
 
-#include <pthread.h>
 #include <stdatomic.h>
 
 enum { KI_MAX_THREADS = 256 };
 
 typedef struct ki_pool {
-    pthread_mutex_t mutex;
-    pthread_cond_t work, done;
-    pthread_t thread[KI_MAX_THREADS];
-    int thread_count; // helpers; the caller works too
+    ki_os_mutex mutex;
+    ki_os_condition work, done;
+    ki_os_thread thread[KI_MAX_THREADS];
+    ki_os_work helper; // what each thread runs
+    int thread_count;  // helpers; the caller works too
     void (*task)(void *data, int index);
     void *data;
     int count;
@@ -32,7 +33,6 @@ struct kiln_context {
 
 bool ki_threads_start(kiln_context *context);
 void ki_threads_stop(kiln_context *context);
-int ki_core_count(void);
 enum kiln_cpu ki_cpu_best(void);
 const char *ki_cpu_name(enum kiln_cpu cpu);
 

@@ -1,11 +1,9 @@
 #include "base/file.h"
+#include "base/os.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 bool ki_ends_with(const char *path, const char *ending)
 {
@@ -19,20 +17,18 @@ kiln_result ki_file_read(kiln_context *context, const char *path, uint8_t **byte
     *bytes = NULL;
     *size = 0;
     bool from_stdin = !strcmp(path, "-");
-    int fd = from_stdin ? STDIN_FILENO : open(path, O_RDONLY | O_CLOEXEC);
+    if (!from_stdin && ki_os_kind_of(path) == KI_OS_FOLDER)
+        return ki_fail(error, KILN_ERROR_IO, "%s: is a folder", path);
+    int fd = from_stdin ? ki_os_standard_input() : ki_os_open(path);
     if (fd < 0)
         return ki_fail(error, KILN_ERROR_IO, "%s: cannot be opened: %s", path, strerror(errno));
 
     kiln_result result = KILN_OK;
     uint8_t *buffer = NULL;
     size_t filled = 0, capacity = 0;
-    struct stat status;
-    if (fstat(fd, &status) == 0 && S_ISDIR(status.st_mode)) {
-        result = ki_fail(error, KILN_ERROR_IO, "%s: is a folder", path);
-        goto done;
-    }
+    uint64_t expected = ki_os_size(fd);
     // One byte more than the file holds, so that a regular file ends without growing the buffer.
-    capacity = S_ISREG(status.st_mode) && status.st_size > 0 ? (size_t)status.st_size + 1 : 65536;
+    capacity = expected ? (size_t)(expected < SIZE_MAX ? expected : SIZE_MAX - 1) + 1 : 65536;
     buffer = ki_alloc_raw(context, capacity, 1);
     if (!buffer) {
         result = ki_fail_memory(context, error, path, capacity);
@@ -50,7 +46,7 @@ kiln_result ki_file_read(kiln_context *context, const char *path, uint8_t **byte
             buffer = larger;
             capacity *= 2;
         }
-        ssize_t got = read(fd, buffer + filled, capacity - filled);
+        ptrdiff_t got = ki_os_read(fd, buffer + filled, capacity - filled);
         if (got < 0 && errno == EINTR) {
             if (ki_progress(context, "reading", 0))
                 continue;
@@ -72,7 +68,7 @@ kiln_result ki_file_read(kiln_context *context, const char *path, uint8_t **byte
 done:
     ki_free(buffer);
     if (!from_stdin)
-        close(fd);
+        ki_os_close(fd);
     return result;
 }
 
@@ -99,14 +95,6 @@ ki_file_set *ki_file_set_begin(kiln_context *context)
 // Synced on the way, so that the last sync, which nothing interrupts, is short.
 enum { WRITE_STEP = 4 << 20, SYNC_STEP = 64 << 20 };
 
-static bool sync_file(int fd)
-{
-    while (fsync(fd) != 0)
-        if (errno != EINTR)
-            return false;
-    return true;
-}
-
 // False with errno set; ECANCELED where the progress callback said so.
 static bool write_all(kiln_context *context, int fd, const uint8_t *bytes, size_t size)
 {
@@ -116,24 +104,24 @@ static bool write_all(kiln_context *context, int fd, const uint8_t *bytes, size_
             return false;
         }
         size_t left = size - done;
-        ssize_t put = write(fd, bytes + done, left < WRITE_STEP ? left : WRITE_STEP);
+        ptrdiff_t put = ki_os_write(fd, bytes + done, left < WRITE_STEP ? left : WRITE_STEP);
         if (put < 0 && errno == EINTR)
             continue;
         if (put <= 0)
             return false;
         done += (size_t)put;
-        if (done / SYNC_STEP != (done - (size_t)put) / SYNC_STEP && !sync_file(fd))
+        if (done / SYNC_STEP != (done - (size_t)put) / SYNC_STEP && !ki_os_sync(fd))
             return false;
     }
-    return sync_file(fd);
+    return ki_os_sync(fd);
 }
 
-// Creates PATH.kiln-PID-N.tmp, a name nobody has, with the permissions of an ordinary new file.
+// Creates PATH.kiln-PID-N.tmp, a name nobody has.
 static int create_temporary(char *name, size_t room, const char *path)
 {
     for (int n = 0; n < 1000; n++) {
-        snprintf(name, room, "%s.kiln-%ld-%d.tmp", path, (long)getpid(), n);
-        int fd = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        snprintf(name, room, "%s.kiln-%ld-%d.tmp", path, ki_os_process(), n);
+        int fd = ki_os_create(name);
         if (fd >= 0 || errno != EEXIST)
             return fd;
     }
@@ -151,8 +139,8 @@ kiln_result ki_file_set_add(ki_file_set *set, const char *path, const void *byte
     entry->temporary = entry->path + length + 1;
     memcpy(entry->path, path, length + 1);
 
-    struct stat status;
-    if (stat(path, &status) == 0 && !S_ISREG(status.st_mode)) {
+    ki_os_kind kind = ki_os_kind_of(path);
+    if (kind != KI_OS_NOTHING && kind != KI_OS_FILE) {
         ki_free(entry);
         return ki_fail(error, KILN_ERROR_IO, "%s: exists and is not a file", path);
     }
@@ -163,9 +151,9 @@ kiln_result ki_file_set_add(ki_file_set *set, const char *path, const void *byte
     }
     bool good = write_all(set->context, fd, bytes, size);
     int reason = errno;
-    good = close(fd) == 0 && good;
+    good = ki_os_close(fd) && good;
     if (!good) {
-        unlink(entry->temporary);
+        ki_os_remove(entry->temporary);
         ki_free(entry);
         if (reason == ECANCELED)
             return ki_fail_cancelled(error, "writing");
@@ -193,11 +181,11 @@ kiln_result ki_file_set_commit(ki_file_set *set, kiln_error *error)
     if (!ki_progress(set->context, "writing", 1))
         result = ki_fail_cancelled(error, "writing");
     for (set_entry *entry = set->first; entry; entry = entry->next) {
-        if (result == KILN_OK && rename(entry->temporary, entry->path) != 0)
+        if (result == KILN_OK && !ki_os_replace(entry->temporary, entry->path))
             result = ki_fail(error, KILN_ERROR_IO, "%s: cannot be put in place: %s", entry->path,
                              strerror(errno));
         if (result != KILN_OK)
-            unlink(entry->temporary);
+            ki_os_remove(entry->temporary);
     }
     free_entries(set);
     return result;
@@ -208,7 +196,7 @@ void ki_file_set_abandon(ki_file_set *set)
     if (!set)
         return;
     for (set_entry *entry = set->first; entry; entry = entry->next)
-        unlink(entry->temporary);
+        ki_os_remove(entry->temporary);
     free_entries(set);
 }
 

@@ -3,15 +3,6 @@
 #include "base/base.h"
 #include "base/context.h"
 
-#include <time.h>
-#include <unistd.h>
-
-int ki_core_count(void)
-{
-    long count = sysconf(_SC_NPROCESSORS_ONLN);
-    return count < 1 ? 1 : count > KI_MAX_THREADS ? KI_MAX_THREADS : (int)count;
-}
-
 static void take_all(ki_pool *pool)
 {
     for (;;) {
@@ -22,35 +13,35 @@ static void take_all(ki_pool *pool)
     }
 }
 
-static void *thread_main(void *data)
+static void thread_main(void *data)
 {
     ki_pool *pool = data;
     unsigned seen = 0;
-    pthread_mutex_lock(&pool->mutex);
+    ki_os_lock(&pool->mutex);
     for (;;) {
         while (pool->round == seen && !pool->stop)
-            pthread_cond_wait(&pool->work, &pool->mutex);
+            ki_os_wait(&pool->work, &pool->mutex);
         if (pool->stop)
             break;
         seen = pool->round;
-        pthread_mutex_unlock(&pool->mutex);
+        ki_os_unlock(&pool->mutex);
         take_all(pool);
-        pthread_mutex_lock(&pool->mutex);
+        ki_os_lock(&pool->mutex);
         if (--pool->running == 0)
-            pthread_cond_signal(&pool->done);
+            ki_os_wake_one(&pool->done);
     }
-    pthread_mutex_unlock(&pool->mutex);
-    return NULL;
+    ki_os_unlock(&pool->mutex);
 }
 
 bool ki_threads_start(kiln_context *context)
 {
     ki_pool *pool = &context->pool;
-    pthread_mutex_init(&pool->mutex, NULL);
-    pthread_cond_init(&pool->work, NULL);
-    pthread_cond_init(&pool->done, NULL);
+    ki_os_mutex_begin(&pool->mutex);
+    ki_os_condition_begin(&pool->work);
+    ki_os_condition_begin(&pool->done);
+    pool->helper = (ki_os_work){thread_main, pool};
     for (int i = 1; i < context->def.thread_count; i++) {
-        if (pthread_create(&pool->thread[pool->thread_count], NULL, thread_main, pool)) {
+        if (!ki_os_thread_start(&pool->thread[pool->thread_count], &pool->helper)) {
             ki_threads_stop(context);
             return false;
         }
@@ -62,15 +53,15 @@ bool ki_threads_start(kiln_context *context)
 void ki_threads_stop(kiln_context *context)
 {
     ki_pool *pool = &context->pool;
-    pthread_mutex_lock(&pool->mutex);
+    ki_os_lock(&pool->mutex);
     pool->stop = true;
-    pthread_cond_broadcast(&pool->work);
-    pthread_mutex_unlock(&pool->mutex);
+    ki_os_wake_all(&pool->work);
+    ki_os_unlock(&pool->mutex);
     for (int i = 0; i < pool->thread_count; i++)
-        pthread_join(pool->thread[i], NULL);
-    pthread_cond_destroy(&pool->done);
-    pthread_cond_destroy(&pool->work);
-    pthread_mutex_destroy(&pool->mutex);
+        ki_os_thread_join(&pool->thread[i]);
+    ki_os_condition_end(&pool->done);
+    ki_os_condition_end(&pool->work);
+    ki_os_mutex_end(&pool->mutex);
 }
 
 void ki_parallel_for(kiln_context *context, int count, ki_task *task, void *data)
@@ -85,20 +76,20 @@ void ki_parallel_for(kiln_context *context, int count, ki_task *task, void *data
             task(data, i);
         return;
     }
-    pthread_mutex_lock(&pool->mutex);
+    ki_os_lock(&pool->mutex);
     pool->task = task;
     pool->data = data;
     pool->count = count;
     atomic_store(&pool->next, 0);
     pool->running = pool->thread_count;
     pool->round++;
-    pthread_cond_broadcast(&pool->work);
-    pthread_mutex_unlock(&pool->mutex);
+    ki_os_wake_all(&pool->work);
+    ki_os_unlock(&pool->mutex);
     take_all(pool);
-    pthread_mutex_lock(&pool->mutex);
+    ki_os_lock(&pool->mutex);
     while (pool->running)
-        pthread_cond_wait(&pool->done, &pool->mutex);
-    pthread_mutex_unlock(&pool->mutex);
+        ki_os_wait(&pool->done, &pool->mutex);
+    ki_os_unlock(&pool->mutex);
 }
 
 typedef struct workers {
@@ -131,7 +122,7 @@ typedef struct steps {
     ki_task *task;
     void *data;
     const ki_stage *stage;
-    pthread_t caller;
+    uintptr_t caller;
     int count, told;
     double asked; // seconds
     atomic_int done;
@@ -143,13 +134,6 @@ enum { REPORTS = 64 };
 // Longest silence but for one task, so that work of hours stops as soon as short work.
 static const double silence = 0.05;
 
-static double seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 static void step(void *data, int index)
 {
     steps *s = data;
@@ -157,11 +141,11 @@ static void step(void *data, int index)
         return;
     s->task(s->data, index);
     double part = (double)(atomic_fetch_add(&s->done, 1) + 1) / s->count;
-    if (!pthread_equal(pthread_self(), s->caller) ||
-        (part * REPORTS < s->told + 1 && seconds() < s->asked + silence))
+    if (ki_os_this_thread() != s->caller ||
+        (part * REPORTS < s->told + 1 && ki_os_seconds() < s->asked + silence))
         return;
     s->told = (int)(part * REPORTS);
-    s->asked = seconds();
+    s->asked = ki_os_seconds();
     const ki_stage *at = s->stage;
     bool go_on = at ? ki_progress(s->context, at->name, at->from + part * (at->to - at->from))
                     : ki_go_on(s->context);
@@ -180,9 +164,9 @@ bool ki_parallel_steps(kiln_context *context, const ki_stage *stage, int count, 
                .task = task,
                .data = data,
                .stage = stage,
-               .caller = pthread_self(),
+               .caller = ki_os_this_thread(),
                .count = count,
-               .asked = seconds()};
+               .asked = ki_os_seconds()};
     ki_parallel_for(context, count, step, &s);
     return !atomic_load(&s.stopped);
 }

@@ -1,0 +1,215 @@
+// The operating system by POSIX.1-2008: Linux, macOS, the BSDs, WebAssembly by emscripten.
+#define _POSIX_C_SOURCE 200809L
+#define _FILE_OFFSET_BITS 64
+#if defined(__APPLE__)
+#define _DARWIN_C_SOURCE // _SC_NPROCESSORS_ONLN
+#endif
+#include "base/os.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+// ------------------------------------------------------------------------------------------- files
+
+ki_os_kind ki_os_kind_of(const char *path)
+{
+    struct stat status;
+    if (stat(path, &status) != 0)
+        return KI_OS_NOTHING;
+    return S_ISREG(status.st_mode)   ? KI_OS_FILE
+           : S_ISDIR(status.st_mode) ? KI_OS_FOLDER
+                                     : KI_OS_OTHER;
+}
+
+uint64_t ki_os_size(int file)
+{
+    struct stat status;
+    bool known = fstat(file, &status) == 0 && S_ISREG(status.st_mode) && status.st_size > 0;
+    return known ? (uint64_t)status.st_size : 0;
+}
+
+bool ki_os_is_separator(char c)
+{
+    return c == '/';
+}
+
+int ki_os_open(const char *path)
+{
+    return open(path, O_RDONLY | O_CLOEXEC);
+}
+
+int ki_os_standard_input(void)
+{
+    return STDIN_FILENO;
+}
+
+// With the permissions of an ordinary new file.
+int ki_os_create(const char *path)
+{
+    return open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+}
+
+ptrdiff_t ki_os_read(int file, void *bytes, size_t size)
+{
+    return read(file, bytes, size);
+}
+
+ptrdiff_t ki_os_write(int file, const void *bytes, size_t size)
+{
+    return write(file, bytes, size);
+}
+
+bool ki_os_sync(int file)
+{
+    while (fsync(file) != 0)
+        if (errno != EINTR)
+            return false;
+    return true;
+}
+
+bool ki_os_close(int file)
+{
+    return close(file) == 0;
+}
+
+bool ki_os_replace(const char *from, const char *to)
+{
+    return rename(from, to) == 0;
+}
+
+bool ki_os_remove(const char *path)
+{
+    return unlink(path) == 0;
+}
+
+bool ki_os_make_folder(const char *path)
+{
+    return mkdir(path, 0777) == 0;
+}
+
+bool ki_os_remove_folder(const char *path)
+{
+    return rmdir(path) == 0;
+}
+
+bool ki_os_list_folder(const char *path, void (*name)(void *user, const char *name), void *user)
+{
+    DIR *folder = opendir(path);
+    if (!folder)
+        return false;
+    for (struct dirent *entry; (entry = readdir(folder));)
+        name(user, entry->d_name);
+    closedir(folder);
+    return true;
+}
+
+long ki_os_process(void)
+{
+    return (long)getpid();
+}
+
+// ------------------------------------------------------------------------------------------ memory
+
+void *ki_os_allocate(size_t size)
+{
+    return aligned_alloc(64, (size + 63) & ~(size_t)63);
+}
+
+void ki_os_release(void *memory)
+{
+    free(memory);
+}
+
+// ----------------------------------------------------------------------------------------- threads
+
+static void *run(void *data)
+{
+    const ki_os_work *work = data;
+    work->run(work->data);
+    return NULL;
+}
+
+bool ki_os_thread_start(ki_os_thread *thread, ki_os_work *work)
+{
+    pthread_attr_t attributes;
+    if (pthread_attr_init(&attributes) != 0)
+        return false;
+    bool good = pthread_attr_setstacksize(&attributes, KI_OS_STACK) == 0 &&
+                pthread_create(thread, &attributes, run, work) == 0;
+    pthread_attr_destroy(&attributes);
+    return good;
+}
+
+void ki_os_thread_join(ki_os_thread *thread)
+{
+    pthread_join(*thread, NULL);
+}
+
+uintptr_t ki_os_this_thread(void)
+{
+    return (uintptr_t)pthread_self(); // an integer with some C libraries, a pointer with others
+}
+
+void ki_os_mutex_begin(ki_os_mutex *mutex)
+{
+    pthread_mutex_init(mutex, NULL);
+}
+
+void ki_os_mutex_end(ki_os_mutex *mutex)
+{
+    pthread_mutex_destroy(mutex);
+}
+
+void ki_os_lock(ki_os_mutex *mutex)
+{
+    pthread_mutex_lock(mutex);
+}
+
+void ki_os_unlock(ki_os_mutex *mutex)
+{
+    pthread_mutex_unlock(mutex);
+}
+
+void ki_os_condition_begin(ki_os_condition *condition)
+{
+    pthread_cond_init(condition, NULL);
+}
+
+void ki_os_condition_end(ki_os_condition *condition)
+{
+    pthread_cond_destroy(condition);
+}
+
+void ki_os_wait(ki_os_condition *condition, ki_os_mutex *mutex)
+{
+    pthread_cond_wait(condition, mutex);
+}
+
+void ki_os_wake_one(ki_os_condition *condition)
+{
+    pthread_cond_signal(condition);
+}
+
+void ki_os_wake_all(ki_os_condition *condition)
+{
+    pthread_cond_broadcast(condition);
+}
+
+int ki_os_core_count(void)
+{
+    long count = sysconf(_SC_NPROCESSORS_ONLN);
+    return count < 1 ? 1 : count > 1 << 20 ? 1 << 20 : (int)count;
+}
+
+double ki_os_seconds(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}

@@ -1,0 +1,287 @@
+// The operating system by Windows 7 and later. The wide functions are called, since the others read
+// paths in the code page of the user; what they see is UTF-16 made from kiln's UTF-8. Paths may have
+// as many characters as Windows allows without a prefix (260), forward slashes included.
+#define WIN32_LEAN_AND_MEAN
+#define _WIN32_WINNT 0x0601
+#include "base/os.h"
+
+#include <windows.h>
+
+#include <errno.h>
+#include <fcntl.h>
+#include <io.h>
+#include <malloc.h>
+#include <process.h>
+#include <stdio.h>
+#include <sys/stat.h>
+
+// ------------------------------------------------------------------------------------------- paths
+
+enum { ROOM = 4096 }; // UTF-16 units of a path, its zero included
+
+// False with errno set where a path is no UTF-8 or has no room.
+static bool widen(const char *path, wchar_t wide[ROOM])
+{
+    if (MultiByteToWideChar(CP_UTF8, MB_ERR_INVALID_CHARS, path, -1, wide, ROOM))
+        return true;
+    errno = GetLastError() == ERROR_INSUFFICIENT_BUFFER ? ENAMETOOLONG : EILSEQ;
+    return false;
+}
+
+// Sets errno from Windows' last error; false.
+static bool failed(void)
+{
+    switch (GetLastError()) {
+    case ERROR_FILE_NOT_FOUND:
+    case ERROR_PATH_NOT_FOUND:
+        errno = ENOENT;
+        break;
+    case ERROR_ACCESS_DENIED:
+    case ERROR_SHARING_VIOLATION: // another process has it open
+        errno = EACCES;
+        break;
+    case ERROR_ALREADY_EXISTS:
+    case ERROR_FILE_EXISTS:
+        errno = EEXIST;
+        break;
+    case ERROR_DISK_FULL:
+        errno = ENOSPC;
+        break;
+    case ERROR_DIR_NOT_EMPTY:
+        errno = ENOTEMPTY;
+        break;
+    default:
+        errno = EIO;
+        break;
+    }
+    return false;
+}
+
+// ------------------------------------------------------------------------------------------- files
+
+ki_os_kind ki_os_kind_of(const char *path)
+{
+    wchar_t wide[ROOM];
+    if (!widen(path, wide))
+        return KI_OS_NOTHING;
+    DWORD attributes = GetFileAttributesW(wide);
+    if (attributes == INVALID_FILE_ATTRIBUTES)
+        return KI_OS_NOTHING;
+    return attributes & FILE_ATTRIBUTE_DIRECTORY ? KI_OS_FOLDER
+           : attributes & FILE_ATTRIBUTE_DEVICE  ? KI_OS_OTHER
+                                                 : KI_OS_FILE;
+}
+
+uint64_t ki_os_size(int file)
+{
+    struct _stat64 status;
+    bool known = _fstat64(file, &status) == 0 && (status.st_mode & _S_IFMT) == _S_IFREG &&
+                 status.st_size > 0;
+    return known ? (uint64_t)status.st_size : 0;
+}
+
+bool ki_os_is_separator(char c)
+{
+    return c == '/' || c == '\\';
+}
+
+int ki_os_open(const char *path)
+{
+    wchar_t wide[ROOM];
+    return widen(path, wide) ? _wopen(wide, _O_RDONLY | _O_BINARY | _O_NOINHERIT) : -1;
+}
+
+int ki_os_standard_input(void)
+{
+    _setmode(0, _O_BINARY);
+    return 0;
+}
+
+int ki_os_create(const char *path)
+{
+    wchar_t wide[ROOM];
+    return widen(path, wide)
+               ? _wopen(wide, _O_WRONLY | _O_CREAT | _O_EXCL | _O_BINARY | _O_NOINHERIT,
+                        _S_IREAD | _S_IWRITE)
+               : -1;
+}
+
+// Windows takes no more than an int's bytes at a time.
+static unsigned at_once(size_t size)
+{
+    return size < 1u << 30 ? (unsigned)size : 1u << 30;
+}
+
+ptrdiff_t ki_os_read(int file, void *bytes, size_t size)
+{
+    return _read(file, bytes, at_once(size));
+}
+
+ptrdiff_t ki_os_write(int file, const void *bytes, size_t size)
+{
+    return _write(file, bytes, at_once(size));
+}
+
+bool ki_os_sync(int file)
+{
+    return _commit(file) == 0;
+}
+
+bool ki_os_close(int file)
+{
+    return _close(file) == 0;
+}
+
+bool ki_os_replace(const char *from, const char *to)
+{
+    wchar_t wide_from[ROOM], wide_to[ROOM];
+    if (!widen(from, wide_from) || !widen(to, wide_to))
+        return false;
+    return MoveFileExW(wide_from, wide_to, MOVEFILE_REPLACE_EXISTING | MOVEFILE_WRITE_THROUGH) ||
+           failed();
+}
+
+bool ki_os_remove(const char *path)
+{
+    wchar_t wide[ROOM];
+    return widen(path, wide) && (DeleteFileW(wide) || failed());
+}
+
+bool ki_os_make_folder(const char *path)
+{
+    wchar_t wide[ROOM];
+    return widen(path, wide) && (CreateDirectoryW(wide, NULL) || failed());
+}
+
+bool ki_os_remove_folder(const char *path)
+{
+    wchar_t wide[ROOM];
+    return widen(path, wide) && (RemoveDirectoryW(wide) || failed());
+}
+
+bool ki_os_list_folder(const char *path, void (*name)(void *user, const char *name), void *user)
+{
+    char pattern[ROOM];
+    wchar_t wide[ROOM];
+    WIN32_FIND_DATAW entry;
+    if (snprintf(pattern, sizeof pattern, "%s/*", path) >= ROOM || !widen(pattern, wide))
+        return false;
+    HANDLE search = FindFirstFileW(wide, &entry);
+    if (search == INVALID_HANDLE_VALUE)
+        return failed();
+    do {
+        char utf8[4 * MAX_PATH];
+        if (WideCharToMultiByte(CP_UTF8, 0, entry.cFileName, -1, utf8, sizeof utf8, NULL, NULL))
+            name(user, utf8);
+    } while (FindNextFileW(search, &entry));
+    FindClose(search);
+    return true;
+}
+
+long ki_os_process(void)
+{
+    return _getpid();
+}
+
+// ------------------------------------------------------------------------------------------ memory
+
+void *ki_os_allocate(size_t size)
+{
+    return _aligned_malloc(size, 64);
+}
+
+void ki_os_release(void *memory)
+{
+    _aligned_free(memory);
+}
+
+// ----------------------------------------------------------------------------------------- threads
+
+// A lock is one pointer, initially zero; the header says so without <windows.h>.
+_Static_assert(sizeof(ki_os_mutex) == sizeof(SRWLOCK), "ki_os_mutex holds an SRWLOCK");
+_Static_assert(sizeof(ki_os_condition) == sizeof(CONDITION_VARIABLE),
+               "ki_os_condition holds a CONDITION_VARIABLE");
+
+static unsigned __stdcall run(void *data)
+{
+    const ki_os_work *work = data;
+    work->run(work->data);
+    return 0;
+}
+
+bool ki_os_thread_start(ki_os_thread *thread, ki_os_work *work)
+{
+    *thread = (HANDLE)_beginthreadex(NULL, KI_OS_STACK, run, work,
+                                     STACK_SIZE_PARAM_IS_A_RESERVATION, NULL);
+    return *thread != NULL;
+}
+
+void ki_os_thread_join(ki_os_thread *thread)
+{
+    WaitForSingleObject(*thread, INFINITE);
+    CloseHandle(*thread);
+}
+
+uintptr_t ki_os_this_thread(void)
+{
+    return GetCurrentThreadId();
+}
+
+void ki_os_mutex_begin(ki_os_mutex *mutex)
+{
+    InitializeSRWLock((SRWLOCK *)mutex);
+}
+
+void ki_os_mutex_end(ki_os_mutex *mutex)
+{
+    (void)mutex;
+}
+
+void ki_os_lock(ki_os_mutex *mutex)
+{
+    AcquireSRWLockExclusive((SRWLOCK *)mutex);
+}
+
+void ki_os_unlock(ki_os_mutex *mutex)
+{
+    ReleaseSRWLockExclusive((SRWLOCK *)mutex);
+}
+
+void ki_os_condition_begin(ki_os_condition *condition)
+{
+    InitializeConditionVariable((CONDITION_VARIABLE *)condition);
+}
+
+void ki_os_condition_end(ki_os_condition *condition)
+{
+    (void)condition;
+}
+
+void ki_os_wait(ki_os_condition *condition, ki_os_mutex *mutex)
+{
+    SleepConditionVariableSRW((CONDITION_VARIABLE *)condition, (SRWLOCK *)mutex, INFINITE, 0);
+}
+
+void ki_os_wake_one(ki_os_condition *condition)
+{
+    WakeConditionVariable((CONDITION_VARIABLE *)condition);
+}
+
+void ki_os_wake_all(ki_os_condition *condition)
+{
+    WakeAllConditionVariable((CONDITION_VARIABLE *)condition);
+}
+
+int ki_os_core_count(void)
+{
+    DWORD count = GetActiveProcessorCount(ALL_PROCESSOR_GROUPS);
+    return count < 1 ? 1 : count > 1 << 20 ? 1 << 20 : (int)count;
+}
+
+double ki_os_seconds(void)
+{
+    LARGE_INTEGER now, frequency;
+    QueryPerformanceCounter(&now);
+    QueryPerformanceFrequency(&frequency);
+    return (double)now.QuadPart / (double)frequency.QuadPart;
+}
