@@ -1,12 +1,11 @@
 // The assignment's pictures: computed all, then written all.
 #include "assignment.h"
+#include "os.h"
 
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 const char *const assignment_names[ASSIGNMENT_TABLES] = {
     [ASSIGNMENT_MC] = "Emu_MC",
@@ -46,16 +45,15 @@ bool assignment_is_exact(int table)
 
 int assignment_check_folder(const char *folder)
 {
-    struct stat status;
     if (!folder[0])
         return cli_wrong(&cli_tables, "--output is empty, it must name a folder");
-    if (stat(folder, &status) == 0) {
-        if (!S_ISDIR(status.st_mode))
-            return cli_fail("%s: is a file, the assignment's pictures need a folder", folder);
-        return access(folder, W_OK | X_OK) ? cli_fail("%s: cannot be written to", folder) : CLI_GO;
-    }
-    if (errno != ENOENT)
+    os_kind kind = os_kind_of(folder);
+    if (kind == OS_UNREACHABLE)
         return cli_fail("%s: %s", folder, strerror(errno));
+    if (kind == OS_FILE)
+        return cli_fail("%s: is a file, the assignment's pictures need a folder", folder);
+    if (kind == OS_FOLDER)
+        return os_is_writable(folder) ? CLI_GO : cli_fail("%s: cannot be written to", folder);
     // A slash at the end would hide whether its own folder is there.
     char path[4096];
     size_t length = strlen(folder);
@@ -241,7 +239,7 @@ int assignment_write(cli_job *job, const assignment_def *def)
     bool made = false;
     if (compute(&a))
         goto done;
-    made = mkdir(def->folder, 0777) == 0;
+    made = os_make_folder(def->folder);
     if (!made && errno != EEXIST) {
         cli_clear_progress(job);
         code = cli_fail("%s: cannot be made: %s", def->folder, strerror(errno));
@@ -257,7 +255,7 @@ int assignment_write(cli_job *job, const assignment_def *def)
     else if (code == CLI_DONE && !def->quiet)
         print_figures(&a);
     if (code != CLI_DONE && made)
-        rmdir(def->folder); // stays where a picture was written
+        os_remove_folder(def->folder); // stays where a picture was written
 done:
     for (int t = 0; t < ASSIGNMENT_TABLES; t++) {
         kiln_image_free(&a.table[t]);

@@ -1,5 +1,6 @@
 // report.md of the assignment's folder, and the same figures for programs.
 #include "assignment.h"
+#include "os.h"
 
 #include <errno.h>
 #include <math.h>
@@ -166,7 +167,7 @@ int assignment_write_report(const assignment *a)
         write_text(a, f);
         failed = ferror(f) != 0;
         failed = fclose(f) != 0 || failed;
-        failed = failed || rename(part, path) != 0;
+        failed = failed || !os_replace(part, path);
     }
     if (!failed)
         return CLI_DONE;

@@ -1,13 +1,13 @@
 // kiln bake: a panorama in, every level of an environment out, with irradiance and spherical
 // harmonics beside it.
 #include "cli.h"
+#include "os.h"
 
 #include <kiln/course.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
 
 enum {
     OUTPUT = 1,
@@ -644,13 +644,6 @@ static double total_seconds(const bake *b)
     return b->seconds[LOAD] + b->seconds[FILTER] + b->seconds[BESIDE] + b->seconds[SAVE];
 }
 
-static double process_peak(void)
-{
-    struct rusage usage = {0};
-    getrusage(RUSAGE_SELF, &usage);
-    return 1024.0 * (double)usage.ru_maxrss;
-}
-
 static int report_json(const bake *b)
 {
     cJSON *json = cJSON_CreateObject();
@@ -700,7 +693,7 @@ static int report_json(const bake *b)
     kiln_context_memory(b->job.context, &now, &peak);
     cJSON *memory = cJSON_AddObjectToObject(json, "peak_memory");
     cJSON_AddNumberToObject(memory, "kiln", (double)peak);
-    cJSON_AddNumberToObject(memory, "process", process_peak());
+    cJSON_AddNumberToObject(memory, "process", os_peak_memory());
     return cli_print_json(json);
 }
 
@@ -735,7 +728,7 @@ static int report(bake *b)
            b->seconds[FILTER], b->seconds[BESIDE], b->seconds[SAVE],
            kiln_context_cpu(b->job.context));
     char text[32];
-    printf("  memory     %s at most\n", cli_bytes(process_peak(), text));
+    printf("  memory     %s at most\n", cli_bytes(os_peak_memory(), text));
     return CLI_DONE;
 }
 

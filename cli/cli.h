@@ -87,6 +87,7 @@ int cli_check_folder(const char *path);
 typedef struct cli_job {
     kiln_context *context;
     kiln_error error;
+    int threads;       ///< 0 for one a core
     double began;      ///< in seconds, by cli_seconds
     double drawn;      ///< when the progress line was drawn last, 0 for never
     bool on_terminal;  ///< standard error is one

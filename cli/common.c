@@ -1,16 +1,13 @@
 // Options with ranges, sentences, the job with its progress line and signals.
 #include "cli.h"
+#include "os.h"
 
 #include <errno.h>
 #include <math.h>
-#include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <time.h>
-#include <unistd.h>
 
 // --------------------------------------------------------------------------------------- sentences
 
@@ -176,9 +173,7 @@ int cli_choice(const cli_arguments *a, int option, const char *name, const char 
 const char *cli_ending(const char *path)
 {
     size_t length = strlen(path);
-    struct stat status;
-    if ((length && path[length - 1] == '/') ||
-        (stat(path, &status) == 0 && S_ISDIR(status.st_mode)))
+    if ((length && path[length - 1] == '/') || os_kind_of(path) == OS_FOLDER)
         return "/";
     const char *slash = strrchr(path, '/'), *dot = strrchr(path, '.');
     bool has_ending = dot && dot > path && (!slash || dot > slash + 1);
@@ -196,56 +191,30 @@ int cli_check_folder(const char *path)
         return cli_fail("%.60s...: the name is too long", path);
     memcpy(folder, path, length);
     folder[length] = 0;
-    struct stat status;
     if (strchr(folder, '%') || strchr(folder, '{'))
         return CLI_GO;
-    if (stat(folder, &status) != 0)
-        return cli_fail(errno == ENOENT ? "%s: there is no folder %s"
-                                        : "%s: cannot enter the folder %s",
-                        path, folder);
-    if (!S_ISDIR(status.st_mode))
+    switch (os_kind_of(folder)) {
+    case OS_NOTHING:
+        return cli_fail("%s: there is no folder %s", path, folder);
+    case OS_UNREACHABLE:
+        return cli_fail("%s: cannot enter the folder %s", path, folder);
+    case OS_FILE:
         return cli_fail("%s: %s is not a folder", path, folder);
-    return CLI_GO;
-}
-
-// ----------------------------------------------------------------------------------------- signals
-
-static volatile sig_atomic_t caught;
-
-static void on_signal(int signal)
-{
-    caught = signal;
-}
-
-bool cli_interrupted(void)
-{
-    return caught != 0;
-}
-
-static const int stopping[] = {SIGINT, SIGTERM, SIGHUP};
-
-// Reads and writes that wait are interrupted (no SA_RESTART). What the parent has set to be
-// ignored, as nohup does, stays ignored.
-static void catch_signals(void)
-{
-    struct sigaction action = {.sa_handler = on_signal}, old;
-    sigemptyset(&action.sa_mask);
-    for (int i = 0; i < 3; i++)
-        if (sigaction(stopping[i], NULL, &old) == 0 && old.sa_handler != SIG_IGN)
-            sigaction(stopping[i], &action, NULL);
-    // A reader that went away and a file grown too large show as failed writes, so that no
-    // temporary file is left.
-    signal(SIGPIPE, SIG_IGN);
-    signal(SIGXFSZ, SIG_IGN);
+    default:
+        return CLI_GO;
+    }
 }
 
 // --------------------------------------------------------------------------------------------- job
 
 double cli_seconds(void)
 {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+    return os_seconds();
+}
+
+bool cli_interrupted(void)
+{
+    return os_signal() != 0;
 }
 
 enum { PROGRESS_WIDTH = 40 };
@@ -265,50 +234,47 @@ bool cli_progress(void *user, const char *stage, double fraction)
     if (!job->stage || strcmp(stage, job->stage) != 0 || fraction > job->furthest)
         job->furthest = fraction;
     job->stage = stage;
-    if (job->on_terminal && now - job->began > 0.5 && now - job->drawn > 0.1 && !caught) {
+    if (job->on_terminal && now - job->began > 0.5 && now - job->drawn > 0.1 &&
+        !cli_interrupted()) {
         char line[PROGRESS_WIDTH + 1];
         snprintf(line, sizeof line, "kiln: %s %.0f %%", stage, 100 * job->furthest);
         fprintf(stderr, "\r%-*s", PROGRESS_WIDTH, line);
         job->drawn = now;
     }
-    return !caught;
+    return !cli_interrupted();
 }
 
-// What the machine has: beyond it a bake would be killed without a sentence.
-static size_t physical_memory(void)
+static void create_context(void *user)
 {
-    long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE);
-    return pages > 0 && page > 0 ? (size_t)pages * (size_t)page : 0;
+    cli_job *job = user;
+    kiln_context_def def = {
+        .thread_count = job->threads,
+        .progress = cli_progress,
+        .progress_user = job,
+        // Beyond what the machine has, a bake would be killed without a sentence.
+        .memory_limit = os_physical_memory(),
+    };
+    job->error.result = kiln_context_create(&def, &job->context, &job->error);
 }
 
 int cli_job_begin(cli_job *job, int threads, bool quiet)
 {
-    *job = (cli_job){.began = cli_seconds(), .on_terminal = !quiet && isatty(STDERR_FILENO)};
-    catch_signals();
-    kiln_context_def def = {
-        .thread_count = threads,
-        .progress = cli_progress,
-        .progress_user = job,
-        .memory_limit = physical_memory(),
-    };
-    // The library's threads inherit the mask, so that signals reach this thread and end its waits.
-    sigset_t mask, old;
-    sigemptyset(&mask);
-    for (int i = 0; i < 3; i++)
-        sigaddset(&mask, stopping[i]);
-    sigprocmask(SIG_BLOCK, &mask, &old);
-    kiln_result result = kiln_context_create(&def, &job->context, &job->error);
-    sigprocmask(SIG_SETMASK, &old, NULL);
-    return result == KILN_OK ? CLI_GO : CLI_FAILED;
+    *job = (cli_job){.began = cli_seconds(),
+                     .threads = threads,
+                     .on_terminal = !quiet && os_is_terminal(OS_ERRORS)};
+    os_catch_signals();
+    os_without_signals(create_context, job);
+    return job->context ? CLI_GO : CLI_FAILED;
 }
 
 int cli_job_end(cli_job *job, int code)
 {
+    int signal = os_signal();
     cli_clear_progress(job);
-    if (code == CLI_FAILED && !caught && job->error.message[0])
+    if (code == CLI_FAILED && !signal && job->error.message[0])
         cli_fail("%s", job->error.message);
     kiln_context_destroy(job->context);
-    return code == CLI_FAILED && caught ? 128 + (int)caught : code;
+    return code == CLI_FAILED && signal ? 128 + signal : code;
 }
 
 void cli_warn(cli_job *job, const char *format, ...)
@@ -342,8 +308,9 @@ int cli_close_output(int code)
     failed = fflush(stdout) != 0 || failed;
     if (!failed)
         return code;
-    if (errno == EPIPE)
-        return 128 + SIGPIPE; // the reader has gone and knows it
+    int gone = os_reader_gone(errno);
+    if (gone)
+        return gone; // the reader knows it
     if (code == CLI_DONE)
         cli_fail("standard output: %s", errno ? strerror(errno) : "cannot be written");
     return code == CLI_DONE ? CLI_FAILED : code;

@@ -1,12 +1,12 @@
 // kiln eval: single values of the reflection model's functions and integrals, to twelve digits.
 #include "cli.h"
+#include "os.h"
 
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 // ----------------------------------------------------------------------------------- what there is
 
@@ -307,7 +307,7 @@ static int read_arguments(eval *v)
             return cli_wrong(&cli_eval, "%s does not depend on --%s", v->quantity->name,
                              argument_of[i].name);
     char text[128];
-    if (v->column_count && isatty(STDIN_FILENO))
+    if (v->column_count && os_is_terminal(OS_INPUT))
         return cli_wrong(&cli_eval, "no --%s, and standard input has no lines of '%s'",
                          argument_of[v->quantity->takes[v->column[0]]].name, columns(v, text));
     return CLI_GO;
@@ -337,31 +337,64 @@ static int read_line(const eval *v, const char *line, size_t index, double *numb
     return CLI_GO;
 }
 
+// The next line of standard input, without its end, in a buffer that grows. False at the end of the file
+// and where memory runs out, which errno then tells.
+static bool next_line(char **line, size_t *capacity)
+{
+    size_t length = 0;
+    int c;
+    while ((c = getchar()) != EOF && c != '\n') {
+        if (length + 2 > *capacity) {
+            size_t more = *capacity ? 2 * *capacity : 256;
+            char *longer = realloc(*line, more);
+            if (!longer) {
+                errno = ENOMEM;
+                return false;
+            }
+            *line = longer;
+            *capacity = more;
+        }
+        (*line)[length++] = (char)(c ? c : '?'); // which no number has
+    }
+    if (c == EOF && length == 0)
+        return false;
+    if (!*line)
+        return (*line = calloc(1, *capacity = 256)) != NULL;
+    (*line)[length] = 0;
+    return true;
+}
+
+// Room for one more line's numbers.
+static bool grow(eval *v, size_t *room)
+{
+    size_t width = (size_t)v->column_count, more = *room ? 2 * *room : 1024;
+    if (v->line_count < *room)
+        return true;
+    double *lines = more < SIZE_MAX / (width * sizeof *lines * 2)
+                        ? realloc(v->lines, more * width * sizeof *lines)
+                        : NULL;
+    if (!lines)
+        return false;
+    v->lines = lines;
+    *room = more;
+    return true;
+}
+
 // All lines are read before anything is printed: a bad one leaves no half of an answer.
 static int read_lines(eval *v)
 {
     size_t capacity = 0, room = 0, width = (size_t)v->column_count;
     char *line = NULL;
     int code = CLI_GO;
-    ssize_t length;
-    while (code == CLI_GO && (length = getline(&line, &capacity, stdin)) >= 0) {
-        for (ssize_t i = 0; i < length; i++)
-            line[i] = line[i] ? line[i] : '?'; // which no number has
-        if (v->line_count == room) {
-            room = room ? 2 * room : 1024;
-            double *more = room < SIZE_MAX / (width * sizeof *more * 2)
-                               ? realloc(v->lines, room * width * sizeof *more)
-                               : NULL;
-            if (!more) {
-                code = cli_fail("out of memory: %zu lines", room);
-                break;
-            }
-            v->lines = more;
-        }
-        code = read_line(v, line, v->line_count, v->lines + v->line_count * width);
+    errno = 0;
+    while (code == CLI_GO && next_line(&line, &capacity)) {
+        if (grow(v, &room))
+            code = read_line(v, line, v->line_count, v->lines + v->line_count * width);
+        else
+            code = cli_fail("out of memory: %zu lines", v->line_count);
         v->line_count++;
     }
-    if (code == CLI_GO && ferror(stdin))
+    if (code == CLI_GO && (ferror(stdin) || errno == ENOMEM))
         code = cli_fail("standard input: %s", strerror(errno));
     free(line);
     return code;

@@ -1,12 +1,12 @@
 // kiln view: the scenes in a window.
 #include "cli.h"
 #include "look.h"
+#include "os.h"
 
 #include "controls.h"
 #include "window.h"
 
 #include <pthread.h>
-#include <signal.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
@@ -60,28 +60,32 @@ static void *bake(void *user)
     return NULL;
 }
 
-static kiln_result begin_textbook(show *s, view_renderer *renderer, kiln_error *error)
+static void create_thread(void *user)
 {
+    show *s = user;
     textbook *t = &s->textbook;
     const kiln_context_def def = {
         .thread_count = s->threads, .progress = note_progress, .progress_user = t};
+    t->result = kiln_context_create(&def, &t->context, &t->error);
+    t->begun = t->result == KILN_OK && !pthread_create(&t->thread, NULL, bake, s);
+}
+
+static kiln_result begin_textbook(show *s, view_renderer *renderer, kiln_error *error)
+{
+    textbook *t = &s->textbook;
     // Until then both halves are exact.
     if (look_bake_slot(s->job, s->look, s->source, VIEW_SLOT_TEXTBOOK, 0, renderer) != CLI_GO) {
         *error = s->job->error;
         return error->result;
     }
-    // Signals are for the window's thread.
-    sigset_t all, old;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &old);
-    kiln_result result = kiln_context_create(&def, &t->context, error);
-    t->begun = result == KILN_OK && !pthread_create(&t->thread, NULL, bake, s);
-    pthread_sigmask(SIG_SETMASK, &old, NULL);
-    if (result == KILN_OK && !t->begun) {
-        snprintf(error->message, sizeof error->message, "no thread for the textbook's bake");
-        result = error->result = KILN_ERROR_MEMORY;
-    }
-    return result;
+    os_without_signals(create_thread, s); // signals are for the window's thread
+    if (t->begun)
+        return KILN_OK;
+    *error = t->error;
+    if (!t->context)
+        return error->result;
+    snprintf(error->message, sizeof error->message, "no thread for the textbook's bake");
+    return error->result = KILN_ERROR_MEMORY;
 }
 
 static kiln_result ask_textbook(void *user, view_renderer *renderer, bool wait, double *done,

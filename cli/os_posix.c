@@ -1,0 +1,126 @@
+// The operating system of the command: POSIX.1-2008.
+#include "os.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <stdio.h>
+#include <sys/ioctl.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+bool os_is_terminal(os_stream stream)
+{
+    static const int number[] = {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO};
+    return isatty(number[stream]);
+}
+
+int os_columns(void)
+{
+    struct winsize size = {0};
+    return ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
+}
+
+double os_seconds(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+// ----------------------------------------------------------------------------------------- signals
+
+static volatile sig_atomic_t caught;
+
+static void on_signal(int signal)
+{
+    caught = signal;
+}
+
+int os_signal(void)
+{
+    return (int)caught;
+}
+
+static const int stopping[] = {SIGINT, SIGTERM, SIGHUP};
+enum { STOPPING = sizeof stopping / sizeof *stopping };
+
+// Without SA_RESTART, waiting reads and writes are interrupted. What the parent has set to be ignored,
+// as nohup does, stays ignored.
+void os_catch_signals(void)
+{
+    struct sigaction action = {.sa_handler = on_signal}, old;
+    sigemptyset(&action.sa_mask);
+    for (int i = 0; i < STOPPING; i++)
+        if (sigaction(stopping[i], NULL, &old) == 0 && old.sa_handler != SIG_IGN)
+            sigaction(stopping[i], &action, NULL);
+    // As failed writes these two go the way of every failure, on which temporary files are removed.
+    signal(SIGPIPE, SIG_IGN);
+    signal(SIGXFSZ, SIG_IGN);
+}
+
+void os_without_signals(void (*work)(void *user), void *user)
+{
+    sigset_t mask, before;
+    sigemptyset(&mask);
+    for (int i = 0; i < STOPPING; i++)
+        sigaddset(&mask, stopping[i]);
+    sigprocmask(SIG_BLOCK, &mask, &before);
+    work(user);
+    sigprocmask(SIG_SETMASK, &before, NULL);
+}
+
+int os_reader_gone(int error)
+{
+    return error == EPIPE ? 128 + SIGPIPE : 0;
+}
+
+// ------------------------------------------------------------------------------------------ memory
+
+size_t os_physical_memory(void)
+{
+    long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE);
+    return pages > 0 && page > 0 ? (size_t)pages * (size_t)page : 0;
+}
+
+double os_peak_memory(void)
+{
+    struct rusage usage = {0};
+    getrusage(RUSAGE_SELF, &usage);
+#ifdef __APPLE__
+    return (double)usage.ru_maxrss; // in bytes there, in kB elsewhere
+#else
+    return 1024.0 * (double)usage.ru_maxrss;
+#endif
+}
+
+// ----------------------------------------------------------------------------------------- folders
+
+os_kind os_kind_of(const char *path)
+{
+    struct stat status;
+    if (stat(path, &status) == 0)
+        return S_ISDIR(status.st_mode) ? OS_FOLDER : OS_FILE;
+    return errno == ENOENT ? OS_NOTHING : OS_UNREACHABLE;
+}
+
+bool os_is_writable(const char *folder)
+{
+    return access(folder, W_OK | X_OK) == 0;
+}
+
+bool os_make_folder(const char *path)
+{
+    return mkdir(path, 0777) == 0;
+}
+
+void os_remove_folder(const char *path)
+{
+    rmdir(path);
+}
+
+bool os_replace(const char *from, const char *to)
+{
+    return rename(from, to) == 0;
+}
