@@ -2,6 +2,7 @@
 // for the channels that its rules name; runs or zlib for the others. The format is described in
 // "DreamWorks Animation Lossy Compression" (OpenEXR 2.2); here is its decoder.
 #include "base/bytes.h"
+#include "codec/deflate.h"
 #include "codec/exr.h"
 #include "image/pack.h"
 #include "math/math.h"
@@ -35,7 +36,7 @@ static void linear_stretch(void *data, int index)
     }
 }
 
-void ki_dwa_linear_table(kiln_context *context, uint16_t *table)
+void ki_exr_dwa_table(kiln_context *context, uint16_t *table)
 {
     memset(table, 0, 65536 * sizeof *table);
     ki_parallel_for(context, TABLE_TASKS, linear_stretch, table);
@@ -104,9 +105,9 @@ static void add_old_rules(dwa *d)
     } transformed[] = {{"r", 0},   {"red", 0},  {"g", 1},  {"grn", 1}, {"green", 1}, {"b", 2},
                        {"blu", 2}, {"blue", 2}, {"y", -1}, {"by", -1}, {"ry", -1}};
     for (size_t i = 0; i < sizeof transformed / sizeof *transformed; i++)
-        for (int type = EXR_PIXEL_HALF; type <= EXR_PIXEL_FLOAT; type++)
+        for (int type = KI_EXR_HALF; type <= KI_EXR_FLOAT; type++)
             add_rule(d, transformed[i].suffix, SCHEME_DCT, transformed[i].place, type, true);
-    for (int type = EXR_PIXEL_UINT; type <= EXR_PIXEL_FLOAT; type++)
+    for (int type = KI_EXR_UINT; type <= KI_EXR_FLOAT; type++)
         add_rule(d, "a", SCHEME_RUNS, -1, type, true);
 }
 
@@ -135,7 +136,7 @@ static bool read_rules(dwa *d, ki_reader *r)
         read->any_case = value & 1;
         read->type = ki_read_u8(&rules);
         if (rules.failed || read->place > 2 || read->scheme > SCHEME_RUNS ||
-            read->type > EXR_PIXEL_FLOAT || ++d->rule_count == MAX_RULES)
+            read->type > KI_EXR_FLOAT || ++d->rule_count == MAX_RULES)
             return false;
     }
     return true;
@@ -157,16 +158,10 @@ static bool rule_fits(const dwa_rule *rule, const char *suffix, int type)
     return *wanted == *suffix;
 }
 
-static const char *suffix_of(const char *name)
-{
-    const char *dot = strrchr(name, '.');
-    return dot ? dot + 1 : name;
-}
-
 // The order of the layers of two channels, which is that of their names before the last dot.
 static int compare_layers(const char *a, const char *b)
 {
-    size_t length_a = (size_t)(suffix_of(a) - a), length_b = (size_t)(suffix_of(b) - b);
+    size_t length_a = (size_t)(ki_exr_suffix(a) - a), length_b = (size_t)(ki_exr_suffix(b) - b);
     length_a -= length_a > 0;
     length_b -= length_b > 0;
     int order = memcmp(a, b, length_a < length_b ? length_a : length_b);
@@ -274,8 +269,7 @@ static void find_lines(const dwa *d, int index, size_t *offset)
                 continue;
             if (c == index)
                 offset[line++] = at;
-            at += (size_t)ki_exr_samples(box->x, box->width, channel->x_sampling) *
-                  (size_t)channel->bytes;
+            at += (size_t)ki_exr_columns(box, channel) * (size_t)channel->bytes;
         }
 }
 
@@ -347,12 +341,12 @@ static int make_plan(dwa *d, triple *triples)
     for (int c = 0; c < box->channel_count; c++) {
         const ki_exr_channel *channel = &box->channels[c];
         dwa_plan *plan = &d->plans[c];
-        plan->width = ki_exr_samples(box->x, box->width, channel->x_sampling);
-        plan->height = ki_exr_samples(box->y, box->height, channel->y_sampling);
+        plan->width = ki_exr_columns(box, channel);
+        plan->height = ki_exr_rows(box, channel);
         int place = -1;
         for (int i = 0; i < d->rule_count; i++) {
             const dwa_rule *rule = &d->rules[i];
-            if (rule_fits(rule, suffix_of(channel->name), channel->type)) {
+            if (rule_fits(rule, ki_exr_suffix(channel->name), channel->type)) {
                 plan->scheme = rule->scheme;
                 place = rule->place >= 0 ? rule->place : place;
             }
@@ -423,98 +417,111 @@ static void copy_plain(dwa *d, int index, const size_t *offset)
     }
 }
 
-kiln_result ki_exr_undo_dwa(kiln_context *context, const ki_exr_box *box, const uint16_t *table,
-                            const uint8_t *packed, size_t packed_size, uint8_t *raw)
-{
-    kiln_result result = KILN_ERROR_MEMORY;
-    uint8_t *plain = NULL, *runs = NULL, *scratch = NULL;
-    uint16_t *ac = NULL, *dc = NULL;
-    size_t *offset = NULL;
-    triple *triples = NULL;
-    dwa *d = ki_alloc(context, 1, sizeof *d);
-    if (!d)
-        return KILN_ERROR_MEMORY;
-    d->box = box;
-    d->table = table;
-    d->raw = raw;
+// The packed sections of a chunk, and what they unpack to.
+typedef struct sections {
+    const uint8_t *zlib, *ac, *dc, *runs; // packed
+    uint8_t *plain;                       // of zlib's channels, then of those coded by runs
+    uint8_t *run_bytes;                   // between the two steps of unpacking runs
+    uint16_t *ac_values, *dc_values, *scratch;
+    size_t *offset; // where lines begin, of three channels
+    triple *triples;
+    size_t zlib_size, runs_size, blocks;
+} sections;
 
+static bool read_sections(dwa *d, const uint8_t *packed, size_t packed_size, sections *s)
+{
     ki_reader r = ki_reader_make(packed, packed_size);
     counts *n = &d->counts;
     read_counts(&r, n);
-    result = KILN_ERROR_FORMAT;
     if (r.failed || n->version > 2)
-        goto done;
+        return false;
     if (n->version < 2)
         add_old_rules(d);
     else if (!read_rules(d, &r))
-        goto done;
-    const uint8_t *zlib_bytes = ki_read_bytes(&r, n->zlib_packed);
-    const uint8_t *ac_bytes = ki_read_bytes(&r, n->ac_packed);
-    const uint8_t *dc_bytes = ki_read_bytes(&r, n->dc_packed);
-    const uint8_t *run_bytes = ki_read_bytes(&r, n->runs_packed);
-    if (r.failed)
-        goto done;
+        return false;
+    s->zlib = ki_read_bytes(&r, n->zlib_packed);
+    s->ac = ki_read_bytes(&r, n->ac_packed);
+    s->dc = ki_read_bytes(&r, n->dc_packed);
+    s->runs = ki_read_bytes(&r, n->runs_packed);
+    return !r.failed;
+}
 
-    result = KILN_ERROR_MEMORY;
-    triples = ki_alloc_raw(context, (size_t)box->channel_count, sizeof *triples);
-    offset = ki_alloc_raw(context, 3 * (size_t)box->height, sizeof *offset);
-    if (!triples || !offset)
-        goto done;
-    int triple_count = make_plan(d, triples);
-    size_t zlib_size = plane_size(d, SCHEME_ZLIB), runs_size = plane_size(d, SCHEME_RUNS);
-    size_t blocks = block_count(d);
-    result = KILN_ERROR_FORMAT;
-    // Every count must be what the box needs; coefficients may be fewer than 64 a block.
-    if (n->zlib_size != zlib_size || n->runs_raw != runs_size || n->runs_size > 2 * runs_size ||
-        n->dc_count != blocks || n->ac_count > 64 * (uint64_t)blocks)
-        goto done;
+// Every count must be what the box needs; coefficients may be fewer than 64 a block.
+static bool check_counts(const dwa *d, sections *s)
+{
+    const counts *n = &d->counts;
+    s->zlib_size = plane_size(d, SCHEME_ZLIB);
+    s->runs_size = plane_size(d, SCHEME_RUNS);
+    s->blocks = block_count(d);
+    return n->zlib_size == s->zlib_size && n->runs_raw == s->runs_size &&
+           n->runs_size <= 2 * s->runs_size && n->dc_count == s->blocks &&
+           n->ac_count <= 64 * (uint64_t)s->blocks;
+}
 
-    result = KILN_ERROR_MEMORY;
-    plain = ki_alloc_raw(context, zlib_size + runs_size + 1, 1);
-    runs = ki_alloc_raw(context, n->runs_size + 1, 1);
-    ac = ki_alloc_raw(context, n->ac_count + 1, sizeof *ac);
-    dc = ki_alloc_raw(context, blocks + 1, sizeof *dc);
-    scratch = ki_alloc_raw(context, blocks + 1, sizeof *dc);
-    if (!plain || !runs || !ac || !dc || !scratch)
-        goto done;
-    result = KILN_ERROR_FORMAT;
-    if (zlib_size && !ki_exr_inflate(zlib_bytes, n->zlib_packed, plain, zlib_size))
-        goto done;
-    if (runs_size &&
-        (!ki_exr_inflate(run_bytes, n->runs_packed, runs, n->runs_size) ||
-         ki_exr_unpack_runs(runs, n->runs_size, plain + zlib_size, runs_size) != runs_size))
-        goto done;
-    if (blocks &&
-        !ki_exr_undo_zip(dc_bytes, n->dc_packed, (uint8_t *)dc, blocks * sizeof *dc, scratch))
-        goto done;
-    if (n->ac_count && n->ac_compression == AC_HUFFMAN)
-        result = ki_exr_undo_huffman(context, ac_bytes, n->ac_packed, ac, n->ac_count);
-    else if (!n->ac_count ||
-             (n->ac_compression == AC_DEFLATE &&
-              ki_exr_inflate(ac_bytes, n->ac_packed, (uint8_t *)ac, n->ac_count * sizeof *ac)))
-        result = KILN_OK;
-    if (result != KILN_OK)
-        goto done;
+static bool allocate(kiln_context *context, const dwa *d, sections *s)
+{
+    const counts *n = &d->counts;
+    s->plain = ki_alloc_raw(context, s->zlib_size + s->runs_size + 1, 1);
+    s->run_bytes = ki_alloc_raw(context, n->runs_size + 1, 1);
+    s->ac_values = ki_alloc_raw(context, n->ac_count + 1, sizeof *s->ac_values);
+    s->dc_values = ki_alloc_raw(context, s->blocks + 1, sizeof *s->dc_values);
+    s->scratch = ki_alloc_raw(context, s->blocks + 1, sizeof *s->scratch);
+    return s->plain && s->run_bytes && s->ac_values && s->dc_values && s->scratch;
+}
 
-    result = KILN_ERROR_FORMAT;
-    d->ac = ac;
-    d->ac_end = ac + n->ac_count;
-    d->dc = dc;
-    d->dc_end = dc + blocks;
-    size_t *lines[3] = {offset, offset + box->height, offset + 2 * (size_t)box->height};
-    for (int t = 0; t < triple_count; t++) {
+static kiln_result unpack_ac(kiln_context *context, const counts *n, const sections *s)
+{
+    if (!n->ac_count)
+        return KILN_OK;
+    if (n->ac_compression == AC_HUFFMAN)
+        return ki_exr_unpack_huffman(context, s->ac, n->ac_packed, s->ac_values, n->ac_count);
+    bool good =
+        n->ac_compression == AC_DEFLATE && ki_inflate(s->ac, n->ac_packed, (uint8_t *)s->ac_values,
+                                                      n->ac_count * sizeof *s->ac_values);
+    return good ? KILN_OK : KILN_ERROR_FORMAT;
+}
+
+static kiln_result unpack_sections(kiln_context *context, dwa *d, const sections *s)
+{
+    const counts *n = &d->counts;
+    if (s->zlib_size && !ki_inflate(s->zlib, n->zlib_packed, s->plain, s->zlib_size))
+        return KILN_ERROR_FORMAT;
+    if (s->runs_size && (!ki_inflate(s->runs, n->runs_packed, s->run_bytes, n->runs_size) ||
+                         ki_exr_unpack_runs(s->run_bytes, n->runs_size, s->plain + s->zlib_size,
+                                            s->runs_size) != s->runs_size))
+        return KILN_ERROR_FORMAT;
+    if (s->blocks && !ki_exr_unzip(s->dc, n->dc_packed, (uint8_t *)s->dc_values,
+                                   s->blocks * sizeof *s->dc_values, (uint8_t *)s->scratch))
+        return KILN_ERROR_FORMAT;
+    d->ac = s->ac_values;
+    d->ac_end = s->ac_values + n->ac_count;
+    d->dc = s->dc_values;
+    d->dc_end = s->dc_values + s->blocks;
+    return unpack_ac(context, n, s);
+}
+
+// Colour triples come first, in the order of their layers.
+static bool transform_triples(dwa *d, const triple *triples, int count, size_t *const lines[3])
+{
+    for (int t = 0; t < count; t++) {
         const int *member = triples[t].member;
         if (!whole_triple(d, member))
             continue;
         for (int k = 0; k < 3; k++) {
             if (d->plans[member[k]].scheme != SCHEME_DCT)
-                goto done;
+                return false;
             find_lines(d, member[k], lines[k]);
         }
         if (!transform(d, member, 3, lines))
-            goto done;
+            return false;
     }
-    const uint8_t *at[3] = {plain, NULL, plain + zlib_size};
+    return true;
+}
+
+static bool put_other_channels(dwa *d, const sections *s, size_t *const lines[3])
+{
+    const ki_exr_box *box = d->box;
+    const uint8_t *at[3] = {s->plain, NULL, s->plain + s->zlib_size};
     for (int c = 0; c < box->channel_count; c++) {
         dwa_plan *plan = &d->plans[c];
         if (plan->done)
@@ -522,7 +529,7 @@ kiln_result ki_exr_undo_dwa(kiln_context *context, const ki_exr_box *box, const 
         find_lines(d, c, lines[0]);
         if (plan->scheme == SCHEME_DCT) {
             if (!transform(d, &c, 1, lines))
-                goto done;
+                return false;
             continue;
         }
         plan->from = at[plan->scheme];
@@ -530,15 +537,53 @@ kiln_result ki_exr_undo_dwa(kiln_context *context, const ki_exr_box *box, const 
             (size_t)plan->width * (size_t)plan->height * (size_t)box->channels[c].bytes;
         copy_plain(d, c, lines[0]);
     }
-    result = KILN_OK;
-done:
-    ki_free(triples);
-    ki_free(offset);
-    ki_free(plain);
-    ki_free(runs);
-    ki_free(ac);
-    ki_free(dc);
-    ki_free(scratch);
+    return true;
+}
+
+static kiln_result decompress(kiln_context *context, dwa *d, const uint8_t *packed,
+                              size_t packed_size, sections *s)
+{
+    if (!read_sections(d, packed, packed_size, s))
+        return KILN_ERROR_FORMAT;
+    size_t height = (size_t)d->box->height;
+    s->triples = ki_alloc_raw(context, (size_t)d->box->channel_count, sizeof *s->triples);
+    s->offset = ki_alloc_raw(context, 3 * height, sizeof *s->offset);
+    if (!s->triples || !s->offset)
+        return KILN_ERROR_MEMORY;
+    int triple_count = make_plan(d, s->triples);
+    if (!check_counts(d, s))
+        return KILN_ERROR_FORMAT;
+    if (!allocate(context, d, s))
+        return KILN_ERROR_MEMORY;
+    kiln_result result = unpack_sections(context, d, s);
+    if (result != KILN_OK)
+        return result;
+    size_t *const lines[3] = {s->offset, s->offset + height, s->offset + 2 * height};
+    bool good =
+        transform_triples(d, s->triples, triple_count, lines) && put_other_channels(d, s, lines);
+    return good ? KILN_OK : KILN_ERROR_FORMAT;
+}
+
+kiln_result ki_exr_decompress_dwa(const ki_exr_workspace *work, const ki_exr_box *box,
+                                  const uint8_t *packed, size_t packed_size, uint8_t *raw,
+                                  size_t size)
+{
+    (void)size;
+    dwa *d = ki_alloc(work->context, 1, sizeof *d);
+    if (!d)
+        return KILN_ERROR_MEMORY;
+    d->box = box;
+    d->table = work->dwa_table;
+    d->raw = raw;
+    sections s = {0};
+    kiln_result result = decompress(work->context, d, packed, packed_size, &s);
+    ki_free(s.triples);
+    ki_free(s.offset);
+    ki_free(s.plain);
+    ki_free(s.run_bytes);
+    ki_free(s.ac_values);
+    ki_free(s.dc_values);
+    ki_free(s.scratch);
     ki_free(d);
     return result;
 }

@@ -180,8 +180,8 @@ static bool decode(decoder *d, const uint8_t *packed, size_t packed_size, uint16
     return true;
 }
 
-kiln_result ki_exr_undo_huffman(kiln_context *context, const uint8_t *packed, size_t packed_size,
-                                uint16_t *symbols, size_t count)
+kiln_result ki_exr_unpack_huffman(kiln_context *context, const uint8_t *packed, size_t packed_size,
+                                  uint16_t *symbols, size_t count)
 {
     decoder *d = ki_alloc_raw(context, 1, sizeof *d);
     if (!d)

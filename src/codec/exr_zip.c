@@ -1,4 +1,5 @@
 // EXR's byte-wise compressions: ZIP, ZIPS and RLE.
+#include "codec/deflate.h"
 #include "codec/exr.h"
 
 #include <string.h>
@@ -44,14 +45,23 @@ static void interleave(const uint8_t *halves, uint8_t *restrict raw, size_t size
         raw[size - 1] = halves[size / 2];
 }
 
-bool ki_exr_undo_zip(const uint8_t *packed, size_t packed_size, uint8_t *raw, size_t size,
-                     uint8_t *scratch)
+bool ki_exr_unzip(const uint8_t *packed, size_t packed_size, uint8_t *raw, size_t size,
+                  uint8_t *scratch)
 {
-    if (!ki_exr_inflate(packed, packed_size, scratch, size))
+    if (!ki_inflate(packed, packed_size, scratch, size))
         return false;
     undo_differences(scratch, size);
     interleave(scratch, raw, size);
     return true;
+}
+
+kiln_result ki_exr_decompress_zip(const ki_exr_workspace *work, const ki_exr_box *box,
+                                  const uint8_t *packed, size_t packed_size, uint8_t *raw,
+                                  size_t size)
+{
+    (void)box;
+    return ki_exr_unzip(packed, packed_size, raw, size, work->scratch) ? KILN_OK
+                                                                       : KILN_ERROR_FORMAT;
 }
 
 size_t ki_exr_unpack_runs(const uint8_t *packed, size_t packed_size, uint8_t *raw, size_t size)
@@ -77,12 +87,14 @@ size_t ki_exr_unpack_runs(const uint8_t *packed, size_t packed_size, uint8_t *ra
     return out;
 }
 
-bool ki_exr_undo_rle(const uint8_t *packed, size_t packed_size, uint8_t *raw, size_t size,
-                     uint8_t *scratch)
+kiln_result ki_exr_decompress_rle(const ki_exr_workspace *work, const ki_exr_box *box,
+                                  const uint8_t *packed, size_t packed_size, uint8_t *raw,
+                                  size_t size)
 {
-    if (ki_exr_unpack_runs(packed, packed_size, scratch, size) != size)
-        return false;
-    undo_differences(scratch, size);
-    interleave(scratch, raw, size);
-    return true;
+    (void)box;
+    if (ki_exr_unpack_runs(packed, packed_size, work->scratch, size) != size)
+        return KILN_ERROR_FORMAT;
+    undo_differences(work->scratch, size);
+    interleave(work->scratch, raw, size);
+    return KILN_OK;
 }

@@ -19,14 +19,16 @@ static float ramp(int x, int y, const char *channel)
            (float)noise / 256 + 64;
 }
 
-static const exr_make_channel half_rgb[3] = {
-    {"B", EXR_PIXEL_HALF, 0}, {"G", EXR_PIXEL_HALF, 0}, {"R", EXR_PIXEL_HALF, 0}};
-static const exr_make_channel float_rgb[3] = {
-    {"B", EXR_PIXEL_FLOAT, 0}, {"G", EXR_PIXEL_FLOAT, 0}, {"R", EXR_PIXEL_FLOAT, 0}};
-static const exr_make_channel mixed_rgb[4] = {{"A", EXR_PIXEL_UINT, 0},
-                                              {"B", EXR_PIXEL_HALF, 0},
-                                              {"G", EXR_PIXEL_FLOAT, 0},
-                                              {"R", EXR_PIXEL_UINT, 0}};
+static const exr_make_channel half_rgb[3] = {{"B", EXR_PIXEL_HALF, 0, false},
+                                             {"G", EXR_PIXEL_HALF, 0, false},
+                                             {"R", EXR_PIXEL_HALF, 0, false}};
+static const exr_make_channel float_rgb[3] = {{"B", EXR_PIXEL_FLOAT, 0, false},
+                                              {"G", EXR_PIXEL_FLOAT, 0, false},
+                                              {"R", EXR_PIXEL_FLOAT, 0, false}};
+static const exr_make_channel mixed_rgb[4] = {{"A", EXR_PIXEL_UINT, 0, false},
+                                              {"B", EXR_PIXEL_HALF, 0, false},
+                                              {"G", EXR_PIXEL_FLOAT, 0, false},
+                                              {"R", EXR_PIXEL_UINT, 0, false}};
 
 static kiln_image decode(const exr_make *make, kiln_file_info *info)
 {
@@ -193,18 +195,18 @@ static void the_display_window_is_the_picture(void **state)
 static void missing_and_extra_channels(void **state)
 {
     (void)state;
-    static const exr_make_channel red_only[] = {{"R", EXR_PIXEL_HALF, 0},
-                                                {"Z", EXR_PIXEL_FLOAT, 0}};
-    static const exr_make_channel grey[] = {{"Y", EXR_PIXEL_FLOAT, 0}};
-    static const exr_make_channel layer[] = {{"A", EXR_PIXEL_HALF, 0},
-                                             {"beauty.B", EXR_PIXEL_HALF, 0},
-                                             {"beauty.G", EXR_PIXEL_HALF, 0},
-                                             {"beauty.R", EXR_PIXEL_HALF, 0}};
+    static const exr_make_channel red_only[] = {{"R", EXR_PIXEL_HALF, 0, false},
+                                                {"Z", EXR_PIXEL_FLOAT, 0, false}};
+    static const exr_make_channel grey[] = {{"Y", EXR_PIXEL_FLOAT, 0, false}};
+    static const exr_make_channel layer[] = {{"A", EXR_PIXEL_HALF, 0, false},
+                                             {"beauty.B", EXR_PIXEL_HALF, 0, false},
+                                             {"beauty.G", EXR_PIXEL_HALF, 0, false},
+                                             {"beauty.R", EXR_PIXEL_HALF, 0, false}};
     // A channel of a quarter of the samples lies between the others.
-    static const exr_make_channel sampled[] = {{"A", EXR_PIXEL_HALF, 2},
-                                               {"B", EXR_PIXEL_HALF, 0},
-                                               {"G", EXR_PIXEL_HALF, 0},
-                                               {"R", EXR_PIXEL_HALF, 0}};
+    static const exr_make_channel sampled[] = {{"A", EXR_PIXEL_HALF, 2, false},
+                                               {"B", EXR_PIXEL_HALF, 0, false},
+                                               {"G", EXR_PIXEL_HALF, 0, false},
+                                               {"R", EXR_PIXEL_HALF, 0, false}};
     exr_make make = {.width = 24,
                      .height = 20,
                      .compression = EXR_COMPRESSION_ZIP,
@@ -294,10 +296,12 @@ static void check_refused(const exr_make *make, kiln_result wanted, const char *
 static void what_is_not_read_is_said(void **state)
 {
     (void)state;
-    static const exr_make_channel depth[] = {{"Z", EXR_PIXEL_FLOAT, 0}};
-    static const exr_make_channel chroma[] = {
-        {"BY", EXR_PIXEL_HALF, 2}, {"RY", EXR_PIXEL_HALF, 2}, {"Y", EXR_PIXEL_HALF, 0}};
-    static const exr_make_channel sampled[] = {{"R", EXR_PIXEL_HALF, 2}, {"Z", EXR_PIXEL_HALF, 0}};
+    static const exr_make_channel depth[] = {{"Z", EXR_PIXEL_FLOAT, 0, false}};
+    static const exr_make_channel chroma[] = {{"BY", EXR_PIXEL_HALF, 2, false},
+                                              {"RY", EXR_PIXEL_HALF, 2, false},
+                                              {"Y", EXR_PIXEL_HALF, 0, false}};
+    static const exr_make_channel sampled[] = {{"R", EXR_PIXEL_HALF, 2, false},
+                                               {"Z", EXR_PIXEL_HALF, 0, false}};
     exr_make make = {.width = 8,
                      .height = 4,
                      .compression = EXR_COMPRESSION_NONE,

@@ -48,7 +48,8 @@ static void write_chunk(exr_context_t file, int part, const exr_make *make,
             for (int x = x0; x < x0 + info->width; x++) {
                 if (x % channel->x_samples)
                     continue;
-                float value = make->value(x, y, channel->channel_name);
+                bool lower = make->level > 0; // which is not to be read
+                float value = make->value(lower ? 0 : x, lower ? 0 : y, channel->channel_name);
                 uint16_t half = ki_half_from_float(value);
                 if (isinf(value)) // which ki_half_from_float clamps
                     half = value > 0 ? 0x7c00 : 0xfc00;
@@ -77,7 +78,7 @@ static void write_chunk(exr_context_t file, int part, const exr_make *make,
 
 static void add_part(exr_context_t file, int part, int count, const exr_make *make)
 {
-    static const exr_make_channel depth = {"Z", EXR_PIXEL_FLOAT, 0};
+    static const exr_make_channel depth = {"Z", EXR_PIXEL_FLOAT, 0, false};
     bool last = part == count - 1;
     char name[16];
     snprintf(name, sizeof name, "part%d", part);
@@ -90,18 +91,81 @@ static void add_part(exr_context_t file, int part, int count, const exr_make *ma
     if (!display.max.x && !display.max.y)
         display = data;
     exr_attr_v2f_t center = {{{0, 0}}};
-    must(exr_initialize_required_attr(file, part, &display, &data, 1, &center, 1,
-                                      EXR_LINEORDER_INCREASING_Y, make->compression));
+    must(exr_initialize_required_attr(file, part, &display, &data, 1, &center, 1, make->order,
+                                      make->compression));
     for (int c = 0; c < (last ? make->channel_count : 1); c++) {
         const exr_make_channel *channel = last ? &make->channels[c] : &depth;
         int sampling = channel->sampling ? channel->sampling : 1;
-        must(exr_add_channel(file, part, channel->name, channel->type, EXR_PERCEPTUALLY_LOGARITHMIC,
+        must(exr_add_channel(file, part, channel->name, channel->type,
+                             channel->linear ? EXR_PERCEPTUALLY_LINEAR
+                                             : EXR_PERCEPTUALLY_LOGARITHMIC,
                              sampling, sampling));
     }
     if (make->tile_width)
-        must(exr_set_tile_descriptor(file, part, (uint32_t)make->tile_width,
-                                     (uint32_t)make->tile_height, EXR_TILE_ONE_LEVEL,
-                                     EXR_TILE_ROUND_DOWN));
+        must(exr_set_tile_descriptor(
+            file, part, (uint32_t)make->tile_width, (uint32_t)make->tile_height,
+            make->mip_levels ? EXR_TILE_MIPMAP_LEVELS : EXR_TILE_ONE_LEVEL, EXR_TILE_ROUND_DOWN));
+}
+
+static void write_tiles(exr_context_t file, int part, const exr_make *make, int level)
+{
+    int32_t width, height;
+    must(exr_get_level_sizes(file, part, level, level, &width, &height));
+    int across = (width + make->tile_width - 1) / make->tile_width;
+    int down = (height + make->tile_height - 1) / make->tile_height;
+    exr_make one = *make;
+    one.level = level;
+    for (int k = 0; k < across * down; k++) {
+        int x = k % across, y = k / across;
+        exr_chunk_info_t info;
+        must(exr_write_tile_chunk_info(file, part, x, y, level, level, &info));
+        int at_x = make->x + x * make->tile_width, at_y = make->y + y * make->tile_height;
+        write_chunk(file, part, &one, &info, at_x, at_y);
+    }
+}
+
+static void write_lines(exr_context_t file, int part, const exr_make *make)
+{
+    int lines = 1;
+    must(exr_get_scanlines_per_chunk(file, part, &lines));
+    for (int y = make->y; y < make->y + make->height; y += lines) {
+        exr_chunk_info_t info;
+        must(exr_write_scanline_chunk_info(file, part, y, &info));
+        write_chunk(file, part, make, &info, make->x, y);
+    }
+}
+
+static uint64_t offset_at(const uint8_t *table, size_t index)
+{
+    uint64_t offset;
+    memcpy(&offset, table + 8 * index, sizeof offset);
+    return offset;
+}
+
+// Puts the chunks, which follow the table of their offsets, into the opposite order: OpenEXRCore
+// writes in increasing order only.
+static void reverse_chunks(stream *s, size_t count, exr_lineorder_t order)
+{
+    static const char name[] = "lineOrder\0lineOrder\0\1\0\0";
+    for (size_t i = 0; i + sizeof name < s->size; i++)
+        if (!memcmp(s->bytes + i, name, sizeof name))
+            s->bytes[i + sizeof name] = (uint8_t)order;
+    uint8_t *old = malloc(s->size);
+    assert_non_null(old);
+    memcpy(old, s->bytes, s->size);
+    // Chunks were written in the order of the tables; the first one begins where these end.
+    size_t table = 0;
+    while (offset_at(old + table, 0) != table + 8 * count)
+        table++;
+    uint64_t to = table + 8 * count;
+    for (size_t i = count; i-- > 0;) {
+        uint64_t from = offset_at(old + table, i);
+        uint64_t end = i + 1 < count ? offset_at(old + table, i + 1) : s->size;
+        memcpy(s->bytes + to, old + from, end - from);
+        memcpy(s->bytes + table + 8 * i, &to, sizeof to);
+        to += end - from;
+    }
+    free(old);
 }
 
 uint8_t *exr_make_file(const exr_make *make, size_t *size)
@@ -116,25 +180,21 @@ uint8_t *exr_make_file(const exr_make *make, size_t *size)
     for (int part = 0; part < parts; part++)
         add_part(file, part, parts, make);
     must(exr_write_header(file));
+    size_t chunk_count = 0;
     for (int part = 0; part < parts; part++) {
-        exr_chunk_info_t info;
-        int lines = 1;
-        if (make->tile_width) {
-            for (int y = 0; y < make->height; y += make->tile_height)
-                for (int x = 0; x < make->width; x += make->tile_width) {
-                    must(exr_write_tile_chunk_info(file, part, x / make->tile_width,
-                                                   y / make->tile_height, 0, 0, &info));
-                    write_chunk(file, part, make, &info, make->x + x, make->y + y);
-                }
-            continue;
-        }
-        must(exr_get_scanlines_per_chunk(file, part, &lines));
-        for (int y = make->y; y < make->y + make->height; y += lines) {
-            must(exr_write_scanline_chunk_info(file, part, y, &info));
-            write_chunk(file, part, make, &info, make->x, y);
-        }
+        int levels = 1, chunks;
+        must(exr_get_chunk_count(file, part, &chunks));
+        chunk_count += (size_t)chunks;
+        if (make->tile_width)
+            must(exr_get_tile_levels(file, part, &levels, NULL));
+        for (int level = 0; level < levels && make->tile_width; level++)
+            write_tiles(file, part, make, level);
+        if (!make->tile_width)
+            write_lines(file, part, make);
     }
     must(exr_finish(&file));
+    if (make->order != EXR_LINEORDER_INCREASING_Y)
+        reverse_chunks(&s, chunk_count, make->order);
     *size = s.size;
     return s.bytes;
 }

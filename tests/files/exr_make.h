@@ -2,6 +2,7 @@
 #ifndef KILN_EXR_MAKE_H
 #define KILN_EXR_MAKE_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -11,6 +12,7 @@ typedef struct exr_make_channel {
     const char *name;
     exr_pixel_type_t type;
     int sampling; // along x and y; 0 for 1
+    bool linear;  // said to be perceptually linear, which B44 stores by another curve
 } exr_make_channel;
 
 typedef struct exr_make {
@@ -18,9 +20,12 @@ typedef struct exr_make {
     int x, y;                 // where it begins
     exr_attr_box2i_t display; // all 0: the data window
     exr_compression_t compression;
+    exr_lineorder_t order;       // in which the chunks follow each other
     int tile_width, tile_height; // 0 for scan lines
+    bool mip_levels;             // of tiles; every level below the first holds the value of (0, 0)
     const exr_make_channel *channels;
     int channel_count;
+    int level;      // for exr_make_file's own use
     int part_count; // 0 for 1; the parts before the last have a channel "Z" only
     /// The value of a sample.
     float (*value)(int x, int y, const char *channel);

@@ -1,5 +1,5 @@
 // zlib's format (RFC 1950, RFC 1951) into a buffer of known size, where libdeflate is left out.
-#include "codec/exr.h"
+#include "codec/deflate.h"
 
 #include <string.h>
 
@@ -216,7 +216,7 @@ static uint32_t adler(const uint8_t *bytes, size_t size)
     return b << 16 | a;
 }
 
-bool ki_exr_inflate(const uint8_t *packed, size_t packed_size, uint8_t *raw, size_t size)
+bool ki_inflate(const uint8_t *packed, size_t packed_size, uint8_t *raw, size_t size)
 {
     if (packed_size < 6 || (packed[0] & 15) != 8 || (packed[0] << 8 | packed[1]) % 31 ||
         packed[1] & 0x20)

@@ -1,8 +1,8 @@
-#include "codec/exr.h"
+#include "codec/deflate.h"
 
 #include <libdeflate.h>
 
-bool ki_exr_inflate(const uint8_t *packed, size_t packed_size, uint8_t *raw, size_t size)
+bool ki_inflate(const uint8_t *packed, size_t packed_size, uint8_t *raw, size_t size)
 {
     struct libdeflate_decompressor *d = libdeflate_alloc_decompressor();
     if (!d)

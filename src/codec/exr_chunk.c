@@ -1,0 +1,182 @@
+// The chunks of an EXR file: where they lie, how many bytes they may have, and which method unpacks
+// them. A chunk is a tile, or as many scan lines as the method takes at a time.
+#include "base/bytes.h"
+#include "codec/exr.h"
+
+typedef struct method {
+    const char *name;
+    int lines; // of a chunk of scan lines
+    /// A byte of packed data becomes this many at most, so that a short file cannot ask for a huge
+    /// picture: RLE makes 2 bytes into 128, deflate 1 into 1032, PIZ 9 bits into 255 samples, B44
+    /// 3 bytes into 16 samples; DWA a byte of deflated block means into 516, each a block of 256 bytes.
+    size_t growth;
+    ki_exr_decompress *decompress;
+} method;
+
+static const method methods[KI_EXR_COMPRESSIONS] = {
+    [KI_EXR_NONE] = {"uncompressed", 1, 1, NULL},
+    [KI_EXR_RLE] = {"rle", 1, 64, ki_exr_decompress_rle},
+    [KI_EXR_ZIPS] = {"zips", 1, 1032, ki_exr_decompress_zip},
+    [KI_EXR_ZIP] = {"zip", 16, 1032, ki_exr_decompress_zip},
+    [KI_EXR_PIZ] = {"piz", 32, 512, ki_exr_decompress_piz},
+    [KI_EXR_PXR24] = {"pxr24", 16, 1032 * 4 / 3, ki_exr_decompress_pxr24},
+    [KI_EXR_B44] = {"b44", 32, 11, ki_exr_decompress_b44},
+    [KI_EXR_B44A] = {"b44a", 32, 11, ki_exr_decompress_b44},
+    [KI_EXR_DWAA] = {"dwaa", 32, 1 << 17, ki_exr_decompress_dwa},
+    [KI_EXR_DWAB] = {"dwab", 256, 1 << 17, ki_exr_decompress_dwa},
+};
+
+const char *ki_exr_compression_name(int compression)
+{
+    return methods[compression].name;
+}
+
+int ki_exr_chunk_lines(int compression)
+{
+    return compression < KI_EXR_COMPRESSIONS ? methods[compression].lines : 0;
+}
+
+// ----------------------------------------------------------------------------------------- finding
+
+// Sizes of the data window and of what it is cut into.
+typedef struct grid {
+    int64_t width, height, chunk_width, chunk_height; // 0: the header is wrong
+    int64_t across, down;
+} grid;
+
+static grid make_grid(const ki_exr_part *p)
+{
+    grid g = {.width = (int64_t)p->data.right - p->data.left + 1,
+              .height = (int64_t)p->data.bottom - p->data.top + 1};
+    g.chunk_width = p->tiled ? p->tile_width : g.width;
+    g.chunk_height = p->tiled ? (int64_t)p->tile_height : ki_exr_chunk_lines(p->compression);
+    if (g.width < 1 || g.height < 1 || !g.chunk_width || !g.chunk_height)
+        return (grid){0};
+    g.across = (g.width + g.chunk_width - 1) / g.chunk_width;
+    g.down = (g.height + g.chunk_height - 1) / g.chunk_height;
+    return g;
+}
+
+int32_t ki_exr_chunk_count(const ki_exr_part *part)
+{
+    grid g = make_grid(part);
+    if (part->stated_chunks >= 0)
+        return part->stated_chunks;
+    return g.across && g.down <= INT32_MAX / g.across ? (int32_t)(g.across * g.down) : 0;
+}
+
+static size_t most_from(int compression, size_t packed_size)
+{
+    size_t growth = methods[compression].growth;
+    return packed_size > SIZE_MAX / growth - 64 ? SIZE_MAX
+                                                : packed_size * growth + (growth > 1 ? 64 : 0);
+}
+
+typedef struct search {
+    const ki_exr_header *header;
+    const ki_exr_part *part;
+    int part_index, entry_count;
+    grid grid;
+    size_t left; // bytes of the file that no chunk has taken
+} search;
+
+// A reader at chunk `index` of the table, behind what says which chunk it is; failed where the table
+// or the chunk says something else.
+static ki_reader open_chunk(const search *s, int64_t index, int column, int row)
+{
+    const ki_exr_header *h = s->header;
+    ki_reader nowhere = {.failed = true};
+    uint64_t entry = s->part->table + 8 * (uint64_t)index;
+    if (index >= s->entry_count || entry > h->size || h->size - entry < 8)
+        return nowhere;
+    ki_reader r = ki_reader_make(h->bytes + entry, 8);
+    uint64_t offset = ki_read_u64(&r);
+    if (offset >= h->size)
+        return nowhere;
+    r = ki_reader_make(h->bytes + offset, h->size - (size_t)offset);
+    bool same = !h->multipart || ki_read_u32(&r) == (uint32_t)s->part_index;
+    if (s->part->tiled) { // column, row and twice the number of the mip level
+        same = same && ki_read_u32(&r) == (uint32_t)column && ki_read_u32(&r) == (uint32_t)row &&
+               ki_read_u32(&r) == 0 && ki_read_u32(&r) == 0;
+    } else {
+        int64_t y = s->part->data.top + row * s->grid.chunk_height;
+        same = same && (int32_t)ki_read_u32(&r) == y;
+    }
+    return same ? r : nowhere;
+}
+
+static kiln_result find_chunk(search *s, const char *name, int column, int row, ki_exr_chunk *c,
+                              kiln_error *error)
+{
+    const grid *g = &s->grid;
+    int64_t index = row * g->across + column;
+    int64_t x = column * g->chunk_width, y = row * g->chunk_height;
+    int width = (int)(g->width - x < g->chunk_width ? g->width - x : g->chunk_width);
+    int height = (int)(g->height - y < g->chunk_height ? g->height - y : g->chunk_height);
+    ki_reader r = open_chunk(s, index, column, row);
+    c->packed_size = ki_read_u32(&r);
+    c->packed = ki_read_bytes(&r, c->packed_size);
+    if (!c->packed || c->packed_size > s->left) // more: chunks overlap
+        return ki_fail(error, KILN_ERROR_FORMAT, "%s: chunk %lld is missing or damaged", name,
+                       (long long)index);
+    s->left -= c->packed_size;
+    c->box = (ki_exr_box){s->part->data.left + (int)x, s->part->data.top + (int)y, width, height,
+                          s->part->channels,           s->part->channel_count};
+    c->size = ki_exr_box_size(&c->box);
+    if (!c->size || c->packed_size > c->size ||
+        c->size > most_from(s->part->compression, c->packed_size))
+        return ki_fail(error, KILN_ERROR_FORMAT,
+                       "%s: chunk %lld has %zu bytes, which cannot hold its %d x %d pixels", name,
+                       (long long)index, c->packed_size, width, height);
+    return KILN_OK;
+}
+
+kiln_result ki_exr_find_chunks(kiln_context *context, const ki_exr_header *header, int part,
+                               const char *name, ki_exr_chunk **chunks, int *count,
+                               kiln_error *error)
+{
+    search s = {header,
+                &header->parts[part],
+                part,
+                ki_exr_chunk_count(&header->parts[part]),
+                make_grid(&header->parts[part]),
+                header->size};
+    *chunks = NULL;
+    *count = 0;
+    int64_t needed = s.grid.across * s.grid.down;
+    if (needed < 1 || s.entry_count < needed || (size_t)s.entry_count > header->size / 8)
+        return ki_fail(
+            error, KILN_ERROR_FORMAT,
+            "%s: a table of %d chunks does not fit into %zu bytes or is too short for %lld", name,
+            s.entry_count, header->size, (long long)needed);
+    ki_exr_chunk *found = ki_alloc(context, (size_t)needed, sizeof *found);
+    if (!found)
+        return ki_fail_memory(context, error, name, (size_t)needed * sizeof *found);
+    for (int row = 0; row < s.grid.down; row++)
+        for (int column = 0; column < s.grid.across; column++) {
+            kiln_result result = find_chunk(&s, name, column, row, &found[*count], error);
+            if (result != KILN_OK) {
+                ki_free(found);
+                *count = 0;
+                return result;
+            }
+            ++*count;
+        }
+    *chunks = found;
+    return KILN_OK;
+}
+
+// --------------------------------------------------------------------------------------- unpacking
+
+const uint8_t *ki_exr_chunk_samples(const ki_exr_workspace *work, int compression,
+                                    const ki_exr_chunk *chunk, uint8_t *raw, kiln_result *result)
+{
+    *result = KILN_OK;
+    if (chunk->packed_size == chunk->size) // what does not become smaller is stored as it is
+        return chunk->packed;
+    const method *m = &methods[compression];
+    *result = m->decompress ? m->decompress(work, &chunk->box, chunk->packed, chunk->packed_size,
+                                            raw, chunk->size)
+                            : KILN_ERROR_FORMAT;
+    return *result == KILN_OK ? raw : NULL;
+}

@@ -1,0 +1,116 @@
+// Samples of an EXR file, half, float or unsigned integer, to the pixels of a picture: three floats
+// each. Not-a-number and negative values become 0, infinities the largest finite value of the type;
+// a channel that the file does not have is 0.
+#include "codec/exr.h"
+#include "image/pack.h"
+
+#include <string.h>
+
+enum { STRETCH = 256 }; // samples that are converted at a time
+
+static void floats_from_halfs(const uint8_t *restrict samples, int count, float *restrict values)
+{
+    uint16_t halfs[STRETCH];
+    for (int i = 0; i < count; i++) {
+        uint16_t half;
+        memcpy(&half, samples + 2 * (size_t)i, 2);
+        int32_t h = half > 0x7c00 ? 0 : half;
+        halfs[i] = (uint16_t)(h < 0x7bff ? h : 0x7bff);
+    }
+    ki_floats_from_halfs(halfs, (size_t)count, values);
+}
+
+static void to_floats(const uint8_t *restrict samples, int type, int count, float *restrict values)
+{
+    if (type == KI_EXR_HALF) {
+        floats_from_halfs(samples, count, values);
+    } else if (type == KI_EXR_FLOAT) {
+        for (int i = 0; i < count; i++) {
+            int32_t bits;
+            memcpy(&bits, samples + 4 * (size_t)i, 4);
+            bits = bits > 0x7f800000 ? 0 : bits;
+            bits = bits > 0 ? bits : 0;
+            bits = bits < 0x7f7fffff ? bits : 0x7f7fffff;
+            memcpy(&values[i], &bits, 4);
+        }
+    } else {
+        for (int i = 0; i < count; i++) {
+            uint32_t integer;
+            memcpy(&integer, samples + 4 * (size_t)i, 4);
+            values[i] = (float)integer;
+        }
+    }
+}
+
+typedef float float4 __attribute__((vector_size(16)));
+
+// Three channels to RGB, four texels at a time.
+static void interleave(const float *restrict r, const float *restrict g, const float *restrict b,
+                       int count, float *restrict rgb)
+{
+    int i = 0;
+    for (; i + 4 <= count; i += 4) {
+        float4 red, green, blue, out[3];
+        memcpy(&red, r + i, sizeof red);
+        memcpy(&green, g + i, sizeof green);
+        memcpy(&blue, b + i, sizeof blue);
+        float4 low = __builtin_shufflevector(red, green, 0, 4, 1, 5);
+        float4 high = __builtin_shufflevector(red, green, 2, 6, 3, 7);
+        float4 one = __builtin_shufflevector(low, blue, 2, 3, 5, -1);
+        out[0] = __builtin_shufflevector(low, blue, 0, 1, 4, 2);
+        out[1] = __builtin_shufflevector(one, high, 1, 2, 4, 5);
+        out[2] = __builtin_shufflevector(blue, high, 2, 6, 7, 3);
+        memcpy(rgb + 3 * (size_t)i, out, sizeof out);
+    }
+    for (; i < count; i++) {
+        float *texel = rgb + 3 * (size_t)i;
+        texel[0] = r[i];
+        texel[1] = g[i];
+        texel[2] = b[i];
+    }
+}
+
+// One line of three channels, NULL where missing, to RGB.
+static void put_line(const uint8_t *const samples[3], const ki_exr_channel *const channel[3],
+                     int count, float *rgb)
+{
+    float values[3][STRETCH];
+    for (int c = 0; c < 3; c++)
+        if (!samples[c])
+            memset(values[c], 0, sizeof values[c]);
+    for (int x = 0; x < count; x += STRETCH) {
+        int n = ki_min(STRETCH, count - x);
+        for (int c = 0; c < 3; c++)
+            if (samples[c])
+                to_floats(samples[c] + (size_t)x * (size_t)channel[c]->bytes, channel[c]->type, n,
+                          values[c]);
+        interleave(values[0], values[1], values[2], n, rgb + 3 * (size_t)x);
+    }
+}
+
+void ki_exr_put_box(const ki_exr_picture *p, const ki_exr_box *box, const uint8_t *raw)
+{
+    int left = ki_max(box->x, p->left), right = ki_min(box->x + box->width, p->left + p->width);
+    for (int y = box->y; y < box->y + box->height; y++) {
+        const uint8_t *start[KI_EXR_MAX_CHANNELS];
+        for (int c = 0; c < box->channel_count; c++) {
+            const ki_exr_channel *channel = &box->channels[c];
+            start[c] = raw;
+            if (ki_exr_line_has(channel, y))
+                raw += (size_t)ki_exr_columns(box, channel) * (size_t)channel->bytes;
+        }
+        int row = y - p->top;
+        if (row < 0 || row >= p->height || left >= right)
+            continue;
+        const uint8_t *samples[3] = {NULL};
+        const ki_exr_channel *channel[3] = {NULL};
+        for (int k = 0; k < 3; k++) {
+            if (p->source[k] < 0)
+                continue;
+            channel[k] = &box->channels[p->source[k]];
+            samples[k] = start[p->source[k]] + (size_t)(left - box->x) * (size_t)channel[k]->bytes;
+        }
+        put_line(samples, channel, right - left,
+                 p->pixels + 3 * ((size_t)row * (size_t)p->width + (size_t)(left - p->left)));
+    }
+}

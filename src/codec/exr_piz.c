@@ -1,0 +1,129 @@
+// EXR's PIZ: samples as 16-bit numbers are replaced by their rank among the values that occur, go
+// through a Haar wavelet, plane by plane, and are coded by Huffman's codes (exr_huffman.c). In goes a
+// chunk's packed bytes, out come its lines; by the description in "Reading and Writing OpenEXR Image
+// Files" and the original's behaviour.
+#include "codec/exr.h"
+
+#include "base/bytes.h"
+
+#include <string.h>
+
+// A pair of Haar's coefficients, mean and difference, back to its values: of 14 bits, or of 16 modulo
+// 2^16.
+static inline void pair14(uint16_t mean, uint16_t difference, uint16_t *a, uint16_t *b)
+{
+    int m = (int16_t)mean, d = (int16_t)difference;
+    int16_t first = (int16_t)(m + (d & 1) + (d >> 1));
+    *a = (uint16_t)first;
+    *b = (uint16_t)(int16_t)(first - d);
+}
+
+static inline void pair16(uint16_t mean, uint16_t difference, uint16_t *a, uint16_t *b)
+{
+    *b = (uint16_t)(mean - (difference >> 1));
+    *a = (uint16_t)(difference + *b - 0x8000);
+}
+
+static inline void pair(bool wide, uint16_t mean, uint16_t difference, uint16_t *a, uint16_t *b)
+{
+    if (wide)
+        pair16(mean, difference, a, b);
+    else
+        pair14(mean, difference, a, b);
+}
+
+// Undoes the wavelet of one plane in place: `width` values `step` apart, `height` rows `row` apart.
+static void undo_wavelet(uint16_t *plane, int width, ptrdiff_t step, int height, ptrdiff_t row,
+                         bool wide)
+{
+    int small = ki_min(width, height), two = 1;
+    while (two <= small)
+        two *= 2;
+    for (two /= 2; two >= 2; two /= 2) {
+        int one = two / 2;
+        ptrdiff_t right = step * one, below = row * one;
+        int y = 0, x;
+        for (; y + two <= height; y += two) {
+            uint16_t *at = plane + row * y, m0, m1, d0, d1;
+            for (x = 0; x + two <= width; x += two, at += step * two) {
+                pair(wide, at[0], at[below], &m0, &d0);
+                pair(wide, at[right], at[below + right], &m1, &d1);
+                pair(wide, m0, m1, &at[0], &at[right]);
+                pair(wide, d0, d1, &at[below], &at[below + right]);
+            }
+            if (width & one) {
+                pair(wide, at[0], at[below], &m0, &d0);
+                at[0] = m0;
+                at[below] = d0;
+            }
+        }
+        if (height & one) {
+            uint16_t *at = plane + row * y, m, d;
+            for (x = 0; x + two <= width; x += two, at += step * two) {
+                pair(wide, at[0], at[right], &m, &d);
+                at[0] = m;
+                at[right] = d;
+            }
+        }
+    }
+}
+
+// The values that occur, as a bitmap from byte `first` to `last`; table[i] is the i-th. Returns the
+// greatest i.
+static int read_values(ki_reader *r, uint16_t *table)
+{
+    uint8_t bitmap[8192] = {0};
+    uint32_t ends = ki_read_u32(r), first = ends & 0xffff, last = ends >> 16;
+    if (last >= sizeof bitmap)
+        return -1;
+    if (first <= last) {
+        const uint8_t *bytes = ki_read_bytes(r, last - first + 1);
+        if (!bytes)
+            return -1;
+        memcpy(bitmap + first, bytes, last - first + 1);
+    }
+    int count = 0;
+    for (int value = 0; value < 65536; value++)
+        if (value == 0 || bitmap[value >> 3] >> (value & 7) & 1)
+            table[count++] = (uint16_t)value;
+    memset(table + count, 0, (65536 - (size_t)count) * sizeof *table);
+    return count - 1;
+}
+
+static void undo_wavelets(const ki_exr_box *box, uint16_t *plane, bool wide)
+{
+    for (int c = 0; c < box->channel_count; c++) {
+        const ki_exr_channel *channel = &box->channels[c];
+        int width = ki_exr_columns(box, channel), height = ki_exr_rows(box, channel);
+        int words = channel->bytes / 2;
+        for (int k = 0; k < words; k++)
+            undo_wavelet(plane + k, width, words, height, (ptrdiff_t)width * words, wide);
+        plane += (ptrdiff_t)width * height * words;
+    }
+}
+
+kiln_result ki_exr_decompress_piz(const ki_exr_workspace *work, const ki_exr_box *box,
+                                  const uint8_t *packed, size_t packed_size, uint8_t *raw,
+                                  size_t size)
+{
+    size_t count = size / 2;
+    uint16_t *values = (uint16_t *)(void *)work->scratch;
+    uint16_t *table = ki_alloc_raw(work->context, 65536, sizeof *table);
+    if (!table)
+        return KILN_ERROR_MEMORY;
+    ki_reader r = ki_reader_make(packed, packed_size);
+    int greatest = read_values(&r, table);
+    uint32_t length = ki_read_u32(&r);
+    const uint8_t *huffman = ki_read_bytes(&r, length);
+    kiln_result result = KILN_ERROR_FORMAT;
+    if (greatest >= 0 && huffman)
+        result = ki_exr_unpack_huffman(work->context, huffman, length, values, count);
+    if (result == KILN_OK) {
+        undo_wavelets(box, values, greatest >= 1 << 14);
+        for (size_t i = 0; i < count; i++)
+            values[i] = table[values[i]];
+        ki_exr_lines_from_planes(box, work->scratch, raw);
+    }
+    ki_free(table);
+    return result;
+}

@@ -1,0 +1,53 @@
+// EXR's PXR24: of each line and channel the samples' differences, their highest bytes first, then the
+// next ones, deflated; a float has lost its lowest byte.
+#include "codec/deflate.h"
+#include "codec/exr.h"
+
+#include <string.h>
+
+static size_t stored_bytes(const ki_exr_channel *channel)
+{
+    return channel->type == KI_EXR_FLOAT ? 3 : (size_t)channel->bytes;
+}
+
+// One line of one channel, `width` samples; `from` has their bytes, rank after rank.
+static void undo_line(const uint8_t *from, size_t width, const ki_exr_channel *channel,
+                      uint8_t *raw)
+{
+    size_t bytes = (size_t)channel->bytes, ranks = stored_bytes(channel);
+    uint32_t value = 0;
+    for (size_t x = 0; x < width; x++, raw += bytes) {
+        uint32_t difference = 0;
+        for (size_t k = 0; k < ranks; k++)
+            difference = difference << 8 | from[k * width + x];
+        value += difference;
+        uint32_t stored = channel->type == KI_EXR_FLOAT ? value << 8 : value;
+        memcpy(raw, &stored, bytes);
+    }
+}
+
+kiln_result ki_exr_decompress_pxr24(const ki_exr_workspace *work, const ki_exr_box *box,
+                                    const uint8_t *packed, size_t packed_size, uint8_t *raw,
+                                    size_t size)
+{
+    (void)size;
+    size_t plain_size = 0;
+    for (int c = 0; c < box->channel_count; c++)
+        plain_size += stored_bytes(&box->channels[c]) *
+                      (size_t)ki_exr_columns(box, &box->channels[c]) *
+                      (size_t)ki_exr_rows(box, &box->channels[c]);
+    if (!ki_inflate(packed, packed_size, work->scratch, plain_size))
+        return KILN_ERROR_FORMAT;
+    const uint8_t *from = work->scratch;
+    for (int y = box->y; y < box->y + box->height; y++)
+        for (int c = 0; c < box->channel_count; c++) {
+            const ki_exr_channel *channel = &box->channels[c];
+            if (!ki_exr_line_has(channel, y))
+                continue;
+            size_t width = (size_t)ki_exr_columns(box, channel);
+            undo_line(from, width, channel, raw);
+            from += stored_bytes(channel) * width;
+            raw += (size_t)channel->bytes * width;
+        }
+    return KILN_OK;
+}
