@@ -7,7 +7,7 @@
 #include <float.h>
 #include <math.h>
 
-// Gaussians are cut where their exponent reaches this.
+// Integrals of a Gaussian exp(-x^2) stop at x^2 = CUT2, where it is 2e-12.
 #define CUT2 27.0
 
 double ki_beckmann_d(double alpha, double noh)
@@ -27,19 +27,22 @@ double ki_beckmann_lambda(double alpha, double cosine)
     if (!(cosine > 0))
         return DBL_MAX;
     double a = cosine / fmax(alpha * sine, cosine * 1e-2);
-    // Above a = 6 Lambda is below 1e-18.
+    // Lambda is below 1e-18 for a > 6.
     if (a > 6)
         return 0;
     return ki_exp(-a * a) * (1 / (a * 1.77245385090551602730) - ki_erfcx(a)) / 2;
 }
 
-// The azimuth's part at fixed elevations: with phi from the mirror direction on and S = nov + nol,
+// Integrates over the azimuth phi of the light at fixed elevations of view and light. phi is 0 in
+// the mirror direction. With S = nov + nol,
 //
 //     tan^2 theta_h = tan^2((theta_v - theta_l) / 2) + 4 sin theta_v sin theta_l sin^2(phi/2) / S^2
 //     v.h = S / (2 cos theta_h)
 //
-// so D falls as a Gaussian of sin(phi/2): a trapezoid on the circle where that is wide, else Gauss's
-// rule on the part that matters. sum[0] += the integral of D over the circle, sum[1] with (1-v.h)^5.
+// and the arguments tan2 = tan^2((theta_v - theta_l) / 2), spread = 4 sin theta_v sin theta_l / S^2
+// and s = S. D is therefore a Gaussian of sin(phi/2). Where the Gaussian is wide, the trapezoidal
+// rule runs over the whole circle; where it is narrow, Gauss's rule runs over |phi| up to its cut.
+// Adds weight * int D dphi to sum[0] and weight * int D (1 - v.h)^5 dphi to sum[1].
 static void integrate_azimuth(double alpha, double tan2, double spread, double s, double weight,
                               double sum[2])
 {
@@ -55,17 +58,21 @@ static void integrate_azimuth(double alpha, double tan2, double spread, double s
         e += d;
         b += d * ki_schlick_fresnel(fmin(1, s * sqrt(1 + t) / 2));
     }
-    // The circle is twice phi = 2 x in [0, pi]; the weights' sum is 2.
+    // x is phi / 2 in [0, half], one half of a symmetric integral: int dphi = 4 int dx. The weights
+    // w sum to 2, which leaves a factor 2 * half.
     sum[0] += scale * 2 * half * e;
     sum[1] += scale * 2 * half * b;
 }
 
-// In light space, where D is a Gaussian about the mirror direction of width 2 alpha in elevation:
+// Integrates over light directions:
 //
-//     E(v) = int int D G2 / (4 nov) dphi dnol,      B the same times (1 - v.h)^5.
+//     E(v) = int int D G / (4 nov) dphi dnol,
 //
-// Over the light's elevation psi, cut where D falls below 2e-12 of its peak; where the horizon is
-// nearer than that, G2 has a pole near -psi_v: logarithmic steps of psi + psi_v.
+// and B is the same integral with the factor (1 - v.h)^5. The inner integral, over the azimuth, is
+// integrate_azimuth. The outer integral runs over the light's elevation psi_l, in which D is a
+// Gaussian about the view's elevation psi_v with a width of 2 alpha. The range of psi_l ends where
+// D is below 2e-12 of its peak. If the horizon lies inside that range, the pole of G near psi_l =
+// -psi_v comes close, and the nodes are spaced evenly in log(psi_l + psi_v).
 void ki_beckmann_energy(const kiln_model *model, double roughness, double nov, double ab[2])
 {
     roughness = ki_clamp(roughness, 0, 1);
@@ -100,7 +107,8 @@ void ki_beckmann_energy(const kiln_model *model, double roughness, double nov, d
             delta = total - 2 * psi_v;
             weight *= total;
         }
-        // Sums of angles, since that of psi_v and delta has no digits of a narrow lobe's delta.
+        // nol = sin(psi_v + delta) by the addition theorem: the sum psi_v + delta would round off
+        // the digits of delta where the lobe is narrow.
         double half_sine, half_cosine;
         ki_sincos(delta / 2, &half_sine, &half_cosine);
         double tangent = half_sine / half_cosine, turn = 2 * half_sine * half_cosine;

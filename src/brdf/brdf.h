@@ -1,5 +1,9 @@
-// Microfacet functions of numbers. The normal is n = (0, 0, 1); nov, nol, noh are cosines with the
-// view, light and half vectors in [0, 1]; alpha is roughness squared.
+// Microfacet theory as functions of plain numbers: normal distributions D, masking G, Fresnel
+// reflectances F and their averages, samplers, and compensations of the energy that the specular
+// lobe loses. Vectors are unit vectors in a frame whose +z axis is the surface normal n. The
+// arguments nov, nol, noh and voh are the cosines n.v, n.l, n.h and v.h of the view v, the light l
+// and the half vector h, each in [0, 1]. alpha is roughness squared. No function checks its
+// arguments.
 #ifndef KI_BRDF_H
 #define KI_BRDF_H
 
@@ -7,60 +11,84 @@
 
 #include <stdint.h>
 
-/// The bits of `index` mirrored about the binary point: van der Corput's sequence in [0, 1).
+/// Van der Corput's sequence in [0, 1): the bits of `index` mirrored about the binary point.
 double ki_radical_inverse(uint32_t index);
-/// Point `index` of `count` of the Hammersley set, xi in [0, 1)^2: (index / count, radical inverse).
+/// Sets xi to point `index` of the Hammersley set of `count` points in [0, 1)^2: (index / count,
+/// ki_radical_inverse(index)).
 void ki_hammersley(uint32_t index, uint32_t count, double xi[2]);
 
-/// Trowbridge and Reitz's distribution, GGX: alpha^2 / (pi ((n.h)^2 (alpha^2 - 1) + 1)^2).
-/// Walter et al. 2007, eq. 33. Infinite where alpha is 0 and noh 1.
+/// D of Trowbridge and Reitz, called GGX: alpha^2 / (pi ((n.h)^2 (alpha^2 - 1) + 1)^2), by Walter
+/// et al. 2007, eq. 33. D is infinite at alpha = 0 and noh = 1.
 double ki_ggx_d(double alpha, double noh);
-/// A half vector with the density D(h) (n.h), from xi: Walter et al. 2007, eqs. 35 and 36.
+/// Maps xi, uniform in [0, 1)^2, to a half vector h with the density D(h) (n.h) per steradian for
+/// GGX's D. Walter et al. 2007, eqs. 35 and 36.
 void ki_ggx_half_vector(double alpha, const double xi[2], double h[3]);
 
-/// Schlick's one-sided shadowing, nox / (nox (1 - k) + k).
+/// Schlick's masking of one direction, G1 = nox / (nox (1 - k) + k), where nox is n.v or n.l.
 double ki_smith_g1_schlick(double k, double nox);
-/// The uncorrelated product for view and light.
+/// Schlick's masking G = G1(nov) G1(nol) of view and light, taken as independent of each other.
 double ki_smith_g_schlick(double k, double nov, double nol);
-/// k for image-based light, alpha / 2 = roughness^2 / 2. Karis 2013.
+/// Schlick's k for image-based light: alpha / 2 = roughness^2 / 2. Karis 2013.
 double ki_schlick_k_ibl(double alpha);
-/// k for point lights, (roughness + 1)^2 / 8. Karis 2013.
+/// Schlick's k for point lights: (roughness + 1)^2 / 8. Karis 2013.
 double ki_schlick_k_direct(double roughness);
 
-/// D by its name.
+/// The value of the distribution D that `d` names, per steradian.
 double ki_brdf_d(kiln_d d, double roughness, double noh);
-/// G / (nov nol), finite unless both are 0 or roughness is and one of them.
+/// G / (nov nol) for the model's masking G. The quotient is finite, except perhaps where both
+/// cosines are 0, or where roughness and one cosine are 0.
 double ki_visibility(const kiln_model *model, double roughness, double nov, double nol);
-/// G, with its limits where a cosine is 0.
+/// The model's masking G in [0, 1]. Where a cosine is 0, G is its limit at that cosine.
 double ki_masking(const kiln_model *model, double roughness, double nov, double nol);
-/// GGX's G1 / nox = 1 / (nox (1 + Lambda)).
+/// Smith's masking of one direction for GGX over that direction's cosine: G1 / nox = 1 / (nox (1 +
+/// Lambda)), where nox is n.v or n.l. The quotient is finite at nox = 0.
 double ki_smith_g1_over_cosine(double alpha, double nox);
 
-/// (1 - voh)^5, the varying part of Schlick's Fresnel F = f0 + (1 - f0) (1 - voh)^5.
+/// (1 - voh)^5, the factor of Schlick's Fresnel term F = f0 + (1 - f0) (1 - voh)^5 that depends on
+/// the angle.
 double ki_schlick_fresnel(double voh);
-/// Schlick's F less dip voh (1 - voh)^6, so that F = f82 at voh = 1 / 7, and that dip.
+/// Fresnel term of a metal with reflectance f0 at normal incidence and f82 at voh = 1 / 7, an angle
+/// of 82 degrees: Schlick's F - dip voh (1 - voh)^6, clamped to [0, 1]. dip = ki_f82_dip(f0, f82).
 double ki_fresnel_f82(double f0, double f82, double voh);
+/// The coefficient `dip` of ki_fresnel_f82.
 double ki_f82_dip(double f0, double f82);
-/// ior is n_transmitted / n_incident, c the cosine.
+/// Exact reflectance of a dielectric for unpolarised light. ior is n_transmitted / n_incident, and
+/// c is the cosine of the angle of incidence. Total reflection returns 1.
 double ki_fresnel_dielectric(double ior, double c);
+/// Exact reflectance of a conductor of complex index n + i k for unpolarised light; c is the cosine
+/// of the angle of incidence.
 double ki_fresnel_conductor(double n, double k, double c);
+/// Sets n and k to the complex index of a metal with this reflectivity at normal incidence, below
+/// 1, and this edge tint in [0, 1]. Gulbrandsen 2014.
 void ki_gulbrandsen(double reflectivity, double edge_tint, double *n, double *k);
-/// 2 int F(mu) mu dmu.
+/// The average F_avg = 2 int_0^1 F(mu) mu dmu of ki_fresnel_dielectric, to 1e-14.
 double ki_fresnel_dielectric_average(double ior);
+/// The average F_avg = 2 int_0^1 F(mu) mu dmu of ki_fresnel_conductor, to 1e-12.
 double ki_fresnel_conductor_average(double n, double k);
+/// Kulla and Conty's fit (2017) to ki_fresnel_dielectric_average.
 double ki_fresnel_dielectric_average_fit(double ior);
+/// Kulla and Conty's fit (2017) to F_avg of a conductor, in the parameters of ki_gulbrandsen.
 double ki_fresnel_conductor_average_fit(double reflectivity, double edge_tint);
 
+/// Maps xi, uniform in [0, 1)^2, to a direction l with the density (n.l) / pi per steradian.
 void ki_sample_cosine(const double xi[2], double l[3]);
-/// A half vector with the density D(h) (n.h) of Beckmann's D: Walter et al. 2007, eqs. 28 and 29.
+/// Maps xi, uniform in [0, 1)^2, to a half vector h with the density D(h) (n.h) per steradian for
+/// Beckmann's D. Walter et al. 2007, eqs. 28 and 29.
 void ki_beckmann_half_vector(double alpha, const double xi[2], double h[3]);
-/// A half vector with the density max(v.h, 0) D(h) / int max(v.h, 0) D(h) dh of GGX. v is any unit
-/// vector but (0, 0, -1).
+/// Maps xi, uniform in [0, 1)^2, to a half vector h that v sees: its density per steradian is
+/// max(v.h, 0) D(h) / int max(v.h, 0) D(h) dh for GGX's D. v is any unit vector except (0, 0, -1).
 void ki_sample_visible(double alpha, const double v[3], const double xi[2], double h[3]);
 
+/// The lobe of Kulla and Conty 2017 that returns the light that the specular lobe loses for F = 1:
+/// (1 - e_o) (1 - e_i) / (pi (1 - e_average)), where e_o and e_i are the albedo E at the cosines of
+/// the view and of the light. The lobe is 0 where e_average is 1.
 double ki_kulla_conty(double e_o, double e_i, double e_average);
+/// The factor that colours ki_kulla_conty for a material whose average reflectance F_avg is f.
 double ki_kulla_conty_fresnel(kiln_f_add form, double f, double e_average);
+/// Turquin 2019: the factor 1 + f0 (1 - e) / e to the specular lobe, where e is the albedo E(nov).
 double ki_turquin(double f0, double e);
+/// Fdez-Aguera 2019, for image-based light: the factor `single` to prefiltered radiance and the
+/// factor `multiple` to irradiance / pi. a and b are A and B of the split sum at nov.
 void ki_fdez_aguera(double f0, double a, double b, double *single, double *multiple);
 
 #endif

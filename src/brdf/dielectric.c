@@ -1,3 +1,26 @@
+// The shares R and T of light from one direction that a rough boundary between two dielectrics
+// reflects and transmits. In: model, roughness, ior and the cosine n.v. Out: R and T, by quadrature
+// over half vectors. docs/theory/glass.md derives the integrals and states their errors.
+//
+// With half vectors h over the microfacets, F the exact Fresnel term and c = v.h,
+//
+//     R(v) = int D F c G(v, l) / (n.v) dh,            l = 2 c h - v,
+//     T(v) = int D (1 - F) c G(v, l) / (n.v) dh,      l = (eta c - g) h - eta v,
+//
+// where eta = 1 / ior, and g = sqrt(1 - eta^2 (1 - c^2)) is the cosine of refraction at the
+// microfacet. These are eqs. 20, 21, 38 and 40 of Walter et al. 2007, whose Jacobians between h and
+// l cancel.
+//
+// The outer integral is over theta, the angle of h to n, and the inner over phi, the azimuth of h
+// from v. c falls as phi grows, and the conditions on h hold up to some phi = reach: the inner
+// integral is over one arc. The conditions are
+//
+//     reflected       n.l = 2 c cos theta - n.v > 0
+//     transmitted     c > 0 and -n.l = eta n.v - (eta c - g) cos theta > 0
+//     either, from the denser side    c > critical, beyond which reflection is total
+//
+// Under total reflection F = 1. So from the denser side R is E minus the integral of 1 - F over c >
+// critical.
 #include "brdf/dielectric.h"
 
 #include "base/base.h"
@@ -8,38 +31,25 @@
 
 #include <math.h>
 
-// With half vectors h over the microfacets, F the exact Fresnel term and c = v.h,
-//
-//     R(v) = int D F c G(v, l) / (n.v) dh,            l = 2 c h - v,
-//     T(v) = int D (1 - F) c G(v, l) / (n.v) dh,      l = (eta c - g) h - eta v,
-//
-// where eta = 1 / ior and g = sqrt(1 - eta^2 (1 - c^2)) is the cosine beyond the facet. Walter et al.
-// 2007, eqs. 20, 21, 38 and 40, whose Jacobians of h and l cancel.
-//
-// h runs over theta, its angle from n, outside, and phi from v's side on, inside. c falls with phi,
-// and so do all of the conditions on it: each integral is over one arc, phi < reach, where
-//
-//     reflected       n.l = 2 c cos theta - n.v > 0
-//     transmitted     c > 0, from inside c > critical and -n.l = eta n.v - (eta c - g) cos theta > 0
-//
-// Total reflection has F = 1, so R from inside is E less the integral of 1 - F, over c > critical too.
-// ior is from this to its inverse.
+// ior is clamped to [LEAST_IOR, 1 / LEAST_IOR].
 #define LEAST_IOR (1.0 / 16)
 
 typedef enum part { REFLECTED, TRANSMITTED } part;
 
+// What depends on the model, the roughness, the ior and the view only.
 typedef struct boundary {
     kiln_model model;
-    double roughness, alpha, ior, eta;
-    double mu, sin_v, theta_v;
-    double critical; // c of total reflection, 0 from outside
-    double lambda_v; // Smith's, for transmission
-    double root_v;   // n.v (1 + 2 Lambda(v)) for GGX with Smith's G, else 0
-    double pole;     // G has one at about n.l = -pole
-    double most;     // of G(v, l) / (n.v)
-    double light;    // share of a ring below which half of the nodes do; Gaussians are harder
+    double roughness, alpha, ior, eta; // eta = 1 / ior
+    double mu, sin_v, theta_v;         // the view's n.v, its sine and its angle to n
+    double critical; // cosine c at which total reflection begins; 0 from the thinner side
+    double lambda_v; // Smith's Lambda(v), for masking in transmission
+    double root_v;   // n.v (1 + 2 Lambda(v)) for GGX with KILN_G_SMITH, 0 for other models
+    double pole;     // G has its nearest pole at about n.l = -pole
+    double most;     // upper bound of G(v, l) / (n.v)
+    double light;    // bound on a ring's share of the result below which 8 nodes per panel suffice
 } boundary;
 
+// Smith's Lambda of a direction with this cosine to n, at most 1e9 for ki_beta.
 static double lambda(const boundary *s, double cosine)
 {
     if (s->model.d == KILN_D_BECKMANN)
@@ -48,9 +58,11 @@ static double lambda(const boundary *s, double cosine)
     return fmin(1e9, (root / cosine - 1) / 2);
 }
 
-// G / (n.v) across the boundary. Light that leaves below is hidden by what lies below, not above: with
-// Smith's heights u uniform in [0, 1], int u^Lambda(v) (1 - u)^Lambda(l) du, a beta function (Heitz et
-// al. 2016, Dupuy et al. 2016). The other three are products on either side.
+// G / (n.v) of transmitted light. The view is masked by the surface above a microfacet, and
+// transmitted light by the surface below it. With Smith's heights, u uniform in [0, 1], G is
+// therefore the integral of u^Lambda(v) (1 - u)^Lambda(l) du, a beta function (Heitz et al. 2016,
+// Dupuy et al. 2016). The three maskings other than KILN_G_SMITH are products G1(v) G1(l), for
+// transmission as for reflection.
 static double transmitted_masking(const boundary *s, double nol)
 {
     if (s->model.g == KILN_G_SMITH)
@@ -58,7 +70,8 @@ static double transmitted_masking(const boundary *s, double nol)
     return nol * ki_visibility(&s->model, s->roughness, s->mu, nol);
 }
 
-// F of ki_fresnel_dielectric with one division; `beyond` is ior g.
+// F as by ki_fresnel_dielectric, with one division. `contrast` is 1 - ior^2, c the cosine of
+// incidence, and `beyond` is ior times the cosine of refraction.
 static double fresnel(double contrast, double c, double beyond)
 {
     double s2 = (1 - c) * (1 + c), product = c * beyond, sum2 = (c + beyond) * (c + beyond);
@@ -66,7 +79,8 @@ static double fresnel(double contrast, double c, double beyond)
     return fmin(1, contrast * contrast * (product * product + s2 * s2) / (below * below));
 }
 
-// (n.l) G / ((n.v) (n.l)), Smith's for GGX written out.
+// G / (n.v) of reflected light. The common case, GGX with KILN_G_SMITH, uses the stored root of the
+// view.
 static double reflected_masking(const boundary *s, double nol)
 {
     if (s->root_v > 0) {
@@ -76,7 +90,8 @@ static double reflected_masking(const boundary *s, double nol)
     return nol * ki_visibility(&s->model, s->roughness, s->mu, nol);
 }
 
-// The integrand less D, for one half vector.
+// The integrand without its factor D, for a half vector with n.h = cos_h and v.h = c. From the
+// denser side the integrand of REFLECTED has 1 - F in place of F.
 static double facet(const boundary *s, part what, double cos_h, double c)
 {
     double contrast = (1 - s->ior) * (1 + s->ior), g2 = c * c - contrast;
@@ -92,13 +107,15 @@ static double facet(const boundary *s, part what, double cos_h, double c)
     return nol > 0 ? (1 - f) * c * transmitted_masking(s, nol) : 0;
 }
 
-// Where cos phi = y, and how far beyond it in phi the integrand's next singularity lies that is `more`
-// beyond in cos phi.
+// The phi at which cos phi = y, clamped to [0, pi].
 static double arc_end(double y)
 {
     return y >= 1 ? 0 : y <= -1 ? KI_PI : ki_acos(y);
 }
 
+// The distance in phi from `reach`, the end of the arc, to a singularity of the integrand beyond
+// it, where cos phi is y - more. y is cos phi at the end, or below -1 where the arc is the half
+// circle.
 static double arc_margin(double y, double reach, double more)
 {
     double sine = ki_sin(reach);
@@ -109,7 +126,8 @@ static double arc_margin(double y, double reach, double more)
 
 enum { NODES = 16 };
 
-// cos x for x in [0, pi], to 1e-13, from the sine of its half.
+// cos x for x in [0, pi] with an error below 1e-13: 1 - 2 sin^2(x / 2) by the Taylor series of the
+// sine.
 static double arc_cosine(double x)
 {
     double half = x / 2, y = half * half, p = 1.0 / 355687428096000;
@@ -124,9 +142,12 @@ static double arc_cosine(double x)
     return 1 - 2 * sine * sine;
 }
 
-// The arc phi < reach. Steps grow with the distance from its end plus `margin`, which is to be the
-// 16th power of a linear function, nearly an exponential; `root` where the end has a square root's
-// singularity.
+// Integrates facet() over the arc 0 <= phi < reach of the half vectors whose sine and cosine to n
+// are h[0] and h[1]. The integrand has a singularity `margin` beyond the arc's end, so that nodes
+// are to be closer towards the end: margin + reach - phi = margin (1 + slope x)^16 with x even in
+// [0, 1], a power that is nearly an exponential and costs four products. With `root` the integrand
+// is a square root at the end itself, and x = y^2 with y even removes it. `light` takes 8 nodes per
+// panel instead of 16.
 static double integrate_arc(const boundary *s, part what, const double h[2], double reach,
                             double margin, bool root, bool light)
 {
@@ -152,10 +173,12 @@ static double integrate_arc(const boundary *s, part what, const double h[2], dou
     return 16 * slope / panels * sum;
 }
 
-// One theta, h its sine and cosine; half of the nodes where it weighs little.
+// The inner integral: over the azimuth of half vectors with sine and cosine h[0] and h[1] to n.
+// Finds the arc's end and the singularity nearest to it. `light` marks a ring of little influence
+// on the result.
 static double ring(const boundary *s, part what, const double h[2], bool light)
 {
-    double k = s->sin_v * h[0], least = h[1] * s->mu; // c = least + k cos phi
+    double k = s->sin_v * h[0], least = h[1] * s->mu; // v.h = c = least + k cos phi
     double critical = (s->critical - least) / k, y, pole;
     if (what == REFLECTED) {
         y = (s->mu / (2 * h[1]) - least) / k;
@@ -163,7 +186,8 @@ static double ring(const boundary *s, part what, const double h[2], bool light)
     } else {
         y = -least / k;
         pole = fmin(s->pole, 0.5 * sqrt(fabs(s->ior - 1)) + 1e-3) / (h[1] * k);
-        // n.l = 0 at c = (m^2 + eta^2 - 1) / (2 eta m) with m = eta n.v / cos theta.
+        // From the denser side, n.l = 0 at c = (m^2 + eta^2 - 1) / (2 eta m), m = eta n.v / cos
+        // theta.
         double m = s->eta * s->mu / h[1], m2 = s->eta * s->eta - 1;
         y = s->critical > 0 && m * m < m2 ? ((m * m + m2) / (2 * s->eta * m) - least) / k : y;
         pole = s->critical > 0 ? s->pole / (h[1] * k) : pole;
@@ -172,7 +196,8 @@ static double ring(const boundary *s, part what, const double h[2], bool light)
         double reach = arc_end(y);
         return integrate_arc(s, what, h, reach, arc_margin(y, reach, pole), false, light);
     }
-    // The root of total reflection is the arc's end, or beyond it.
+    // From the denser side, 1 - F is a square root near the critical angle, which is the arc's end
+    // if the condition n.l > 0 allows, and lies beyond the end otherwise.
     if (y <= critical) {
         double reach = arc_end(critical);
         double margin = fmax(arc_margin(critical, reach, 0), reach / 20);
@@ -182,7 +207,7 @@ static double ring(const boundary *s, part what, const double h[2], bool light)
     return integrate_arc(s, what, h, reach, fmin(margin, arc_margin(y, reach, pole)), true, light);
 }
 
-// D sin theta.
+// D(h) sin theta, where h[0] and h[1] are the sine and cosine of theta.
 static double density(const boundary *s, const double h[2])
 {
     double a2 = s->alpha * s->alpha, s2 = h[0] * h[0], c2 = h[1] * h[1];
@@ -192,8 +217,10 @@ static double density(const boundary *s, const double h[2])
     return h[0] * a2 / (KI_PI * d * d);
 }
 
-// Between two angles where an arc comes, goes, or changes its kind: theta = width sinh x, in panels
-// of x, slow at the ends where the arc's length is a square root.
+// The outer integral over theta between two of the angles at which the arc opens, closes or changes
+// its limiting condition. theta = width sinh x, because D is narrow; x is a polynomial of the
+// panels' variable with zero slope at the ends, because the arc's length behaves as a square root
+// there.
 static double integrate_rings(const boundary *s, part what, double from, double to)
 {
     double width = fmin(s->alpha, fmax(s->mu, 0.1 * s->alpha)), sum = 0;
@@ -217,13 +244,16 @@ static double integrate_rings(const boundary *s, part what, double from, double 
     return sum;
 }
 
+// Integrates over all half vectors: cuts the range of theta at the angles where the arc opens,
+// closes or changes its limiting condition, and adds the integrals between the cuts.
 static double integrate_part(const boundary *s, part what)
 {
     double elevation = KI_PI / 2 - s->theta_v, start = 0, end = KI_PI / 2, cuts[6];
     int count = 0;
     cuts[count++] = what == REFLECTED ? elevation / 2 : elevation;
     if (what == REFLECTED) {
-        // Grazing light is next to G's pole.
+        // If the view is near the horizon, a cut near `end` separates the grazing light, which is
+        // close to the pole of G.
         end = (KI_PI - elevation) / 2;
         cuts[count++] = elevation < 0.05 ? end - 8 * elevation : end;
     }
@@ -237,13 +267,14 @@ static double integrate_part(const boundary *s, part what)
         if (s->theta_v > total && what == REFLECTED)
             start = s->theta_v - total;
         if (s->theta_v > total && what == TRANSMITTED) {
-            // Refraction turns the ray by the view's elevation: it leaves along the surface.
+            // The smallest theta at which refracted light can leave: the ray turns by the view's
+            // elevation and runs along the surface.
             ki_sincos(elevation, &sine, &cosine);
             start = s->theta_v - ki_atan2(sine, s->eta - cosine);
         }
     }
     double sum = 0, from = fmax(0, start);
-    for (;;) { // the cuts in order
+    for (;;) { // visits the cuts in increasing order
         double to = end;
         for (int i = 0; i < count; i++)
             if (cuts[i] > from && cuts[i] < to)
@@ -256,16 +287,19 @@ static double integrate_part(const boundary *s, part what)
     }
 }
 
-// The smooth boundary, where G is not 1 for Schlick's k of the text only.
+// R and T of a smooth boundary: F and 1 - F, times G, which differs from 1 only for
+// KILN_G_SCHLICK_TEXT.
 static void smooth(const kiln_model *model, double ior, double nov, double rt[2])
 {
-    nov = nov > 1e-150 ? nov : 0; // squares would underflow
+    nov = nov > 1e-150 ? nov : 0; // the square of a smaller cosine would underflow
     double f = ki_fresnel_dielectric(ior, nov);
     double beyond = sqrt(fmax(0, 1 - (1 - nov) * (1 + nov) / (ior * ior)));
     rt[0] = f * ki_masking(model, 0, nov, nov);
     rt[1] = f < 1 ? (1 - f) * ki_masking(model, 0, nov, beyond) : 0;
 }
 
+// Fills the boundary from clamped arguments. Returns false for roughness below 1e-4, which smooth()
+// handles.
 static bool prepare(const kiln_model *model, double roughness, double ior, double nov, boundary *s)
 {
     *s = (boundary){.model = *model, .roughness = ki_clamp(roughness, 0, 1)};
@@ -320,8 +354,9 @@ double ki_dielectric_reflection(const kiln_model *model, double roughness, doubl
     return rt[0];
 }
 
-// The two change fast at grazing angles, by the critical angle and where the cone of total reflection
-// meets the horizon (n.v = ior): parts between those, slow at their ends.
+// R and T change fast at grazing angles, near the critical angle and where the cone of total
+// reflection meets the horizon (n.v = ior). The integral over n.v is cut at these cosines, and a
+// cubic substitution places more nodes near the cuts.
 void ki_dielectric_average(const kiln_model *model, double roughness, double ior, double rt[2])
 {
     enum { PANELS = 2 };

@@ -1,4 +1,7 @@
-// Which row, and single values.
+// The albedo E of the specular lobe, and A and B of the split sum, for given cosines of the view.
+// This file chooses the kernel: for GGX the fastest that the processor runs, compiled from
+// energy.inl, and for Beckmann ki_beckmann_energy. It also integrates E to the average E_avg.
+// docs/theory/energy.md.
 #include "brdf/energy.h"
 
 #include "brdf/beckmann.h"
@@ -6,7 +9,8 @@
 
 #include <math.h>
 
-// What every processor of the kind that this is compiled for can do.
+// The kernel for calls that have no context. It uses only instructions that every processor of the
+// compiled architecture has.
 #if defined(KILN_HAVE_X86)
 #define BASELINE ki_energy_row_sse2
 #else
@@ -68,8 +72,9 @@ void ki_energy_split(const kiln_model *model, double roughness, double nov, doub
     row_of(model, BASELINE)(model, roughness, &nov, 1, true, ab);
 }
 
-// mu = c (e^u - 1) resolves the grazing layer, which is as wide as alpha and, with correlated
-// shadowing, has a logarithm at its end. Gauss-Legendre panels.
+// Integrates 2 E(mu) mu by composite Gauss-Legendre quadrature over u, where mu = c (e^u - 1). E
+// changes fast at grazing angles, mu < alpha, and with correlated masking behaves as mu log(mu)
+// near 0; the substitution places enough nodes there.
 double ki_energy_average(const kiln_model *model, double roughness)
 {
     enum { NODES = 16 };

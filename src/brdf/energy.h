@@ -1,5 +1,7 @@
-// What a rough surface reflects in all: E, E_avg and the split sum's A and B, each as one integral
-// over the cosine of the light. docs/theory/energy.md derives it.
+// The albedo of a rough surface: E, the share of light from one direction that the specular lobe
+// with F = 1 reflects; E_avg, the average of E under diffuse light; A and B of the split sum. E, A
+// and B are computed as integrals over the cosine of the light, which docs/theory/energy.md
+// derives.
 #ifndef KI_ENERGY_H
 #define KI_ENERGY_H
 
@@ -7,20 +9,23 @@
 
 #include <kiln/brdf.h>
 
-/// E(n.v) with F = 1; error below 1e-11, with Beckmann's D 1e-8. roughness and nov in [0, 1]; the corners are
-/// limits: roughness to 0 at this nov, then nov to 0.
+/// The albedo E at the cosine nov for F = 1. Roughness and nov are in [0, 1]. The error is below
+/// 1e-11 for GGX and below 1e-8 for Beckmann's D. Roughness 0 means the limit at this nov; nov = 0
+/// at roughness 0 means the limit of those limits.
 double ki_energy(const kiln_model *model, double roughness, double nov);
-/// 2 int_0^1 E(mu) mu dmu; error below 1e-10.
+/// The average E_avg = 2 int_0^1 E(mu) mu dmu. Roughness is in [0, 1]. The error is below 1e-10.
 double ki_energy_average(const kiln_model *model, double roughness);
-/// A and B: with Schlick's F the directional albedo is f0 A + B, and E = A + B. As exact as E.
+/// Sets ab[0] and ab[1] to A and B of the split sum: with Schlick's F the albedo is f0 A + B, and
+/// E = A + B. Ranges and error are those of ki_energy.
 void ki_energy_split(const kiln_model *model, double roughness, double nov, double ab[2]);
 
-/// The same for `count` values of nov: E to out[count], or with `split` A and B to out[count][2]. The
-/// same bits on every instruction set, and as the functions above.
+/// Computes `count` values of nov at one roughness: ki_energy to out[count], or with `split` the
+/// pairs of ki_energy_split to out[count][2]. The results are bit-identical to those of the two
+/// functions, on every instruction set.
 void ki_energy_values(const kiln_context *context, const kiln_model *model, double roughness,
                       const double *nov, int count, bool split, double *out);
 
-/// GGX, compiled once an instruction set: the body is energy.inl, KI_ROW_OF names the one to use.
+/// The kernels of ki_energy_values for GGX. Each compiles energy.inl for one instruction set.
 typedef void ki_energy_row(const kiln_model *model, double roughness, const double *nov, int count,
                            bool split, double *out);
 ki_energy_row ki_energy_row_scalar, ki_energy_row_sse2, ki_energy_row_avx2, ki_energy_row_avx512;

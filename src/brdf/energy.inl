@@ -1,17 +1,23 @@
-// The body of ki_energy_row, compiled once an instruction set. Before inclusion: KI_ROW, its name.
-// Plain loops over sixteen nodes, which compilers turn into vectors.
+// The kernel ki_energy_row for GGX: one roughness and `count` cosines of the view in, E or the
+// split sum's A and B for each cosine out. Files that are compiled for one instruction set each
+// define KI_ROW, the kernel's name, and include this file. The loops over sixteen nodes are plain C
+// that compilers vectorise.
 //
-// With o the view, mu its cosine, and i the light, the azimuth is integrated in closed form and
+// With o the view, i the light, mu and mu_i their cosines, s = 1 - alpha^2 and S = mu + mu_i, the
+// azimuth phi is integrated in closed form (derived in docs/theory/energy.md):
 //
 //     E = int_0^1 G / (4 mu) [int_0^2pi D dphi] dmu_i,
 //     int D dphi = 2 alpha^2 (1 + 2 s S / Q + s^2 S P / Q^3),
-//     S = mu + mu_i,  s = 1 - alpha^2,
 //     P = sin^2 o + sin^2 i + alpha^2 S^2,
 //     Q^2 = (s (mu_i - mu) - 2 alpha^2 mu)^2 + 4 alpha^2 sin^2 o.
 //
-// Two stretches of mu_i, each in panels of a 16-point Gauss-Legendre rule: up to half the view's
-// cosine mu_i = c (e^u - 1), where -c is the nearest pole of G, then mu_i = m + d sinh t, which
-// makes Q = s d cosh t.
+// The integral over mu_i has two intervals, each cut into panels of a 16-point Gauss-Legendre rule:
+//
+//     from 0 to max(mu, alpha) / 2    mu_i = c (e^u - 1), evenly in u; G has its nearest pole at -c
+//     from there to 1                 mu_i = m + d sinh t, evenly in t, which makes Q = s d cosh t
+//
+// with m = mu (1 + alpha^2) / s and d = 2 alpha sin o / s. For alpha > 0.7 the second interval is
+// one panel, even in mu_i.
 #include "brdf/energy.h"
 
 #include "math/math.h"
@@ -20,10 +26,12 @@
 
 enum { NODES = 16, HALF = NODES / 2 };
 
-// Longest panel. A pole is at least pi/2 away from any: at 2.5 the rule errs by 1e-12.
+// Greatest length of a panel in u or t. The integrand's poles are at least pi/2 away from the real
+// axis, so that the rule's relative error is 1e-12 at this length.
 #define PANEL 2.5
 
-// Positive nodes and weights of the 16-point rule; Abramowitz and Stegun, table 25.4.
+// Positive nodes of the 16-point Gauss-Legendre rule and their weights. The other eight nodes are
+// the negatives. Abramowitz and Stegun, table 25.4.
 static const double node[HALF] = {
     0.0950125098376374402, 0.2816035507792589132, 0.4580167776572273863, 0.6178762444026437484,
     0.7554044083550030339, 0.8656312023878317439, 0.9445750230732325761, 0.9894009349916499326};
@@ -31,18 +39,20 @@ static const double weight[HALF] = {
     0.1894506104550684963, 0.1826034150449235889, 0.1691565193950025382, 0.1495959888165767321,
     0.1246289712555338720, 0.0951585116824927848, 0.0622535239386478929, 0.0271524594117540949};
 
+// The quantities that depend on the model, the roughness and the view only.
 typedef struct view {
     kiln_g g;
-    double alpha, alpha2, s;
-    double mu, sin2, sine;
-    double k;     // Schlick's
-    double root;  // sqrt(alpha^2 + s mu^2)
-    double front; // what of G / mu does not depend on the light
-    double split; // where the second stretch begins
-    double pole;  // -mu_i of the nearest pole
+    double alpha, alpha2, s; // roughness^2, alpha^2 and 1 - alpha^2
+    double mu, sin2, sine;   // cosine of the view, 1 - mu^2 and its square root
+    double k;                // k of Schlick's masking
+    double root;             // sqrt(alpha^2 + s mu^2)
+    double front;            // factor of G / mu that depends on the view only
+    double split;            // mu_i at which the second interval begins
+    double pole;             // c: G has its nearest pole at mu_i = -c
 } view;
 
-// A panel's nodes: mu_i, 1 - mu_i, mu_i - mu (each exact where it is small), Q and the weight.
+// The nodes of a panel: mu_i, rest = 1 - mu_i, delta = mu_i - mu, q = Q and the weight w. The two
+// differences are kept because they have full precision where they are small.
 typedef struct panel {
     double mu[NODES], rest[NODES], delta[NODES], q[NODES], w[NODES];
 } panel;
@@ -72,17 +82,18 @@ static void view_set(view *v, const kiln_model *model, double roughness, double 
         v->pole = v->k / (1 - v->k);
         break;
     }
-    // A and B have a logarithm at mu_i = -mu.
+    // The integrand of B is singular, as a logarithm, at mu_i = -mu.
     if (split && v->pole > nov)
         v->pole = nov;
     v->split = (nov > v->alpha ? nov : v->alpha) / 2;
-    v->pole = ki_clamp(v->pole, 1e-12 * v->split, 1); // nearer, nothing is left to resolve
+    // A pole nearer than 1e-12 of the interval has no influence on the integral.
+    v->pole = ki_clamp(v->pole, 1e-12 * v->split, 1);
 }
 
 // ------------------------------------------------------------------------------------------- nodes
 
-// sinh and cosh of h times the positive nodes, |h| <= 1.25: Taylor to x^21, the next term below
-// 1e-19.
+// sinh and cosh of h times the positive nodes, |h| <= 1.25, by Taylor polynomials to degree 21 and
+// 20. The first omitted term of each is below 1e-19.
 static void hyperbolic(double h, double sinh_y[HALF], double cosh_y[HALF])
 {
     for (int j = 0; j < HALF; j++) {
@@ -111,7 +122,7 @@ static void hyperbolic(double h, double sinh_y[HALF], double cosh_y[HALF])
     }
 }
 
-// Nodes whose Q has no closed form.
+// Sets delta and Q of nodes whose mu_i is known, for substitutions in which Q has no closed form.
 static void finish_nodes(const view *v, panel *p)
 {
     double back = 2 * v->alpha2 * v->mu, wide = 4 * v->alpha2 * v->sin2;
@@ -122,7 +133,8 @@ static void finish_nodes(const view *v, panel *p)
     }
 }
 
-// mu_i = c (e^u - 1) about a centre, given as e^centre.
+// The nodes of a panel of the first interval, mu_i = c (e^u - 1) with c = v->pole. The panel is u0
+// - h to u0 + h, and `centre` is e^u0. sinh_y and cosh_y are those of h times the positive nodes.
 static void log_nodes(const view *v, double h, double centre, const double *sinh_y,
                       const double *cosh_y, panel *p)
 {
@@ -139,7 +151,8 @@ static void log_nodes(const view *v, double h, double centre, const double *sinh
     finish_nodes(v, p);
 }
 
-// mu_i evenly from the split to 1: alpha > 0.7, where no pole is near.
+// The nodes of the second interval as one panel, even in mu_i from v->split to 1. This serves alpha
+// > 0.7, where the integrand has no pole near the interval.
 static void even_nodes(const view *v, panel *p)
 {
     double h = (1 - v->split) / 2;
@@ -153,13 +166,15 @@ static void even_nodes(const view *v, panel *p)
     finish_nodes(v, p);
 }
 
+// The parameters of the second interval's substitution mu_i = m + d sinh t.
 typedef struct stretch {
     double m_rest; // 1 - m
     double ahead;  // m - mu
     double d;
 } stretch;
 
-// mu_i = m + d sinh t about a centre, given as e^centre.
+// The nodes of a panel of the second interval, mu_i = m + d sinh t. The panel is t0 - h to t0 + h,
+// and `centre` is e^t0. sinh_y and cosh_y are those of h times the positive nodes.
 static void sinh_nodes(const view *v, const stretch *x, double h, double centre,
                        const double *sinh_y, const double *cosh_y, panel *p)
 {
@@ -172,7 +187,7 @@ static void sinh_nodes(const view *v, const stretch *x, double h, double centre,
         double low_c = x->d * (even_c - odd_c), high_c = x->d * (even_c + odd_c);
         p->mu[j] = m + low;
         p->mu[j + HALF] = m + high;
-        // Rounding must not bring 1 - mu_i below 0.
+        // Rounding can bring the difference 1 - mu_i below 0.
         double rest_low = x->m_rest - low, rest_high = x->m_rest - high;
         p->rest[j] = rest_low > 0 ? rest_low : 0;
         p->rest[j + HALF] = rest_high > 0 ? rest_high : 0;
@@ -185,9 +200,10 @@ static void sinh_nodes(const view *v, const stretch *x, double h, double centre,
     }
 }
 
-// --------------------------------------------------------------------------------------- integrands
+// -------------------------------------------------------------------------------------- integrands
 
-// G / (4 mu) as top / bottom, with the weight in `top`.
+// Splits weight * G / (4 mu) at each node into a quotient top / bottom, so that the integrand needs
+// one division only.
 static void masking(const view *v, const panel *p, double top[NODES], double bottom[NODES])
 {
     double front = v->front / 4, k = v->k;
@@ -213,6 +229,7 @@ static void masking(const view *v, const panel *p, double top[NODES], double bot
     }
 }
 
+// Adds the panel's terms of E to eight partial sums.
 static void add_e(const view *v, const panel *p, const double top[NODES],
                   const double bottom[NODES], double sum[HALF])
 {
@@ -227,20 +244,25 @@ static void add_e(const view *v, const panel *p, const double top[NODES],
         sum[j] += term[j] + term[j + HALF];
 }
 
-// Steps after which the arithmetic-geometric mean of 1 and kc has converged to 1e-16.
+// Number of steps after which the arithmetic-geometric mean of 1 and kc has converged to 1e-16.
 static int mean_steps(double kc)
 {
     return kc > 0.55 ? 4 : kc > 0.09 ? 5 : kc > 1.8e-3 ? 6 : kc > 8e-7 ? 7 : kc > 1.7e-13 ? 8 : 9;
 }
 
-// Over a quarter turn, with Y^2 = cos^2 + kc^2 sin^2 and W = cos^2 + p sin^2: cel = int Y / W, its
-// derivative by p, and e = int Y. Bulirsch's iteration (1965) carried along with its derivative; it
-// only adds positive numbers. After n steps em and qc are 2^n times the arithmetic and the geometric
-// mean, which give e.
+// Complete elliptic integrals over x from 0 to pi/2, with Y^2 = cos^2 x + kc^2 sin^2 x and
+// W = cos^2 x + p sin^2 x:
+//
+//     cel = int Y / W dx,   slope = d cel / dp,   k = int 1 / Y dx,   e = int Y dx.
+//
+// cel is computed by Bulirsch's iteration (1965), which adds positive numbers only; slope, by the
+// same iteration differentiated by p. k and e follow from the arithmetic-geometric mean of 1 and
+// kc: after n steps em and qc are 2^n times the arithmetic and the geometric mean.
 typedef struct elliptic {
     double cel[NODES], slope[NODES], k[NODES], e[NODES];
 } elliptic;
 
+// kc2 is kc^2, and p0 is p. A d before a variable's name denotes the derivative by p.
 static void elliptic_integrals(const double kc2[NODES], const double p0[NODES], int steps,
                                elliptic *out)
 {
@@ -258,7 +280,7 @@ static void elliptic_integrals(const double kc2[NODES], const double p0[NODES], 
         qc[j] = ee[j] = sqrt(kc2[j]);
         sum[j] = 0.5 * (1 - kc2[j]);
     }
-    double scale = 0.25; // 2^n / (2^(n + 1))^2
+    double scale = 0.25; // weight 2^n / (2^(n + 1))^2 of (em - qc)^2 at step n
     for (int step = 0; step < steps; step++, scale /= 2)
         for (int j = 0; j < NODES; j++) {
             double f = a[j], df = da[j], inverse = 1 / p[j];
@@ -286,13 +308,17 @@ static void elliptic_integrals(const double kc2[NODES], const double p0[NODES], 
     }
 }
 
-// B, from its own density: D (1 - c)^5 with c = o.h = sqrt(z) / 2, z = 2 (1 + o.i) = W + a and
-// W = P + q cos phi, q = 2 sin o sin i:
+// Adds the panel's terms of B to eight partial sums. The integrand has D (1 - c)^5 instead of D,
+// where c = o.h = sqrt(z) / 2 and z = 2 (1 + o.i). With W = P + q cos phi, q = 2 sin o sin i and
+// a = s S^2, which give z = W + a,
 //
-//     D (1 - c)^5 = alpha^2 / (pi W^2) [z^2 + 5/2 z^3 + 5/16 z^4 - sqrt(z) / 2 (5 z^2 + 5/2 z^3 + z^4 / 16)].
+//     D (1 - c)^5 = alpha^2 / (pi W^2) [z^2 + 5/2 z^3 + 5/16 z^4 -
+//                   sqrt(z) / 2 (5 z^2 + 5/2 z^3 + z^4 / 16)]
 //
-// Expanded in W about z = a, the even part has powers of W, which integrate as above, the odd part
-// complete elliptic integrals: i1, i3, i5 of sqrt(z)^1, 3, 5, and j1, j2 of sqrt(z) / W, sqrt(z) / W^2.
+// is integrated over phi after z is replaced by W + a. The terms without sqrt(z) become powers of W
+// from W^-2 to W^2, which integrate in closed form as for E (`even`). The terms with sqrt(z) become
+// complete elliptic integrals (`odd`): i1, i3 and i5 of sqrt(z), sqrt(z)^3 and sqrt(z)^5, and j1
+// and j2 of sqrt(z) / W and sqrt(z) / W^2.
 static void add_b(const view *v, const panel *p, const double top[NODES],
                   const double bottom[NODES], double sum[HALF])
 {
@@ -300,7 +326,7 @@ static void add_b(const view *v, const panel *p, const double top[NODES],
     for (int j = 0; j < NODES; j++) {
         double mu = p->mu[j], total = v->mu + mu, s2 = total * total, sin2 = p->rest[j] * (1 + mu);
         double sine = sqrt(sin2), spread = p->delta[j] * total / (sine + v->sine + 1e-300);
-        double w0 = spread * spread + v->alpha2 * s2; // P - q without cancellation
+        double w0 = spread * spread + v->alpha2 * s2; // P - q as a sum of squares
         total_a[j] = v->s * s2;
         big_p[j] = v->sin2 + sin2 + v->alpha2 * s2;
         q[j] = 2 * v->sine * sine;
@@ -335,6 +361,7 @@ static void add_b(const view *v, const panel *p, const double top[NODES],
 
 // --------------------------------------------------------------------------------------- integrals
 
+// Adds the partial sums in an order that does not depend on the width of vectors.
 static double sum_lanes(const double x[HALF])
 {
     return ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]));
@@ -349,14 +376,15 @@ static void add(const view *v, const panel *p, double e[HALF], double b[HALF], b
         add_b(v, p, top, bottom, b);
 }
 
-// One stretch of mu_i: e^u or e^t at its lower end and as the ratio to its upper one; panels of half
-// length h, and e^h.
+// An interval of u or t cut into `count` panels of equal length.
 typedef struct tiling {
-    double from, ratio, h, ahead;
+    double from;     // e^u or e^t at the interval's lower end
+    double ratio;    // e^u or e^t at the upper end over `from`
+    double h, ahead; // half the length of a panel, and e^h
     int count;
 } tiling;
 
-// Everything about an entry that is known before its panels.
+// The integral for one cosine of the view: its constants and its two intervals of mu_i.
 typedef struct entry {
     view v;
     stretch x;
@@ -370,12 +398,12 @@ static void entry_set(entry *n, const kiln_model *model, double roughness, doubl
     n->near = (tiling){.from = 1, .ratio = 1 + v->split / v->pole};
     n->far = (tiling){.from = 1, .ratio = 1};
     if (v->alpha > 0.7)
-        return; // even_nodes
+        return; // even_nodes covers the second interval
     n->x.m_rest = ((1 - nov) - v->alpha2 * (1 + nov)) / v->s;
     n->x.ahead = 2 * v->alpha2 * nov / v->s;
     double d = 2 * v->alpha * v->sine / v->s;
     n->x.d = d > 1e-120 ? d : 1e-120;
-    // e^t of both ends, t = asinh((mu_i - m) / d).
+    // e^t at both ends of the second interval, by t = asinh((mu_i - m) / d).
     double low = (v->split - nov - n->x.ahead) / n->x.d, high = n->x.m_rest / n->x.d;
     double root_low = sqrt(low * low + 1), root_high = sqrt(high * high + 1);
     double to = high > 0 ? high + root_high : 1 / (root_high - high);
@@ -391,7 +419,7 @@ static void tile(tiling *t)
     t->ahead = ki_exp(t->h);
 }
 
-// E and, with `split`, B.
+// Sets out[0] to E and, with `split`, out[1] to B.
 static void integrate(const entry *n, bool split, double out[2])
 {
     double e[HALF] = {0}, b[HALF] = {0}, sinh_y[HALF], cosh_y[HALF];
@@ -415,11 +443,12 @@ static void integrate(const entry *n, bool split, double out[2])
     }
     out[0] = sum_lanes(e);
     out[1] = sum_lanes(b);
-    // At nov = 1 a mirror's B is 0, and rounding goes both ways.
+    // B tends to 0 for smooth surfaces at nov = 1, where rounding can make it negative.
     out[1] = out[1] > 0 ? out[1] : 0;
 }
 
-// The mirror: everything goes where i = o in mirror image, masked by G there.
+// E and B at roughness 0: all light goes to the mirror direction, where mu_i = mu. G is 1 there,
+// except for the k of KILN_G_SCHLICK_TEXT, which is not 0 at roughness 0.
 static void mirror(const view *v, double out[2])
 {
     double g1 = v->mu / (v->mu * (1 - v->k) + v->k), c = 1 - v->mu;
@@ -427,7 +456,8 @@ static void mirror(const view *v, double out[2])
     out[1] = out[0] * (c * c) * (c * c) * c;
 }
 
-// In blocks, so that the logarithms and exponentials of several entries overlap.
+// The entries are prepared in blocks, so that the processor overlaps their logarithms and
+// exponentials.
 void KI_ROW(const kiln_model *model, double roughness, const double *nov, int count, bool split,
             double *out)
 {

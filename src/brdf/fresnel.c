@@ -1,4 +1,7 @@
-// Fresnel's reflectances of unpolarised light, and their averages over a diffuse illumination.
+// Fresnel reflectances of unpolarised light as functions of the cosine of incidence: Schlick's
+// approximation, its form for metals with a value at 82 degrees, the exact terms of dielectrics and
+// conductors. Their averages 2 int F(mu) mu dmu over diffuse light: in closed form for dielectrics,
+// by adaptive quadrature for conductors, and by Kulla and Conty's fits. docs/theory/fresnel.md.
 #include "brdf/brdf.h"
 
 #include "base/base.h"
@@ -22,20 +25,22 @@ double ki_fresnel_dielectric(double ior, double c)
     double contrast = (1 - ior) * (1 + ior), s2 = (1 - c) * (1 + c);
     double g2 = c * c - contrast;
     if (!(g2 > 0))
-        return contrast > 0; // total, or no interface at grazing
+        return contrast > 0; // 1 for total reflection; 0 for ior = 1 at c = 0
     double g = sqrt(g2), r = contrast / ((c + g) * (c + g)), p = (c * g - s2) / (c * g + s2);
     double f = r * r * (1 + p * p) / 2;
     return f < 1 ? f : 1;
 }
 
-// The same with g = a + i b, g^2 = (n + i k)^2 - s^2: the squares become |.|^2. That of the smaller
-// of a and b is found from a b = n k, without cancellation.
+// The formulas of ki_fresnel_dielectric with a complex g = a + i b, where g^2 = (n + i k)^2 - s^2
+// and the squares become squared absolute values. The larger of a and b is a sum under a root; the
+// smaller follows from a b = n k, so that nothing cancels.
 double ki_fresnel_conductor(double n, double k, double c)
 {
     double s2 = (1 - c) * (1 + c);
     double real = (n - 1) * (n + 1) - k * k + c * c, size = sqrt(real * real + 4 * n * n * k * k);
     double a, b, larger = sqrt((size + fabs(real)) / 2);
-    if (!(larger > 0)) // the critical angle, or no interface at grazing
+    if (!(larger > 0)) // g = 0: for n < 1 the critical angle, where F is 1; else n = 1, k = 0 and c
+                       // = 0
         return n < 1;
     if (real > 0) {
         a = larger;
@@ -50,8 +55,10 @@ double ki_fresnel_conductor(double n, double k, double c)
     return f < 1 ? f : 1;
 }
 
-// Gulbrandsen 2014: n runs from n_max = (1 + sqrt r) / (1 - sqrt r) to n_min = (1 - r) / (1 + r)
-// with the edge tint, and (1 - r) k^2 = r (n + 1)^2 - (n - 1)^2, which is a product:
+// Gulbrandsen 2014, with r the reflectivity. As the edge tint grows from 0 to 1, n goes from n_max
+// = (1 + sqrt r) / (1 - sqrt r) to n_min = (1 - r) / (1 + r). k follows from the reflectivity by (1
+// - r) k^2 = r (n + 1)^2 - (n - 1)^2. The right side cancels where k is small, so the code uses its
+// factored form
 //
 //     k^2 = (n_max - n) (n - 1 / n_max).
 void ki_gulbrandsen(double reflectivity, double edge_tint, double *n, double *k)
@@ -64,7 +71,8 @@ void ki_gulbrandsen(double reflectivity, double edge_tint, double *n, double *k)
     *k = sqrt(k2 > 0 ? k2 : 0);
 }
 
-// What Schlick's F loses at most, of what is largest at v.h = 1 / 7, 82 degrees.
+// Solves F(1 / 7) = f82 for dip in F = f0 + (1 - f0) (1 - voh)^5 - dip voh (1 - voh)^6. The last
+// term is largest at voh = 1 / 7.
 double ki_f82_dip(double f0, double f82)
 {
     double edge = 6.0 / 7, power = edge * edge * edge * edge * edge;
@@ -80,14 +88,15 @@ double ki_fresnel_f82(double f0, double f82, double voh)
 
 // ---------------------------------------------------------------------------------------- averages
 
-// Walsh 1926. For n > 1, with q = (n - 1) / (n + 1), the integral 2 int F mu dmu is
+// The term R(q) of Walsh's closed form (1926) for the average 2 int F mu dmu of a dielectric. For n
+// > 1 and q = (n - 1) / (n + 1) the average is
 //
 //     q (2 + q) / 6 + 2 q^2 (1 + q)^2 ln q / (1 + q^2)^3 + R(q),
 //     R = 1/2 - (1 - q) (1 + q)^3 (1 + 2 q - q^2) / (4 q (1 + q^2)^2)
 //             + (1 - q)^2 (1 + q)^4 (1 + 6 q^2 + q^4) ln n / (8 q^2 (1 + q^2)^3).
 //
-// R's poles at q = 0 cancel: below q = 0.1 its Taylor series stands in, whose first term left out
-// is 120 q^18.
+// The terms of R have poles at q = 0 that cancel each other. For q < 0.1 the code therefore uses
+// R's Taylor series, whose first omitted term is 120 q^18. The argument p is 1 - q.
 static double walsh_rest(double n, double q, double p)
 {
     static const double series[] = {1.0 / 3,
@@ -121,7 +130,8 @@ static double walsh_rest(double n, double q, double p)
 
 double ki_fresnel_dielectric_average(double ior)
 {
-    // What enters from the denser side returns by the same ways: n^2 (1 - F_avg(n)) is symmetric.
+    // By reciprocity the transmitted averages of the two sides are related: 1 - F_avg(ior) = ior^2
+    // (1 - F_avg(1 / ior)).
     if (ior < 1)
         return ior > 0 ? 1 - ior * ior * (1 - ki_fresnel_dielectric_average(1 / ior)) : 1;
     double q = (ior - 1) / (ior + 1), p = 2 / (ior + 1), d = 1 + q * q; // p = 1 - q
@@ -133,11 +143,14 @@ double ki_fresnel_dielectric_average(double ior)
 
 enum { NODES = 16, DEPTH = 40 };
 
-// Between the kink, if any, and one end: mu = kink + (end - kink) t^2, which undoes a root there.
+// The integral 2 int F mu dmu of a conductor between the kink of F and one end of [0, 1]. F behaves
+// as a square root at its kink, which the substitution mu = kink + (end - kink) t^2 with t in [0,
+// 1] removes.
 typedef struct average {
     double n, k, kink, end, node[NODES], weight[NODES];
 } average;
 
+// The part of the integral between two values of t, by one Gauss-Legendre rule.
 static double panel(const average *f, double from, double to)
 {
     double sum = 0, half = (to - from) / 2, length = f->end - f->kink;
@@ -148,7 +161,8 @@ static double panel(const average *f, double from, double to)
     return sum * 4 * half * fabs(length);
 }
 
-// Halves panels until twice in a row both halves together agree with the whole.
+// Adaptive quadrature: halves panels of t until at two depths in succession the two halves together
+// agree with the whole panel.
 static double refine(const average *f, double from, double to, double whole, bool agreed, int depth)
 {
     double middle = (from + to) / 2;
@@ -164,8 +178,9 @@ double ki_fresnel_conductor_average(double n, double k)
 {
     average f = {.n = n, .k = k, .end = 1};
     ki_gauss_legendre(NODES, f.node, f.weight);
-    // The critical angle, where g^2 is imaginary: with small k a root's kink, and with small n the
-    // cone inside is so narrow that no node would meet it.
+    // The kink is at the critical angle, where g^2 is imaginary. It is sharp for small k. For small
+    // n it is at mu near 1, and the cone of directions inside it is so narrow that no node would
+    // fall into it.
     double kink2 = (1 - n) * (1 + n) + k * k;
     f.kink = kink2 > 0 && kink2 < 1 ? sqrt(kink2) : 0;
     double sum = refine(&f, 0, 1, panel(&f, 0, 1), false, DEPTH);
@@ -175,7 +190,7 @@ double ki_fresnel_conductor_average(double n, double k)
     return sum < 1 ? sum : 1;
 }
 
-// Kulla and Conty 2017, for ior > 1 and below.
+// The two fits of Kulla and Conty 2017, one for ior > 1 and one for ior <= 1.
 double ki_fresnel_dielectric_average_fit(double ior)
 {
     if (ior > 1)
@@ -183,7 +198,7 @@ double ki_fresnel_dielectric_average_fit(double ior)
     return 0.997118 + ior * (0.1014 + ior * (-0.965241 - 0.130607 * ior));
 }
 
-// Kulla and Conty 2017, page 26: r the reflectivity, g the edge tint.
+// The polynomial of Kulla and Conty 2017, page 26, where r is the reflectivity and g the edge tint.
 double ki_fresnel_conductor_average_fit(double r, double g)
 {
     double r2 = r * r, g2 = g * g;

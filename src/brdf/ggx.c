@@ -6,7 +6,8 @@
 
 double ki_ggx_d(double alpha, double noh)
 {
-    // (n.h)^2 (alpha^2 - 1) + 1 without the cancellation near n.h = 1.
+    // d = (n.h)^2 (alpha^2 - 1) + 1 is written as a sum of squares: the difference would cancel
+    // near n.h = 1.
     double a2 = alpha * alpha;
     double rest = (1 - noh) * (1 + noh);
     double d = a2 * noh * noh + rest;
@@ -15,7 +16,8 @@ double ki_ggx_d(double alpha, double noh)
 
 void ki_ggx_half_vector(double alpha, const double xi[2], double h[3])
 {
-    // tan^2 theta = alpha^2 xi / (1 - xi).
+    // The half vector's angle theta to the normal has tan^2 theta = alpha^2 xi / (1 - xi), xi =
+    // xi[1].
     double a2 = alpha * alpha, d = (1 - xi[1]) + a2 * xi[1];
     double cos_theta = sqrt((1 - xi[1]) / d), sin_theta = alpha * sqrt(xi[1] / d);
     double sin_phi, cos_phi;

@@ -1,4 +1,5 @@
-// D and G by the names of the model. G has the form G / (n.v n.l) too, finite at grazing angles.
+// The distribution D and the masking G that a kiln_model names. ki_visibility returns G / (n.v n.l)
+// instead of G, which stays finite at grazing angles.
 #include "brdf/beckmann.h"
 #include "brdf/brdf.h"
 
@@ -13,23 +14,27 @@ double ki_brdf_d(kiln_d d, double roughness, double noh)
         return ki_ggx_d(alpha, noh);
     if (!(alpha > 0))
         return noh < 1 ? 0 : HUGE_VAL;
-    // Below, cos^4 underflows, and the exponential has long done so.
+    // At smaller cosines the denominator's cos^4 underflows. D is 0 there: its exponential
+    // underflows at far larger cosines.
     return noh > 1e-70 ? ki_beckmann_d(alpha, noh) : 0;
 }
 
-// sqrt(x^2 + alpha^2 (1 - x^2)): x (1 + 2 Lambda(x)) of GGX. Heitz 2014, eq. 72.
+// sqrt(x^2 + alpha^2 (1 - x^2)), which is x (1 + 2 Lambda(x)) for GGX and a direction of cosine x.
+// Heitz 2014, eq. 72.
 static double ggx_root(double alpha, double x)
 {
     return sqrt(x * x + alpha * alpha * ((1 - x) * (1 + x)));
 }
 
-// x (1 + Lambda(x)) of Beckmann, whose limit at x = 0 is alpha / (2 sqrt pi).
+// x (1 + Lambda(x)) for Beckmann's D and a direction of cosine x. Its limit at x = 0 is alpha / (2
+// sqrt pi).
 static double beckmann_slope(double alpha, double x)
 {
     return x > 1e-100 ? x * (1 + ki_beckmann_lambda(alpha, x)) : alpha / (2 * sqrt(KI_PI));
 }
 
-// Smith: 1 / (1 + Lambda(v) + Lambda(l)), or the product of 1 / (1 + Lambda).
+// G / (n.v n.l) by Smith. With correlated heights G = 1 / (1 + Lambda(v) + Lambda(l));
+// uncorrelated, G is the product of 1 / (1 + Lambda(v)) and 1 / (1 + Lambda(l)).
 static double beckmann_visibility(kiln_g g, double alpha, double nov, double nol)
 {
     double v = beckmann_slope(alpha, nov), l = beckmann_slope(alpha, nol);
@@ -43,7 +48,8 @@ double ki_smith_g1_over_cosine(double alpha, double nox)
     return 2 / (nox + ggx_root(alpha, nox));
 }
 
-// Heitz 2014, eq. 99, for GGX; Schlick's two for both.
+// Schlick's two maskings are the same function for GGX and Beckmann. Smith's correlated masking for
+// GGX is Heitz 2014, eq. 99.
 double ki_visibility(const kiln_model *model, double roughness, double nov, double nol)
 {
     double alpha = roughness * roughness;
@@ -60,7 +66,8 @@ double ki_visibility(const kiln_model *model, double roughness, double nov, doub
 
 double ki_masking(const kiln_model *model, double roughness, double nov, double nol)
 {
-    // The limits at 0: the mirror does not shadow, anything rough does wholly.
+    // At a cosine of 0 a mirror masks nothing (G = 1), and a rough surface masks all light (G = 0).
+    // Schlick's k of KILN_G_SCHLICK_TEXT is 1/8 at roughness 0, so that even a mirror has G = 0.
     if (!(nov > 0 && nol > 0))
         return roughness > 0 || model->g == KILN_G_SCHLICK_TEXT ? 0 : 1;
     double g = nov * nol * ki_visibility(model, roughness, nov, nol);
