@@ -1,3 +1,8 @@
+// The directional albedo E of Charlie sheen, a reflection lobe for cloth, by double exponential
+// quadrature. In: masking, roughness, n.v. Out: E. With Ashikhmin's masking the inner integral over
+// the azimuth has a closed form, and E is an integral over the angle of the half vector. With
+// Estevez and Kulla's masking E is a double integral over light directions. docs/theory/sheen.md
+// derives both.
 #include "brdf/sheen.h"
 
 #include "base/base.h"
@@ -5,7 +10,8 @@
 
 #include <math.h>
 
-// D falls to 1e-14 of its value at the horizon over FALL sqrt(alpha) radians.
+// The range of D: half vectors more than FALL sqrt(alpha) radians above the horizon have less than
+// 1e-14 of D's value at the horizon.
 #define FALL 8.0
 
 double ki_sheen_d(double alpha, double noh)
@@ -14,9 +20,12 @@ double ki_sheen_d(double alpha, double noh)
     return (2 + 1 / alpha) * ki_pow(sin2, 0.5 / alpha) / (2 * KI_PI);
 }
 
-// ------------------------------------------------------------------------------------- visibility
+// -------------------------------------------------------------------------------------- visibility
 
-// Estevez and Kulla 2017, eq. 3 and its table: the coefficients between those of alpha = 0 and 1.
+// Estevez and Kulla's fit of Smith's Lambda for sheen (2017, eq. 3 and its table): Lambda(x) =
+// exp(a / (1 + b x^c) + d x + e) for a cosine x below 1/2, continued above 1/2 by a point
+// reflection of the exponent. The coefficients a to e are interpolated between those of alpha = 0
+// (`smooth`) and alpha = 1 (`rough`).
 static double lambda_exponent(const double c[5], double x)
 {
     return c[0] / (1 + c[1] * ki_pow(x, c[2])) + c[3] * x + c[4];
@@ -47,11 +56,12 @@ double ki_sheen_visibility(kiln_sheen sheen, double alpha, double nov, double no
     return 1 / ((1 + lambda(c, nov) + lambda(c, nol)) * (4 * nov * nol));
 }
 
-// ---------------------------------------------------------------------------- Ashikhmin's: one angle
+// ----------------------------------------------------------------- albedo with Ashikhmin's masking
 
 enum { STEPS = 61 };
 
-// atan(sqrt w) / sqrt w for w > -1, continued through 0 to artanh; `rest` is 1 + w without rounding.
+// atan(sqrt w) / sqrt w for w > -1. For w < 0 the function continues as artanh(sqrt -w) / sqrt -w.
+// `rest` is 1 + w, which the caller knows more precisely than the sum would be.
 static double arc_ratio(double w, double rest)
 {
     if (fabs(w) < 1e-4)
@@ -60,20 +70,20 @@ static double arc_ratio(double w, double rest)
     return w > 0 ? ki_atan2(y, 1) / y : ki_log((1 + y) * (1 + y) / rest) / (2 * y);
 }
 
-// With half vectors at the angle theta from the normal, over the azimuths that mirror the view to
-// above the horizon, |phi| <= reach,
+// The inner integral for half vectors h at the angle theta to the normal, with mu = n.v:
 //
-//     int (v.h) (n.l) / (n.l + n.v - (n.l)(n.v)) dphi
+//     int (v.h) (n.l) / (n.l + mu - (n.l) mu) dphi
 //
-// where v.h = mu cos theta + sin theta_v sin theta cos phi, n.l = 2 cos theta (v.h) - mu.
-// In closed form by K = int 1 / ((1 - mu) n.l + mu), or for mu > 1/2 by Gauss's rule.
+// over the azimuths |phi| <= reach at which n.l >= 0, where v.h = mu cos theta + sin theta_v sin
+// theta cos phi and n.l = 2 cos theta (v.h) - mu. Its closed form needs K = int_0^reach dphi / ((1
+// - mu) n.l + mu). The closed form cancels for mu > 1/2, where Gauss's rule replaces it.
 static double ashikhmin_azimuth(double theta, double theta_v, double mu)
 {
     double sine, cosine, sin_v = sqrt((1 - mu) * (1 + mu));
     ki_sincos(theta, &sine, &cosine);
     double nearest = fmax(0, ki_cos(theta_v - 2 * theta)); // n.l at phi = 0 and pi
     double farthest = ki_cos(theta_v + 2 * theta);
-    // n.l = 0 at cos reach = -cot theta_v cot 2 theta; t = tan^2(reach / 2).
+    // n.l = 0 at cos reach = -cot theta_v cot 2 theta. t2 is tan^2(reach / 2).
     bool circle = !(farthest < 0);
     double t2 = circle ? 0 : nearest / -farthest;
     double reach = circle ? KI_PI : 2 * ki_atan2(sqrt(t2), 1), q = sin_v * sine;
@@ -97,10 +107,13 @@ static double ashikhmin_azimuth(double theta, double theta_v, double mu)
            (mu * cosine * reach + q * sin_reach - mu * reach / c + mu * mu * mu * k / c);
 }
 
-//     E(v) = int D (v.h) (n.l) / (n.l + n.v - (n.l)(n.v)) dh
+// The albedo with Ashikhmin's masking, as an integral over half vectors:
 //
-// in two parts: circles that are mirrored to above the horizon whole, theta up to half the view's
-// elevation, and arcs, up to where the arc's length is 0.
+//     E(v) = int D (v.h) (n.l) / (n.l + n.v - (n.l)(n.v)) dh.
+//
+// The range of theta is cut at half the view's elevation. Below the cut every azimuth of h mirrors
+// the view to above the horizon. Above the cut only an arc of azimuths does, whose length falls to
+// 0.
 static double ashikhmin_albedo(double alpha, double mu)
 {
     double nodes[STEPS], weights[STEPS], sum = 0;
@@ -119,15 +132,18 @@ static double ashikhmin_albedo(double alpha, double mu)
     return sum * (2 + 1 / alpha) / (2 * KI_PI);
 }
 
-// ------------------------------------------------------------------------ Estevez and Kulla's: light
+// --------------------------------------------------------- albedo with Estevez and Kulla's masking
 
 enum { LIGHT_STEPS = 41, AZIMUTH_STEPS = 41 };
 
-// The mean of sin(theta_h)^(1/alpha) over the azimuth, by phi from the mirror direction on, where
+// The mean of sin(theta_h)^(1/alpha) over the light's azimuth phi, counted from the mirror
+// direction, where
 //
 //     tan^2 theta_h = (d^2 + 4 sin theta_v sin theta_l sin^2(phi / 2)) / s^2
 //
-// with d the difference of the sines and s = n.v + n.l. `cot2` is the tan^2 below which it is 0.
+// with d = sin theta_v - sin theta_l and s = n.v + n.l. `product` is sin theta_v sin theta_l. Where
+// tan^2 theta_h is below `cot2` the power is taken as 0. turn[] and weights[] are a quadrature rule
+// on [0, 1].
 static double mean_fibre(double alpha, double cot2, double d2, double product, double s2,
                          const double turn[AZIMUTH_STEPS], const double weights[AZIMUTH_STEPS])
 {
@@ -143,10 +159,13 @@ static double mean_fibre(double alpha, double cot2, double d2, double product, d
     return mean * (1 - first / (KI_PI / 2));
 }
 
-//     E(v) = int D / (4 (n.v) (1 + Lambda(v) + Lambda(l))) dphi d(n.l)
+// The albedo with Estevez and Kulla's masking, as an integral over light directions:
 //
-// over the light's elevation in parts between 0, n.v, where D at the mirror direction is not smooth,
-// and 1/2, where the fit of Lambda bends; it has a root's singularity at 0 and 1.
+//     E(v) = int D / (4 (n.v) (1 + Lambda(v) + Lambda(l))) dphi d(n.l).
+//
+// The range of n.l is cut at n.v, where D is not smooth in the mirror direction, and at 1/2, where
+// the two pieces of Lambda's fit meet. The fit is singular, as a power, at n.l = 0 and 1, which the
+// double exponential rule tolerates.
 static double estevez_albedo(double alpha, double mu)
 {
     double c[5], nodes[LIGHT_STEPS], weights[LIGHT_STEPS];
@@ -156,7 +175,7 @@ static double estevez_albedo(double alpha, double mu)
     lambda_coefficients(alpha, c);
     double lambda_v = lambda(c, mu), sin_v = sqrt((1 - mu) * (1 + mu)), sum = 0;
     double cuts[4] = {0, fmin(mu, 0.5), fmax(mu, 0.5), 1}, cot2 = 0;
-    // D is next to 0 for half vectors that stand FALL sqrt(alpha) above the horizon.
+    // The range ends where every half vector is more than FALL sqrt(alpha) above the horizon.
     double fall = FALL * sqrt(alpha);
     if (fall < KI_PI / 2) {
         double sine, cosine, highest = 2 * fall - ki_asin(mu);

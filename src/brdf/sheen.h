@@ -1,16 +1,21 @@
-// Charlie sheen: light on fibres that stand up from the cloth. Estevez and Kulla 2017.
+// Charlie sheen, the reflection lobe of cloth: its normals lie near the surface, as those of fibres
+// that stand up from the cloth. Estevez and Kulla 2017. docs/theory/sheen.md.
 #ifndef KI_SHEEN_H
 #define KI_SHEEN_H
 
 #include <kiln/brdf.h>
 
-/// (2 + 1/alpha) sin(theta_h)^(1/alpha) / (2 pi). Estevez and Kulla 2017, eq. 2.
+/// D = (2 + 1/alpha) sin(theta_h)^(1/alpha) / (2 pi), with cos theta_h = noh in [0, 1] and alpha >
+/// 0. Estevez and Kulla 2017, eq. 2.
 double ki_sheen_d(double alpha, double noh);
-/// G / (4 (n.v) (n.l)) of the two kinds; alpha is used by the second only.
+/// The masking factor V of the lobe D V. KILN_SHEEN_ASHIKHMIN: 1 / (4 (n.l + n.v - (n.l)(n.v))),
+/// which does not use alpha. KILN_SHEEN_ESTEVEZ: 1 / (4 (n.v)(n.l) (1 + Lambda(v) + Lambda(l))).
 double ki_sheen_visibility(kiln_sheen sheen, double alpha, double nov, double nol);
-/// The directional albedo, F = 1. Roughness is clamped to [0.01, 1] (alpha to 1e-4), n.v to [0, 1]
-/// and, for KILN_SHEEN_ESTEVEZ, whose albedo has a pole at 0, to [1e-4, 1]. Error below 1e-9 for the first, 1e-7 for the second, of
-/// the greater of 1 and the value.
+/// The directional albedo E at the cosine nov for colour 1. E exceeds 1 at grazing angles.
+/// Roughness is clamped to [0.01, 1]. nov is clamped to [0, 1] for KILN_SHEEN_ASHIKHMIN, and to
+/// [1e-4, 1] for KILN_SHEEN_ESTEVEZ, whose albedo is infinite at 0. The error, relative to the
+/// greater of 1 and E, is below 1e-9 for KILN_SHEEN_ASHIKHMIN and below 1e-7 for
+/// KILN_SHEEN_ESTEVEZ.
 double ki_sheen_albedo(kiln_sheen sheen, double roughness, double nov);
 
 #endif

@@ -1,3 +1,7 @@
+// Builds and evaluates the Chebyshev series of the albedo E in surface.h. ki_surface_build samples
+// E on a Chebyshev grid of n.v and roughness, and transforms rows and columns to coefficients.
+// ki_surface_values sums the series over roughness once for a row; kernels compiled from
+// surface.inl sum it over n.v.
 #include "brdf/surface.h"
 
 #include "brdf/brdf.h"
@@ -16,13 +20,14 @@ double ki_grazing_scale(const kiln_model *model, double roughness)
     return alpha > 1e-12 ? alpha : 1e-12;
 }
 
-// Chebyshev's points of the first kind on [0, 1].
+// Chebyshev point `index` of the first kind, of `count` points on [0, 1].
 static double point(int index, int count)
 {
     return (1 + ki_cos(KI_PI * (index + 0.5) / count)) / 2;
 }
 
-// Rows are degrees, columns points: values times it are coefficients.
+// Fills matrix[i][k] with the weight of the value at Chebyshev point i in the coefficient of degree
+// k.
 static void transform_matrix(int count, double matrix[KI_SURFACE_NOV][KI_SURFACE_NOV])
 {
     double cosine[4 * KI_SURFACE_NOV];
@@ -39,6 +44,7 @@ typedef struct build_job {
     double by_nov[KI_SURFACE_NOV][KI_SURFACE_NOV], by_roughness[KI_SURFACE_NOV][KI_SURFACE_NOV];
 } build_job;
 
+// Computes E along one row of constant roughness and transforms the row to coefficients in n.v.
 static void build_row(void *data, int row)
 {
     const build_job *job = data;
@@ -59,12 +65,14 @@ static void build_row(void *data, int row)
             coefficient[k] += job->by_nov[i][k] * e[i];
 }
 
-// How many degrees bring each model below 7e-8: with correlated shadowing E has a logarithm at n.v = 0,
-// and with the text's k a second, faint layer of width alpha.
+// The numbers of Chebyshev coefficients that bring the error of E below 7e-8 for each masking. For
+// KILN_G_SMITH, E has a logarithmic singularity at n.v = 0, which the fourth root in u smooths. For
+// KILN_G_SCHLICK_TEXT, E changes in a layer of width k / (1 - k) and faintly in one of width alpha,
+// which needs more coefficients in roughness.
 static void choose_degrees(ki_surface *surface)
 {
     surface->quartic = surface->model.g == KILN_G_SMITH;
-    surface->columns = surface->quartic ? 46 : 34; // even
+    surface->columns = surface->quartic ? 46 : 34; // even, as surface.inl requires
     surface->rows = 18;
     if (surface->model.g == KILN_G_SCHLICK_TEXT) {
         surface->columns = 20;
@@ -108,6 +116,8 @@ static ki_surface_row *fastest(const kiln_context *context)
     return row;
 }
 
+// Sums the series over roughness by the recurrence of Chebyshev polynomials, T_i+1 = 2 x T_i -
+// T_i-1.
 void ki_surface_values(const kiln_context *context, const ki_surface *surface, double roughness,
                        const double *nov, int count, double *out)
 {

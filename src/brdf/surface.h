@@ -1,8 +1,10 @@
-// E over the whole square of n.v and roughness as one Chebyshev series: a thousand integrals instead
-// of one a texel.
+// The albedo E of GGX as one Chebyshev series over n.v and roughness in [0, 1]. A large table of E
+// evaluates this series, which takes at most 828 integrals to build, instead of one integral per
+// texel.
 //
-// In t = n.v (1 + c) / (n.v + c), c the width of the grazing layer, every roughness has the same shape,
-// so E is smooth in (u, roughness) up to the edges, u a root of t. GGX only.
+// E changes fast at grazing angles, n.v < c, where c is about alpha. In t = n.v (1 + c) / (n.v + c)
+// that layer has the same width at every roughness. Therefore E is a smooth function of u and
+// roughness, where u is the square root or the fourth root of t. docs/theory/energy.md.
 #ifndef KI_SURFACE_H
 #define KI_SURFACE_H
 
@@ -14,21 +16,26 @@ enum { KI_SURFACE_NOV = 48, KI_SURFACE_ROUGHNESS = 40 };
 
 typedef struct ki_surface {
     kiln_model model;
-    bool quartic;      ///< u = t^(1/4), else t^(1/2)
-    int columns, rows; ///< degrees of u and of roughness in use
+    bool quartic;      ///< true: u = t^(1/4); false: u = t^(1/2)
+    int columns, rows; ///< numbers of Chebyshev coefficients in u and in roughness
     double coefficient[KI_SURFACE_ROUGHNESS][KI_SURFACE_NOV];
 } ki_surface;
 
-/// c above: alpha, for Schlick's text k / (1 - k); at least 1e-12.
+/// The width c of the layer of n.v at grazing angles in which E changes fast: alpha, at least
+/// 1e-12, or k / (1 - k) with k = (roughness + 1)^2 / 8 for KILN_G_SCHLICK_TEXT.
 double ki_grazing_scale(const kiln_model *model, double roughness);
 
+/// Computes the series for a model whose D is GGX, by the context's threads.
 void ki_surface_build(kiln_context *context, const kiln_model *model, ki_surface *surface);
 
-/// E for `count` values of nov in one row: within 7e-8 of ki_energy on [0, 1]^2, without the corner
-/// roughness = nov = 0. The same bits on every instruction set.
+/// Sets out[i] to E at nov[i] for `count` cosines at one roughness, all in [0, 1]. The values
+/// differ from ki_energy by less than 7e-8, except near roughness = nov = 0. They are bit-identical
+/// on every instruction set.
 void ki_surface_values(const kiln_context *context, const ki_surface *surface, double roughness,
                        const double *nov, int count, double *out);
 
+/// The kernels of ki_surface_values, one for each instruction set. `coefficient` has the Chebyshev
+/// coefficients in u at the row's roughness, and `scale` is ki_grazing_scale.
 typedef void ki_surface_row(const ki_surface *surface, const double *coefficient, double scale,
                             const double *nov, int count, double *out);
 ki_surface_row ki_surface_row_scalar, ki_surface_row_sse2, ki_surface_row_avx2,

@@ -1,5 +1,6 @@
-// The body of ki_surface_row: Clenshaw's recurrence for a block of n.v at a time. Before inclusion:
-// KI_SURFACE_ROW, its name.
+// The kernel ki_surface_row: sums a Chebyshev series in u at `count` cosines n.v by Clenshaw's
+// recurrence, two degrees per step, a block of cosines at a time. Files that are compiled for one
+// instruction set each define KI_SURFACE_ROW, the kernel's name, and include this file.
 #include "brdf/surface.h"
 
 #include <math.h>
@@ -12,7 +13,7 @@ void KI_SURFACE_ROW(const ki_surface *surface, const double *coefficient, double
 {
     for (int from = 0; from < count; from += BLOCK) {
         double x[BLOCK] = {0}, b1[BLOCK], b2[BLOCK] = {0}, sum[BLOCK];
-        int n = ki_min(BLOCK, count - from), top = surface->columns - 1; // odd
+        int n = ki_min(BLOCK, count - from), top = surface->columns - 1; // the highest degree, odd
         memcpy(x, nov + from, (size_t)n * sizeof *x);
         for (int i = 0; i < BLOCK; i++)
             x[i] = sqrt(x[i] * (1 + scale) / (x[i] + scale));
@@ -20,7 +21,7 @@ void KI_SURFACE_ROW(const ki_surface *surface, const double *coefficient, double
             for (int i = 0; i < BLOCK; i++)
                 x[i] = sqrt(x[i]);
         for (int i = 0; i < BLOCK; i++) {
-            x[i] = 4 * x[i] - 2; // twice the argument
+            x[i] = 4 * x[i] - 2; // twice the Chebyshev argument 2 u - 1
             b1[i] = coefficient[top];
         }
         for (int k = top - 1; k > 1; k -= 2) {

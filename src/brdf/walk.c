@@ -1,7 +1,13 @@
-// Heitz, Hanika, d'Eon and Dachsbacher 2016, for GGX. With x = -log C1(height), C1 the share of the
-// microsurface below, the distribution of heights drops out: rays meet microfacets like particles in
-// a half space, Lambda(w) a unit of x on the way up and 1 + Lambda(-w) on the way down. Of what goes
-// up at x, the share exp(-x Lambda) leaves.
+// The albedo of a GGX surface with every bounce between its microfacets, by random walks. In:
+// Fresnel term, roughness, n.v, number of paths. Out: the albedo, its parts by the number of
+// bounces, a standard error. docs/theory/walk.md derives the method, that of Heitz, Hanika, d'Eon
+// and Dachsbacher 2016.
+//
+// A ray's depth in the microsurface is x = -log C1(height), where C1 is the share of the
+// microsurface below that height. In x the distribution of heights does not matter. A ray of
+// direction w meets microfacets at random, on average Lambda(w) of them per unit of x if w goes up,
+// and 1 + Lambda(-w) per unit if w goes down. Of the rays that go up from x, the share exp(-x
+// Lambda(w)) leaves the surface.
 #include "brdf/walk.h"
 
 #include "brdf/brdf.h"
@@ -12,17 +18,19 @@
 #include <string.h>
 
 enum {
-    REPLICATES = 16,   // lattices with shifts of their own, whose spread is the standard error
-    DIMENSIONS = 16,   // drawn from the lattice; further ones are hashed
-    MAX_BOUNCES = 1024 // of which no path has more
+    REPLICATES = 16,   // independent estimates, whose variance gives the standard error
+    DIMENSIONS = 16,   // random numbers of a path from the lattice; later numbers are hashed
+    MAX_BOUNCES = 1024 // number of bounces at which a path is stopped
 };
 
-// Below this weight chance decides whether a ray leaves.
+// A ray whose weight inside the surface would fall below TAIL stays or leaves as a whole, at
+// random.
 static const double TAIL = 0.1;
 
 // ----------------------------------------------------------------------------------------- the ray
 
-// sqrt(c^2 + alpha^2 s^2) = c (1 + 2 Lambda). Heitz 2014, eq. 72.
+// sqrt(c^2 + alpha^2 sine^2), which is c (1 + 2 Lambda) for a direction of cosine c. Heitz 2014,
+// eq. 72.
 static double stretched(double alpha, double sine, double c)
 {
     return sqrt(c * c + alpha * alpha * (sine * sine));
@@ -31,7 +39,7 @@ static double stretched(double alpha, double sine, double c)
 ki_ray ki_walk_enter(double alpha, double nov, double xi)
 {
     ki_ray ray = {.sine = sqrt((1 - nov) * (1 + nov)), .cosine = -nov, .inside = 1};
-    // 1 / (1 + Lambda) = 2 c / (c + root)
+    // 1 / (1 + Lambda) = 2 nov / (nov + stretched).
     ray.depth = -ki_log(1 - xi) * (2 * nov / (nov + stretched(alpha, ray.sine, nov)));
     return ray;
 }
@@ -58,7 +66,7 @@ double ki_walk_on(double alpha, double xi, ki_ray *ray)
     double lambda = alpha * alpha * (ray->sine * ray->sine) / (2 * c * (root + c));
     double share = ki_exp(-lambda * ray->depth), leaves = ray->inside * share;
     if (ray->inside - leaves > TAIL) {
-        // Its next depth, given that it stays.
+        // The depth of the ray's next microfacet, under the condition that the ray does not leave.
         ray->depth += ki_log(1 - xi * (1 - share)) / lambda;
         ray->inside -= leaves;
     } else if (xi < 1 - share) {
@@ -72,21 +80,23 @@ double ki_walk_on(double alpha, double xi, ki_ray *ray)
     return leaves;
 }
 
-// -------------------------------------------------------------------------------------- the numbers
+// ---------------------------------------------------------------------------------- random numbers
 
-// A rank-1 lattice for 2^k points, k to 20, by component-by-component search (Cools, Kuo and Nuyens
-// 2006; the vector is Kuo's lattice-32001-1024-1048576.3600), shifted at random.
+// The generating vector of a rank-1 lattice with 2^k points, k up to 20, found by
+// component-by-component search (Cools, Kuo and Nuyens 2006). The numbers are from Kuo's file
+// lattice-32001-1024-1048576.3600.
 static const uint32_t generators[DIMENSIONS] = {1,      182667, 469891, 498753, 110745, 446247,
                                                 250185, 118627, 245333, 283199, 408519, 391023,
                                                 246327, 126539, 399185, 461527};
 
+// A lattice shifted at random: coordinate d of point i is i * step[d] + shift[d], modulo 1.
 typedef struct lattice {
-    uint32_t step[DIMENSIONS]; // of a coordinate in units of 2^-32
-    uint32_t shift[DIMENSIONS];
-    uint64_t key;
+    uint32_t step[DIMENSIONS];  // in units of 2^-32
+    uint32_t shift[DIMENSIONS]; // in units of 2^-32
+    uint64_t key;               // seed of the shifts and of the hashed numbers
 } lattice;
 
-// The finaliser of splitmix64 (Steele, Lea and Flood 2014).
+// A hash of 64 bits: the finaliser of splitmix64 (Steele, Lea and Flood 2014).
 static uint64_t mix(uint64_t x)
 {
     x += 0x9e3779b97f4a7c15u;
@@ -104,8 +114,8 @@ static void make_lattice(uint32_t seed, int replicate, int bits, lattice *l)
     }
 }
 
-// Coordinate `d` of point `index`, in (0, 1). The lattice is folded at 1/2, which makes integrands
-// periodic (Hickernell 2002): three times less variance here.
+// Coordinate `d` of lattice point `index`, in (0, 1). The map x -> 1 - |2 x - 1| makes integrands
+// periodic (Hickernell 2002), which lowers the variance of the albedo by a factor of three.
 static double coordinate(const lattice *l, uint32_t index, int d)
 {
     if (d >= DIMENSIONS)
@@ -115,7 +125,8 @@ static double coordinate(const lattice *l, uint32_t index, int d)
     return ((double)x + 0.5) * (1.0 / 4294967296.0);
 }
 
-// log2 of the points of a replicate, 1 to 20.
+// log2 of the number of paths in each replicate, 1 to 20, so that all replicates together have at
+// least path_count paths.
 static int lattice_bits(int path_count)
 {
     int bits = 1;
@@ -126,9 +137,12 @@ static int lattice_bits(int path_count)
 
 // ------------------------------------------------------------------------------------------ albedo
 
-// Called for each bounce of a path with its v.h and the weight that leaves after it.
+// Receives each bounce of a path: the index of the bounce, v.h at its microfacet, and the weight
+// that leaves the surface after it.
 typedef void visit(void *data, int bounce, double voh, double leaves);
 
+// Follows path `index` of the lattice from the view until it has left, and reports each bounce to
+// `seen`.
 static void walk_path(double alpha, double nov, const lattice *l, uint32_t index, visit *seen,
                       void *data)
 {
@@ -141,9 +155,11 @@ static void walk_path(double alpha, double nov, const lattice *l, uint32_t index
     }
 }
 
+// Sums of a set of paths with one Fresnel term.
 typedef struct series {
     const kiln_walk_def *def;
-    double throughput, bounce[KILN_WALK_BOUNCES];
+    double throughput;                // product of F over the path's bounces
+    double bounce[KILN_WALK_BOUNCES]; // sum of the light that left after each number of bounces
 } series;
 
 static double fresnel(const kiln_walk_def *def, double voh)
@@ -171,7 +187,7 @@ void ki_walk_albedo(const kiln_walk_def *def, double roughness, double nov, kiln
 {
     *walk = (kiln_walk){0};
     double alpha = roughness * roughness, squares = 0, sums[REPLICATES];
-    if (!(alpha > 1e-100)) { // the mirror
+    if (!(alpha > 1e-100)) { // a mirror reflects once
         walk->albedo = walk->bounce[0] = fresnel(def, nov);
         return;
     }
@@ -196,11 +212,13 @@ void ki_walk_albedo(const kiln_walk_def *def, double roughness, double nov, kiln
     walk->path_count = REPLICATES << bits;
 }
 
+// Sums of a set of paths with Schlick's Fresnel terms of `count` values of f0.
 typedef struct column {
     const double *f0;
     int count;
-    double throughput[KI_WALK_COLUMN], sum[KI_WALK_COLUMN];
-    double weight; // that left from the second bounce on
+    double throughput[KI_WALK_COLUMN]; // product of F over the path's bounces
+    double sum[KI_WALK_COLUMN];        // light that left after the second or a later bounce
+    double weight;                     // that light for F = 1
 } column;
 
 static void add_bounces(void *data, int bounce, double voh, double leaves)
@@ -231,9 +249,10 @@ void ki_walk_column(double roughness, double nov, const double *f0, int count, i
         for (uint32_t i = 0; i < 1u << bits; i++)
             walk_path(alpha, nov, &l, i, add_bounces, &c);
     }
-    // The walk says how dark the later bounces are; how much light they have is known.
+    // The light of the bounces after the first is 1 - E for F = 1, which is known exactly. The walk
+    // provides only the factor by which the Fresnel terms darken it.
     ki_energy_split(&(kiln_model){0}, roughness, nov, ab);
-    // Light so rare that no path had it is as dark as two average first bounces.
+    // Where no path had a second bounce, the factor is taken as the square of the first bounce's.
     double e = ab[0] + ab[1], missing = e < 1 ? 1 - e : 0;
     for (int k = 0; k < count; k++) {
         double f = (f0[k] * ab[0] + ab[1]) / e;

@@ -1,4 +1,5 @@
-// A random walk between the microfacets: the albedo with every bounce, as ground truth.
+// Random walks of light between the microfacets of a GGX surface. They give the albedo with every
+// bounce, the reference for compensations that approximate it. docs/theory/walk.md.
 #ifndef KI_WALK_H
 #define KI_WALK_H
 
@@ -6,32 +7,38 @@
 
 #include <stdint.h>
 
-/// A ray in GGX's microsurface. Its azimuth does not matter and stays 0: (sine, 0, cosine).
+/// A ray in GGX's microsurface. The azimuth of its direction does not matter and is kept at 0.
 typedef struct ki_ray {
-    double sine, cosine; ///< of the direction it travels, from +z
-    double depth;        ///< -log of the share of heights below it: 0 on top
-    double inside;       ///< its weight: the share that has not left yet
+    double sine, cosine; ///< direction of travel (sine, 0, cosine), where +z leaves the surface
+    double depth;        ///< -log of the share of the surface's heights below the ray; 0 at the top
+    double inside;       ///< share of the ray's light that has not left the surface
 } ki_ray;
 
-/// A ray that comes down along nov until it meets a microfacet. alpha > 0.
+/// Starts a ray that comes down at the cosine nov, at the first microfacet it meets. alpha > 0, and
+/// xi is uniform in [0, 1).
 ki_ray ki_walk_enter(double alpha, double nov, double xi);
-/// The bounce: returns v.h at the microfacet, and turns the ray.
+/// Mirrors the ray at a random microfacet that it sees. Returns v.h there. xi is uniform in [0,
+/// 1)^2.
 double ki_walk_bounce(double alpha, const double xi[2], ki_ray *ray);
-/// On to the next microfacet. Returns the weight that leaves the microsurface instead; where little
-/// would stay, all or nothing does.
+/// Moves the ray to the next microfacet. Returns the share of light that leaves the surface on the
+/// way. If less than 0.1 would stay inside, either all of the ray's light leaves or none, at
+/// random.
 double ki_walk_on(double alpha, double xi, ki_ray *ray);
 
+/// Greatest number of f0 in a call of ki_walk_column.
 enum { KI_WALK_COLUMN = 64 };
 
-/// What the bounces after the first add to the albedo f0 A + B of `count` (to KI_WALK_COLUMN) Schlick
-/// surfaces, f0[] in [0, 1], for roughness and nov in [0, 1] and height-correlated Smith's GGX, from
-/// one set of walks: their angles do not depend on F. Exact for f0 = 1, where it is 1 - E. The same
-/// numbers are drawn at every (roughness, nov), so that what error there is changes smoothly along a
-/// table. path_count as in kiln_walk_def; 0.25 us each. Any thread. Error: docs/theory/walk.md.
+/// Sets added[i] to the albedo of all bounces after the first, for a GGX surface with
+/// height-correlated Smith masking and Schlick's F of f0[i]. The albedo with every bounce is then
+/// f0 A + B + added. count is at most KI_WALK_COLUMN; f0[], roughness and nov are in [0, 1];
+/// path_count is that of kiln_walk_def. One set of walks serves all f0, because the angles of a
+/// walk do not depend on F. added is exactly 1 - E for f0 = 1. Every call with the same seed draws
+/// the same random numbers, so that the error changes smoothly along a table. A path takes 0.25 us.
+/// Any thread may call. The errors are listed in docs/theory/walk.md.
 void ki_walk_column(double roughness, double nov, const double *f0, int count, int path_count,
                     uint32_t seed, double *added);
 
-/// One surface with any of the def's Fresnel terms; as kiln_walk_albedo, arguments in range.
+/// Implements kiln_walk_albedo for arguments in range: the albedo with every bounce of one surface.
 void ki_walk_albedo(const kiln_walk_def *def, double roughness, double nov, kiln_walk *walk);
 
 #endif

@@ -1,3 +1,6 @@
+// Sine, cosine, exponential, logarithm, power and arcus functions in double precision, made of + -
+// * / and sqrt, so that they give the same bits on every machine. Each reduces its argument to a
+// short interval and sums a Taylor or a similar power series there. math.h states the errors.
 #include "math/math.h"
 
 #include <math.h>
@@ -6,8 +9,8 @@
 
 // ------------------------------------------------------------------------------------ sine, cosine
 
-// Taylor polynomials on [-pi/4, pi/4]; the first terms left out are x^19/19! and x^18/18!, below
-// 1e-19 there.
+// Sine and cosine on [-pi/4, pi/4] by Taylor polynomials. The first omitted terms are x^19/19! for
+// the sine and x^18/18! for the cosine, each below 1e-17.
 static double sine_near_zero(double x)
 {
     double y = x * x;
@@ -36,7 +39,8 @@ static double cosine_near_zero(double x)
     return 1 + y * p;
 }
 
-// Cody and Waite: pi/2 in three parts of 33 bits, so that n times the first two is exact.
+// Reduces x to r = x - n pi/2 in [-pi/4, pi/4] by Cody and Waite's method: pi/2 is a sum of three
+// parts, the first two of 33 bits, so that n times each of those two is exact.
 void ki_sincos(double x, double *sine, double *cosine)
 {
     static const double part1 = 1.57079632673412561417e+00;
@@ -83,7 +87,8 @@ double ki_cos(double x)
 
 static double scale_by_power_of_two(double x, int exponent)
 {
-    // Two steps, so that results below the normal range are rounded once, by the last product.
+    // The power is split into two factors, because one factor may be outside the range of doubles.
+    // A result below the normal range is rounded once, by the last product.
     int half = exponent / 2;
     uint64_t bits1 = (uint64_t)(half + 1023) << 52, bits2 = (uint64_t)(exponent - half + 1023)
                                                             << 52;
@@ -103,7 +108,8 @@ double ki_exp(double x)
         return 0;
     double n = floor(x * 1.44269504088896340736 + 0.5);
     double r = (x - n * log2_high) - n * log2_low;
-    // Taylor to r^13 / 13!, |r| <= 0.347: the next term is below 5e-18.
+    // exp r by its Taylor polynomial of degree 13. |r| <= 0.347, so that the next term is below
+    // 5e-18.
     double p = 1.0 / 6227020800;
     for (int k = 12; k >= 2; k--) {
         static const double inverse[] = {0,
@@ -142,12 +148,13 @@ double ki_log(double x)
         x *= 0.5;
         exponent++;
     }
-    // log x = 2 artanh(s), s = (x - 1) / (x + 1), |s| <= 0.1716; series to s^21.
+    // log x = 2 artanh(s) with s = (x - 1) / (x + 1), by the power series to s^21; |s| <= 0.1716.
     double f = x - 1, s = f / (x + 1), y = s * s, p = 1.0 / 21;
     for (int k = 19; k >= 3; k -= 2)
         p = p * y + 1.0 / k;
     double e = exponent;
-    // log(1+f) = f - s f + 2 s y p, arranged so that f is exact.
+    // log(1 + f) = f - s f + 2 s y p. The sum starts from f, which is exact, to round as little as
+    // possible.
     return e * log2_high + (f - (s * f - (2 * s * (y * p) + e * log2_low)));
 }
 
@@ -160,10 +167,11 @@ double ki_pow(double x, double y)
     return ki_exp(y * ki_log(x));
 }
 
-// ---------------------------------------------------------------------------------------- arctangent
+// -------------------------------------------------------------------------------------- arctangent
 
-// arctan of 0 <= x <= 1 by the nearest of 0, 1/4, 1/2, 3/4, 1:
-// arctan x = arctan c + arctan((x - c) / (1 + x c)), the rest below 0.125, series to its 17th power.
+// arctan x for 0 <= x <= 1. With c the multiple of 1/4 nearest to x, arctan x = arctan c + arctan
+// r, where r = (x - c) / (1 + x c) is at most 0.125 in absolute value. arctan r is its power series
+// to r^17.
 static double arctangent(double x)
 {
     static const double at[] = {0, 0.24497866312686415417, 0.46364760900080611621,

@@ -1,11 +1,11 @@
-// The error function, from its scaled complement erfcx x = exp(x^2) (1 - erf x).
+// The error function erf, and its scaled complement erfcx x = exp(x^2) (1 - erf x).
 #include "math/math.h"
 
 #include <math.h>
 
-// (1 + 2 x) erfcx x is smooth in y = (x - 3) / (x + 3) on all of [0, infinity): a Chebyshev series,
-// its terms left out below 3e-18. The form is Shepherd and Laframboise's (Math. Comp. 36, 1981), the
-// coefficients were computed to 40 digits.
+// (1 + 2 x) erfcx x is smooth in y = (x - 3) / (x + 3) for x in [0, infinity), and is evaluated as
+// a Chebyshev series in y. The omitted terms are below 3e-18. This form is Shepherd and
+// Laframboise's (Math. Comp. 36, 1981); the coefficients were computed with 40 digits.
 double ki_erfcx(double x)
 {
     static const double c[] = {
@@ -31,7 +31,8 @@ double ki_erf(double x)
 {
     double a = fabs(x), y = x * x;
     if (a < 0.75) {
-        // 2 / sqrt(pi) times the sum of (-1)^n x^(2n+1) / (n! (2n+1)); the next is below 2e-18.
+        // erf x = 2 / sqrt(pi) times the sum of (-1)^n x^(2n+1) / (n! (2n+1)). The first omitted
+        // term is below 2e-18.
         double term = 1, sum = 0;
         for (int n = 1; n <= 14; n++) {
             term *= -y / n;

@@ -1,9 +1,11 @@
-// Euler's beta function.
+// Euler's beta function, B(a, b) = Gamma(a) Gamma(b) / Gamma(a + b), by Stirling's formula with
+// Binet's function as its remainder.
 #include "math/math.h"
 
-// Binet's function, log Gamma(x) - ((x - 1/2) log x - x + log(2 pi) / 2), for x >= 1. x times it is
-// smooth in 1/x on [0, 1]: a polynomial in 2/x - 1, whose first term left out is below 3e-14. The
-// coefficients were computed to 30 digits.
+// Binet's function for x >= 1: the remainder log Gamma(x) - ((x - 1/2) log x - x + log(2 pi) / 2)
+// of Stirling's formula. x times the function is smooth in 1/x on [0, 1], and is evaluated as a
+// polynomial in 2/x - 1. The first omitted term is below 3e-14. The coefficients were computed with
+// 30 digits.
 static double binet(double x)
 {
     static const double c[] = {
@@ -19,14 +21,16 @@ static double binet(double x)
     return sum * y;
 }
 
-// log(1 + x), x >= 0.
+// log(1 + x) for x >= 0, precise for small x too.
 static double log1p_positive(double x)
 {
     double u = 1 + x;
     return u > 1 ? ki_log(u) - ((u - 1) - x) / u : x;
 }
 
-// log Gamma(a) + log Gamma(b) - log Gamma(a + b) with the greater a's great terms taken together.
+// log B(a, b) = log Gamma(a) + log Gamma(b) - log Gamma(a + b) by Stirling's formula. For a > b the
+// large terms of log Gamma(a) and log Gamma(a + b) cancel, and are combined before rounding into
+// `rise`.
 double ki_beta(double a, double b)
 {
     if (a < b) {

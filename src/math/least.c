@@ -1,9 +1,9 @@
-// Dense least squares by Householder's reflections.
+// Dense linear least squares: QR decomposition by Householder reflections, then back substitution.
 #include "math/math.h"
 
 #include <math.h>
 
-// Applies I - 2 v v^T / (v.v) to a column.
+// Multiplies a column of `rows` numbers by the reflection I - 2 v v^T / (v.v), where norm2 is v.v.
 static void reflect(const double *v, double norm2, double *column, int rows)
 {
     double dot = 0;

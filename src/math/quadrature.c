@@ -22,8 +22,9 @@ const double ki_gauss16_weights[16] = {
     0.12462897125553387205,  0.09515851168249278481,  0.062253523938647892863,
     0.027152459411754094852};
 
-// Newton's method on P_n from the asymptotic guess cos(pi (i + 3/4) / (n + 1/2)); the weight is
-// 2 / ((1 - x^2) P_n'(x)^2). Abramowitz and Stegun 25.4.29.
+// The nodes are the zeros of the Legendre polynomial P_n with n = count. Newton's method finds each
+// from the asymptotic guess cos(pi (i + 3/4) / (n + 1/2)). The weight of node x is 2 / ((1 - x^2)
+// P_n'(x)^2), by Abramowitz and Stegun, 25.4.29.
 void ki_gauss_legendre(int count, double *nodes, double *weights)
 {
     for (int i = 0; i < (count + 1) / 2; i++) {
@@ -51,12 +52,13 @@ void ki_gauss_legendre(int count, double *nodes, double *weights)
     }
 }
 
-// x = 1 / (1 + exp(-pi sinh t)), equal steps of t in [-reach, reach]. Takahasi and Mori 1974.
+// The trapezoidal rule in t on [-reach, reach] after the substitution x = 1 / (1 + exp(-pi sinh
+// t)), by Takahasi and Mori 1974.
 void ki_double_exponential(int count, double reach, double *nodes, double *weights)
 {
     double step = 2 * reach / (count - 1);
     for (int i = 0; i <= count / 2; i++) {
-        double e = ki_exp(-reach + i * step); // exp t, t <= 0
+        double e = ki_exp(-reach + i * step); // e^t of node i, where t <= 0
         double u = ki_exp(KI_PI / 2 * (e - 1 / e)), x = u / (1 + u);
         nodes[i] = x;
         nodes[count - 1 - i] = 1 - x;

@@ -1,9 +1,11 @@
-// Eigenvectors of a symmetric matrix by Jacobi's rotations (1846).
+// Eigenvalues and eigenvectors of a small symmetric matrix, by Jacobi's method (1846): rotations in
+// pairs of coordinates that make the off-diagonal elements vanish one after another.
 #include "math/math.h"
 
 #include <math.h>
 
-// Turns columns, or rows, `i` and `j` of a matrix.
+// Rotates the vectors x and y, two rows or two columns of a matrix, by the angle of cosine c and
+// sine s. Each has `count` elements, `step` apart.
 static void turn(double *x, double *y, int count, int step, double c, double s)
 {
     for (int k = 0; k < count; k++, x += step, y += step) {
