@@ -181,33 +181,13 @@ static int read_roughness(bake *b)
 // What can be written where. `option` names it in sentences.
 static int check_output(const bake *b, const char *option, const char *path)
 {
-    const char *ending = cli_ending(path);
-    bool texture = !strcmp(ending, "ktx2") || !strcmp(ending, "dds");
-    bool exr = !strcmp(ending, "exr") || !strcmp(ending, "/");
+    const kiln_save_def def = {.format = (kiln_format)b->format};
+    kiln_error error;
     if (!strcmp(path, "-"))
         return cli_wrong(&cli_bake, "%s: writing to standard output is not possible, name a file",
                          option);
-    if (!texture && !exr && strcmp(ending, "hdr") != 0 && strcmp(ending, "png") != 0)
-        return cli_wrong(&cli_bake, "%s %s: must end in .ktx2, .dds, .exr, .hdr, .png or /", option,
-                         path);
-    if (texture && b->shape != KILN_SHAPE_CUBE)
-        return cli_wrong(&cli_bake,
-                         "%s %s: .%s holds a cube; --shape %s goes to .exr, .hdr or .png", option,
-                         path, ending, shapes[b->shape]);
-    if (b->shape != KILN_SHAPE_CUBE && (strstr(path, "%s") || strstr(path, "{face}")))
-        return cli_wrong(&cli_bake, "%s %s: names a face, --shape %s has none", option, path,
-                         shapes[b->shape]);
-    bool bytes = b->format >= KILN_FORMAT_RGBM;
-    bool packed = b->format >= KILN_FORMAT_RGB9E5 && !bytes;
-    if (packed && !texture)
-        return cli_wrong(&cli_bake, "%s %s: --format %s is for .ktx2 and .dds", option, path,
-                         kiln_format_names()[b->format]);
-    if (bytes && strcmp(ending, "png") != 0)
-        return cli_wrong(&cli_bake, "%s %s: --format %s is for .png", option, path,
-                         kiln_format_names()[b->format]);
-    if (b->format != KILN_FORMAT_AUTO && !texture && !exr && !bytes)
-        return cli_wrong(&cli_bake, "%s %s: .%s has one format only, leave --format out", option,
-                         path, ending);
+    if (kiln_map_save_check(path, (kiln_shape)b->shape, &def, &error))
+        return cli_wrong(&cli_bake, "%s %s", option, error.message);
     return CLI_GO;
 }
 
@@ -560,12 +540,9 @@ static int filter_by_textbook(bake *b)
 // The largest value that the output's format holds; 0 for no limit.
 static double format_limit(const bake *b, const char *path)
 {
-    const char *ending = cli_ending(path);
     if (b->engine && path == b->output && b->format != KILN_FORMAT_B10G11R11)
         return b->engine->limit;
-    if (!strcmp(ending, "png") && b->format < KILN_FORMAT_RGBM)
-        return 1;
-    return strcmp(ending, "hdr") ? kiln_format_limit((kiln_format)b->format) : 0;
+    return kiln_map_save_limit(path, (kiln_format)b->format);
 }
 
 static void warn_of_clamping(bake *b, const kiln_map *map, const char *path)

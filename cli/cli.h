@@ -76,7 +76,8 @@ int cli_model(const cli_arguments *arguments, int option_d, int option_g, kiln_m
 /// Whether the name that an option gives to source code can be one: CLI_GO or CLI_WRONG.
 int cli_source_name(const cli_arguments *arguments, int option);
 
-/// The ending of a file's name without its dot, "" where it has none, "/" for a folder.
+/// The ending of a file's name in small letters and without its dot, "" where it is none of kiln's, "/"
+/// for a folder.
 const char *cli_ending(const char *path);
 /// Fails early, before the work, where the folder of an output file does not exist.
 int cli_check_folder(const char *path);

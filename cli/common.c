@@ -172,12 +172,10 @@ int cli_choice(const cli_arguments *a, int option, const char *name, const char 
 
 const char *cli_ending(const char *path)
 {
-    size_t length = strlen(path);
-    if ((length && path[length - 1] == '/') || os_kind_of(path) == OS_FOLDER)
+    const char *ending = kiln_path_ending(path);
+    if (ending[0] == '/' || os_kind_of(path) == OS_FOLDER)
         return "/";
-    const char *slash = strrchr(path, '/'), *dot = strrchr(path, '.');
-    bool has_ending = dot && dot > path && (!slash || dot > slash + 1);
-    return has_ending ? dot + 1 : "";
+    return ending[0] ? ending + 1 : "";
 }
 
 int cli_check_folder(const char *path)

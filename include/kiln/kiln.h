@@ -431,6 +431,16 @@ typedef struct kiln_save_def {
     const char *lobe;  ///< name stored in the metadata; may be NULL
 } kiln_save_def;
 
+/// A path's ending as kiln's formats have it, in small letters whatever the path has, with its dot:
+/// ".ktx2". "/" where the path ends in a slash, "" where kiln has no such ending.
+KILN_API const char *kiln_path_ending(const char *path);
+/// Fails, as kiln_map_save would, where a map of this shape cannot be saved to such a path so. `def` may
+/// be NULL.
+KILN_API KILN_CHECKED kiln_result kiln_map_save_check(const char *path, kiln_shape shape,
+                                                      const kiln_save_def *def, kiln_error *error);
+/// The largest radiance that such a file holds in a format; more is cut off. 0 where floats hold all.
+KILN_API double kiln_map_save_limit(const char *path, kiln_format format);
+
 /// Writes a map whole or not at all: a temporary file beside `path`, fsync, rename. By ending:
 ///   .ktx2 .dds   a cube with all levels in one file
 ///   .exr .hdr .png, or a folder (ends in /)   with %s or {face} for the face and %d or {level} for

@@ -1,7 +1,7 @@
 // Engines: their levels, and their files.
 #include "engine/engine.h"
 
-#include "codec/texel.h"
+#include "codec/pixel_format.h"
 #include "image/image.h"
 #include "math/math.h"
 
@@ -162,8 +162,8 @@ kiln_result kiln_engine_show(kiln_context *context, const kiln_engine *engine, c
 // The path must end as the recipe says.
 static kiln_result check_path(const ki_recipe *recipe, const char *path, kiln_error *error)
 {
-    const char *dot = strrchr(path, '.'), *wanted = recipe->about.ending;
-    bool good = path[0] && (!wanted[0] || (dot && !strcmp(dot + 1, wanted)));
+    const char *ending = kiln_path_ending(path), *wanted = recipe->about.ending;
+    bool good = path[0] && (!wanted[0] || (ending[0] == '.' && !strcmp(ending + 1, wanted)));
     return good ? KILN_OK
                 : ki_fail(error, KILN_ERROR_ARGUMENT, "%s: %s's file must end in .%s", path,
                           recipe->about.name, wanted);

@@ -1,9 +1,9 @@
 // Closed forms as the caller sees them.
 #include "table/fit.h"
 
-#include "api/table_source.h"
 #include "base/file.h"
-#include "codec/fit.h"
+#include "table/fit_code.h"
+#include "table/table_source.h"
 
 #include <string.h>
 
@@ -53,7 +53,7 @@ kiln_result kiln_fit_save(kiln_context *context, const kiln_fit *fit, const char
     if (!glsl && !ki_ends_with(path, ".h"))
         return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: ends in none of .h .glsl", path);
     ki_writer text = {.context = context};
-    ki_fit_encode(fit, made.text, glsl, &text);
+    ki_fit_write_code(fit, made.text, glsl, &text);
     result = text.failed ? ki_fail_memory(context, error, path, text.size)
                          : ki_file_write(context, path, text.bytes, text.size, error);
     ki_writer_free(&text);

@@ -5,10 +5,20 @@
 #include <stdio.h>
 #include <string.h>
 
+static char small_letter(char c)
+{
+    return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
+}
+
 bool ki_ends_with(const char *path, const char *ending)
 {
     size_t length = strlen(path), tail = strlen(ending);
-    return length > tail && !strcmp(path + length - tail, ending);
+    if (length <= tail)
+        return false;
+    for (path += length - tail; *ending; path++, ending++)
+        if (small_letter(*path) != *ending)
+            return false;
+    return true;
 }
 
 kiln_result ki_file_read(kiln_context *context, const char *path, uint8_t **bytes, size_t *size,

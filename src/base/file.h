@@ -4,7 +4,8 @@
 
 #include "base/base.h"
 
-/// Whether a path has this ending, ".exr" or "/", and something before it.
+/// Whether a path has this ending, ".exr" or "/", and something before it. Letters of the path may be
+/// capitals, those of `ending` are small.
 bool ki_ends_with(const char *path, const char *ending);
 
 /// Reads a whole file into memory of the context; "-" is standard input. The caller frees `bytes`.

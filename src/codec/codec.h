@@ -23,19 +23,6 @@ kiln_result ki_decode(kiln_context *context, const uint8_t *bytes, size_t size, 
                       ki_decoded *decoded, kiln_file_info *info, kiln_error *error);
 void ki_decoded_free(ki_decoded *decoded);
 
-/// Decimal numbers with a point, whatever the program's locale is. Parsing returns what follows the
-/// number, or NULL where there is none; it is right to about 15 digits.
-const char *ki_parse_number(const char *text, double *value);
-/// Nine digits: enough for a float to come back as it was.
-void ki_write_number(ki_writer *writer, double value);
-
-/// The shortest of six to nine digits that is this float again, with a point or an exponent, which C
-/// and GLSL want.
-void ki_write_float(ki_writer *writer, float value);
-
-/// What a file says of its table, as far as it is printable.
-void ki_describe_table(kiln_file_info *info, const char *text);
-
 kiln_result ki_exr_decode(kiln_context *context, const uint8_t *bytes, size_t size,
                           const char *name, kiln_image *image, kiln_file_info *info,
                           kiln_error *error);
@@ -45,15 +32,13 @@ kiln_result ki_hdr_decode(kiln_context *context, const uint8_t *bytes, size_t si
 kiln_result ki_png_decode(kiln_context *context, const uint8_t *bytes, size_t size,
                           const char *name, kiln_image *image, kiln_file_info *info,
                           kiln_error *error);
-/// A cube goes to `map`, a table to `image`; both or neither are NULL. `info` is needed.
+/// KTX2 is a cube or a table, DDS a cube. `decoded` may be NULL, `info` not.
 kiln_result ki_ktx2_decode(kiln_context *context, const uint8_t *bytes, size_t size,
-                           const char *name, kiln_map *map, kiln_image *image, kiln_file_info *info,
+                           const char *name, ki_decoded *decoded, kiln_file_info *info,
                            kiln_error *error);
 kiln_result ki_dds_decode(kiln_context *context, const uint8_t *bytes, size_t size,
-                          const char *name, kiln_map *map, kiln_file_info *info, kiln_error *error);
-
-/// The size of a picture's faces and how they lie, from its sides; NULL where they fit no layout.
-const char *ki_layout_name(int width, int height);
+                          const char *name, ki_decoded *decoded, kiln_file_info *info,
+                          kiln_error *error);
 
 /// Encoders append a whole file. KTX2 and DDS take cubes with all levels.
 kiln_result ki_ktx2_encode(const kiln_map *map, const kiln_save_def *def, ki_writer *writer,

@@ -1,7 +1,7 @@
 // DDS cubes: written with the DX10 header, read with it or with the two older codes of float
 // formats. The file has no place for metadata. Each face is followed by its smaller levels.
 #include "codec/codec.h"
-#include "codec/texel.h"
+#include "codec/pixel_format.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -32,10 +32,10 @@ static uint32_t fourcc(const char code[4])
 kiln_result ki_dds_encode(const kiln_map *map, const kiln_save_def *def, ki_writer *writer,
                           kiln_error *error)
 {
-    const ki_texel *texel = ki_texel_of_format(def->format);
+    const ki_pixel_format *pixel = ki_pixel_format_of(def->format);
     if (map->shape != KILN_SHAPE_CUBE)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "a DDS file holds a cube, not another shape");
-    if (!texel)
+    if (!pixel || !pixel->vk)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "format is %d, it must be 0 to %d",
                        (int)def->format, (int)KILN_FORMAT_BC6H);
     if (map->smallest > 1 && map->size >> (map->level_count - 1) < map->smallest)
@@ -47,11 +47,11 @@ kiln_result ki_dds_encode(const kiln_map *map, const kiln_save_def *def, ki_writ
     ki_writer *w = writer;
     ki_write(w, "DDS ", 4);
     ki_write_u32(w, HEADER_SIZE);
-    ki_write_u32(w, FLAGS | (texel->block > 1 ? FLAG_LINEAR : FLAG_PITCH));
+    ki_write_u32(w, FLAGS | (pixel->block > 1 ? FLAG_LINEAR : FLAG_PITCH));
     ki_write_u32(w, (uint32_t)map->size);
     ki_write_u32(w, (uint32_t)map->size);
-    int rows = texel->block > 1 ? map->size : 1;
-    ki_write_u32(w, (uint32_t)ki_texels_size(texel, map->size, rows));
+    int rows = pixel->block > 1 ? map->size : 1;
+    ki_write_u32(w, (uint32_t)ki_pixels_size(pixel, map->size, rows));
     ki_write_u32(w, 0); // depth
     ki_write_u32(w, (uint32_t)map->level_count);
     for (int i = 0; i < 11; i++)
@@ -65,7 +65,7 @@ kiln_result ki_dds_encode(const kiln_map *map, const kiln_save_def *def, ki_writ
     ki_write_u32(w, CAPS2_CUBE | CAPS2_ALL_FACES);
     for (int i = 0; i < 3; i++)
         ki_write_u32(w, 0);
-    ki_write_u32(w, texel->dxgi);
+    ki_write_u32(w, pixel->dxgi);
     ki_write_u32(w, DIMENSION_2D);
     ki_write_u32(w, MISC_CUBE);
     ki_write_u32(w, 1); // cubes
@@ -74,10 +74,10 @@ kiln_result ki_dds_encode(const kiln_map *map, const kiln_save_def *def, ki_writ
         for (int k = 0; k < map->level_count; k++) {
             int n = kiln_map_level_size(map, k);
             size_t texels = kiln_map_texels(map, k) / 6;
-            uint8_t *room = ki_write_room(w, (size_t)ki_texels_size(texel, n, n));
+            uint8_t *room = ki_write_room(w, (size_t)ki_pixels_size(pixel, n, n));
             if (!room)
                 return ki_fail_memory(w->context, error, "a DDS file", w->size);
-            if (!ki_texels_pack(w->context, texel, map->level[k] + 3 * texels * (size_t)face, n, n,
+            if (!ki_pixels_pack(w->context, pixel, map->level[k] + 3 * texels * (size_t)face, n, n,
                                 1, room))
                 return ki_fail_cancelled(error, "writing");
         }
@@ -87,7 +87,7 @@ kiln_result ki_dds_encode(const kiln_map *map, const kiln_save_def *def, ki_writ
 
 typedef struct dds_header {
     uint32_t width, height, levels;
-    const ki_texel *texel;
+    const ki_pixel_format *pixel;
 } dds_header;
 
 static kiln_result read_header(ki_reader *r, const char *name, dds_header *h, kiln_error *error)
@@ -117,21 +117,21 @@ static kiln_result read_header(ki_reader *r, const char *name, dds_header *h, ki
         cube = ki_read_u32(r) & MISC_CUBE;
         cubes = ki_read_u32(r);
         ki_read_u32(r);
-        h->texel = ki_texel_of_dxgi(format);
+        h->pixel = ki_pixel_format_of_dxgi(format);
         if (r->failed)
             return ki_fail(error, KILN_ERROR_FORMAT, "%s: the DDS header is cut off", name);
     } else if (format_flags & FORMAT_FOURCC) {
-        h->texel = code == LEGACY_RGBA16F   ? ki_texel_of_format(KILN_FORMAT_RGBA16F)
-                   : code == LEGACY_RGBA32F ? ki_texel_of_format(KILN_FORMAT_RGBA32F)
+        h->pixel = code == LEGACY_RGBA16F   ? ki_pixel_format_of(KILN_FORMAT_RGBA16F)
+                   : code == LEGACY_RGBA32F ? ki_pixel_format_of(KILN_FORMAT_RGBA32F)
                                             : NULL;
         format = code;
     } else {
-        h->texel = NULL;
+        h->pixel = NULL;
     }
     if (!cube || cubes != 1)
         return ki_fail(error, KILN_ERROR_UNSUPPORTED,
                        "%s: is no single cube of six faces, others are not read", name);
-    if (!h->texel)
+    if (!h->pixel)
         return ki_fail(
             error, KILN_ERROR_UNSUPPORTED,
             "%s: has pixel format %u; DXGI 2, 10, 26, 67 and 95 and the codes 113 and 116 "
@@ -149,31 +149,31 @@ static kiln_result read_header(ki_reader *r, const char *name, dds_header *h, ki
 }
 
 kiln_result ki_dds_decode(kiln_context *context, const uint8_t *bytes, size_t size,
-                          const char *name, kiln_map *map, kiln_file_info *info, kiln_error *error)
+                          const char *name, ki_decoded *decoded, kiln_file_info *info,
+                          kiln_error *error)
 {
-    if (map)
-        *map = (kiln_map){0};
     dds_header h = {0};
     ki_reader r = ki_reader_make(bytes, size);
     kiln_result result = read_header(&r, name, &h, error);
-    if (result != KILN_OK || !h.texel)
+    if (result != KILN_OK || !h.pixel)
         return result;
     uint64_t wanted = 0;
     for (uint32_t k = 0; k < h.levels; k++)
-        wanted += 6 * ki_texels_size(h.texel, (int)h.width >> k, (int)h.width >> k);
+        wanted += 6 * ki_pixels_size(h.pixel, (int)h.width >> k, (int)h.width >> k);
     if (wanted > ki_reader_left(&r))
         return ki_fail(error, KILN_ERROR_FORMAT,
                        "%s: its levels need %llu bytes, %zu are left behind the header", name,
                        (unsigned long long)wanted, ki_reader_left(&r));
     snprintf(info->format, sizeof info->format, "dds");
-    snprintf(info->encoding, sizeof info->encoding, "%s", ki_format_names[h.texel->format]);
+    snprintf(info->encoding, sizeof info->encoding, "%s", ki_format_names[h.pixel->format]);
     info->width = info->height = (int)h.width;
     info->face_count = 6;
     info->level_count = (int)h.levels;
-    info->channel_count = h.texel->channels;
-    if (!map)
+    info->channel_count = h.pixel->channels;
+    if (!decoded)
         return KILN_OK;
 
+    kiln_map *map = &decoded->map;
     *map = (kiln_map){.shape = KILN_SHAPE_CUBE, .size = (int)h.width, .level_count = (int)h.levels};
     result = ki_map_allocate(context, map, error);
     if (result != KILN_OK)
@@ -182,8 +182,8 @@ kiln_result ki_dds_decode(kiln_context *context, const uint8_t *bytes, size_t si
         for (int k = 0; k < map->level_count; k++) {
             int n = kiln_map_level_size(map, k);
             size_t texels = kiln_map_texels(map, k) / 6;
-            const uint8_t *from = ki_read_bytes(&r, (size_t)ki_texels_size(h.texel, n, n));
-            ki_texels_unpack(h.texel, from, n, n, map->level[k] + 3 * texels * (size_t)face);
+            const uint8_t *from = ki_read_bytes(&r, (size_t)ki_pixels_size(h.pixel, n, n));
+            ki_pixels_unpack(h.pixel, from, n, n, map->level[k] + 3 * texels * (size_t)face);
         }
     }
     for (int k = 0; k < map->level_count; k++)

@@ -2,20 +2,11 @@
 // after the other, level by level, face by face. Images are PNG in RGBD, their rows from the bottom up.
 #include "codec/env.h"
 
-#include "codec/rgbx.h"
+#include "codec/decimal.h"
+#include "codec/rgbx_png.h"
 #include "image/image.h"
 
 static const uint8_t magic[8] = {0x86, 0x16, 0x87, 0x96, 0xf6, 0xd6, 0x96, 0x36};
-
-kiln_result ki_rgbd_png_encode(const float *texels, int n, float *scratch, ki_writer *w,
-                               kiln_error *error)
-{
-    size_t row = (size_t)n;
-    for (size_t y = 0; y < row; y++)
-        for (size_t x = 0; x < row; x++)
-            ki_rgbd_from_float(texels + 3 * ((row - 1 - y) * row + x), scratch + 4 * (y * row + x));
-    return ki_png_encode(scratch, n, n, 4, KI_PNG_PLAIN8, w, error);
-}
 
 static void write_polynomial(ki_writer *w, double polynomial[9][3])
 {
@@ -34,11 +25,7 @@ kiln_result ki_env_encode(const kiln_map *map, double lod_scale, double polynomi
                           ki_writer *w, kiln_error *error)
 {
     ki_writer images = {.context = w->context};
-    size_t texels = (size_t)map->size * (size_t)map->size;
-    float *scratch = ki_alloc_raw(w->context, texels, 4 * sizeof *scratch);
     kiln_result result = KILN_OK;
-    if (!scratch)
-        return ki_fail_memory(w->context, error, "an .env file", 16 * texels);
     ki_write(w, magic, sizeof magic);
     ki_write_text(w, "{\"version\":2,\"width\":%d,\"imageType\":\"image/png\",\"irradiance\":{",
                   map->size);
@@ -49,8 +36,9 @@ kiln_result ki_env_encode(const kiln_map *map, double lod_scale, double polynomi
     for (int i = 0; i < 6 * map->level_count && result == KILN_OK; i++) {
         int n = kiln_map_level_size(map, i / 6);
         size_t begin = images.size;
-        result = ki_rgbd_png_encode(map->level[i / 6] + 3 * (size_t)(i % 6) * (size_t)n * (size_t)n,
-                                    n, scratch, &images, error);
+        const kiln_image face = {
+            n, n, 3, map->level[i / 6] + 3 * (size_t)(i % 6) * (size_t)n * (size_t)n, NULL};
+        result = ki_rgbx_png_encode(&face, ki_rgbd_from_float, true, &images, error);
         ki_write_text(w, "%s{\"length\":%zu,\"position\":%zu}", i ? "," : "", images.size - begin,
                       begin);
     }
@@ -60,6 +48,5 @@ kiln_result ki_env_encode(const kiln_map *map, double lod_scale, double polynomi
     if (result == KILN_OK && (w->failed || images.failed))
         result = ki_fail_memory(w->context, error, "an .env file", images.size);
     ki_writer_free(&images);
-    ki_free(scratch);
     return result;
 }

@@ -4,9 +4,6 @@
 
 #include "codec/codec.h"
 
-/// A face of n * n texels as PNG in RGBD, its rows from the bottom up. `scratch` holds 4 n * n floats.
-kiln_result ki_rgbd_png_encode(const float *texels, int n, float *scratch, ki_writer *writer,
-                               kiln_error *error);
 /// A cube with all levels down to 1. `polynomial` is in the order x y z xx yy zz yz zx
 /// xy.
 kiln_result ki_env_encode(const kiln_map *map, double lod_scale, double polynomial[9][3],

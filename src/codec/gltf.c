@@ -3,7 +3,8 @@
 // The extension's figure has v upward and glTF has it downward: rows are from the bottom up.
 #include "codec/gltf.h"
 
-#include "codec/env.h"
+#include "codec/decimal.h"
+#include "codec/rgbx_png.h"
 #include "image/image.h"
 
 enum {
@@ -17,16 +18,14 @@ enum {
 static kiln_result write_images(const kiln_map *map, ki_writer *json, ki_writer *images,
                                 kiln_error *error)
 {
-    size_t texels = (size_t)map->size * (size_t)map->size;
-    float *scratch = ki_alloc_raw(json->context, texels, 4 * sizeof *scratch);
     kiln_result result = KILN_OK;
-    if (!scratch)
-        return ki_fail_memory(json->context, error, "a glTF file", 16 * texels);
     ki_write_text(json, "\"bufferViews\":[");
     for (int i = 0; i < 6 * map->level_count && result == KILN_OK; i++) {
-        size_t n = (size_t)kiln_map_level_size(map, i / 6), begin = images->size;
-        result = ki_rgbd_png_encode(map->level[i / 6] + 3 * (size_t)(i % 6) * n * n, (int)n,
-                                    scratch, images, error);
+        int n = kiln_map_level_size(map, i / 6);
+        size_t begin = images->size;
+        const kiln_image face = {
+            n, n, 3, map->level[i / 6] + 3 * (size_t)(i % 6) * (size_t)n * (size_t)n, NULL};
+        result = ki_rgbx_png_encode(&face, ki_rgbd_from_float, true, images, error);
         ki_write_text(json, "%s{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":%zu}", i ? "," : "",
                       begin, images->size - begin);
         ki_write_align(images, 4);
@@ -35,7 +34,6 @@ static kiln_result write_images(const kiln_map *map, ki_writer *json, ki_writer 
     for (int i = 0; i < 6 * map->level_count; i++)
         ki_write_text(json, "%s{\"bufferView\":%d,\"mimeType\":\"image/png\"}", i ? "," : "", i);
     ki_write_text(json, "]");
-    ki_free(scratch);
     return result;
 }
 

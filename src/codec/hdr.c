@@ -4,6 +4,7 @@
 // A texel is mantissa / 256 * 2^(exponent - 128), divided by the product of the header's EXPOSURE
 // lines, so that the numbers are radiance again.
 #include "codec/codec.h"
+#include "codec/decimal.h"
 
 #include <float.h>
 #include <math.h>

@@ -1,7 +1,7 @@
 // KTX version 1 cubes of halves, or of 11, 11 and 10 bits.
 #include "codec/ktx1.h"
 
-#include "codec/texel.h"
+#include "codec/pixel_format.h"
 
 #include <string.h>
 
@@ -50,7 +50,7 @@ static void write_pair(ki_writer *w, const char *key, const char *value)
 kiln_result ki_ktx1_encode(const kiln_map *map, int first, int count, kiln_format format,
                            const char *key, const char *value, ki_writer *writer, kiln_error *error)
 {
-    const ki_texel *texel = ki_texel_of_format(format);
+    const ki_pixel_format *pixel = ki_pixel_format_of(format);
     bool packed = format == KILN_FORMAT_B10G11R11;
     write_header(writer, packed ? packed_types : half_types, kiln_map_level_size(map, first),
                  count);
@@ -61,12 +61,12 @@ kiln_result ki_ktx1_encode(const kiln_map *map, int first, int count, kiln_forma
     for (int k = first; k < first + count; k++) {
         // The size of a level of a cube is that of one face. Faces of 4 and 8 bytes a texel need no padding.
         int n = kiln_map_level_size(map, k);
-        size_t size = (size_t)ki_texels_size(texel, n, n);
+        size_t size = (size_t)ki_pixels_size(pixel, n, n);
         ki_write_u32(writer, (uint32_t)size);
         uint8_t *room = ki_write_room(writer, 6 * size);
         if (!room)
             return ki_fail_memory(writer->context, error, "a KTX file", writer->size);
-        if (!ki_texels_pack(writer->context, texel, map->level[k], n, n, 6, room))
+        if (!ki_pixels_pack(writer->context, pixel, map->level[k], n, n, 6, room))
             return ki_fail_cancelled(error, "writing");
     }
     return KILN_OK;

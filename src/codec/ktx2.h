@@ -71,6 +71,9 @@ typedef struct ki_ktx2_level {
     size_t size, plain_size;
 } ki_ktx2_level;
 
+/// Reads the header, and the metadata into `info`.
+kiln_result ki_ktx2_open(ki_ktx2_source *source, const uint8_t *bytes, size_t size,
+                         const char *name, kiln_file_info *info, kiln_error *error);
 /// The next level of the index, whose texels take `wanted` bytes: its place and size are checked
 /// before memory is asked for.
 kiln_result ki_ktx2_find_level(ki_ktx2_source *source, uint32_t k, uint64_t wanted,

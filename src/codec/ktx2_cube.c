@@ -1,6 +1,7 @@
 // KTX2 cubes with all their levels.
+#include "codec/decimal.h"
 #include "codec/ktx2.h"
-#include "codec/texel.h"
+#include "codec/pixel_format.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -8,10 +9,10 @@
 // ----------------------------------------------------------------------------------------- writing
 
 // One sample for each channel (and, for the shared exponent, one more).
-static int find_samples(const ki_texel *texel, ki_ktx2_sample samples[6])
+static int find_samples(const ki_pixel_format *pixel, ki_ktx2_sample samples[6])
 {
     const uint32_t minus_one = 0xbf800000, one = 0x3f800000;
-    switch (texel->format) {
+    switch (pixel->format) {
     case KILN_FORMAT_RGB9E5:
         // Upper and lower as the specification's table of this format states them.
         for (int c = 0; c < 3; c++) {
@@ -30,7 +31,7 @@ static int find_samples(const ki_texel *texel, ki_ktx2_sample samples[6])
     default:
         break;
     }
-    int bits = 2 * texel->bytes;
+    int bits = 2 * pixel->bytes;
     for (int c = 0; c < 4; c++)
         samples[c] = (ki_ktx2_sample){bits * c, bits,
                                       (c == 3 ? KI_KTX2_ALPHA : c) | KI_KTX2_FLOAT | KI_KTX2_SIGNED,
@@ -69,48 +70,48 @@ static void write_metadata(ki_writer *w, const kiln_map *map, const kiln_save_de
 
 typedef struct pack_job {
     const kiln_map *map;
-    const ki_texel *texel;
+    const ki_pixel_format *pixel;
 } pack_job;
 
 static bool pack_level(kiln_context *context, const void *data, int level, uint8_t *bytes)
 {
     const pack_job *job = data;
     int n = kiln_map_level_size(job->map, level);
-    return ki_texels_pack(context, job->texel, job->map->level[level], n, n, 6, bytes);
+    return ki_pixels_pack(context, job->pixel, job->map->level[level], n, n, 6, bytes);
 }
 
 kiln_result ki_ktx2_encode(const kiln_map *map, const kiln_save_def *def, ki_writer *writer,
                            kiln_error *error)
 {
-    const ki_texel *texel = ki_texel_of_format(def->format);
+    const ki_pixel_format *pixel = ki_pixel_format_of(def->format);
     if (map->shape != KILN_SHAPE_CUBE)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "a KTX2 file holds a cube, not another shape");
-    if (!texel)
+    if (!pixel || !pixel->vk)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "format is %d, it must be 0 to %d",
                        (int)def->format, (int)KILN_FORMAT_BC6H);
     if (map->smallest > 1 && map->size >> (map->level_count - 1) < map->smallest)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
                        "a KTX2 file halves every level, the map's smallest is %d", map->smallest);
-    ki_ktx2_file file = {.vk = texel->vk,
-                         .type_size = texel->type_size,
-                         .texel_size = texel->bytes,
-                         .block = texel->block,
+    ki_ktx2_file file = {.vk = pixel->vk,
+                         .type_size = pixel->type_size,
+                         .texel_size = pixel->bytes,
+                         .block = pixel->block,
                          .width = map->size,
                          .height = map->size,
                          .face_count = 6,
                          .level_count = map->level_count,
                          .zstd = def->zstd};
-    file.sample_count = find_samples(texel, file.samples);
+    file.sample_count = find_samples(pixel, file.samples);
     ki_ktx2_writer k;
     kiln_result result = ki_ktx2_begin(writer, &file, &k, error);
     if (result != KILN_OK)
         return result;
     write_metadata(writer, map, def);
     result = ki_ktx2_end_metadata(&k, error);
-    pack_job job = {map, texel};
+    pack_job job = {map, pixel};
     for (int level = map->level_count - 1; level >= 0 && result == KILN_OK; level--) {
         int n = kiln_map_level_size(map, level);
-        result = ki_ktx2_write_level(&k, level, 6 * (size_t)ki_texels_size(texel, n, n), pack_level,
+        result = ki_ktx2_write_level(&k, level, 6 * (size_t)ki_pixels_size(pixel, n, n), pack_level,
                                      &job, error);
     }
     return result;
@@ -118,9 +119,9 @@ kiln_result ki_ktx2_encode(const kiln_map *map, const kiln_save_def *def, ki_wri
 
 // ----------------------------------------------------------------------------------------- reading
 
-static kiln_result check(const ki_ktx2_source *s, const ki_texel *texel, kiln_error *error)
+static kiln_result check(const ki_ktx2_source *s, const ki_pixel_format *pixel, kiln_error *error)
 {
-    if (!texel)
+    if (!pixel)
         return ki_fail(error, KILN_ERROR_UNSUPPORTED,
                        "%s: has vkFormat %u; 97, 109, 122, 123 and 143 are read", s->name, s->vk);
     if (s->width < 1 || s->width != s->height || s->width > KILN_MAX_SIZE)
@@ -133,43 +134,44 @@ static kiln_result check(const ki_ktx2_source *s, const ki_texel *texel, kiln_er
     return KILN_OK;
 }
 
-static kiln_result read_level(kiln_context *context, const ki_ktx2_source *s, const ki_texel *texel,
-                              const ki_ktx2_level *level, int k, kiln_map *map, kiln_error *error)
+static kiln_result read_level(kiln_context *context, const ki_ktx2_source *s,
+                              const ki_pixel_format *pixel, const ki_ktx2_level *level, int k,
+                              kiln_map *map, kiln_error *error)
 {
     const uint8_t *plain;
     uint8_t *unpacked;
     kiln_result result = ki_ktx2_unpack(context, s, k, level, &plain, &unpacked, error);
     int n = kiln_map_level_size(map, k);
-    size_t face = (size_t)ki_texels_size(texel, n, n), texels = kiln_map_texels(map, k) / 6;
+    size_t face = (size_t)ki_pixels_size(pixel, n, n), texels = kiln_map_texels(map, k) / 6;
     for (size_t i = 0; i < 6 && result == KILN_OK; i++)
-        ki_texels_unpack(texel, plain + face * i, n, n, map->level[k] + 3 * texels * i);
+        ki_pixels_unpack(pixel, plain + face * i, n, n, map->level[k] + 3 * texels * i);
     ki_free(unpacked);
     return result;
 }
 
-static void describe(const ki_ktx2_source *s, const ki_texel *texel, kiln_file_info *info)
+static void describe(const ki_ktx2_source *s, const ki_pixel_format *pixel, kiln_file_info *info)
 {
     snprintf(info->format, sizeof info->format, "ktx2");
-    snprintf(info->encoding, sizeof info->encoding, "%s%s", ki_format_names[texel->format],
+    snprintf(info->encoding, sizeof info->encoding, "%s%s", ki_format_names[pixel->format],
              s->zstd ? ", zstd" : "");
     info->width = info->height = (int)s->width;
     info->face_count = 6;
     info->level_count = (int)s->level_count;
-    info->channel_count = texel->channels;
+    info->channel_count = pixel->channels;
 }
 
 kiln_result ki_ktx2_decode_cube(kiln_context *context, ki_ktx2_source *s, kiln_map *map,
                                 kiln_file_info *info, kiln_error *error)
 {
-    const ki_texel *texel = ki_texel_of_vk(s->vk);
+    const ki_pixel_format *pixel = ki_pixel_format_of_vk(s->vk);
     ki_ktx2_level levels[KILN_MAX_LEVELS];
-    kiln_result result = check(s, texel, error);
-    if (result != KILN_OK || !texel)
+    kiln_result result = check(s, pixel, error);
+    if (result != KILN_OK || !pixel)
         return result;
-    describe(s, texel, info);
+    describe(s, pixel, info);
     for (uint32_t k = 0; k < s->level_count && result == KILN_OK; k++) {
         int edge = (int)(s->width >> k);
-        uint64_t wanted = 6 * ki_texels_size(texel, edge, edge);
+        uint64_t wanted = 6 * ki_pixels_size(pixel, edge, edge);
         result = ki_ktx2_find_level(s, k, wanted, &levels[k], error);
     }
     if (result != KILN_OK || !map)
@@ -181,7 +183,7 @@ kiln_result ki_ktx2_decode_cube(kiln_context *context, ki_ktx2_source *s, kiln_m
     for (int k = 0; k < count && result == KILN_OK; k++) {
         float linear = count > 1 ? (float)k / (float)(count - 1) : 0;
         map->roughness[k] = info->roughness[k] >= 0 ? info->roughness[k] : linear;
-        result = read_level(context, s, texel, &levels[k], k, map, error);
+        result = read_level(context, s, pixel, &levels[k], k, map, error);
     }
     if (result != KILN_OK)
         kiln_map_free(map);

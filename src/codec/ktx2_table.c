@@ -1,7 +1,7 @@
 // KTX2 tables: one 2-D or 3-D texture of one level. Three channels are stored as four, which every
 // device can sample.
+#include "codec/components.h"
 #include "codec/ktx2.h"
-#include "codec/numbers.h"
 
 #include <stdio.h>
 
@@ -25,7 +25,7 @@ enum { TEXELS = sizeof texels / sizeof *texels };
 
 static size_t texel_size(const table_texel *texel)
 {
-    return (size_t)texel->channels * (size_t)ki_number_bytes(texel->format);
+    return (size_t)texel->channels * (size_t)ki_component_bytes(texel->format);
 }
 
 // ----------------------------------------------------------------------------------------- writing
@@ -52,8 +52,8 @@ static bool pack_rows(kiln_context *context, const void *data, int level, uint8_
     for (int y = 0; y < image->height; y++) {
         if (y % 64 == 0 && !ki_go_on(context))
             return false;
-        ki_numbers_pack(job->texel->format, image->pixels + (size_t)y * width * channels, width,
-                        image->channels, job->texel->channels, bytes);
+        ki_components_pack(job->texel->format, image->pixels + (size_t)y * width * channels, width,
+                           image->channels, job->texel->channels, bytes);
         bytes += width * texel_size(job->texel);
     }
     return true;
@@ -62,7 +62,7 @@ static bool pack_rows(kiln_context *context, const void *data, int level, uint8_
 // One sample a channel; what a float's 0 and 1 mean is stated as -1 and 1.
 static void find_samples(const table_texel *texel, ki_ktx2_file *file)
 {
-    int bits = 8 * ki_number_bytes(texel->format);
+    int bits = 8 * ki_component_bytes(texel->format);
     bool whole = texel->format == KILN_TABLE_FORMAT_U8 || texel->format == KILN_TABLE_FORMAT_U16;
     file->sample_count = texel->channels;
     for (int c = 0; c < texel->channels; c++) {
@@ -81,7 +81,7 @@ kiln_result ki_ktx2_encode_table(const kiln_image *image, int depth, const char 
         return ki_fail(error, KILN_ERROR_ARGUMENT, "a KTX2 file has no format %d of %d channels",
                        (int)format, image->channels);
     ki_ktx2_file file = {.vk = texel->vk,
-                         .type_size = ki_number_bytes(format),
+                         .type_size = ki_component_bytes(format),
                          .texel_size = (int)texel_size(texel),
                          .width = image->width,
                          .height = image->height / depth,
@@ -170,8 +170,8 @@ kiln_result ki_ktx2_decode_table(kiln_context *context, ki_ktx2_source *s, kiln_
     *image = (kiln_image){.width = info->width, .height = rows, .channels = texel->channels};
     result = ki_image_allocate(context, image, error);
     if (result == KILN_OK)
-        ki_numbers_unpack(texel->format, plain, (size_t)count * (size_t)texel->channels,
-                          image->pixels);
+        ki_components_unpack(texel->format, plain, (size_t)count * (size_t)texel->channels,
+                             image->pixels);
     ki_free(unpacked);
     return result;
 }

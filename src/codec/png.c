@@ -1,7 +1,7 @@
 // PNG by libpng: 8 and 16 bits, every colour type, interlaced or not. Values are sRGB whatever the
 // chunks gAMA, cHRM, iCCP and cICP say; alpha is left out.
 #include "codec/codec.h"
-#include "codec/numbers.h"
+#include "codec/components.h"
 #include "image/pack.h"
 
 #include <png.h>
@@ -258,7 +258,7 @@ static void to_row(const float *values, size_t count, ki_png_coding coding, cons
             continue;
         }
         uint8_t low_first[2];
-        ki_numbers_pack(KILN_TABLE_FORMAT_U16, values + i, 1, 1, 1, low_first);
+        ki_components_pack(KILN_TABLE_FORMAT_U16, values + i, 1, 1, 1, low_first);
         row[2 * i] = low_first[1];
         row[2 * i + 1] = low_first[0];
     }

@@ -69,11 +69,3 @@ void ki_float_from_rgbd(const float rgbd[4], float rgb[3])
         rgb[c] = (float)(power / fmax((double)rgbd[3], 1.0 / 255));
     }
 }
-
-ki_rgbx *ki_rgbx_of_format(kiln_format format)
-{
-    return format == KILN_FORMAT_RGBM   ? ki_rgbm_from_float
-           : format == KILN_FORMAT_RGBD ? ki_rgbd_from_float
-           : format == KILN_FORMAT_RGBP ? ki_rgbp_from_float
-                                        : NULL;
-}

@@ -21,7 +21,5 @@ void ki_float_from_rgbp(const float rgbp[4], float rgb[3]);
 void ki_float_from_rgbd(const float rgbd[4], float rgb[3]);
 
 typedef void ki_rgbx(const float rgb[3], float rgbx[4]);
-/// NULL where the format is none of the three.
-ki_rgbx *ki_rgbx_of_format(kiln_format format);
 
 #endif

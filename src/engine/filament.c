@@ -5,6 +5,7 @@
 // Its panoramas have +Z in the centre and -X to the right of it.
 #include "engine/engine.h"
 
+#include "codec/decimal.h"
 #include "codec/ktx1.h"
 #include "image/pack.h"
 #include "math/math.h"

@@ -105,7 +105,8 @@ expect 2 "rgbm is for .png" bake in.exr -o out.exr --format rgbm
 expect 2 "rgbp is for .png" bake in.exr -o out.ktx2 --format rgbp
 expect 2 "bc6h is for .ktx2 and .dds" bake in.exr -o out.png --format bc6h
 expect 2 "one format only" bake in.exr -o out.hdr --format rgba16f
-expect 2 "one format only" bake in.exr -o out.png --format rgba32f
+expect 2 "format rgba32f is for .ktx2 .dds and .exr" bake in.exr -o out.png --format rgba32f
+expect 2 "holds a cube" bake in.exr -o OUT.KTX2 --shape panorama
 expect 2 "zstd is for .ktx2" bake in.exr -o out.dds --zstd
 expect 2 "not for six faces" bake 1 2 3 4 5 6 -o out.ktx2 --layout cross
 

@@ -3,7 +3,7 @@
 #include "check.h"
 #include "codec/bc6h.h"
 #include "codec/codec.h"
-#include "codec/texel.h"
+#include "codec/pixel_format.h"
 #include "image/pack.h"
 
 #include <zstd.h>
@@ -125,7 +125,7 @@ static void ktx2_is_laid_out_as_specified(void **state)
     make_cube(16, 0, &map);
     for (int format = KILN_FORMAT_RGBA16F; format <= KILN_FORMAT_BC6H; format++)
         for (int zstd = 0; zstd < 2; zstd++) {
-            const ki_texel *texel = ki_texel_of_format((kiln_format)format);
+            const ki_pixel_format *texel = ki_pixel_format_of((kiln_format)format);
             kiln_save_def def = {.format = texel->format, .zstd = 3 * zstd, .lobe = "ggx"};
             ki_writer w = {.context = context};
             CHECK_OK(ki_ktx2_encode(&map, &def, &w, &error));
@@ -211,7 +211,7 @@ static void data_formats_are_as_specified(void **state)
                                    2 | block << 16,
                                    blocks ? 0x00010185 : 0x00010101,
                                    blocks ? 0x0303 : 0,
-                                   (uint32_t)ki_texel_of_format(wanted[f].format)->bytes,
+                                   (uint32_t)ki_pixel_format_of(wanted[f].format)->bytes,
                                    0};
         for (int i = 0; i < 7; i++)
             assert_int_equal(word(&w, at + 4 * (size_t)i), words[i]);

@@ -1,94 +1,13 @@
 // Loading: what a file or a set of files holds, laid out on the sphere.
 #include "base/file.h"
 #include "base/os.h"
-#include "codec/codec.h"
+#include "codec/formats.h"
+#include "codec/layout.h"
+#include "image/image.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-// ---------------------------------------------------------------------------------------- layouts
-
-// Copies a face of `size` texels a side from a picture, where its upper left corner lies at (x, y);
-// turned by half a turn or not.
-static void cut_face(const kiln_image *image, int x, int y, int size, bool turned, float *face)
-{
-    for (int row = 0; row < size; row++) {
-        const float *from =
-            image->pixels + 3 * ((size_t)(y + row) * (size_t)image->width + (size_t)x);
-        if (!turned) {
-            memcpy(face + 3 * (size_t)row * (size_t)size, from, 3 * (size_t)size * sizeof *face);
-            continue;
-        }
-        float *to = face + 3 * ((size_t)(size - 1 - row) * (size_t)size + (size_t)size - 1);
-        for (int i = 0; i < size; i++, to -= 3)
-            memcpy(to, from + 3 * (size_t)i, 3 * sizeof *to);
-    }
-}
-
-// Column and row of a face, in faces.
-typedef struct face_place {
-    int x, y;
-} face_place;
-
-// +X -X +Y -Y +Z -Z. In the upright cross -Z hangs below -Y, upside down.
-static const face_place wide_cross[6] = {{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {3, 1}};
-static const face_place tall_cross[6] = {{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {1, 3}};
-
-static kiln_result make_cube(kiln_context *context, const kiln_image *image, int size,
-                             const face_place places[6], bool turn_last, kiln_map *map,
-                             kiln_error *error)
-{
-    *map = (kiln_map){.shape = KILN_SHAPE_CUBE, .size = size, .level_count = 1};
-    kiln_result result = ki_map_allocate(context, map, error);
-    size_t face_floats = 3 * (size_t)size * (size_t)size;
-    for (int face = 0; face < 6 && result == KILN_OK; face++)
-        cut_face(image, places[face].x * size, places[face].y * size, size, turn_last && face == 5,
-                 map->level[0] + face_floats * (size_t)face);
-    return result;
-}
-
-// The picture's memory becomes the map's.
-static kiln_result take_over(kiln_image *image, kiln_shape shape, int size, kiln_map *map)
-{
-    *map = (kiln_map){.shape = shape, .size = size, .level_count = 1, .owner = image->owner};
-    map->level[0] = image->pixels;
-    *image = (kiln_image){0};
-    return KILN_OK;
-}
-
-static kiln_result lay_out(kiln_context *context, kiln_image *image, const char *name,
-                           enum kiln_layout layout, kiln_map *map, kiln_error *error)
-{
-    int64_t w = image->width, h = image->height;
-    bool any = layout == KILN_LAYOUT_AUTO;
-    if ((any || layout == KILN_LAYOUT_PANORAMA) && w == 2 * h)
-        return take_over(image, KILN_SHAPE_PANORAMA, image->height, map);
-    if (layout == KILN_LAYOUT_OCTAHEDRON && w == h)
-        return take_over(image, KILN_SHAPE_OCTAHEDRON, image->height, map);
-    if ((any || layout == KILN_LAYOUT_CROSS) && 3 * w == 4 * h && w % 4 == 0)
-        return make_cube(context, image, image->width / 4, wide_cross, false, map, error);
-    if ((any || layout == KILN_LAYOUT_CROSS) && 4 * w == 3 * h && w % 3 == 0)
-        return make_cube(context, image, image->width / 3, tall_cross, true, map, error);
-    if ((any || layout == KILN_LAYOUT_STRIP) && (w == 6 * h || 6 * w == h)) {
-        face_place places[6];
-        for (int face = 0; face < 6; face++)
-            places[face] = w > h ? (face_place){face, 0} : (face_place){0, face};
-        return make_cube(context, image, ki_min(image->width, image->height), places, false, map,
-                         error);
-    }
-    static const char *const wanted[] = {
-        "2:1 (panorama), 4:3 or 3:4 (cross), 6:1 or 1:6 (strip)",
-        "2:1 for a panorama",
-        "4:3 or 3:4 for a cross",
-        "6:1 or 1:6 for a strip",
-        "1:1 for an octahedron",
-    };
-    return ki_fail(error, KILN_ERROR_FORMAT, "%s: is %lld x %lld, its sides must be %s%s", name,
-                   (long long)w, (long long)h, wanted[layout],
-                   any && w == h ? "; a square may be an octahedron, which the layout must say"
-                                 : "");
-}
 
 // -------------------------------------------------------------------------------------- one file
 
@@ -124,7 +43,7 @@ kiln_result kiln_map_decode(kiln_context *context, const void *bytes, size_t siz
     enum kiln_layout layout = def ? def->layout : KILN_LAYOUT_AUTO;
     if (layout == KILN_LAYOUT_AUTO && !strcmp(info.layout, "octahedron"))
         layout = KILN_LAYOUT_OCTAHEDRON;
-    result = lay_out(context, &decoded.image, name ? name : "memory", layout, map, error);
+    result = ki_lay_out(context, &decoded.image, name ? name : "memory", layout, map, error);
     if (result == KILN_OK && info.roughness[0] >= 0)
         map->roughness[0] = info.roughness[0];
     ki_decoded_free(&decoded);
@@ -206,10 +125,9 @@ static kiln_result split_path(kiln_context *context, const char *path, const cha
 // where it does not. The level's number, if any, is 0.
 static const char *face_in(const char *name)
 {
-    const char *dot = strrchr(name, '.');
-    if (!dot || (strcmp(dot, ".exr") != 0 && strcmp(dot, ".hdr") != 0 && strcmp(dot, ".png") != 0))
+    if (!ki_file_holds(ki_file_format_of_path(name), KI_HOLDS_PICTURE))
         return NULL;
-    const char *end = dot;
+    const char *end = strrchr(name, '.');
     if (end - name > 2 && end[-1] == '0' && end[-2] == '_')
         end -= 2;
     const char *at = end - 2;
@@ -302,8 +220,8 @@ static kiln_result load_faces(kiln_context *context, const face_paths *paths, ki
                              path, size, size, map->size, map->size);
         }
         if (result == KILN_OK)
-            cut_face(&image, 0, 0, size, false,
-                     map->level[0] + 3 * (size_t)size * (size_t)size * (size_t)face);
+            ki_cut_face(&image, 0, 0, size, false,
+                        map->level[0] + 3 * (size_t)size * (size_t)size * (size_t)face);
         kiln_image_free(&image);
     }
     ki_free(path);

@@ -1,7 +1,7 @@
-#include "api/table_source.h"
+#include "table/table_source.h"
 
-#include "codec/codec.h"
-#include "codec/numbers.h"
+#include "codec/components.h"
+#include "codec/decimal.h"
 #include "table/table_code.h"
 #include "table/table_text.h"
 
@@ -138,7 +138,7 @@ static kiln_result write_words(const kiln_table *table, kiln_table_format format
     uint8_t *bytes = ki_alloc(w->context, words, 4);
     if (!bytes)
         return ki_fail_memory(w->context, error, "a table's words", 4 * words);
-    ki_numbers_pack(format, table->image.pixels, count, 1, 1, bytes);
+    ki_components_pack(format, table->image.pixels, count, 1, 1, bytes);
     ki_reader r = ki_reader_make(bytes, 4 * words);
     for (size_t i = 0; i < words; i++)
         ki_write_text(w, "%s0x%08xu%s%s", i % A_LINE ? " " : "    ", ki_read_u32(&r),
@@ -169,7 +169,7 @@ kiln_result ki_table_write_glsl(const kiln_table *table, kiln_table_format forma
 {
     enum { LIMIT = 1 << 16 };
     bool floats = format == KILN_TABLE_FORMAT_F32;
-    size_t count = number_count(table), size = count * (size_t)ki_number_bytes(format);
+    size_t count = number_count(table), size = count * (size_t)ki_component_bytes(format);
     size_t words = (size + 3) / 4;
     if (size > LIMIT)
         return ki_fail(error, KILN_ERROR_ARGUMENT,

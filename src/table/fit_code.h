@@ -1,6 +1,6 @@
 // Closed forms as source text.
-#ifndef KI_CODEC_FIT_H
-#define KI_CODEC_FIT_H
+#ifndef KI_FIT_CODE_H
+#define KI_FIT_CODE_H
 
 #include "base/bytes.h"
 
@@ -8,6 +8,6 @@
 
 /// The function `name` of n.v (mu) and roughness in C (static inline) or GLSL ES 3.00, operation by
 /// operation what kiln_fit_evaluate does.
-void ki_fit_encode(const kiln_fit *fit, const char *name, bool glsl, ki_writer *w);
+void ki_fit_write_code(const kiln_fit *fit, const char *name, bool glsl, ki_writer *w);
 
 #endif

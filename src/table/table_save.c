@@ -1,11 +1,11 @@
 // Tables as files, and the source code of their lookups.
-#include "api/table_source.h"
 #include "base/file.h"
-#include "codec/codec.h"
-#include "codec/numbers.h"
-#include "codec/rgbx.h"
+#include "codec/components.h"
+#include "codec/formats.h"
+#include "codec/rgbx_png.h"
 #include "image/pack.h"
 #include "table/table.h"
+#include "table/table_source.h"
 #include "table/table_text.h"
 
 #include <math.h>
@@ -55,55 +55,25 @@ static kiln_result check_table(const kiln_table *table, kiln_error *error)
 
 // ----------------------------------------------------------------------------------------- formats
 
-enum {
-    F32 = 1 << KILN_TABLE_FORMAT_F32,
-    F16 = 1 << KILN_TABLE_FORMAT_F16,
-    U16 = 1 << KILN_TABLE_FORMAT_U16,
-    U8 = 1 << KILN_TABLE_FORMAT_U8,
-    RGBD = 1 << KILN_TABLE_FORMAT_RGBD
-};
-
-typedef enum file_kind { KTX2, EXR, HDR, PNG, RAW, HEADER, INC, GLSL } file_kind;
-
-static const struct ending {
-    const char *text;
-    file_kind kind;
-    kiln_table_format automatic;
-    unsigned formats;
-} endings[] = {
-    {".ktx2", KTX2, KILN_TABLE_FORMAT_F16, F32 | F16 | U16 | U8},
-    {".exr", EXR, KILN_TABLE_FORMAT_F32, F32 | F16},
-    {".hdr", HDR, KILN_TABLE_FORMAT_F32, 0},
-    {".png", PNG, KILN_TABLE_FORMAT_U16, U16 | U8 | RGBD},
-    {".raw", RAW, KILN_TABLE_FORMAT_F32, F32 | F16 | U16 | U8},
-    {".bin", RAW, KILN_TABLE_FORMAT_F32, F32 | F16 | U16 | U8},
-    {".h", HEADER, KILN_TABLE_FORMAT_F32, F32},
-    {".inc", INC, KILN_TABLE_FORMAT_F16, F16},
-    {".glsl", GLSL, KILN_TABLE_FORMAT_F32, F32 | F16 | U16 | U8},
-};
-
-static kiln_result find_ending(const char *path, const kiln_table_save_def *def,
-                               const struct ending **ending, kiln_table_format *format,
+static kiln_result find_format(const char *path, const kiln_table_save_def *def,
+                               const ki_file_format **file, kiln_table_format *format,
                                kiln_error *error)
 {
-    *ending = NULL;
-    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++)
-        if (ki_ends_with(path, endings[i].text))
-            *ending = &endings[i];
-    if (!*ending)
-        return ki_fail(error, KILN_ERROR_ARGUMENT,
-                       "%s: must be a name in .ktx2 .exr .hdr .png .raw .bin .h .inc or .glsl",
-                       path);
+    static const char *const names[] = {"", "f32", "f16", "u16", "u8", "rgbd"};
+    char list[KI_ENDINGS_TEXT];
+    *file = ki_file_format_of_path(path);
+    if (!ki_file_holds(*file, KI_HOLDS_TABLE))
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: must be a name in %s", path,
+                       ki_list_endings(KI_HOLDS_TABLE, NULL, list));
     if ((unsigned)def->format > KILN_TABLE_FORMAT_RGBD)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "format is %d, it must be 0 to %d",
                        (int)def->format, (int)KILN_TABLE_FORMAT_RGBD);
-    static const char *const names[] = {"", "f32", "f16", "u16", "u8", "rgbd"};
-    if (def->format && !((*ending)->formats & 1U << def->format))
+    if (def->format && !((*file)->table_formats & 1U << def->format))
         return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: a %s file has no format %s", path,
-                       (*ending)->text, names[def->format]);
-    if (def->zstd && (*ending)->kind != KTX2)
+                       kiln_path_ending(path), names[def->format]);
+    if (def->zstd && !(*file)->zstd)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: only KTX2 has zstd", path);
-    *format = def->format ? def->format : (*ending)->automatic;
+    *format = def->format ? def->format : (*file)->table_format;
     return KILN_OK;
 }
 
@@ -125,50 +95,47 @@ static kiln_result widen(kiln_context *context, const kiln_image *image, kiln_im
     return result;
 }
 
-// Three numbers that may exceed 1 in four of 8 bits.
-static kiln_result encode_rgbd(const kiln_image *image, const char *path, ki_writer *w,
-                               kiln_error *error)
+static kiln_result encode_exr(const kiln_table *table, kiln_table_format format, ki_writer *w,
+                              kiln_error *error)
 {
-    if (image->channels != 3)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: rgbd has three channels, the table %d",
-                       path, image->channels);
-    kiln_image four = {0};
-    kiln_result result =
-        kiln_image_create(w->context, image->width, image->height, 4, &four, error);
-    size_t count = result ? 0 : (size_t)image->width * (size_t)image->height;
-    for (size_t i = 0; i < count; i++)
-        ki_rgbd_from_float(image->pixels + 3 * i, four.pixels + 4 * i);
+    const kiln_image *image = &table->image;
+    char text[KI_TABLE_TEXT];
+    ki_table_describe(&table->def, text);
+    const ki_exr_options options = {
+        .half = format == KILN_TABLE_FORMAT_F16, .roughness = -1, .table = text};
+    return ki_exr_encode(image->pixels, image->width, image->height, image->channels, &options, w,
+                         error);
+}
+
+static kiln_result encode_hdr(const kiln_table *table, const char *path, ki_writer *w,
+                              kiln_error *error)
+{
+    kiln_image rgb = {0};
+    int channels = table->image.channels;
+    if (channels == 4)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: HDR has three channels, the table 4", path);
+    kiln_result result = channels == 3 ? KILN_OK : widen(w->context, &table->image, &rgb, error);
+    const kiln_image *image = channels == 3 ? &table->image : &rgb;
     if (result == KILN_OK)
-        result = ki_png_encode(four.pixels, four.width, four.height, 4, KI_PNG_PLAIN8, w, error);
-    kiln_image_free(&four);
+        result = ki_hdr_encode(image->pixels, image->width, image->height, w, error);
+    kiln_image_free(&rgb);
     return result;
 }
 
-static kiln_result encode_picture(const kiln_table *table, file_kind kind, kiln_table_format format,
-                                  const char *path, ki_writer *w, kiln_error *error)
+// By RGBD three numbers, which may exceed 1, are in four of 8 bits.
+static kiln_result encode_png(const kiln_table *table, kiln_table_format format, const char *path,
+                              ki_writer *w, kiln_error *error)
 {
-    const kiln_image *image = &table->image;
-    if (kind == HDR && image->channels == 4)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: HDR has three channels, the table 4", path);
-    if (kind == EXR) {
-        char text[KI_TABLE_TEXT];
-        ki_table_describe(&table->def, text);
-        ki_exr_options options = {
-            .half = format == KILN_TABLE_FORMAT_F16, .roughness = -1, .table = text};
-        return ki_exr_encode(image->pixels, image->width, image->height, image->channels, &options,
-                             w, error);
-    }
-    if (format == KILN_TABLE_FORMAT_RGBD)
-        return encode_rgbd(image, path, w, error);
     kiln_image rgb = {0};
-    kiln_result result = KILN_OK;
-    if (image->channels == 2 || (kind == HDR && image->channels == 1)) {
-        result = widen(w->context, image, &rgb, error);
-        image = &rgb;
-    }
-    if (result == KILN_OK && kind == HDR)
-        result = ki_hdr_encode(image->pixels, image->width, image->height, w, error);
-    else if (result == KILN_OK)
+    int channels = table->image.channels;
+    if (format == KILN_TABLE_FORMAT_RGBD && channels != 3)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: rgbd has three channels, the table %d",
+                       path, channels);
+    if (format == KILN_TABLE_FORMAT_RGBD)
+        return ki_rgbx_png_encode(&table->image, ki_rgbd_from_float, false, w, error);
+    kiln_result result = channels == 2 ? widen(w->context, &table->image, &rgb, error) : KILN_OK;
+    const kiln_image *image = channels == 2 ? &rgb : &table->image;
+    if (result == KILN_OK)
         result = ki_png_encode(image->pixels, image->width, image->height, image->channels,
                                format == KILN_TABLE_FORMAT_U8 ? KI_PNG_PLAIN8 : KI_PNG_PLAIN16, w,
                                error);
@@ -181,13 +148,13 @@ static kiln_result encode_raw(const kiln_table *table, kiln_table_format format,
 {
     const kiln_image *image = &table->image;
     size_t numbers = (size_t)image->width * (size_t)image->channels;
-    size_t row = numbers * (size_t)ki_number_bytes(format);
+    size_t row = numbers * (size_t)ki_component_bytes(format);
     uint8_t *room = ki_write_room(w, row * (size_t)image->height);
     for (int y = 0; room && y < image->height; y++) {
         if (y % 64 == 0 && !ki_go_on(w->context))
             return ki_fail_cancelled(error, "writing");
-        ki_numbers_pack(format, image->pixels + (size_t)y * numbers, numbers, 1, 1,
-                        room + (size_t)y * row);
+        ki_components_pack(format, image->pixels + (size_t)y * numbers, numbers, 1, 1,
+                           room + (size_t)y * row);
     }
     return KILN_OK;
 }
@@ -205,37 +172,46 @@ static void encode_inc(const kiln_table *table, ki_writer *w)
                       (i + 1) % 12 && i + 1 < count ? " " : "\n");
 }
 
+static kiln_result encode_code(const kiln_table *table, kiln_table_format format, const char *path,
+                               const char *wanted_name, ki_writer *w, kiln_error *error)
+{
+    ki_source_name name;
+    kiln_result result = ki_source_name_make(path, wanted_name, &name, error);
+    if (result != KILN_OK)
+        return result;
+    return ki_ends_with(path, ".h") ? ki_table_write_header(table, path, name.text, w, error)
+                                    : ki_table_write_glsl(table, format, path, name.text, w, error);
+}
+
+static kiln_result encode_ktx2(const kiln_table *table, kiln_table_format format, int zstd,
+                               ki_writer *w, kiln_error *error)
+{
+    char text[KI_TABLE_TEXT];
+    ki_table_describe(&table->def, text);
+    return ki_ktx2_encode_table(&table->image, table->def.depth, text, format, zstd, w, error);
+}
+
 static kiln_result encode(const kiln_table *table, const char *path, const kiln_table_save_def *def,
                           ki_writer *w, kiln_error *error)
 {
-    const struct ending *ending;
+    const ki_file_format *file;
     kiln_table_format format = KILN_TABLE_FORMAT_F32;
-    ki_source_name name;
-    kiln_result result = find_ending(path, def, &ending, &format, error);
-    if (result == KILN_OK)
-        result = ki_source_name_make(path, def->name, &name, error);
+    kiln_result result = find_format(path, def, &file, &format, error);
     if (result != KILN_OK)
         return result;
-    char text[KI_TABLE_TEXT];
-    switch (ending->kind) {
-    case KTX2:
-        ki_table_describe(&table->def, text);
-        return ki_ktx2_encode_table(&table->image, table->def.depth, text, format, def->zstd, w,
-                                    error);
-    case EXR:
-    case HDR:
-    case PNG:
-        return encode_picture(table, ending->kind, format, path, w, error);
-    case RAW:
+    if (!strcmp(file->name, "ktx2"))
+        return encode_ktx2(table, format, def->zstd, w, error);
+    if (!strcmp(file->name, "exr"))
+        return encode_exr(table, format, w, error);
+    if (!strcmp(file->name, "hdr"))
+        return encode_hdr(table, path, w, error);
+    if (!strcmp(file->name, "png"))
+        return encode_png(table, format, path, w, error);
+    if (!strcmp(file->name, "raw"))
         return encode_raw(table, format, w, error);
-    case HEADER:
-        return ki_table_write_header(table, path, name.text, w, error);
-    case INC:
-        encode_inc(table, w);
-        return KILN_OK;
-    case GLSL:
-        return ki_table_write_glsl(table, format, path, name.text, w, error);
-    }
+    if (file->holds & KI_HOLDS_CODE)
+        return encode_code(table, format, path, def->name, w, error);
+    encode_inc(table, w);
     return KILN_OK;
 }
 
@@ -254,9 +230,9 @@ static kiln_result put(kiln_result result, const char *path, ki_writer *w, kiln_
 kiln_result kiln_table_save_check(const char *path, const kiln_table_save_def *def,
                                   kiln_error *error)
 {
-    const struct ending *ending;
+    const ki_file_format *file;
     kiln_table_format format;
-    return find_ending(path, def ? def : &(kiln_table_save_def){0}, &ending, &format, error);
+    return find_format(path, def ? def : &(kiln_table_save_def){0}, &file, &format, error);
 }
 
 kiln_result kiln_table_save(kiln_context *context, const kiln_table *table, const char *path,

@@ -1,6 +1,6 @@
-#include "codec/fit.h"
+#include "table/fit_code.h"
 
-#include "codec/codec.h"
+#include "codec/decimal.h"
 
 #include <stddef.h>
 
@@ -166,7 +166,7 @@ static void write_part(ki_writer *w, const kiln_fit_part *part, const language *
     ki_write_text(w, "        %s = %s;\n    }\n", to, part->rational ? "p / q" : "p");
 }
 
-void ki_fit_encode(const kiln_fit *fit, const char *name, bool glsl, ki_writer *w)
+void ki_fit_write_code(const kiln_fit *fit, const char *name, bool glsl, ki_writer *w)
 {
     const language *l = glsl ? &glsl_language : &c_language;
     bool two = fit->part_count > 1, average = fit->def.kind == KILN_FIT_E_AVERAGE;

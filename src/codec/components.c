@@ -1,4 +1,4 @@
-#include "codec/numbers.h"
+#include "codec/components.h"
 
 #include "image/pack.h"
 
@@ -7,7 +7,7 @@
 
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "files are written as memory is");
 
-int ki_number_bytes(kiln_table_format format)
+int ki_component_bytes(kiln_table_format format)
 {
     return format == KILN_TABLE_FORMAT_F32 ? 4 : format == KILN_TABLE_FORMAT_U8 ? 1 : 2;
 }
@@ -39,8 +39,8 @@ static void pack(kiln_table_format format, const float *values, size_t count, ui
     }
 }
 
-void ki_numbers_pack(kiln_table_format format, const float *texels, size_t count, int channels,
-                     int stored, uint8_t *bytes)
+void ki_components_pack(kiln_table_format format, const float *texels, size_t count, int channels,
+                        int stored, uint8_t *bytes)
 {
     enum { STRETCH = 64 };
     for (size_t done = 0; done < count; done += STRETCH) {
@@ -57,11 +57,12 @@ void ki_numbers_pack(kiln_table_format format, const float *texels, size_t count
             memcpy(bytes, values, numbers * sizeof *values);
         else
             pack(format, values, numbers, bytes);
-        bytes += numbers * (size_t)ki_number_bytes(format);
+        bytes += numbers * (size_t)ki_component_bytes(format);
     }
 }
 
-void ki_numbers_unpack(kiln_table_format format, const uint8_t *bytes, size_t count, float *values)
+void ki_components_unpack(kiln_table_format format, const uint8_t *bytes, size_t count,
+                          float *values)
 {
     for (size_t i = 0; i < count; i++) {
         uint16_t number;

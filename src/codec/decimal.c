@@ -1,0 +1,72 @@
+#include "codec/decimal.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const char *ki_parse_number(const char *text, double *value)
+{
+    while (*text == ' ' || *text == '\t')
+        text++;
+    bool negative = *text == '-';
+    text += *text == '-' || *text == '+';
+    double mantissa = 0;
+    int digits = 0, exponent = 0;
+    for (; *text >= '0' && *text <= '9'; text++, digits++)
+        mantissa = mantissa * 10 + (*text - '0');
+    if (*text == '.')
+        for (text++; *text >= '0' && *text <= '9'; text++, digits++, exponent--)
+            mantissa = mantissa * 10 + (*text - '0');
+    if (!digits || digits > 300)
+        return NULL;
+    if (*text == 'e' || *text == 'E') {
+        const char *at = text + 1;
+        bool down = *at == '-';
+        at += *at == '-' || *at == '+';
+        int power = 0;
+        const char *first = at;
+        for (; *at >= '0' && *at <= '9' && power < 1000; at++)
+            power = power * 10 + (*at - '0');
+        if (at > first) {
+            exponent += down ? -power : power;
+            text = at;
+        }
+    }
+    for (; exponent > 0 && mantissa < 1e300; exponent--)
+        mantissa *= 10;
+    double divisor = 1;
+    for (; exponent < 0 && divisor < 1e300; exponent++)
+        divisor *= 10;
+    mantissa /= divisor;
+    *value = negative ? -mantissa : mantissa;
+    return text;
+}
+
+// Whatever the program's locale is.
+static void write_with_point(ki_writer *writer, char *text)
+{
+    char *comma = strchr(text, ',');
+    if (comma)
+        *comma = '.';
+    ki_write_text(writer, "%s", text);
+}
+
+void ki_write_number(ki_writer *writer, double value)
+{
+    char text[40];
+    snprintf(text, sizeof text, "%.9g", value);
+    write_with_point(writer, text);
+}
+
+void ki_write_float(ki_writer *writer, float value)
+{
+    char text[40];
+    for (int digits = 6; digits <= 9; digits++) {
+        snprintf(text, sizeof text, "%.*g", digits, (double)value);
+        if (strtof(text, NULL) == value)
+            break;
+    }
+    write_with_point(writer, text);
+    if (!strpbrk(text, ".e"))
+        ki_write_text(writer, ".0");
+}

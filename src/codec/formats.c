@@ -1,0 +1,257 @@
+// The table of file formats, and what is looked up in it: the reader of some bytes by the first of
+// them, the writer and the limits of a path by its ending.
+#include "codec/formats.h"
+
+#include "base/file.h"
+#include "codec/file_info.h"
+#include "codec/layout.h"
+#include "codec/pixel_format.h"
+#include "codec/rgbx_png.h"
+#include "image/pack.h"
+
+#include <stdio.h>
+#include <string.h>
+
+// ----------------------------------------------------------------------------------------- pictures
+
+static kiln_result write_exr(const kiln_image *image, const ki_picture_about *about, ki_writer *w,
+                             kiln_error *error)
+{
+    const ki_exr_options options = {.half = about->radiance && about->format != KILN_FORMAT_RGBA32F,
+                                    .panorama = about->panorama,
+                                    .octahedron = about->octahedron,
+                                    .roughness = about->roughness};
+    return ki_exr_encode(image->pixels, image->width, image->height, image->channels, &options, w,
+                         error);
+}
+
+static kiln_result write_hdr(const kiln_image *image, const ki_picture_about *about, ki_writer *w,
+                             kiln_error *error)
+{
+    (void)about;
+    return ki_hdr_encode(image->pixels, image->width, image->height, w, error);
+}
+
+static kiln_result write_png(const kiln_image *image, const ki_picture_about *about, ki_writer *w,
+                             kiln_error *error)
+{
+    const ki_pixel_format *pixel = ki_pixel_format_of(about->format);
+    if (pixel && pixel->rgbx)
+        return ki_rgbx_png_encode(image, pixel->rgbx, false, w, error);
+    return ki_png_encode(image->pixels, image->width, image->height, image->channels,
+                         about->radiance ? KI_PNG_SRGB8 : KI_PNG_PLAIN8, w, error);
+}
+
+// -------------------------------------------------------------------------------------------- table
+
+#define PIXELS(name) (1U << KILN_FORMAT_##name)
+#define TABLES(name) (1U << KILN_TABLE_FORMAT_##name)
+
+enum {
+    GPU_FORMATS =
+        PIXELS(RGBA16F) | PIXELS(RGBA32F) | PIXELS(RGB9E5) | PIXELS(B10G11R11) | PIXELS(BC6H),
+    PLAIN_TABLES = TABLES(F32) | TABLES(F16) | TABLES(U16) | TABLES(U8),
+    PICTURES = KI_HOLDS_PICTURE | KI_HOLDS_TABLE,
+};
+
+static const ki_file_format formats[] = {
+    {.name = "ktx2",
+     .endings = {".ktx2"},
+     .first = "\xabKTX 20\xbb\r\n\x1a\n",
+     .first_count = 12,
+     .holds = KI_HOLDS_CUBE | KI_HOLDS_TABLE,
+     .pixel_formats = GPU_FORMATS,
+     .table_formats = PLAIN_TABLES,
+     .table_format = KILN_TABLE_FORMAT_F16,
+     .zstd = true,
+     .limit = KI_HALF_MAX,
+     .read = ki_ktx2_decode,
+     .write_cube = ki_ktx2_encode},
+    {.name = "dds",
+     .endings = {".dds"},
+     .first = "DDS ",
+     .first_count = 4,
+     .holds = KI_HOLDS_CUBE,
+     .pixel_formats = GPU_FORMATS,
+     .limit = KI_HALF_MAX,
+     .read = ki_dds_decode,
+     .write_cube = ki_dds_encode},
+    {.name = "exr",
+     .endings = {".exr"},
+     .first = "\x76\x2f\x31\x01",
+     .first_count = 4,
+     .holds = PICTURES,
+     .pixel_formats = PIXELS(RGBA16F) | PIXELS(RGBA32F),
+     .table_formats = TABLES(F32) | TABLES(F16),
+     .table_format = KILN_TABLE_FORMAT_F32,
+     .limit = KI_HALF_MAX,
+     .read_picture = ki_exr_decode,
+     .write_picture = write_exr},
+    {.name = "hdr",
+     .endings = {".hdr"},
+     .first = "#?",
+     .first_count = 2,
+     .holds = PICTURES,
+     .table_format = KILN_TABLE_FORMAT_F32,
+     .read_picture = ki_hdr_decode,
+     .write_picture = write_hdr},
+    {.name = "png",
+     .endings = {".png"},
+     .first = "\x89PNG\r\n\x1a\n",
+     .first_count = 8,
+     .holds = PICTURES,
+     .pixel_formats = PIXELS(RGBM) | PIXELS(RGBD) | PIXELS(RGBP),
+     .table_formats = TABLES(U16) | TABLES(U8) | TABLES(RGBD),
+     .table_format = KILN_TABLE_FORMAT_U16,
+     .limit = 1,
+     .read_picture = ki_png_decode,
+     .write_picture = write_png},
+    {.name = "ktx1", .endings = {".ktx"}},
+    {.name = "env", .endings = {".env"}},
+    {.name = "glb", .endings = {".glb"}},
+    {.name = "json", .endings = {".json"}, .holds = KI_HOLDS_SH},
+    {.name = "text", .endings = {".txt"}, .holds = KI_HOLDS_SH},
+    {.name = "raw",
+     .endings = {".raw", ".bin"},
+     .holds = KI_HOLDS_TABLE,
+     .table_formats = PLAIN_TABLES,
+     .table_format = KILN_TABLE_FORMAT_F32},
+    {.name = "c",
+     .endings = {".h"},
+     .holds = KI_HOLDS_TABLE | KI_HOLDS_SH | KI_HOLDS_CODE,
+     .table_formats = TABLES(F32),
+     .table_format = KILN_TABLE_FORMAT_F32},
+    {.name = "inc",
+     .endings = {".inc"},
+     .holds = KI_HOLDS_TABLE,
+     .table_formats = TABLES(F16),
+     .table_format = KILN_TABLE_FORMAT_F16},
+    {.name = "glsl",
+     .endings = {".glsl"},
+     .holds = KI_HOLDS_TABLE | KI_HOLDS_CODE,
+     .table_formats = PLAIN_TABLES,
+     .table_format = KILN_TABLE_FORMAT_F32},
+};
+
+enum { FORMATS = sizeof formats / sizeof *formats };
+
+// ------------------------------------------------------------------------------------------ endings
+
+static const ki_file_format *find(const char *path, const char **ending)
+{
+    for (int i = 0; i < FORMATS; i++)
+        for (int k = 0; formats[i].endings[k]; k++)
+            if (ki_ends_with(path, formats[i].endings[k])) {
+                *ending = formats[i].endings[k];
+                return &formats[i];
+            }
+    *ending = "";
+    return NULL;
+}
+
+const ki_file_format *ki_file_format_of_path(const char *path)
+{
+    const char *ending;
+    return find(path, &ending);
+}
+
+const char *kiln_path_ending(const char *path)
+{
+    const char *ending;
+    find(path, &ending);
+    return ki_ends_with(path, "/") ? "/" : ending;
+}
+
+// The last of several comes after `last`, " or ".
+static const char *join(const char *const *list, int count, const char *last,
+                        char text[KI_ENDINGS_TEXT])
+{
+    text[0] = 0;
+    for (int i = 0; i < count; i++) {
+        size_t length = strlen(text);
+        const char *between = !i ? "" : i < count - 1 ? " " : last;
+        snprintf(text + length, KI_ENDINGS_TEXT - length, "%s%s", between, list[i]);
+    }
+    return text;
+}
+
+const char *ki_list_endings(unsigned holds, const char *more, char text[KI_ENDINGS_TEXT])
+{
+    const char *list[3 * FORMATS];
+    int count = 0;
+    for (int i = 0; i < FORMATS; i++)
+        for (int k = 0; ki_file_holds(&formats[i], holds) && formats[i].endings[k]; k++)
+            list[count++] = formats[i].endings[k];
+    if (more)
+        list[count++] = more;
+    return join(list, count, " or ", text);
+}
+
+const char *ki_list_endings_of_format(kiln_format format, char text[KI_ENDINGS_TEXT])
+{
+    const char *list[FORMATS];
+    int count = 0;
+    for (int i = 0; i < FORMATS; i++)
+        if (formats[i].pixel_formats & 1U << format)
+            list[count++] = formats[i].endings[0];
+    return join(list, count, " and ", text);
+}
+
+// ------------------------------------------------------------------------------------------ reading
+
+static const ki_file_format *find_bytes(const uint8_t *bytes, size_t size)
+{
+    for (int i = 0; i < FORMATS; i++)
+        if (formats[i].first && size >= (size_t)formats[i].first_count &&
+            !memcmp(bytes, formats[i].first, (size_t)formats[i].first_count))
+            return &formats[i];
+    return NULL;
+}
+
+static kiln_result read_bytes(kiln_context *context, const uint8_t *bytes, size_t size,
+                              const char *name, ki_decoded *decoded, kiln_file_info *info,
+                              kiln_error *error)
+{
+    const ki_file_format *format = find_bytes(bytes, size);
+    if (!format)
+        return ki_fail(error, KILN_ERROR_FORMAT,
+                       "%s: its %zu bytes do not begin as EXR, HDR, PNG, KTX2 or DDS do", name,
+                       size);
+    if (format->read)
+        return format->read(context, bytes, size, name, decoded, info, error);
+    return format->read_picture(context, bytes, size, name, decoded ? &decoded->image : NULL, info,
+                                error);
+}
+
+kiln_result ki_decode(kiln_context *context, const uint8_t *bytes, size_t size, const char *name,
+                      ki_decoded *decoded, kiln_file_info *info, kiln_error *error)
+{
+    kiln_file_info unused;
+    info = info ? info : &unused;
+    if (decoded)
+        *decoded = (ki_decoded){0};
+    ki_file_info_clear(info, size);
+    kiln_result result = read_bytes(context, bytes, size, name, decoded, info, error);
+    if (result != KILN_OK) {
+        memset(info, 0, sizeof *info);
+        if (decoded)
+            *decoded = (ki_decoded){0};
+        return result;
+    }
+    bool is_map = info->face_count == 6;
+    const char *layout = is_map ? "cube" : ki_layout_name(info->width, info->height);
+    if (!info->layout[0]) // unless the file says it
+        snprintf(info->layout, sizeof info->layout, "%s", layout ? layout : "image");
+    if (decoded) {
+        decoded->is_map = is_map;
+        decoded->is_table = !strcmp(info->layout, "table");
+    }
+    return KILN_OK;
+}
+
+void ki_decoded_free(ki_decoded *decoded)
+{
+    kiln_image_free(&decoded->image);
+    kiln_map_free(&decoded->map);
+    decoded->is_map = decoded->is_table = false;
+}

@@ -1,0 +1,296 @@
+#include "codec/decimal.h"
+#include "codec/file_info.h"
+#include "codec/ktx2.h"
+#include "codec/zstd.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static const uint8_t identifier[12] = {0xab, 'K',  'T',  'X',  ' ',  '2',
+                                       '0',  0xbb, '\r', '\n', 0x1a, '\n'};
+
+enum { INDEX_ENTRY = 24, SCHEME_NONE = 0, SCHEME_ZSTD = 2 };
+
+// ----------------------------------------------------------------------------------------- writing
+
+// Khronos Data Format 1.3, basic descriptor block.
+static void write_format(ki_writer *w, const ki_ktx2_file *file)
+{
+    enum { MODEL_RGBSDA = 1, MODEL_BC6H = 133, PRIMARIES_BT709 = 1, TRANSFER_LINEAR = 1 };
+    uint32_t block = 24 + 16 * (uint32_t)file->sample_count;
+    ki_write_u32(w, 4 + block);
+    ki_write_u32(w, 0);               // vendor Khronos, basic format
+    ki_write_u32(w, 2 | block << 16); // version 1.3
+    ki_write_u8(w, file->block > 1 ? MODEL_BC6H : MODEL_RGBSDA);
+    ki_write_u8(w, PRIMARIES_BT709);
+    ki_write_u8(w, TRANSFER_LINEAR);
+    ki_write_u8(w, 0); // straight alpha
+    uint32_t less = (uint32_t)ki_max(file->block, 1) - 1;
+    ki_write_u32(w, less | less << 8); // texel blocks of so many and one, by 1 by 1
+    ki_write_u32(w, (uint32_t)file->texel_size);
+    ki_write_u32(w, 0);
+    for (int i = 0; i < file->sample_count; i++) {
+        const ki_ktx2_sample *s = &file->samples[i];
+        ki_write_u32(w, (uint32_t)s->offset | (uint32_t)(s->bits - 1) << 16 |
+                            (uint32_t)s->channel << 24);
+        ki_write_u32(w, 0); // position
+        ki_write_u32(w, s->lower);
+        ki_write_u32(w, s->upper);
+    }
+}
+
+kiln_result ki_ktx2_begin(ki_writer *w, const ki_ktx2_file *file, ki_ktx2_writer *k,
+                          kiln_error *error)
+{
+    if (file->zstd < 0 || file->zstd > 22)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "zstd is %d, it must be 0 to 22", file->zstd);
+    kiln_result known = file->zstd ? ki_zstd_known("a KTX2 file", error) : KILN_OK;
+    if (known != KILN_OK)
+        return known;
+    *k = (ki_ktx2_writer){.w = w, .file = file, .start = w->size};
+    ki_write(w, identifier, sizeof identifier);
+    ki_write_u32(w, file->vk);
+    ki_write_u32(w, (uint32_t)file->type_size);
+    ki_write_u32(w, (uint32_t)file->width);
+    ki_write_u32(w, (uint32_t)file->height);
+    ki_write_u32(w, (uint32_t)file->depth);
+    ki_write_u32(w, 0); // layers
+    ki_write_u32(w, (uint32_t)file->face_count);
+    ki_write_u32(w, (uint32_t)file->level_count);
+    ki_write_u32(w, file->zstd ? SCHEME_ZSTD : SCHEME_NONE);
+    k->index = w->size;
+    for (int i = 0; i < 4; i++) // offsets and lengths of format and metadata
+        ki_write_u32(w, 0);
+    ki_write_u64(w, 0); // no global data of the compression
+    ki_write_u64(w, 0);
+    k->levels = w->size;
+    for (int i = 0; i < 3 * file->level_count; i++)
+        ki_write_u64(w, 0);
+    size_t begin = w->size;
+    write_format(w, file);
+    k->metadata = w->size;
+    ki_patch_u32(w, k->index, (uint32_t)(begin - k->start));
+    ki_patch_u32(w, k->index + 4, (uint32_t)(k->metadata - begin));
+    return KILN_OK;
+}
+
+// `entry` is where its length is patched in.
+size_t ki_ktx2_begin_entry(ki_writer *w, const char *key)
+{
+    size_t entry = w->size;
+    ki_write_u32(w, 0);
+    ki_write(w, key, strlen(key) + 1);
+    return entry;
+}
+
+void ki_ktx2_end_entry(ki_writer *w, size_t entry)
+{
+    ki_write_u8(w, 0);
+    ki_patch_u32(w, entry, (uint32_t)(w->size - entry - 4));
+    ki_write_align(w, 4);
+}
+
+void ki_ktx2_write_common(ki_writer *w, const char *orientation)
+{
+    size_t entry = ki_ktx2_begin_entry(w, "KTXorientation");
+    ki_write_text(w, "%s", orientation);
+    ki_ktx2_end_entry(w, entry);
+    entry = ki_ktx2_begin_entry(w, "KTXwriter");
+    ki_write_text(w, "kiln %s", kiln_version());
+    ki_ktx2_end_entry(w, entry);
+}
+
+kiln_result ki_ktx2_end_metadata(ki_ktx2_writer *k, kiln_error *error)
+{
+    ki_writer *w = k->w;
+    ki_patch_u32(w, k->index + 8, (uint32_t)(k->metadata - k->start));
+    ki_patch_u32(w, k->index + 12, (uint32_t)(w->size - k->metadata));
+    return w->failed ? ki_fail_memory(w->context, error, "a KTX2 file", w->size) : KILN_OK;
+}
+
+kiln_result ki_ktx2_write_level(ki_ktx2_writer *k, int level, size_t size, ki_ktx2_pack *pack,
+                                const void *data, kiln_error *error)
+{
+    ki_writer *w = k->w;
+    int zstd = k->file->zstd;
+    // The alignment is the least common multiple of the texel's bytes and 4.
+    if (!zstd)
+        ki_write_align(w, (size_t)ki_max(4, k->file->texel_size));
+    uint64_t start = w->size;
+    size_t bound = zstd ? ki_zstd_bound(size) : size, packed = size;
+    uint8_t *room = ki_write_room(w, bound);
+    uint8_t *plain = zstd && room ? ki_alloc_raw(w->context, size, 1) : room;
+    kiln_result result = plain ? KILN_OK : KILN_ERROR_MEMORY;
+    if (plain && !pack(w->context, data, level, plain))
+        result = KILN_ERROR_CANCELLED;
+    if (zstd && result == KILN_OK)
+        result = ki_zstd_pack(w->context, plain, size, zstd, room, bound, &packed);
+    if (zstd)
+        ki_free(plain);
+    if (result == KILN_ERROR_CANCELLED)
+        return ki_fail_cancelled(error, "writing");
+    if (result != KILN_OK)
+        return ki_fail_memory(w->context, error, "a level of a KTX2 file", size + bound);
+    w->size -= bound - packed;
+    size_t entry = k->levels + INDEX_ENTRY * (size_t)level;
+    ki_patch_u64(w, entry, start - k->start);
+    ki_patch_u64(w, entry + 8, w->size - start);
+    ki_patch_u64(w, entry + 16, size);
+    return KILN_OK;
+}
+
+// ----------------------------------------------------------------------------------------- reading
+
+static kiln_result read_header(ki_ktx2_source *s, kiln_error *error)
+{
+    ki_reader *r = &s->reader;
+    ki_read_bytes(r, sizeof identifier);
+    s->vk = ki_read_u32(r);
+    ki_read_u32(r); // type size
+    s->width = ki_read_u32(r);
+    s->height = ki_read_u32(r);
+    s->depth = ki_read_u32(r);
+    s->layer_count = ki_read_u32(r);
+    s->face_count = ki_read_u32(r);
+    s->level_count = ki_read_u32(r);
+    uint32_t scheme = ki_read_u32(r);
+    ki_read_u32(r); // the format's descriptor; vkFormat says the same
+    ki_read_u32(r);
+    s->metadata_offset = ki_read_u32(r);
+    s->metadata_size = ki_read_u32(r);
+    ki_read_u64(r);
+    ki_read_u64(r);
+    if (r->failed)
+        return ki_fail(error, KILN_ERROR_FORMAT, "%s: the KTX2 header is cut off", s->name);
+    bool cube = s->face_count == 6 && s->depth == 0;
+    if ((!cube && s->face_count != 1) || s->layer_count > 1)
+        return ki_fail(error, KILN_ERROR_UNSUPPORTED,
+                       "%s: has %u faces, %u layers and depth %u, only single cubes and tables are "
+                       "read",
+                       s->name, s->face_count, s->layer_count, s->depth);
+    if (scheme != SCHEME_NONE && scheme != SCHEME_ZSTD)
+        return ki_fail(error, KILN_ERROR_UNSUPPORTED,
+                       "%s: has supercompression scheme %u; 0 and 2 (zstd) are read", s->name,
+                       scheme);
+    s->zstd = scheme == SCHEME_ZSTD;
+    s->level_count = s->level_count ? s->level_count : 1;
+    return s->zstd ? ki_zstd_known(s->name, error) : KILN_OK;
+}
+
+kiln_result ki_ktx2_find_level(ki_ktx2_source *s, uint32_t k, uint64_t wanted, ki_ktx2_level *level,
+                               kiln_error *error)
+{
+    ki_reader *r = &s->reader;
+    uint64_t offset = ki_read_u64(r), length = ki_read_u64(r), plain = ki_read_u64(r);
+    if (r->failed || offset > s->size || length > s->size - offset)
+        return ki_fail(error, KILN_ERROR_FORMAT,
+                       "%s: level %u has %llu bytes at %llu, the file has %zu", s->name, k,
+                       (unsigned long long)length, (unsigned long long)offset, s->size);
+    *level = (ki_ktx2_level){s->bytes + offset, (size_t)length, (size_t)wanted};
+    uint64_t stated = length;
+    if (s->zstd && !ki_zstd_stated_size(level->bytes, level->size, &stated))
+        return ki_fail(error, KILN_ERROR_FORMAT,
+                       "%s: level %u is no zstd frame that states its size", s->name, k);
+    if (plain != wanted || stated != wanted)
+        return ki_fail(error, KILN_ERROR_FORMAT, "%s: level %u holds %llu bytes, its %s %llu",
+                       s->name, k, (unsigned long long)(plain != wanted ? plain : stated),
+                       s->face_count == 6 ? "six faces need" : "texels need",
+                       (unsigned long long)wanted);
+    // zstd makes a byte into 43691 at most, a block of 128 KiB from three.
+    if (wanted / 43691 > length)
+        return ki_fail(error, KILN_ERROR_FORMAT, "%s: level %u is damaged", s->name, k);
+    return KILN_OK;
+}
+
+kiln_result ki_ktx2_unpack(kiln_context *context, const ki_ktx2_source *s, int k,
+                           const ki_ktx2_level *level, const uint8_t **plain, uint8_t **unpacked,
+                           kiln_error *error)
+{
+    *plain = level->bytes;
+    *unpacked = NULL;
+    if (!s->zstd)
+        return KILN_OK;
+    uint8_t *room = ki_alloc_raw(context, level->plain_size, 1);
+    if (!room)
+        return ki_fail_memory(context, error, s->name, level->plain_size);
+    const char *fault = ki_zstd_unpack(level->bytes, level->size, room, level->plain_size);
+    if (fault) {
+        ki_free(room);
+        return ki_fail(error, KILN_ERROR_FORMAT, "%s: level %d is damaged: %s", s->name, k, fault);
+    }
+    *plain = *unpacked = room;
+    return KILN_OK;
+}
+
+// ---------------------------------------------------------------------------------------- metadata
+
+static void read_sh(const char *text, kiln_file_info *info)
+{
+    double bands = 0;
+    if (strncmp(text, "bands ", 6) != 0 || !ki_parse_number(text + 6, &bands) || bands < 1 ||
+        bands > KILN_MAX_BANDS)
+        return;
+    for (int line = 0; line < 3 && text; line++) { // past the line of the window
+        text = strchr(text, '\n');
+        text = text ? text + 1 : NULL;
+    }
+    int count = (int)bands * (int)bands;
+    for (int i = 0; i < 3 * count; i++) {
+        double value = 0;
+        text = text ? ki_parse_number(text + (*text == '\n'), &value) : NULL;
+        info->sh[i / 3][i % 3] = (float)value;
+    }
+    if (text) // all were there
+        info->sh_bands = (int)bands;
+    else
+        memset(info->sh, 0, sizeof info->sh);
+}
+
+static void read_entry(const char *key, const char *value, kiln_file_info *info)
+{
+    if (!strcmp(key, "KTXorientation"))
+        snprintf(info->orientation, sizeof info->orientation, "%.15s", value);
+    if (!strcmp(key, "KTXwriter"))
+        snprintf(info->writer, sizeof info->writer, "%.63s", value);
+    if (!strcmp(key, "kiln:sh"))
+        read_sh(value, info);
+    if (!strcmp(key, "kiln:table"))
+        ki_copy_printable(info->table, sizeof info->table, value);
+    if (strcmp(key, "kiln:roughness") != 0)
+        return;
+    for (int k = 0; k < KILN_MAX_LEVELS; k++) {
+        double roughness;
+        value = ki_parse_number(value, &roughness);
+        if (!value || !(roughness >= 0) || !(roughness <= 1))
+            return;
+        info->roughness[k] = (float)roughness;
+    }
+}
+
+// Entries whose value is not text that ends within the entry are passed over.
+static void read_metadata(const uint8_t *bytes, size_t size, kiln_file_info *info)
+{
+    ki_reader r = ki_reader_make(bytes, size);
+    while (ki_reader_left(&r) >= 4) {
+        uint32_t length = ki_read_u32(&r);
+        const uint8_t *entry = ki_read_bytes(&r, length);
+        if (!entry)
+            return;
+        const uint8_t *end = memchr(entry, 0, length);
+        if (end && end + 1 < entry + length && entry[length - 1] == 0)
+            read_entry((const char *)entry, (const char *)end + 1, info);
+        ki_read_bytes(&r, (4 - length % 4) % 4);
+    }
+}
+
+kiln_result ki_ktx2_open(ki_ktx2_source *s, const uint8_t *bytes, size_t size, const char *name,
+                         kiln_file_info *info, kiln_error *error)
+{
+    *s = (ki_ktx2_source){
+        .bytes = bytes, .size = size, .name = name, .reader = ki_reader_make(bytes, size)};
+    kiln_result result = read_header(s, error);
+    if (result == KILN_OK && s->metadata_offset <= size &&
+        s->metadata_size <= size - s->metadata_offset)
+        read_metadata(bytes + s->metadata_offset, s->metadata_size, info);
+    return result;
+}

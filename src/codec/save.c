@@ -1,0 +1,265 @@
+// Saving maps and pictures by path: what an ending may hold, the names of a set of files, and the set
+// written whole or not at all. The writers are those of the table of formats.
+#include "base/file.h"
+#include "base/os.h"
+#include "codec/formats.h"
+#include "codec/pixel_format.h"
+#include "codec/sh_text.h"
+#include "image/image.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+// ------------------------------------------------------------------------------------------- checks
+
+static const char *const shape_names[] = {"a panorama", "a cube", "an octahedron"};
+
+static kiln_result check_def(kiln_shape shape, const kiln_save_def *def, kiln_error *error)
+{
+    if ((unsigned)shape > KILN_SHAPE_OCTAHEDRON)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "shape is %d, it must be 0 to %d", (int)shape,
+                       (int)KILN_SHAPE_OCTAHEDRON);
+    if (!ki_pixel_format_of(def->format))
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "format is %d, it must be 0 to %d",
+                       (int)def->format, (int)KILN_FORMAT_RGBP);
+    if (def->zstd < 0 || def->zstd > 22)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "zstd is %d, it must be 0 to 22", def->zstd);
+    return ki_sh_check(def->sh, error);
+}
+
+// A folder's files are EXR.
+static const ki_file_format *format_of(const char *path)
+{
+    return ki_file_format_of_path(ki_ends_with(path, "/") ? "a.exr" : path);
+}
+
+static bool has_face(const char *path)
+{
+    return strstr(path, "{face}") || strstr(path, "%s");
+}
+
+static kiln_result check_format(const char *path, const ki_file_format *file, kiln_format format,
+                                kiln_error *error)
+{
+    char list[KI_ENDINGS_TEXT];
+    if (format == KILN_FORMAT_AUTO || file->pixel_formats & 1U << format)
+        return KILN_OK;
+    if (!file->pixel_formats)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: %s has one format only, leave %s out", path,
+                       file->endings[0], ki_format_names[format]);
+    return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: format %s is for %s", path,
+                   ki_format_names[format], ki_list_endings_of_format(format, list));
+}
+
+kiln_result kiln_map_save_check(const char *path, kiln_shape shape, const kiln_save_def *def,
+                                kiln_error *error)
+{
+    const ki_file_format *file = format_of(path);
+    char list[KI_ENDINGS_TEXT];
+    def = def ? def : &(kiln_save_def){0};
+    kiln_result result = check_def(shape, def, error);
+    if (result != KILN_OK)
+        return result;
+    if (!ki_file_holds(file, KI_HOLDS_PICTURE | KI_HOLDS_CUBE))
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: must end in %s", path,
+                       ki_list_endings(KI_HOLDS_PICTURE | KI_HOLDS_CUBE, "/", list));
+    if (shape != KILN_SHAPE_CUBE && !ki_file_holds(file, KI_HOLDS_PICTURE))
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: %s holds a cube; %s goes to %s", path,
+                       file->endings[0], shape_names[shape],
+                       ki_list_endings(KI_HOLDS_PICTURE, NULL, list));
+    if (shape != KILN_SHAPE_CUBE && has_face(path))
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: names a face, %s has none", path,
+                       shape_names[shape]);
+    if (def->zstd && !file->zstd)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: zstd is for .ktx2", path);
+    return check_format(path, file, def->format, error);
+}
+
+double kiln_map_save_limit(const char *path, kiln_format format)
+{
+    const ki_file_format *file = format_of(path);
+    return format != KILN_FORMAT_AUTO ? kiln_format_limit(format) : file ? file->limit : 0;
+}
+
+// ------------------------------------------------------------------------------------------- names
+
+// A template of all files' names, with {face} and {level} where they go: what the caller wrote, or
+// the places for what is missing.
+static kiln_result make_template(const char *path, const kiln_map *map, ki_writer *w,
+                                 kiln_error *error)
+{
+    bool cube = map->shape == KILN_SHAPE_CUBE;
+    bool level = strstr(path, "{level}") || strstr(path, "%d");
+    size_t length = strlen(path);
+    if (ki_ends_with(path, "/")) {
+        static const char *const names[] = {"panorama", "{face}", "octahedron"};
+        ki_write(w, path, length);
+        ki_write_text(w, "%s%s.exr", names[map->shape],
+                      map->level_count > 1 && !level ? "_{level}" : "");
+    } else {
+        size_t stem = length - strlen(kiln_path_ending(path));
+        ki_write(w, path, stem);
+        ki_write_text(w, "%s%s", cube && !has_face(path) ? "_{face}" : "",
+                      map->level_count > 1 && !level ? "_{level}" : "");
+        ki_write(w, path + stem, length - stem);
+    }
+    ki_write_u8(w, 0);
+    return w->failed ? ki_fail_memory(w->context, error, path, length + 32) : KILN_OK;
+}
+
+// The path of one file.
+static bool expand(const char *template, int face, int level, ki_writer *w)
+{
+    w->size = 0;
+    for (const char *at = template; *at;) {
+        if (face >= 0 && (!strncmp(at, "{face}", 6) || !strncmp(at, "%s", 2))) {
+            ki_write_text(w, "%s", ki_face_names[face]);
+            at += *at == '{' ? 6 : 2;
+        } else if (!strncmp(at, "{level}", 7) || !strncmp(at, "%d", 2)) {
+            ki_write_text(w, "%d", level);
+            at += *at == '{' ? 7 : 2;
+        } else {
+            ki_write_u8(w, (uint8_t)*at++);
+        }
+    }
+    ki_write_u8(w, 0);
+    return !w->failed;
+}
+
+// ------------------------------------------------------------------------------------------- files
+
+// The file of one face of one level; `bytes` is written over.
+static kiln_result add_picture(ki_file_set *set, const ki_file_format *file, const kiln_map *map,
+                               int level, int face, kiln_format format, const char *path,
+                               ki_writer *bytes, kiln_error *error)
+{
+    int faces = map->shape == KILN_SHAPE_CUBE ? 6 : 1;
+    kiln_image image = {.channels = 3};
+    ki_level_extent(map, level, &image.width, &image.height);
+    image.height /= faces;
+    image.pixels =
+        map->level[level] + 3 * (size_t)image.width * (size_t)image.height * (size_t)face;
+    const ki_picture_about about = {.radiance = true,
+                                    .format = format,
+                                    .panorama = map->shape == KILN_SHAPE_PANORAMA,
+                                    .octahedron = map->shape == KILN_SHAPE_OCTAHEDRON,
+                                    .roughness = map->roughness[level]};
+    bytes->size = 0;
+    kiln_result result = file->write_picture(&image, &about, bytes, error);
+    return result == KILN_OK ? ki_file_set_add(set, path, bytes->bytes, bytes->size, error)
+                             : result;
+}
+
+static kiln_result write_set(kiln_context *context, const kiln_map *map, const char *template,
+                             const kiln_save_def *def, int *file_count, kiln_error *error)
+{
+    ki_writer path = {.context = context};
+    ki_writer bytes = {.context = context};
+    kiln_result result = KILN_OK;
+    ki_file_set *set = ki_file_set_begin(context);
+    if (!set)
+        return ki_fail_memory(context, error, template, 64);
+    bool cube = map->shape == KILN_SHAPE_CUBE;
+    int faces = cube ? 6 : 1, count = 0;
+    for (int i = 0; i < faces * map->level_count && result == KILN_OK; i++) {
+        int level = i / faces, face = i % faces;
+        if (!ki_progress(context, "writing", (double)i / (faces * map->level_count))) {
+            result = ki_fail_cancelled(error, "writing");
+            break;
+        }
+        if (!expand(template, cube ? face : -1, level, &path)) {
+            result = ki_fail_memory(context, error, template, strlen(template) + 32);
+            break;
+        }
+        result = add_picture(set, format_of(template), map, level, face, def->format,
+                             (const char *)path.bytes, &bytes, error);
+        count++;
+    }
+    if (result == KILN_OK)
+        result = ki_file_set_commit(set, error);
+    else
+        ki_file_set_abandon(set);
+    if (result == KILN_OK && file_count)
+        *file_count = count;
+    ki_writer_free(&path);
+    ki_writer_free(&bytes);
+    return result;
+}
+
+static kiln_result save_pictures(kiln_context *context, const kiln_map *map, const char *path,
+                                 const kiln_save_def *def, int *file_count, kiln_error *error)
+{
+    ki_writer template = {.context = context};
+    kiln_result result = make_template(path, map, &template, error);
+    bool made = false;
+    if (result == KILN_OK && ki_ends_with(path, "/")) {
+        made = ki_os_make_folder(path);
+        if (!made && errno != EEXIST)
+            result = ki_fail(error, KILN_ERROR_IO, "%s: the folder cannot be made: %s", path,
+                             strerror(errno));
+    }
+    if (result == KILN_OK && template.bytes)
+        result = write_set(context, map, (const char *)template.bytes, def, file_count, error);
+    if (result != KILN_OK && made)
+        ki_os_remove_folder(path);
+    ki_writer_free(&template);
+    return result;
+}
+
+static kiln_result save_cube(kiln_context *context, const kiln_map *map, const char *path,
+                             const kiln_save_def *def, int *file_count, kiln_error *error)
+{
+    ki_writer bytes = {.context = context};
+    if (!ki_progress(context, "writing", 0))
+        return ki_fail_cancelled(error, "writing");
+    kiln_result result = format_of(path)->write_cube(map, def, &bytes, error);
+    if (result == KILN_OK)
+        result = ki_file_write(context, path, bytes.bytes, bytes.size, error);
+    if (result == KILN_OK && file_count)
+        *file_count = 1;
+    ki_writer_free(&bytes);
+    return result;
+}
+
+kiln_result kiln_map_save(kiln_context *context, const kiln_map *map, const char *path,
+                          const kiln_save_def *def, int *file_count, kiln_error *error)
+{
+    static const kiln_save_def defaults = {0};
+    if (file_count)
+        *file_count = 0;
+    def = def ? def : &defaults;
+    kiln_result result = ki_map_check(map, error);
+    if (result == KILN_OK)
+        result = kiln_map_save_check(path, map->shape, def, error);
+    if (result != KILN_OK)
+        return result;
+    return ki_file_holds(format_of(path), KI_HOLDS_CUBE)
+               ? save_cube(context, map, path, def, file_count, error)
+               : save_pictures(context, map, path, def, file_count, error);
+}
+
+kiln_result kiln_image_save(kiln_context *context, const kiln_image *image, const char *path,
+                            kiln_error *error)
+{
+    const ki_file_format *file = ki_file_format_of_path(path);
+    char list[KI_ENDINGS_TEXT];
+    if (!ki_file_holds(file, KI_HOLDS_PICTURE))
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: must end in %s", path,
+                       ki_list_endings(KI_HOLDS_PICTURE, NULL, list));
+    if (!image->pixels || image->width < 1 || image->height < 1 || image->channels < 1 ||
+        image->channels > 4)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "the image is %d x %d with %d channels%s",
+                       image->width, image->height, image->channels,
+                       image->pixels ? "" : " and no pixels");
+    if (!strcmp(file->name, "hdr") && image->channels != 3)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: HDR has three channels, the image %d", path,
+                       image->channels);
+    ki_writer bytes = {.context = context};
+    const ki_picture_about about = {.roughness = -1};
+    kiln_result result = file->write_picture(image, &about, &bytes, error);
+    if (result == KILN_OK)
+        result = ki_file_write(context, path, bytes.bytes, bytes.size, error);
+    ki_writer_free(&bytes);
+    return result;
+}
