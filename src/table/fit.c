@@ -1,3 +1,9 @@
+// Searches a closed form with few coefficients for an integral of the reflection model, and
+// evaluates it. In: the kind, the model and the wanted error. Out: polynomials P or quotients P / Q
+// in x, a function of n.v and roughness, and y, the roughness scaled to [-1, 1]. The search tries
+// all shapes of P and Q in the order of their number of coefficients, and takes the first whose
+// measured error is small enough. fit_points.c computes exact values and errors, fit_solve.c the
+// coefficients. docs/theory/fits.md.
 #include "table/fit.h"
 
 #include "table/table_axis.h"
@@ -42,6 +48,8 @@ static float clamp(float x, float low)
     return x > low ? x < 1 ? x : 1 : low;
 }
 
+// t = nov (1 + c) / (nov + c), in which the layer of fast change at grazing angles has the same
+// width at every roughness. c is ki_grazing_scale without its lower bound.
 static float axis_t(const kiln_fit_def *def, float nov, float roughness)
 {
     float c = roughness * roughness;
@@ -53,6 +61,7 @@ static float axis_t(const kiln_fit_def *def, float nov, float roughness)
     return s > 0 ? nov * (1 + c) / s : 1;
 }
 
+// The argument x in [-1, 1] of the part's polynomials.
 static float axis_x(const kiln_fit_def *def, kiln_fit_axis axis, float nov, float roughness)
 {
     switch (axis) {
@@ -69,7 +78,8 @@ static float axis_x(const kiln_fit_def *def, kiln_fit_axis axis, float nov, floa
     }
 }
 
-// Horner's rule along x in every row, then along y.
+// Evaluates a polynomial of the part's shape by Horner's rule, in x for each power of y, then in y.
+// c has a row of x_count coefficients for each power of y.
 static float horner(const kiln_fit_part *part, const float *c, float x, float y)
 {
     float value = 0;
@@ -106,6 +116,7 @@ void ki_fit_evaluate(const kiln_fit *fit, float nov, float roughness, float *val
 
 // ------------------------------------------------------------------------------------------ search
 
+// A shape of a part: P has x_count * y_count coefficients, and so has Q if the part is rational.
 typedef struct candidate {
     kiln_fit_axis axis;
     bool rational;
@@ -114,6 +125,7 @@ typedef struct candidate {
 
 enum { AXES = 2, MAX_CANDIDATES = 2 * AXES * KILN_MAX_FIT_TERMS * KILN_MAX_FIT_TERMS };
 
+// The axes on which parts for a target are tried. Returns their number.
 static int axes_of(ki_fit_target target, kiln_fit_axis axes[AXES])
 {
     switch (target) {
@@ -132,7 +144,7 @@ static int axes_of(ki_fit_target target, kiln_fit_axis axes[AXES])
     }
 }
 
-// Every shape, by the number of its coefficients.
+// Lists every allowed shape, sorted by its number of coefficients. Returns the number of shapes.
 static int list_candidates(const kiln_fit_def *def, ki_fit_target target, candidate *list)
 {
     kiln_fit_axis axes[AXES];
@@ -157,14 +169,16 @@ static int list_candidates(const kiln_fit_def *def, ki_fit_target target, candid
     return count;
 }
 
+// The search for one part. nodes[] belongs to the axes in the order of axes_of.
 typedef struct search {
     ki_fit_points nodes[AXES], checks;
     double *scratch;
     candidate list[MAX_CANDIDATES];
 } search;
 
-// Least squares tells whether a shape is near enough to be worth the rounds toward the least largest
-// error.
+// Fits one shape. A cheap fit by least squares comes first, and only a shape whose error is then
+// below `hopeful` times the wanted error gets the rounds that lower its greatest error. Sets
+// *reached to the error at the points of measurement. Returns true if that is at most `wanted`.
 static bool try_candidate(search *s, const kiln_fit *fit, const candidate *c, double wanted,
                           kiln_fit_part *part, double *reached)
 {
@@ -186,6 +200,7 @@ static bool try_candidate(search *s, const kiln_fit *fit, const candidate *c, do
     return *reached <= wanted;
 }
 
+// Allocates the scratch memory and the points of a search.
 static kiln_result begin(kiln_context *context, const kiln_fit *fit, ki_fit_target target,
                          search *s, kiln_error *error)
 {
@@ -204,6 +219,8 @@ static kiln_result begin(kiln_context *context, const kiln_fit *fit, ki_fit_targ
     return result;
 }
 
+// Finds the shape with the fewest coefficients whose error is at most `wanted`, and sets *part to
+// its fit and *reached to its error.
 static kiln_result find_part(kiln_context *context, const kiln_fit *fit, ki_fit_target target,
                              double wanted, search *s, kiln_fit_part *part, double *reached,
                              kiln_error *error)
@@ -242,7 +259,7 @@ kiln_result ki_fit_make(kiln_context *context, kiln_fit *fit, kiln_error *error)
     if (!s)
         return ki_fail_memory(context, error, "fit", 2 * sizeof *s);
     kiln_result result = KILN_OK;
-    double left = fit->def.error; // what is not used up by the parts before
+    double left = fit->def.error; // the wanted error minus the errors of the parts found so far
     for (int k = 0; k < fit->part_count && !result; k++) {
         kiln_fit_part *part = &fit->part[k];
         double wanted = k < fit->part_count - 1 ? left / 2 : left, reached = 0;

@@ -1,5 +1,7 @@
-// Closed forms of the reflection model's integrals: rational functions fitted toward the least
-// largest error. docs/theory/fits.md.
+// Closed forms of the reflection model's integrals: polynomials and rational functions of n.v and
+// roughness, fitted to have a small greatest error. A form (kiln_fit) has one or two parts
+// (kiln_fit_part), each one polynomial P or one quotient P / Q. docs/theory/fits.md describes the
+// search.
 #ifndef KI_FIT_H
 #define KI_FIT_H
 
@@ -7,58 +9,71 @@
 
 #include <kiln/brdf.h>
 
-/// Fills the defaults in and checks every number.
+/// Replaces zeros in `def` by defaults and checks every field. Fails with KILN_ERROR_ARGUMENT.
 kiln_result ki_fit_complete(kiln_fit_def *def, kiln_error *error);
-/// The search, def being complete.
+/// Searches the form for fit->def, which ki_fit_complete has filled in, and sets the other fields
+/// of `fit`. Fails with KILN_ERROR_UNSUPPORTED if no form has the wanted error.
 kiln_result ki_fit_make(kiln_context *context, kiln_fit *fit, kiln_error *error);
-/// In floats, operation by operation as the written code.
+/// Sets values[0], or values[0] and values[1] for KILN_FIT_DFG, to the form's value. Computes in
+/// floats, operation by operation as the source code that the library writes for the form.
 void ki_fit_evaluate(const kiln_fit *fit, float nov, float roughness, float *values);
+/// Returns the value of one part P or P / Q, in floats as ki_fit_evaluate.
 float ki_fit_evaluate_part(const kiln_fit_def *def, const kiln_fit_part *part, float nov,
                            float roughness);
 
 // ---------------------------------------------------------------------------- inside the search
 
-/// What a part approximates.
+/// The function that a part approximates.
 typedef enum ki_fit_target {
     KI_FIT_E,
     KI_FIT_E_AVERAGE,
-    KI_FIT_REST, ///< B - E (1 - n.v)^5, which is there at grazing views only
+    KI_FIT_REST, ///< B - E (1 - n.v)^5, which is near 0 except at grazing views
     KI_FIT_SHEEN
 } ki_fit_target;
 
-/// Parts of a kind, which are as many as its values: 1 or 2.
+/// Sets target[] to the functions that the parts of a kind of form approximate. Returns their
+/// number, 1 or 2.
 int ki_fit_targets(kiln_fit_kind kind, ki_fit_target target[2]);
 
-/// Values of a target, at the nodes of the fit, a Chebyshev grid, or where it is checked.
+/// Points (n.v, roughness) and the exact values of a target there: either the nodes to which a part
+/// is fitted, or the points at which its error is measured.
 typedef struct ki_fit_points {
     int count;
-    double *x, *y; ///< in [-1, 1], of the nodes only
+    double *x, *y; ///< arguments of the part's polynomials in [-1, 1]; set at nodes only
     double *nov, *roughness;
     double *value;
 } ki_fit_points;
 
+/// Nodes of a fit along each axis.
 enum { KI_FIT_GRID = 40 };
 
+/// Allocates the nodes for fits on one axis, a Chebyshev grid, and computes the target's exact
+/// values there.
 kiln_result ki_fit_nodes(kiln_context *context, const kiln_fit_def *def, ki_fit_target target,
                          kiln_fit_axis axis, ki_fit_points *points, kiln_error *error);
+/// Allocates the points at which errors are measured, and computes the target's exact values there.
 kiln_result ki_fit_checks(kiln_context *context, const kiln_fit_def *def, ki_fit_target target,
                           ki_fit_points *points, kiln_error *error);
 void ki_fit_points_free(ki_fit_points *points);
 
-/// Largest difference of a part from the points' values.
+/// Returns the greatest absolute difference between a part and the exact values at `points`.
 double ki_fit_measure_part(const kiln_fit_def *def, const kiln_fit_part *part,
                            const ki_fit_points *points);
-/// Largest and RMS error of the whole form, from the points' values of its targets.
+/// Sets the greatest and the RMS error of the form. points[k] has the exact values of the target of
+/// part k.
 void ki_fit_measure(kiln_fit *fit, const ki_fit_points points[2]);
 
-/// Fits a part of given axis, form and counts to the nodes, toward the least largest error where
-/// `rounds` > 0 and `wanted` seems within reach. `scratch` holds (2 * nodes + KILN_MAX_FIT) *
-/// KILN_MAX_FIT + 4 * nodes numbers and KILN_MAX_FIT more. The largest error
-/// at the nodes, or infinity where nothing usable comes out.
+/// Computes the coefficients of a part, whose axis, form and counts are set, so that the part
+/// approximates the values at the nodes. With rounds = 0 the fit is by least squares. Each
+/// further round reweights the nodes to lower the greatest error; rounds stop early if `wanted` is
+/// out of reach. `scratch` holds (2 * nodes->count + KILN_MAX_FIT) * KILN_MAX_FIT + 4 *
+/// nodes->count + KILN_MAX_FIT numbers. Returns the greatest error at the nodes, or infinity if
+/// every solution failed.
 double ki_fit_solve(const ki_fit_points *nodes, int rounds, double wanted, double *scratch,
                     kiln_fit_part *part);
-/// Whether q exceeds 1/100 on the whole square: proven by the mean value theorem on boxes that are
-/// halved until each is.
+/// Returns true if the denominator Q of the part is proven to exceed 1/100 for all x and y in [-1,
+/// 1], so that the part has no pole. The proof applies the mean value theorem to boxes, and divides
+/// a box until the theorem suffices.
 bool ki_fit_positive(const kiln_fit_part *part);
 
 #endif

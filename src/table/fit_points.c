@@ -1,4 +1,7 @@
-// Where closed forms are fitted and where they are checked, and how far off they are there.
+// The points at which closed forms are fitted and measured, with exact values of the fitted
+// function, and the errors of forms there. The nodes of a fit are a Chebyshev grid in the part's
+// own arguments. The points of measurement are regular grids and random points in (n.v, roughness)
+// and (sqrt t, roughness).
 #include "brdf/brdf.h"
 #include "brdf/energy.h"
 #include "brdf/sheen.h"
@@ -8,6 +11,7 @@
 
 #include <math.h>
 
+// The exact value of a target.
 static double target_value(const kiln_fit_def *def, ki_fit_target target, double roughness,
                            double nov)
 {
@@ -34,7 +38,7 @@ int ki_fit_targets(kiln_fit_kind kind, ki_fit_target target[2])
     return kind == KILN_FIT_DFG ? 2 : 1;
 }
 
-// ------------------------------------------------------------------------------------------ filling
+// ----------------------------------------------------------------------------------------- filling
 
 enum { CHUNK = 64 };
 
@@ -86,7 +90,7 @@ void ki_fit_points_free(ki_fit_points *points)
     *points = (ki_fit_points){0};
 }
 
-// n.v of x in [-1, 1].
+// The n.v that belongs to the argument x in [-1, 1] on an axis.
 static double nov_of(const kiln_fit_def *def, kiln_fit_axis axis, double roughness, double x)
 {
     double u = ki_clamp((1 + x) / 2, 0, 1);
@@ -103,13 +107,15 @@ static double nov_of(const kiln_fit_def *def, kiln_fit_axis axis, double roughne
     }
 }
 
+// The roughness that belongs to the argument y in [-1, 1].
 static double roughness_of(const kiln_fit_def *def, double y)
 {
     return ki_clamp(def->roughness_min + (1 - def->roughness_min) * (1 + y) / 2, def->roughness_min,
                     1);
 }
 
-// Extrema of a Chebyshev polynomial, both ends among them.
+// Chebyshev point `index` of the second kind on [-1, 1]: an extremum of a Chebyshev polynomial, or
+// an end.
 static double node(int i, int count)
 {
     return count > 1 ? -ki_cos(KI_PI * i / (count - 1)) : 0;
@@ -127,7 +133,8 @@ kiln_result ki_fit_nodes(kiln_context *context, const kiln_fit_def *def, ki_fit_
     for (int i = 0; i < points->count; i++) {
         points->x[i] = node(i % columns, columns);
         points->y[i] = node(i / columns, rows);
-        // Where roughness is 0 the layer has no width; the form goes on to its limit.
+        // At roughness 0 the layer at grazing angles has no width, and x determines no n.v. The
+        // node takes the limit from a small roughness.
         points->roughness[i] = roughness_of(def, points->y[i]);
         if (points->roughness[i] < KI_GRAZING_MIN)
             points->roughness[i] = KI_GRAZING_MIN;
@@ -136,7 +143,7 @@ kiln_result ki_fit_nodes(kiln_context *context, const kiln_fit_def *def, ki_fit_
     return fill(context, def, target, points, error);
 }
 
-// ----------------------------------------------------------------------------------------- checking
+// ---------------------------------------------------------------------------------------- checking
 
 static double uniform(uint64_t *state)
 {
@@ -144,13 +151,14 @@ static double uniform(uint64_t *state)
     return ((double)(*state >> 32) + 0.5) / 4294967296.0;
 }
 
-// A quarter each: grids over (sqrt t, r) and (n.v, r), random points in both. Numbers are floats, as
-// the form receives them.
+// A quarter of the points is a regular grid over (n.v, roughness), a quarter one over (sqrt t,
+// roughness), and two quarters are random, uniform in the same two pairs. n.v and roughness are
+// rounded to floats, because a form receives floats.
 kiln_result ki_fit_checks(kiln_context *context, const kiln_fit_def *def, ki_fit_target target,
                           ki_fit_points *points, kiln_error *error)
 {
     enum { SIDE = 101, LINE = 1001 };
-    bool line = target == KI_FIT_E_AVERAGE; // which has no n.v
+    bool line = target == KI_FIT_E_AVERAGE; // E_avg is a function of roughness alone
     int columns = line ? 1 : SIDE, rows = line ? LINE : SIDE;
     kiln_result result = allocate(context, 4 * columns * rows, points, error);
     if (result)

@@ -1,4 +1,8 @@
-// One closed form of given degrees.
+// Fits one polynomial P or quotient P / Q of given shape to values at nodes. In: the nodes, the
+// shape, the number of rounds. Out: coefficients as floats. Method: each round solves a weighted
+// linear least-squares problem in products of Chebyshev polynomials. Sanathanan and Koerner's
+// iteration makes the residual of a quotient linear, and Lawson's weights turn least squares into a
+// small greatest error. A last step proves Q > 0. docs/theory/fits.md.
 #include "math/math.h"
 #include "table/fit.h"
 
@@ -6,20 +10,21 @@
 
 enum { MAX_TERMS = KILN_MAX_FIT_TERMS };
 
-// Q is 1 on average.
+// The value that Q must exceed on the whole square. Q is scaled to have a constant term of 1.
 static const double LEAST_Q = 0.01;
 
-// T_0 .. T_{count-1} of x.
+// Sets t[] to the Chebyshev polynomials T_0(x) to T_{count-1}(x).
 static void chebyshev(double x, int count, double *t)
 {
     for (int i = 0; i < count; i++)
         t[i] = i == 0 ? 1 : i == 1 ? x : 2 * x * t[i - 1] - t[i - 2];
 }
 
-// Powers' coefficients of sum c[i * stride] T_i, in place: Clenshaw's recurrence on polynomials.
+// Converts the Chebyshev series sum c[i * stride] T_i to coefficients of powers, in place, by
+// Clenshaw's recurrence on polynomials.
 static void to_powers(double *c, int count, size_t stride)
 {
-    double b1[MAX_TERMS + 1] = {0}, b2[MAX_TERMS + 1] = {0}; // b_{k+1}, b_{k+2}
+    double b1[MAX_TERMS + 1] = {0}, b2[MAX_TERMS + 1] = {0}; // polynomials b_{k+1} and b_{k+2}
     for (int k = count - 1; k >= 0; k--) {
         double b[MAX_TERMS + 1];
         for (int i = 0; i <= MAX_TERMS; i++)
@@ -34,6 +39,8 @@ static void to_powers(double *c, int count, size_t stride)
         c[(size_t)i * stride] = b1[i];
 }
 
+// Converts a series in products of Chebyshev polynomials to powers of x and y, multiplies by
+// `scale` and rounds to floats.
 static void round_powers(const kiln_fit_part *part, double *c, float *rounded, double scale)
 {
     size_t stride = (size_t)part->x_count;
@@ -45,18 +52,23 @@ static void round_powers(const kiln_fit_part *part, double *c, float *rounded, d
         rounded[i] = (float)(c[i] * scale);
 }
 
+// The linear least-squares problem of one round.
 typedef struct equations {
     const ki_fit_points *nodes;
-    int terms, columns, rows; // a row a node, and one a coefficient of Q
-    double *matrix, *right;
-    double *weight;      // of the nodes, sum 1
-    double *denominator; // Q of the last round
-    double *basis;       // terms products of Chebyshev polynomials a node
-    double ridge;        // weight of Q's coefficients, which keeps it positive
+    int terms;           // coefficients of P, and of Q with its constant 1
+    int columns;         // unknowns
+    int rows;            // equations: one for each node and one for each unknown coefficient of Q
+    double *matrix;      // column after column
+    double *right;       // right-hand side, and after a round the error at each node
+    double *weight;      // weight of each node's squared error, with sum 1
+    double *denominator; // Q of the previous round at each node
+    double *basis;       // products of Chebyshev polynomials, `terms` for each node
+    double ridge;        // weight that draws the coefficients of Q to 0, to keep Q positive
 } equations;
 
-// Rows sqrt(w) / Q_last (P - f Q), with Q = 1 + ...: Sanathanan and Koerner's iteration makes it the
-// true residual.
+// Sets up the equations. The row of a node with value f is sqrt(weight) / Q_previous (P - f Q),
+// with Q = 1 + ...; the division by Q of the previous round makes this the true residual P / Q - f
+// when the rounds converge (Sanathanan and Koerner 1963).
 static void fill(const equations *s)
 {
     const ki_fit_points *nodes = s->nodes;
@@ -76,8 +88,9 @@ static void fill(const equations *s)
     }
 }
 
-// Evaluates at the nodes; errors go to `right`, Q to `denominator`. The largest error, or infinity
-// where Q is not positive everywhere, and then Q stays as it was.
+// Evaluates the solution x at the nodes: writes each node's error to `right` and its Q to
+// `denominator`. Returns the greatest error. If Q is not well above 0 at every node, returns
+// infinity and writes nothing.
 static double judge(const equations *s, const double *x)
 {
     const ki_fit_points *nodes = s->nodes;
@@ -101,7 +114,8 @@ static double judge(const equations *s, const double *x)
     return largest;
 }
 
-// Lawson's rule: each node's weight is multiplied by its error.
+// Lawson's rule (1961): multiplies each node's weight by the square root of its error, and scales
+// the sum of weights to 1.
 static void reweight(const equations *s)
 {
     double sum = 0;
@@ -114,7 +128,7 @@ static void reweight(const equations *s)
         s->weight[i] /= all;
 }
 
-enum { PATIENCE = 12 }; // rounds after which a hopeless form is given up
+enum { PATIENCE = 12 }; // rounds after which a shape far from the wanted error is given up
 
 double ki_fit_solve(const ki_fit_points *nodes, int rounds, double wanted, double *scratch,
                     kiln_fit_part *part)
@@ -140,7 +154,7 @@ double ki_fit_solve(const ki_fit_points *nodes, int rounds, double wanted, doubl
         s.denominator[i] = 1;
     }
     double x[2 * KILN_MAX_FIT] = {0}, best[2 * KILN_MAX_FIT] = {0}, least = HUGE_VAL, floor = 0;
-    int first = part->rational ? 6 : 1; // rounds until Q is steady
+    int first = part->rational ? 6 : 1; // rounds with equal weights, until Q changes little
     for (int round = 0; round < first + rounds; round++) {
         if (round == first + PATIENCE && least > 1.7 * wanted)
             break;
@@ -181,7 +195,9 @@ double ki_fit_solve(const ki_fit_points *nodes, int rounds, double wanted, doubl
 
 enum { DEPTH = 12 };
 
-// On the box of half width h about (x, y); |dq| <= slope everywhere.
+// Returns true if q > LEAST_Q is proven on the square of half width h about (x, y). `slope` is an
+// upper bound of |dq/dx| + |dq/dy|. A square for which the bound does not suffice is divided in
+// four, up to `depth` times.
 static bool proven(const kiln_fit_part *part, double slope, double x, double y, double h, int depth)
 {
     double q = 0;
@@ -206,7 +222,7 @@ bool ki_fit_positive(const kiln_fit_part *part)
 {
     if (!part->rational)
         return true;
-    double slope = 0; // of x and y added, for |x|, |y| <= 1
+    double slope = 0; // upper bound of |dq/dx| + |dq/dy| for |x|, |y| <= 1
     for (int k = 0; k < part->x_count * part->y_count; k++) {
         int degrees = k % part->x_count + k / part->x_count;
         slope += degrees * fabs((double)part->q[k]);

@@ -1,3 +1,7 @@
+// Computes tables of the reflection model's integrals. In: a kiln_table_def (kind, model, size,
+// axis and flags). Out: an image of floats, a texel for each cosine n.v (columns), roughness (rows)
+// and F0 or ior (slices). Each kind has a function that fills part of a row; rows run in parallel.
+// The integrals are those of src/brdf/, and docs/tables.md describes the tables.
 #include "table/table.h"
 
 #include "brdf/dielectric.h"
@@ -27,7 +31,8 @@ enum { CHUNK = 256, MAX_CHANNELS = 4 };
 
 typedef struct fill_job fill_job;
 
-// Texels of one row and slice: `count` values of n.v, at most CHUNK, to out[count][channels].
+// Computes the texels of one row and slice at `count` values of n.v, at most CHUNK, to
+// out[count][channels]. `third` is F0 or the ior of the slice.
 typedef void fill_chunk(const fill_job *job, double roughness, double third, const double *nov,
                         int count, double *out);
 
@@ -36,7 +41,7 @@ struct fill_job {
     kiln_table *table;
     const kiln_table_def *def;
     fill_chunk *fill;
-    const ki_surface *surface; // of E, NULL where the integrals themselves are fewer
+    const ki_surface *surface; // series of E for large tables; NULL: compute each texel's integral
     int channels;
 };
 
@@ -65,7 +70,8 @@ static void fill_dfg(const fill_job *job, double roughness, double third, const 
     ki_energy_values(job->context, &job->def->model, roughness, nov, count, true, out);
 }
 
-// Filament's order, and the cloth's albedo with Ashikhmin's masking.
+// The channels in Filament's order: B, A + B, and the albedo of Charlie sheen with Ashikhmin's
+// masking.
 static void fill_multiscatter(const fill_job *job, double roughness, double third,
                               const double *nov, int count, double *out)
 {
@@ -183,7 +189,7 @@ kiln_result ki_table_complete(kiln_table_def *def, kiln_error *error)
     def->height = def->height ? def->height : has_depth ? 32 : 128;
     def->depth = def->depth ? def->depth : walks ? 20 : has_depth ? 32 : 1;
     if (walks) {
-        // What holds 2e-3 between texels: docs/theory/walk.md.
+        // These defaults keep the interpolated albedo within 2e-3: docs/theory/walk.md.
         def->axis = KILN_AXIS_GRAZING;
         def->corners = true;
         def->path_count = def->path_count ? def->path_count : 8192;
@@ -201,6 +207,7 @@ kiln_result ki_table_complete(kiln_table_def *def, kiln_error *error)
 
 // -------------------------------------------------------------------------------------------- rows
 
+// Fills row index % height of slice index / height.
 static void fill_row(void *data, int index)
 {
     const fill_job *job = data;
@@ -220,7 +227,8 @@ static void fill_row(void *data, int index)
     }
 }
 
-// All slices of a row at once: the walks are the same for every F0.
+// Fills one row of KILN_TABLE_E_WALK in all slices, because one set of random walks serves every
+// F0.
 static void fill_walk_row(void *data, int row)
 {
     const fill_job *job = data;
@@ -243,7 +251,8 @@ static void fill_walk_row(void *data, int row)
     }
 }
 
-// Whether the series' integrals are well below the texels'.
+// Returns true for tables of E whose number of texels is well above the number of integrals that a
+// Chebyshev series of E (surface.h) needs.
 static bool wants_surface(const kiln_table_def *def)
 {
     return def->kind == KILN_TABLE_E && def->model.d == KILN_D_GGX &&

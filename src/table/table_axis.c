@@ -1,3 +1,4 @@
+// Conversions between a table's arguments and its texel coordinates.
 #include "table/table_axis.h"
 
 #include "base/base.h"
@@ -6,7 +7,7 @@
 
 #include <math.h>
 
-// Newton's method from a power within 1e-14.
+// One step of Newton's method from ki_pow, whose relative error is below 1e-14.
 static double cube_root(double x)
 {
     if (!(x > 0))
@@ -36,7 +37,7 @@ double ki_texel_place(int index, int count, bool corners)
     return corners && count > 1 ? (double)index / (count - 1) : (index + 0.5) / count;
 }
 
-// The place u to n.v, for many at once.
+// Sets nov[i] to the n.v at the place u[i] in [0, 1] along an axis. c is that of KILN_AXIS_GRAZING.
 static void to_nov(kiln_axis axis, double c, const double *u, int count, double *nov)
 {
     switch (axis) {
@@ -49,7 +50,7 @@ static void to_nov(kiln_axis axis, double c, const double *u, int count, double 
             nov[i] = u[i] * u[i] * u[i];
         break;
     case KILN_AXIS_GRAZING:
-        // 1 at u = 1, to the last bit.
+        // This form is exactly 1 at u = 1.
         for (int i = 0; i < count; i++)
             nov[i] = u[i] * u[i] * c / (c + (1 - u[i] * u[i]));
         break;
@@ -87,7 +88,7 @@ ki_third ki_table_third(kiln_table_kind kind)
     }
 }
 
-// w = 2 (ior - 1) / (ior + 1), twice the root of F0.
+// For an ior, w = 2 (ior - 1) / (ior + 1), which is twice the square root of its F0.
 double ki_third_to_w(ki_third third, double value)
 {
     return third == KI_THIRD_IOR ? 2 * (value - 1) / (value + 1) : value;

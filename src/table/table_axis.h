@@ -1,32 +1,39 @@
-// Where a table's texels stand: between (n.v, roughness, third) and texel coordinates, both ways, the
-// one place that says so. Emitted lookup code follows it.
+// The arguments that belong to a table's texels: conversions between n.v, roughness and the third
+// argument on the one side and places in [0, 1] and texel indices on the other. The lookup code
+// that kiln writes (table_code.c) has the same formulas.
 #ifndef KI_TABLE_AXIS_H
 #define KI_TABLE_AXIS_H
 
 #include <kiln/brdf.h>
 
-/// Roughness below which the grazing axis is that of this roughness: its layer would have no width.
+/// Least roughness on the grazing axis. At roughness 0 the layer that this axis resolves has no
+/// width, so that a row of smaller roughness is computed at this roughness.
 #define KI_GRAZING_MIN 1e-6
 
-/// u in [0, 1] of n.v in [0, 1] and back, in the row of a roughness; the grazing axis' c is
-/// ki_grazing_scale's. 0 and 1 stay exactly themselves;
-/// error below 1e-15.
+/// Returns the place u in [0, 1] along def->axis that belongs to nov in [0, 1] in a row of this
+/// roughness. The grazing axis takes its c from ki_grazing_scale. 0 maps to 0 and 1 to 1 exactly.
+/// Error below 1e-15.
 double ki_axis_from_nov(const kiln_table_def *def, double roughness, double nov);
+/// The inverse function of ki_axis_from_nov.
 double ki_axis_to_nov(const kiln_table_def *def, double roughness, double u);
 
-/// n.v of `count` columns of that row from column `from` on.
+/// Sets nov[count] to the n.v of columns from, from + 1, ... of a row of this roughness.
 void ki_axis_columns(const kiln_table_def *def, double roughness, int from, int count, double *nov);
 
-/// What a table's kind has along w: 0 without a third axis.
+/// The third argument of a kind of table, which varies from slice to slice.
 typedef enum ki_third { KI_THIRD_NONE, KI_THIRD_F0, KI_THIRD_IOR } ki_third;
 ki_third ki_table_third(kiln_table_kind kind);
-/// w in [0, 1] of F0 or of an ior from 1 to 3, and back.
+/// Returns the place w in [0, 1] along the third axis of a value of F0, or of an ior from 1 to 3.
 double ki_third_to_w(ki_third third, double value);
+/// The inverse function of ki_third_to_w.
 double ki_third_from_w(ki_third third, double w);
 
-/// The place in [0, 1] of texel `index` of `count` (a lone one stands in the middle), and the
-/// fractional index of a place, from 0 to count - 1.
+/// Returns the place in [0, 1] of texel `index` of `count` along an axis. With `corners` the first
+/// texel is at 0 and the last at 1; without, texel i is at (i + 1/2) / count. A single texel is at
+/// 1/2.
 double ki_texel_place(int index, int count, bool corners);
+/// The inverse function of ki_texel_place: the fractional index of a place, clamped to [0, count -
+/// 1].
 double ki_texel_index(double place, int count, bool corners);
 
 #endif

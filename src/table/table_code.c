@@ -1,5 +1,7 @@
-// The same steps as ki_table_lookup, with the def's choices made: arguments to places in [0, 1]
-// (table_axis.h), places to texels, texels interpolated. Tests hold the two together.
+// Writes source code in C or GLSL that reads a table as ki_table_lookup does. In: the def, a name,
+// the kind of code. Out: text. The code has three steps with the table's size and axis written in
+// as constants: it maps arguments to places in [0, 1] (as table_axis.h), places to texels, and
+// interpolates the texels linearly. Tests compare its results with ki_table_lookup.
 #include "table/table_code.h"
 
 #include "table/table.h"
@@ -11,10 +13,10 @@ typedef struct code_job {
     const kiln_table_def *def;
     ki_writer *w;
     const char *name;
-    bool c; // else GLSL
+    bool c; // true: C; false: GLSL
     int channels;
-    bool nov;          // whether this argument is there
-    const char *third; // the third one's name, NULL where there is none
+    bool nov;          // the function has the argument n.v, which E_avg lacks
+    const char *third; // name of the third argument, "ior" or "f0"; NULL for two arguments
 } code_job;
 
 static const char *real(const code_job *j)
@@ -22,7 +24,7 @@ static const char *real(const code_job *j)
     return j->c ? "double" : "float";
 }
 
-// ----------------------------------------------------------------------------------------- comments
+// ---------------------------------------------------------------------------------------- comments
 
 static void write_arguments_comment(const code_job *j)
 {
@@ -49,9 +51,10 @@ static void write_result_comment(const code_job *j)
     ki_write_text(j->w, "// The result is %s.\n", results[j->def->kind]);
 }
 
-// -------------------------------------------------------------------------------------- arguments
+// --------------------------------------------------------------------------------------- arguments
 
-// "u", "v" and "w" in [0, 1] from the arguments.
+// Writes the code that sets u, v and w, places in [0, 1], from the arguments n.v, roughness and F0
+// or ior.
 static void write_places(const code_job *j)
 {
     ki_writer *w = j->w;
@@ -66,7 +69,7 @@ static void write_places(const code_job *j)
     if (j->nov && def->axis == KILN_AXIS_CBRT)
         ki_write_text(w, j->c ? "    u = cbrt(u);\n" : "    u = pow(u, 1.0 / 3.0);\n");
     if (j->nov && def->axis == KILN_AXIS_GRAZING) {
-        // ki_grazing_scale
+        // The same formulas as in ki_grazing_scale.
         if (def->model.g == KILN_G_SCHLICK_TEXT)
             ki_write_text(w,
                           "    %s k = (r + 1.0) * (r + 1.0) / 8.0;\n"
@@ -92,8 +95,9 @@ static void write_parameters(const code_job *j, const char *first)
                   j->third ? " " : "", j->third ? j->third : "");
 }
 
-// ---------------------------------------------------------------------------------------------- C
+// ----------------------------------------------------------------------------------------------- C
 
+// Writes the functions that clamp, find the two nearest texels and interpolate.
 static void write_c_parts(const code_job *j)
 {
     ki_write_text(
@@ -138,7 +142,8 @@ static void write_c_head(const code_job *j)
     ki_write_text(j->w, ")\n{\n");
 }
 
-// A slice's four texels from `t` on, the variable `name`.
+// Writes the code that interpolates between four texels of a slice, the first at t, into a variable
+// `name`.
 static void write_c_slice(const code_job *j, const char *name)
 {
     ki_writer *w = j->w;
@@ -195,7 +200,7 @@ static void write_c(const code_job *j)
                   j->channels > 1 ? "" : "    return values[0];\n");
 }
 
-// ------------------------------------------------------------------------------------------- GLSL
+// -------------------------------------------------------------------------------------------- GLSL
 
 static const char *const vectors[4] = {"float", "vec2", "vec3", "vec4"};
 
@@ -254,7 +259,7 @@ static void write_glsl_array(const code_job *j)
     ki_writer *w = j->w;
     const kiln_table_def *def = j->def;
     const char *type = vectors[j->channels - 1], *n = j->name;
-    // A texel, and four of them around a place.
+    // Writes two functions: one reads a texel, and one interpolates between four texels of a slice.
     ki_write_text(w,
                   "%s %s_texel(int x, int y, int z)\n"
                   "{\n"

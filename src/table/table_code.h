@@ -1,4 +1,4 @@
-// Source code that looks tables up as kiln_table_lookup does.
+// Writes source code in C or GLSL that reads a table as kiln_table_lookup does.
 #ifndef KI_TABLE_CODE_H
 #define KI_TABLE_CODE_H
 
@@ -7,12 +7,13 @@
 #include <kiln/brdf.h>
 
 typedef enum ki_table_code {
-    KI_TABLE_C,            ///< a function on an array of floats
-    KI_TABLE_GLSL_TEXTURE, ///< on a sampler2D or, where there are slices, a sampler3D
-    KI_TABLE_GLSL_ARRAY    ///< on NAME_number(int), which the caller has written
+    KI_TABLE_C,            ///< C that reads an array of floats
+    KI_TABLE_GLSL_TEXTURE, ///< GLSL that reads a sampler2D, or a sampler3D if depth > 1
+    KI_TABLE_GLSL_ARRAY    ///< GLSL that calls NAME_number(int), which the caller writes before it
 } ki_table_code;
 
-/// Appends the functions for a complete def; names begin with `name`.
+/// Appends the code to `w`. The names of its functions begin with `name`. ki_table_complete has
+/// filled in `def`.
 void ki_table_write_code(const kiln_table_def *def, ki_table_code code, const char *name,
                          ki_writer *w);
 

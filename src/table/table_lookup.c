@@ -1,4 +1,5 @@
-// Reading tables, between texels and in the mean.
+// Reads tables: the arguments of a texel, linear interpolation between texels, and the average
+// E_avg of an interpolated table of E.
 #include "table/table.h"
 
 #include "math/math.h"
@@ -19,7 +20,9 @@ void ki_table_texel(const kiln_table *table, int x, int y, int slice, double *no
         ki_third_from_w(ki_table_third(def->kind), ki_texel_place(slice, def->depth, def->corners));
 }
 
-// A place between two texels: the lower one, the step to the other (0 at the end) and its share.
+// The two texels along one axis between which a place lies. `index` is the offset of the lower
+// texel in the pixels, index + step that of the upper (step is 0 at the last texel), and `share`
+// the upper texel's weight.
 typedef struct between {
     size_t index, step;
     double share;
@@ -59,7 +62,8 @@ void ki_table_lookup(const kiln_table *table, double nov, double roughness, doub
     }
 }
 
-// 2 int E(mu) mu dmu of what the lookup shows, in panels from column to column, where it is smooth.
+// 2 int E(mu) mu dmu of one row of the interpolated table, by Gauss-Legendre quadrature between
+// neighbouring columns, where the interpolated E is smooth.
 static double average_row(const kiln_table *table, double roughness)
 {
     enum { NODES = 6 };

@@ -1,3 +1,4 @@
+// Converts a kiln_table_def to its line of text and back.
 #include "table/table_text.h"
 
 #include <limits.h>
@@ -22,7 +23,8 @@ void ki_table_describe(const kiln_table_def *def, char text[KI_TABLE_TEXT])
              def->flip, def->width, def->height, def->depth, def->path_count);
 }
 
-// What follows "KEY=WORD" and a space, with the word's place in `words`; NULL where it is not so.
+// Reads "KEY=WORD " and sets *value to the index of WORD in `words`. Returns the text that follows,
+// or NULL if `text` does not begin so.
 static const char *parse_word(const char *text, const char *key, const char *const *words,
                               int *value)
 {
@@ -39,7 +41,8 @@ static const char *parse_word(const char *text, const char *key, const char *con
     return NULL;
 }
 
-// A whole number, up to `limit`, and what follows it.
+// Reads a whole number from 0 to `limit`. Returns the text that follows, or NULL if there is no
+// such number.
 static const char *parse_count(const char *text, int limit, int *value)
 {
     int64_t number = 0;
