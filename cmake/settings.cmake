@@ -19,34 +19,49 @@ target_compile_options(kiln_settings INTERFACE
     -ffp-contract=off -fno-math-errno -fno-trapping-math
     $<$<BOOL:${KILN_WERROR}>:-Werror>)
 
-# Vector kernels are compiled once an instruction set.
+# Vector kernels are compiled once an instruction set: one of 128 bits that every processor of its kind has,
+# and on 64-bit x86 those that a processor is asked for when a context is created.
 string(TOLOWER "${CMAKE_SYSTEM_PROCESSOR}" processor)
-set(KILN_X86 OFF)
-if(NOT KILN_SCALAR AND processor MATCHES "^(x86_64|amd64)$")
-    set(KILN_X86 ON)
-    target_compile_definitions(kiln_settings INTERFACE KILN_HAVE_X86)
+set(kernel_sets scalar)
+if(processor MATCHES "^(x86_64|amd64|i[3-6]86)$")
+    set(options_simd128 -msse2)
+    if(CMAKE_SIZEOF_VOID_P EQUAL 4) # the x87 would keep more bits than a double has
+        target_compile_options(kiln_settings INTERFACE -msse2 -mfpmath=sse)
+    elseif(NOT KILN_SCALAR)
+        set(KILN_AVX ON)
+    endif()
 endif()
-set(KILN_SIMD128 OFF)
-if(NOT KILN_SCALAR AND EMSCRIPTEN)
-    set(KILN_SIMD128 ON)
-    target_compile_definitions(kiln_settings INTERFACE KILN_HAVE_SIMD128)
+if(EMSCRIPTEN AND NOT KILN_SCALAR)
+    set(options_simd128 -msimd128)
     target_compile_options(kiln_settings INTERFACE -msimd128)
 endif()
+if(NOT KILN_SCALAR AND (DEFINED options_simd128 OR processor MATCHES "^(aarch64|arm64)$"))
+    list(APPEND kernel_sets simd128)
+    target_compile_definitions(kiln_settings INTERFACE KILN_HAVE_SIMD128)
+endif()
+if(KILN_AVX)
+    list(APPEND kernel_sets avx2 avx512)
+    target_compile_definitions(kiln_settings INTERFACE KILN_HAVE_AVX)
+endif()
+set(options_scalar "$<$<C_COMPILER_ID:GNU>:-fno-tree-vectorize;-fno-tree-slp-vectorize>")
+set(options_avx2 -mavx2)
+set(options_avx512 -mavx512f -mavx512vl -mavx512dq -mavx512bw -mprefer-vector-width=512)
+if(MINGW AND CMAKE_C_COMPILER_ID STREQUAL GNU)
+    # GCC stores vectors of 32 and 64 bytes on stacks that Windows aligns to 16 (GCC's bug 54412).
+    list(APPEND options_avx2 -Wa,-muse-unaligned-vector-move)
+    list(APPEND options_avx512 -Wa,-muse-unaligned-vector-move)
+endif()
+if(MINGW)
+    # printf as C has it, and no word about the macro isfinite, which mixes float and double.
+    target_compile_definitions(kiln_settings INTERFACE __USE_MINGW_ANSI_STDIO=1)
+    target_compile_options(kiln_settings INTERFACE -Wno-float-conversion)
+endif()
 
-# kiln_kernels(NAME): NAME_scalar.c and, where the processor has them, one file an instruction set.
+# kiln_kernels(NAME): NAME_scalar.c and one file an instruction set.
 function(kiln_kernels name)
-    set(options_scalar "-O3;$<$<C_COMPILER_ID:GNU>:-fno-tree-vectorize;-fno-tree-slp-vectorize>")
-    set(options_sse2 "-O3;-msse2")
-    set(options_avx2 "-O3;-mavx2")
-    set(options_avx512
-        "-O3;-mavx512f;-mavx512vl;-mavx512dq;-mavx512bw;-mprefer-vector-width=512")
-    set(sets scalar)
-    if(KILN_X86)
-        list(APPEND sets sse2 avx2 avx512)
-    endif()
-    foreach(set ${sets})
+    foreach(set ${kernel_sets})
         target_sources(kiln_objects PRIVATE ${name}_${set}.c)
         set_source_files_properties(${name}_${set}.c TARGET_DIRECTORY kiln_objects
-                                    PROPERTIES COMPILE_OPTIONS "${options_${set}}")
+                                    PROPERTIES COMPILE_OPTIONS "-O3;${options_${set}}")
     endforeach()
 endfunction()

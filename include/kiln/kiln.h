@@ -80,7 +80,7 @@ typedef struct kiln_context kiln_context;
 typedef enum kiln_cpu {
     KILN_CPU_BEST = 0,
     KILN_CPU_SCALAR,
-    KILN_CPU_SSE2, ///< vectors of 128 bits; in WebAssembly simd128
+    KILN_CPU_SSE2, ///< vectors of 128 bits: SSE2, on ARM NEON, in WebAssembly simd128
     KILN_CPU_AVX2,
     KILN_CPU_AVX512
 } kiln_cpu;
@@ -110,7 +110,7 @@ KILN_API KILN_CHECKED kiln_result kiln_context_create(const kiln_context_def *de
 /// `context` may be NULL.
 KILN_API void kiln_context_destroy(kiln_context *context);
 
-/// The instruction set in use: "scalar", "sse2", "avx2", "avx512" or "simd128".
+/// The instruction set in use: "scalar", "sse2", "avx2", "avx512", "neon" or "simd128".
 KILN_API const char *kiln_context_cpu(const kiln_context *context);
 
 /// Bytes held by the context's objects now, and the most that were held at once.

@@ -4,15 +4,28 @@
 
 #include <kiln/kiln.h>
 
+#include <float.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
 
+// A double that the compiler keeps with more bits than it stores, as the x87 does, rounds twice: results
+// would differ from every other machine's, and loops that compare sums may never end.
+_Static_assert(FLT_EVAL_METHOD == 0,
+               "kiln needs arithmetic in the precision of its types: on 32-bit x86 compile with "
+               "-msse2 -mfpmath=sse");
+
+/// Lets the compiler check a function's arguments against its format, printf's as C17 has it.
+#if defined(__MINGW32__) && !defined(__clang__)
+#define KI_PRINTF(format_at, first) __attribute__((format(gnu_printf, format_at, first)))
+#else
+#define KI_PRINTF(format_at, first) __attribute__((format(printf, format_at, first)))
+#endif
+
 // ------------------------------------------------------------------------------------------ errors
 
 /// Writes the result and its sentence (printf's format) to `error` unless that is NULL.
-void ki_describe(kiln_error *error, kiln_result result, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+void ki_describe(kiln_error *error, kiln_result result, const char *format, ...) KI_PRINTF(3, 4);
 
 /// The same, and is `result`: a macro, so that compilers see that it is not KILN_OK.
 #define ki_fail(error, result, ...) (ki_describe((error), (result), __VA_ARGS__), (result))

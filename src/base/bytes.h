@@ -68,7 +68,7 @@ void ki_write_u16(ki_writer *w, uint16_t value);
 void ki_write_u32(ki_writer *w, uint32_t value);
 void ki_write_u64(ki_writer *w, uint64_t value);
 /// Writes text by printf's format, without its NUL.
-void ki_write_text(ki_writer *w, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void ki_write_text(ki_writer *w, const char *format, ...) KI_PRINTF(2, 3);
 /// Zeros until the size is a multiple of `alignment`.
 void ki_write_align(ki_writer *w, size_t alignment);
 /// Writes over what is already there.

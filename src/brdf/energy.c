@@ -4,6 +4,7 @@
 // docs/theory/energy.md.
 #include "brdf/energy.h"
 
+#include "base/vector.h"
 #include "brdf/beckmann.h"
 #include "math/math.h"
 
@@ -11,28 +12,11 @@
 
 // The kernel for calls that have no context. It uses only instructions that every processor of the
 // compiled architecture has.
-#if defined(KILN_HAVE_X86)
-#define BASELINE ki_energy_row_sse2
+#if defined(KILN_HAVE_SIMD128)
+#define BASELINE ki_energy_row_simd128
 #else
 #define BASELINE ki_energy_row_scalar
 #endif
-
-static ki_energy_row *fastest(const kiln_context *context)
-{
-    ki_energy_row *row = ki_energy_row_scalar;
-#if defined(KILN_HAVE_X86)
-    enum kiln_cpu cpu = ki_context_cpu(context);
-    if (cpu >= KILN_CPU_SSE2)
-        row = ki_energy_row_sse2;
-    if (cpu >= KILN_CPU_AVX2)
-        row = ki_energy_row_avx2;
-    if (cpu >= KILN_CPU_AVX512)
-        row = ki_energy_row_avx512;
-#else
-    (void)context;
-#endif
-    return row;
-}
 
 static void beckmann_row(const kiln_model *model, double roughness, const double *nov, int count,
                          bool split, double *out)
@@ -57,7 +41,7 @@ static ki_energy_row *row_of(const kiln_model *model, ki_energy_row *ggx)
 void ki_energy_values(const kiln_context *context, const kiln_model *model, double roughness,
                       const double *nov, int count, bool split, double *out)
 {
-    row_of(model, fastest(context))(model, roughness, nov, count, split, out);
+    row_of(model, KI_FASTEST(context, ki_energy_row))(model, roughness, nov, count, split, out);
 }
 
 double ki_energy(const kiln_model *model, double roughness, double nov)

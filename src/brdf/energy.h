@@ -28,6 +28,6 @@ void ki_energy_values(const kiln_context *context, const kiln_model *model, doub
 /// The kernels of ki_energy_values for GGX. Each compiles energy.inl for one instruction set.
 typedef void ki_energy_row(const kiln_model *model, double roughness, const double *nov, int count,
                            bool split, double *out);
-ki_energy_row ki_energy_row_scalar, ki_energy_row_sse2, ki_energy_row_avx2, ki_energy_row_avx512;
+ki_energy_row ki_energy_row_scalar, ki_energy_row_simd128, ki_energy_row_avx2, ki_energy_row_avx512;
 
 #endif

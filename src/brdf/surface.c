@@ -4,6 +4,7 @@
 // surface.inl sum it over n.v.
 #include "brdf/surface.h"
 
+#include "base/vector.h"
 #include "brdf/brdf.h"
 #include "brdf/energy.h"
 #include "math/math.h"
@@ -99,23 +100,6 @@ void ki_surface_build(kiln_context *context, const kiln_model *model, ki_surface
     }
 }
 
-static ki_surface_row *fastest(const kiln_context *context)
-{
-    ki_surface_row *row = ki_surface_row_scalar;
-#if defined(KILN_HAVE_X86)
-    enum kiln_cpu cpu = ki_context_cpu(context);
-    if (cpu >= KILN_CPU_SSE2)
-        row = ki_surface_row_sse2;
-    if (cpu >= KILN_CPU_AVX2)
-        row = ki_surface_row_avx2;
-    if (cpu >= KILN_CPU_AVX512)
-        row = ki_surface_row_avx512;
-#else
-    (void)context;
-#endif
-    return row;
-}
-
 // Sums the series over roughness by the recurrence of Chebyshev polynomials, T_i+1 = 2 x T_i -
 // T_i-1.
 void ki_surface_values(const kiln_context *context, const ki_surface *surface, double roughness,
@@ -132,6 +116,6 @@ void ki_surface_values(const kiln_context *context, const ki_surface *surface, d
             now = next;
         }
     }
-    fastest(context)(surface, coefficient, ki_grazing_scale(&surface->model, roughness), nov, count,
-                     out);
+    KI_FASTEST(context, ki_surface_row)
+    (surface, coefficient, ki_grazing_scale(&surface->model, roughness), nov, count, out);
 }

@@ -38,7 +38,7 @@ void ki_surface_values(const kiln_context *context, const ki_surface *surface, d
 /// coefficients in u at the row's roughness, and `scale` is ki_grazing_scale.
 typedef void ki_surface_row(const ki_surface *surface, const double *coefficient, double scale,
                             const double *nov, int count, double *out);
-ki_surface_row ki_surface_row_scalar, ki_surface_row_sse2, ki_surface_row_avx2,
+ki_surface_row ki_surface_row_scalar, ki_surface_row_simd128, ki_surface_row_avx2,
     ki_surface_row_avx512;
 
 #endif

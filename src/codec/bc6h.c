@@ -1,26 +1,10 @@
 // Pictures of BC6H blocks.
 #include "codec/bc6h.h"
 
+#include "base/vector.h"
 #include "image/pack.h"
 
 #include <string.h>
-
-static ki_bc6h_row *fastest(const kiln_context *context)
-{
-    ki_bc6h_row *row = ki_bc6h_row_scalar;
-#if defined(KILN_HAVE_X86)
-    enum kiln_cpu cpu = ki_context_cpu(context);
-    if (cpu >= KILN_CPU_SSE2)
-        row = ki_bc6h_row_sse2;
-    if (cpu >= KILN_CPU_AVX2)
-        row = ki_bc6h_row_avx2;
-    if (cpu >= KILN_CPU_AVX512)
-        row = ki_bc6h_row_avx512;
-#else
-    (void)context;
-#endif
-    return row;
-}
 
 size_t ki_bc6h_size(int width, int height)
 {
@@ -48,7 +32,7 @@ static void encode_row(void *data, int index)
 bool ki_bc6h_encode(kiln_context *context, const float *rgb, int width, int height,
                     int picture_count, uint8_t *bytes)
 {
-    job j = {fastest(context), rgb, width, height, (height + 3) / 4, bytes};
+    job j = {KI_FASTEST(context, ki_bc6h_row), rgb, width, height, (height + 3) / 4, bytes};
     return ki_parallel_steps(context, NULL, j.rows * picture_count, encode_row, &j);
 }
 

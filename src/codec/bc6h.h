@@ -56,6 +56,6 @@ void ki_bc6h_decode(const uint8_t *bytes, int width, int height, float *rgb);
 
 /// Encodes the blocks of rows 4 y to 4 y + 3. One a set of instructions, with the same bits.
 typedef void ki_bc6h_row(const float *rgb, int width, int height, int y, uint8_t *bytes);
-extern ki_bc6h_row ki_bc6h_row_scalar, ki_bc6h_row_sse2, ki_bc6h_row_avx2, ki_bc6h_row_avx512;
+extern ki_bc6h_row ki_bc6h_row_scalar, ki_bc6h_row_simd128, ki_bc6h_row_avx2, ki_bc6h_row_avx512;
 
 #endif

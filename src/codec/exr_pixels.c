@@ -1,6 +1,7 @@
 // Samples of an EXR file, half, float or unsigned integer, to the pixels of a picture: three floats
 // each. Not-a-number and negative values become 0, infinities the largest finite value of the type;
 // a channel that the file does not have is 0.
+#include "base/vector.h"
 #include "codec/exr.h"
 #include "image/pack.h"
 
@@ -42,24 +43,22 @@ static void to_floats(const uint8_t *restrict samples, int type, int count, floa
     }
 }
 
-typedef float float4 __attribute__((vector_size(16)));
-
 // Three channels to RGB, four texels at a time.
 static void interleave(const float *restrict r, const float *restrict g, const float *restrict b,
                        int count, float *restrict rgb)
 {
     int i = 0;
     for (; i + 4 <= count; i += 4) {
-        float4 red, green, blue, out[3];
+        ki_float4 red, green, blue, out[3];
         memcpy(&red, r + i, sizeof red);
         memcpy(&green, g + i, sizeof green);
         memcpy(&blue, b + i, sizeof blue);
-        float4 low = __builtin_shufflevector(red, green, 0, 4, 1, 5);
-        float4 high = __builtin_shufflevector(red, green, 2, 6, 3, 7);
-        float4 one = __builtin_shufflevector(low, blue, 2, 3, 5, -1);
-        out[0] = __builtin_shufflevector(low, blue, 0, 1, 4, 2);
-        out[1] = __builtin_shufflevector(one, high, 1, 2, 4, 5);
-        out[2] = __builtin_shufflevector(blue, high, 2, 6, 7, 3);
+        ki_float4 low = KI_SHUFFLE4(red, green, 0, 4, 1, 5);
+        ki_float4 high = KI_SHUFFLE4(red, green, 2, 6, 3, 7);
+        ki_float4 one = KI_SHUFFLE4(low, blue, 2, 3, 5, -1);
+        out[0] = KI_SHUFFLE4(low, blue, 0, 1, 4, 2);
+        out[1] = KI_SHUFFLE4(one, high, 1, 2, 4, 5);
+        out[2] = KI_SHUFFLE4(blue, high, 2, 6, 7, 3);
         memcpy(rgb + 3 * (size_t)i, out, sizeof out);
     }
     for (; i < count; i++) {

@@ -1,15 +1,14 @@
 // EXR's byte-wise compressions: ZIP, ZIPS and RLE.
+#include "base/vector.h"
 #include "codec/deflate.h"
 #include "codec/exr.h"
 
 #include <string.h>
 
-typedef uint8_t bytes16 __attribute__((vector_size(16)));
-
 #define SHIFTED(v, n)                                                                              \
-    __builtin_shufflevector((bytes16){0}, v, 16 - (n), 17 - (n), 18 - (n), 19 - (n), 20 - (n),     \
-                            21 - (n), 22 - (n), 23 - (n), 24 - (n), 25 - (n), 26 - (n), 27 - (n),  \
-                            28 - (n), 29 - (n), 30 - (n), 31 - (n))
+    KI_SHUFFLE16((ki_bytes16){0}, v, 16 - (n), 17 - (n), 18 - (n), 19 - (n), 20 - (n), 21 - (n),   \
+                 22 - (n), 23 - (n), 24 - (n), 25 - (n), 26 - (n), 27 - (n), 28 - (n), 29 - (n),   \
+                 30 - (n), 31 - (n))
 
 // Each byte was stored as its difference from the one before, plus 128. Sixteen running sums at a
 // time: every step adds the sums 1, 2, 4 and 8 bytes to the left.
@@ -18,7 +17,7 @@ static void undo_differences(uint8_t *bytes, size_t size)
     size_t i = 0;
     uint8_t last = 128; // the first byte was stored as it is
     for (; i + 16 <= size; i += 16) {
-        bytes16 v;
+        ki_bytes16 v;
         memcpy(&v, bytes + i, sizeof v);
         v -= 128;
         v += SHIFTED(v, 1);

@@ -9,6 +9,8 @@
 //
 // Exact means up to rounding of weights and sums to float.
 #include "image/resample.h"
+
+#include "base/vector.h"
 #include "image/stencil.h"
 #include "math/math.h"
 
@@ -248,7 +250,7 @@ static inline int first_column(const ki_stencil *stencil, const ki_stencil_place
 // -------------------------------------------------------------------------------------------- gather
 
 // Four RGB texels at a time, as three vectors: rgbr gbrg brgb.
-typedef float lanes __attribute__((vector_size(16)));
+typedef ki_float4 lanes;
 
 typedef struct sums {
     lanes a, b, c;
@@ -269,14 +271,14 @@ ALWAYS_INLINE void add_blocks(sums *sum, const float *texels, const float *weigh
     for (int k = 0; k < blocks; k++, texels += 12) {
         lanes w = load(weights), wa, wb, wc;
         if (mirror) {
-            wa = __builtin_shufflevector(w, w, 3, 3, 3, 2);
-            wb = __builtin_shufflevector(w, w, 2, 2, 1, 1);
-            wc = __builtin_shufflevector(w, w, 1, 0, 0, 0);
+            wa = KI_SHUFFLE4(w, w, 3, 3, 3, 2);
+            wb = KI_SHUFFLE4(w, w, 2, 2, 1, 1);
+            wc = KI_SHUFFLE4(w, w, 1, 0, 0, 0);
             weights -= 4;
         } else {
-            wa = __builtin_shufflevector(w, w, 0, 0, 0, 1);
-            wb = __builtin_shufflevector(w, w, 1, 1, 2, 2);
-            wc = __builtin_shufflevector(w, w, 2, 3, 3, 3);
+            wa = KI_SHUFFLE4(w, w, 0, 0, 0, 1);
+            wb = KI_SHUFFLE4(w, w, 1, 1, 2, 2);
+            wc = KI_SHUFFLE4(w, w, 2, 3, 3, 3);
             weights += 4;
         }
         sum->a += wa * load(texels);
@@ -289,8 +291,8 @@ ALWAYS_INLINE void add_blocks(sums *sum, const float *texels, const float *weigh
 static inline lanes total(const sums *sum)
 {
     lanes a = sum->a, b = sum->b, c = sum->c;
-    return (a + __builtin_shufflevector(a, b, 3, 4, 5, 5)) +
-           (__builtin_shufflevector(b, c, 2, 3, 4, 4) + __builtin_shufflevector(c, c, 1, 2, 3, 3));
+    return (a + KI_SHUFFLE4(a, b, 3, 4, 5, 5)) +
+           (KI_SHUFFLE4(b, c, 2, 3, 4, 4) + KI_SHUFFLE4(c, c, 1, 2, 3, 3));
 }
 
 static inline void flush(sums *sum, double rgb[3])

@@ -4,7 +4,6 @@
 
 #include "sphere/kernels.h"
 
-extern const ki_kernels ki_kernels_scalar, ki_kernels_sse2, ki_kernels_avx2, ki_kernels_avx512,
-    ki_kernels_simd128;
+extern const ki_kernels ki_kernels_scalar, ki_kernels_simd128, ki_kernels_avx2, ki_kernels_avx512;
 
 #endif

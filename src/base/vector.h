@@ -1,0 +1,37 @@
+// Kernels by instruction set, and vectors of 16 bytes: by the extension that GCC and clang share, which
+// every processor with a compiler of theirs has, as instructions or as plain arithmetic.
+#ifndef KI_VECTOR_H
+#define KI_VECTOR_H
+
+#include "base/base.h"
+
+/// The variant of a kernel that the context's instruction set allows: of NAME_scalar, NAME_simd128
+/// (vectors of 128 bits: SSE2, NEON, WebAssembly's), NAME_avx2 and NAME_avx512 the last that is built.
+#if defined(KILN_HAVE_AVX)
+#define KI_FASTEST(context, name)                                                                  \
+    (ki_context_cpu(context) >= KILN_CPU_AVX512 ? name##_avx512                                    \
+     : ki_context_cpu(context) >= KILN_CPU_AVX2 ? name##_avx2                                      \
+     : ki_context_cpu(context) >= KILN_CPU_SSE2 ? name##_simd128                                   \
+                                                : name##_scalar)
+#elif defined(KILN_HAVE_SIMD128)
+#define KI_FASTEST(context, name)                                                                  \
+    (ki_context_cpu(context) >= KILN_CPU_SSE2 ? name##_simd128 : name##_scalar)
+#else
+#define KI_FASTEST(context, name) ((void)(context), name##_scalar)
+#endif
+
+typedef float ki_float4 __attribute__((vector_size(16)));
+typedef uint8_t ki_bytes16 __attribute__((vector_size(16)));
+
+/// The lanes of a and b that the indices name, counted through both. GCC before 12 has the function
+/// that takes the indices as a vector of integers as large as the lanes.
+#if defined(__clang__) || __GNUC__ >= 12
+#define KI_SHUFFLE4(a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
+#define KI_SHUFFLE16(a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
+#else
+typedef int32_t ki_index4 __attribute__((vector_size(16)));
+#define KI_SHUFFLE4(a, b, ...) __builtin_shuffle(a, b, (ki_index4){__VA_ARGS__})
+#define KI_SHUFFLE16(a, b, ...) __builtin_shuffle(a, b, (ki_bytes16){__VA_ARGS__})
+#endif
+
+#endif

@@ -1,4 +1,0 @@
-#define KI_ROW ki_energy_row_sse2
-#include "brdf/energy.inl"
-#define KI_SURFACE_ROW ki_surface_row_sse2
-#include "brdf/surface.inl"

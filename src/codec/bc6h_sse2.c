@@ -1,2 +1,0 @@
-#define KI_BC6H_ROW ki_bc6h_row_sse2
-#include "codec/bc6h.inl"

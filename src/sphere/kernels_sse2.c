@@ -1,6 +1,0 @@
-#define KI_WIDTH 2
-#define KI_BLOCK 2
-#define KI_TABLE ki_kernels_sse2
-#include "sphere/kernels_tables.h"
-
-#include "sphere/kernels.inl"
