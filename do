@@ -169,14 +169,14 @@ lint)
     say "shellcheck"
     shellcheck -S warning ./do .ci/run
     find scripts tests bench -name "*.sh" -not -path "*/node_modules/*" -exec shellcheck -x -P SCRIPTDIR -S warning {} +
-    build release
+    build strict
     sources=$(find src cli viewer bench examples tests -name '*.c' -not -path '*/node_modules/*')
     say "cppcheck"
     # shellcheck disable=SC2086 # a list is split on purpose
     cppcheck --quiet --error-exitcode=1 --inline-suppr --std=c11 -I include -I src \
         --enable=warning,performance,portability --suppress=missingInclude $sources
     say "clang-tidy"
-    printf '%s\n' "$sources" | xargs -n 1 -P 2 clang-tidy --quiet -p build/release 2>build/tidy.log
+    printf '%s\n' "$sources" | xargs -n 1 -P 2 clang-tidy --quiet -p build/strict 2>build/tidy.log
     # The page's, by the commands that emcc is called with; these need not be run.
     npm_packages web
     cmake --preset wasm >build/wasm.log 2>&1 || { cat build/wasm.log; exit 1; }
