@@ -1,6 +1,7 @@
 #include "exr_witness.h"
 
 #include "check.h"
+#include "exr_make.h"
 #include "image/pack.h"
 
 #include <float.h>
@@ -44,48 +45,74 @@ typedef struct target {
     float *pixels;
 } target;
 
+// Where the samples of a channel go: a plane of floats, or of integers for a channel of these; NULL for
+// a channel other than R, G and B.
+static float *ask_for_plane(exr_coding_channel_info_t *channel, const exr_chunk_info_t *info)
+{
+    if (channel->channel_name[1] || !strchr("RGB", channel->channel_name[0]))
+        return NULL;
+    float *plane = calloc((size_t)info->width * (size_t)info->height, sizeof(float));
+    assert_non_null(plane);
+    channel->decode_to_ptr = (uint8_t *)plane;
+    channel->user_bytes_per_element = 4;
+    channel->user_data_type =
+        channel->data_type == EXR_PIXEL_UINT ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT;
+    channel->user_pixel_stride = 4;
+    channel->user_line_stride = 4 * info->width;
+    return plane;
+}
+
+// The plane's values, limited as kiln limits them, into the picture at (x, y).
+static void take_plane(const target *t, const exr_coding_channel_info_t *channel,
+                       const exr_chunk_info_t *info, const float *plane, int x, int y)
+{
+    float most = channel->data_type == EXR_PIXEL_HALF ? 65504.0F : FLT_MAX;
+    ptrdiff_t place = strchr("RGB", channel->channel_name[0]) - "RGB";
+    for (int i = 0; i < info->width * info->height; i++) {
+        float value = plane[i];
+        uint32_t integer;
+        memcpy(&integer, &value, sizeof integer);
+        if (channel->data_type == EXR_PIXEL_UINT)
+            value = (float)integer;
+        value = value > most ? most : value > 0 ? value : 0;
+        t->pixels[3 * ((y + i / info->width) * t->width + x + i % info->width) + place] = value;
+    }
+}
+
+// Prepares to decode a chunk as if it began at a line that OpenEXRCore counts from without error, and
+// with the size that its channels then have.
+static bool begin(const target *t, const exr_chunk_info_t *at, exr_decode_pipeline_t *pipeline)
+{
+    exr_chunk_info_t info = *at;
+    info.start_y = exr_make_safe_line(at->start_y);
+    if (exr_decoding_initialize(t->file, t->part, &info, pipeline) != EXR_ERR_SUCCESS)
+        return false;
+    pipeline->chunk.unpacked_size = 0;
+    for (int c = 0; c < pipeline->channel_count; c++) {
+        const exr_coding_channel_info_t *channel = &pipeline->channels[c];
+        pipeline->chunk.unpacked_size += (uint64_t)channel->width * (uint64_t)channel->height *
+                                         (uint64_t)channel->bytes_per_element;
+    }
+    return true;
+}
+
 static bool read_chunk(const target *t, const exr_chunk_info_t *info, int x, int y)
 {
+    enum { MOST = 8 }; // channels of a file of the tests
     exr_decode_pipeline_t pipeline = EXR_DECODE_PIPELINE_INITIALIZER;
-    bool good = exr_decoding_initialize(t->file, t->part, info, &pipeline) == EXR_ERR_SUCCESS;
-    float *planes[3] = {NULL};
-    for (int c = 0; good && c < pipeline.channel_count; c++) {
-        exr_coding_channel_info_t *channel = &pipeline.channels[c];
-        const char *place = strchr("RGB", channel->channel_name[0]);
-        if (!place || channel->channel_name[1])
-            continue;
-        size_t count = (size_t)info->width * (size_t)info->height;
-        float *plane = planes[place - "RGB"] = calloc(count, sizeof(float));
-        assert_non_null(plane);
-        channel->decode_to_ptr = (uint8_t *)plane;
-        channel->user_bytes_per_element = 4;
-        channel->user_data_type =
-            channel->data_type == EXR_PIXEL_UINT ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT;
-        channel->user_pixel_stride = 4;
-        channel->user_line_stride = 4 * info->width;
-    }
+    float *planes[MOST] = {NULL};
+    bool good = begin(t, info, &pipeline) && pipeline.channel_count <= MOST;
+    for (int c = 0; good && c < pipeline.channel_count; c++)
+        planes[c] = ask_for_plane(&pipeline.channels[c], info);
     good = good &&
            exr_decoding_choose_default_routines(t->file, t->part, &pipeline) == EXR_ERR_SUCCESS &&
            exr_decoding_run(t->file, t->part, &pipeline) == EXR_ERR_SUCCESS;
-    for (int c = 0; good && c < pipeline.channel_count; c++) {
-        const exr_coding_channel_info_t *channel = &pipeline.channels[c];
-        if (!channel->decode_to_ptr)
-            continue;
-        float most = channel->data_type == EXR_PIXEL_HALF ? 65504.0F : FLT_MAX;
-        ptrdiff_t place = strchr("RGB", channel->channel_name[0]) - "RGB";
-        for (int i = 0; i < info->width * info->height; i++) {
-            float value = planes[place][i];
-            uint32_t integer;
-            memcpy(&integer, &value, sizeof integer);
-            if (channel->data_type == EXR_PIXEL_UINT)
-                value = (float)integer;
-            value = value > most ? most : value > 0 ? value : 0;
-            t->pixels[3 * ((y + i / info->width) * t->width + x + i % info->width) + place] = value;
-        }
-    }
+    for (int c = 0; good && c < pipeline.channel_count; c++)
+        if (planes[c])
+            take_plane(t, &pipeline.channels[c], info, planes[c], x, y);
     exr_decoding_destroy(t->file, &pipeline);
-    for (int k = 0; k < 3; k++)
-        free(planes[k]);
+    for (int c = 0; c < MOST; c++)
+        free(planes[c]);
     return good;
 }
 
