@@ -1,19 +1,22 @@
-// Microfacet functions of numbers, GLSL ES 3.00. Each has the name, the arguments and the value of a
-// function of kiln's C library without its prefix (src/brdf/), tested to 1e-5 relative.
-// nov, nol, noh, voh are cosines in [0, 1]; roughness is perceptual, alpha = roughness^2.
+// Microfacet reflection as functions of plain numbers, GLSL ES 3.00. Each function has the name,
+// without prefix, and the arguments of a C function in kiln's src/brdf/, and agrees with it to a
+// relative 1e-5. nov, nol, noh and voh are the cosines n.v, n.l, n.h and v.h of the normal n, the
+// view v, the light l and the half vector h, each in [0, 1]. roughness is the perceptual roughness,
+// and alpha = roughness^2.
 // SPDX-License-Identifier: MIT
 
 const float PI = 3.14159265358979;
 
-// How a surface masks and shadows itself; the numbers are kiln_g's.
-const int SMITH = 0;             // height-correlated
+// Names of the masking function G. The values are those of kiln's enum kiln_g.
+const int SMITH = 0;             // Smith, height-correlated
 const int SMITH_UNCORRELATED = 1;
-const int SCHLICK_K2 = 2;        // k = roughness^2 / 2
-const int SCHLICK_TEXT = 3;      // k = (roughness + 1)^2 / 8
+const int SCHLICK_K2 = 2;        // Schlick with k = roughness^2 / 2
+const int SCHLICK_TEXT = 3;      // Schlick with k = (roughness + 1)^2 / 8
 
 // ------------------------------------------------------------------------------------ distribution
 
-// GGX (Walter et al. 2007, eq. 33) without the cancellation near n.h = 1.
+// The GGX distribution D of microfacet normals, per steradian (Walter et al. 2007, eq. 33). d is a
+// sum of positive terms, because the published difference cancels near n.h = 1.
 float ggx_d(float alpha, float noh)
 {
     float a2 = alpha * alpha;
@@ -23,38 +26,45 @@ float ggx_d(float alpha, float noh)
 
 // ----------------------------------------------------------------------------- masking, shadowing
 
+// Schlick's masking G1 of one direction, whose cosine nox is n.v or n.l.
 float smith_g1_schlick(float k, float nox)
 {
     return nox / (nox * (1.0 - k) + k);
 }
 
+// Schlick's masking of view and light.
 float smith_g_schlick(float k, float nov, float nol)
 {
     return smith_g1_schlick(k, nov) * smith_g1_schlick(k, nol);
 }
 
+// Schlick's k for image-based light (Karis 2013).
 float schlick_k_ibl(float alpha)
 {
     return alpha / 2.0;
 }
 
+// Schlick's k for point lights (Karis 2013).
 float schlick_k_direct(float roughness)
 {
     return (roughness + 1.0) * (roughness + 1.0) / 8.0;
 }
 
-// x (1 + 2 Lambda(x)) of GGX: Heitz 2014, eq. 72.
+// x (1 + 2 Lambda(x)) for GGX and a direction of cosine x, with Smith's Lambda (Heitz 2014, eq.
+// 72).
 float ggx_root(float alpha, float x)
 {
     return sqrt(x * x + alpha * alpha * ((1.0 - x) * (1.0 + x)));
 }
 
+// Smith's masking G1 of one direction over its cosine nox. The quotient is finite at nox = 0.
 float smith_g1_over_cosine(float alpha, float nox)
 {
     return 2.0 / (nox + ggx_root(alpha, nox));
 }
 
-// G / (nov nol): finite at grazing angles. The BRDF is F D visibility / 4.
+// G / (nov nol), which is finite at grazing angles. g is one of the four names of G above. The
+// specular BRDF is F D visibility / 4.
 float visibility(int g, float roughness, float nov, float nol)
 {
     float alpha = roughness * roughness;
@@ -68,21 +78,24 @@ float visibility(int g, float roughness, float nov, float nol)
 
 // ----------------------------------------------------------------------------------------- Fresnel
 
-// (1 - voh)^5, the varying part of Schlick's F = f0 + (1 - f0) (1 - voh)^5.
+// (1 - voh)^5, the factor of Schlick's Fresnel term F = f0 + (1 - f0) (1 - voh)^5 that depends on
+// the angle.
 float schlick_fresnel(float voh)
 {
     float c = 1.0 - voh, c2 = c * c;
     return c2 * c2 * c;
 }
 
-// What a metal's F lies below Schlick's, over voh (1 - voh)^6 (Lazanyi and Szirmay-Kalos 2005), where f82
-// is its F at voh = 1 / 7, 82 degrees (Kutz et al. 2021).
+// The coefficient `dip` of a metal's Fresnel term F = f0 + (1 - f0) (1 - voh)^5 - dip voh (1 -
+// voh)^6 (Lazanyi and Szirmay-Kalos 2005), such that F is f82 at voh = 1 / 7, an angle of 82
+// degrees (Kutz et al. 2021).
 vec3 f82_dip(vec3 f0, vec3 f82)
 {
     const float edge = 6.0 / 7.0, power = edge * edge * edge * edge * edge;
     return (f0 + (1.0 - f0) * power - f82) * (7.0 / (power * edge));
 }
 
+// The Fresnel term of a metal with reflectance f0 at normal incidence and f82 at 82 degrees.
 vec3 fresnel_f82(vec3 f0, vec3 f82, float voh)
 {
     float power = schlick_fresnel(voh);
@@ -90,7 +103,8 @@ vec3 fresnel_f82(vec3 f0, vec3 f82, float voh)
     return clamp(f, 0.0, 1.0);
 }
 
-// ior is n_transmitted / n_incident. Born and Wolf 1999, section 1.5.2.
+// The exact Fresnel reflectance of a dielectric for unpolarised light. ior is n_transmitted /
+// n_incident, and c the cosine of the angle of incidence. Born and Wolf 1999, section 1.5.2.
 float fresnel_dielectric(float ior, float c)
 {
     float contrast = (1.0 - ior) * (1.0 + ior), s2 = (1.0 - c) * (1.0 + c);
@@ -101,8 +115,8 @@ float fresnel_dielectric(float ior, float c)
     return min(r * r * (1.0 + p * p) / 2.0, 1.0);
 }
 
-// The mean 2 int F(mu) mu dmu of a conductor with reflectivity r and edge tint g: Kulla and Conty
-// 2017, page 26. Off by up to 0.10.
+// Approximates the average 2 int F(mu) mu dmu of a conductor with reflectivity r and edge tint g,
+// by the polynomial of Kulla and Conty 2017, page 26. The error is up to 0.10.
 vec3 fresnel_conductor_average_fit(vec3 r, vec3 g)
 {
     vec3 r2 = r * r, g2 = g * g;

@@ -1,9 +1,10 @@
-// Shading by a baked environment. Needs brdf.glsl and kulla_conty.glsl.
+// Shading by a baked environment: irradiance from spherical harmonics, the mip level for a
+// roughness, and occlusion. The functions use only their arguments.
 // SPDX-License-Identifier: MIT
 
-// The irradiance divided by pi in direction n from the first three bands of the radiance's real
-// harmonics, in kiln's order and sign (docs/conventions.md): each band times the cosine lobe's 1,
-// 2/3, 1/4. As kiln_sh_evaluate of the irradiance, divided by pi.
+// Irradiance over pi in the direction n. c has the nine coefficients of the radiance in real
+// spherical harmonics of degree 0 to 2, in kiln's order and sign (docs/conventions.md). The cosine
+// lobe multiplies degree 0 by 1, degree 1 by 2/3 and degree 2 by 1/4.
 vec3 sh_irradiance(vec3 c[9], vec3 n)
 {
     return 0.28209479 * c[0] +
@@ -13,8 +14,8 @@ vec3 sh_irradiance(vec3 c[9], vec3 n)
                    0.54627422 * c[8] * (n.x * n.x - n.y * n.y));
 }
 
-// The level of a chain at which the environment is filtered for this roughness; the levels'
-// roughness rises from 0 and stands in four vec4.
+// The fractional mip level whose roughness is `roughness`. of_level has the roughness of each of
+// `count` levels, increasing from 0, four levels in each vec4.
 float environment_level(vec4 of_level[4], int count, float roughness)
 {
     float level = 0.0;
@@ -25,23 +26,26 @@ float environment_level(vec4 of_level[4], int count, float roughness)
     return level;
 }
 
-// Where a rough surface's lobe leans to, between the mirror direction r and the normal: Lagarde and de
-// Rousiers 2014, section 4.9.3. Not normalised.
+// The direction to look up for a rough surface, not normalised. The specular lobe of a rough
+// surface leans from the mirror direction r towards the normal n (Lagarde and de Rousiers 2014,
+// section 4.9.3).
 vec3 bent_reflection(vec3 n, vec3 r, float roughness)
 {
     float alpha = roughness * roughness;
     return mix(n, r, (1.0 - alpha) * (sqrt(1.0 - alpha) + alpha));
 }
 
-// How much of the sky a ball of radius r at `offset` from the point leaves, seen from a surface with
-// normal n: one minus the form factor, exact while the ball is above the horizon.
+// The share of diffuse light that reaches a surface point with the normal n past a ball of radius
+// r, whose centre is at `offset` from the point: 1 minus the ball's form factor. Exact for a ball
+// above the horizon.
 float ball_occlusion(vec3 n, vec3 offset, float r)
 {
     float d2 = dot(offset, offset);
     return 1.0 - clamp(dot(n, offset), 0.0, sqrt(d2)) * r * r / (d2 * sqrt(d2));
 }
 
-// The same for a lobe about the reflection: Lagarde and de Rousiers 2014, section 4.10.2.
+// The share of specular light that reaches the point, from the share `ambient` of diffuse light
+// (ball_occlusion): Lagarde and de Rousiers 2014, section 4.10.2.
 float specular_occlusion(float nov, float ambient, float roughness)
 {
     float alpha = roughness * roughness;

@@ -1,38 +1,43 @@
-// The energy that a single bounce loses, put back: Kulla and Conty 2017, Turquin 2019, Fdez-Aguera
-// 2019; and how to read the tables that `kiln tables` writes. Needs brdf.glsl.
-// The names are those of kiln's C functions (src/brdf/compensate.c).
+// Compensation of the energy that a specular lobe of a single bounce loses (Kulla and Conty 2017,
+// Turquin 2019, Fdez-Aguera 2019), and functions that read the tables that `kiln tables` writes.
+// Include brdf.glsl before this file. The functions of compensation have the names, without prefix,
+// of kiln's C functions in src/brdf/compensate.c.
 // SPDX-License-Identifier: MIT
 
-// The numbers are kiln_f_add's.
-const int F_ADD_BOUNCES = 0;    // f^2 E / (1 - f (1 - E)): the bounces from the second one on
-const int F_ADD_ASSIGNMENT = 1; // f E / (1 - f (1 - E)): the assignment's, the first one twice
+// Names of the factor that colours Kulla and Conty's lobe, where f is F_avg and E is E_avg. The
+// values are those of kiln's enum kiln_f_add.
+const int F_ADD_BOUNCES = 0;    // f^2 E / (1 - f (1 - E)): the bounces from the second on
+const int F_ADD_ASSIGNMENT = 1; // f E / (1 - f (1 - E)), as GAMES202 teaches: counts the first
+                                // bounce too
 
-// The lobe f_ms for F = 1. These take what is missing, 1 - E, since a table of 1 - E keeps its
-// digits where E is near 1.
+// Kulla and Conty's lobe for F = 1 and a view o and a light i. The arguments are 1 - E(o), 1 - E(i)
+// and 1 - E_avg, because a table of 1 - E keeps its precision where E is near 1.
 float kulla_conty_missing(float missing_o, float missing_i, float missing_average)
 {
     return missing_average > 0.0 ? missing_o * missing_i / (PI * missing_average) : 0.0;
 }
 
+// Kulla and Conty's lobe for F = 1 from E(o), E(i) and E_avg.
 float kulla_conty(float e_o, float e_i, float e_average)
 {
     return kulla_conty_missing(1.0 - e_o, 1.0 - e_i, 1.0 - e_average);
 }
 
-// What the lobe is multiplied by where surfaces absorb; f is Fresnel's mean F_avg.
+// The factor to Kulla and Conty's lobe for a material whose average reflectance F_avg is f.
 vec3 kulla_conty_fresnel(int form, vec3 f, vec3 e_average)
 {
     vec3 sum = f * e_average / max((1.0 - f) + f * e_average, 1e-30);
     return form == F_ADD_ASSIGNMENT ? sum : f * sum;
 }
 
-// What the single bounce is multiplied by.
+// Turquin's factor to the specular lobe, where e is the lobe's albedo E(n.v) for F = 1.
 vec3 turquin(vec3 f0, float e)
 {
     return 1.0 + f0 * (1.0 - e) / e;
 }
 
-// The albedo of the single bounce, and of the rest as diffuse light.
+// Fdez-Aguera's factors: `single` to prefiltered radiance, for the first bounce, and `multiple` to
+// irradiance / pi, for the further bounces. a and b are A and B of the split sum.
 void fdez_aguera(vec3 f0, float a, float b, out vec3 single, out vec3 multiple)
 {
     vec3 f = (1.0 + 20.0 * f0) / 21.0;
@@ -43,10 +48,11 @@ void fdez_aguera(vec3 f0, float a, float b, out vec3 single, out vec3 multiple)
 
 // ------------------------------------------------------------------------------------------ tables
 
-// The numbers are kiln_axis's; the last is KILN_AXIS_GRAZING of a table for SCHLICK_TEXT.
+// Names of the axis along which a table has n.v. The first four values are those of kiln's enum
+// kiln_axis; AXIS_GRAZING_TEXT is KILN_AXIS_GRAZING of a table for SCHLICK_TEXT.
 const int AXIS_LINEAR = 0, AXIS_SQRT = 1, AXIS_CBRT = 2, AXIS_GRAZING = 3, AXIS_GRAZING_TEXT = 4;
 
-// Where n.v lies along u, 0 to 1.
+// The place u in [0, 1] of n.v along a table's axis.
 float table_axis(int axis, float nov, float roughness)
 {
     if (axis == AXIS_LINEAR)
@@ -60,8 +66,9 @@ float table_axis(int axis, float nov, float roughness)
     return nov > 0.0 ? sqrt(nov * (1.0 + c) / (nov + c)) : 0.0;
 }
 
-// How a table lies: kiln_table_def's fields as numbers, vec4(axis, corners, complement, flip).
-// n.v runs along x on its axis, roughness along y. Returns texels, whose centres are whole numbers.
+// The place of n.v and roughness in a table, in units of texels whose centres are whole numbers.
+// layout_ has four fields of the table's kiln_table_def as numbers: vec4(axis, corners, complement,
+// flip). n.v runs along x, roughness along y.
 vec2 table_place(vec4 layout_, ivec2 size, float nov, float roughness)
 {
     float u = table_axis(int(layout_.x), nov, roughness);
@@ -71,8 +78,9 @@ vec2 table_place(vec4 layout_, ivec2 size, float nov, float roughness)
     return clamp(at, vec2(0.0), last);
 }
 
-// Interpolated between four texels here, since GL's own filter may have no more than 8 bits and
-// may not filter 32-bit floats at all.
+// Reads the first two channels of a table by linear interpolation between four texels. The
+// interpolation is done here because a GL sampler may interpolate with 8 bits only, and need not
+// filter 32-bit floats.
 vec2 table_read(sampler2D table, vec4 layout_, float nov, float roughness)
 {
     ivec2 size = textureSize(table, 0);
@@ -84,7 +92,7 @@ vec2 table_read(sampler2D table, vec4 layout_, float nov, float roughness)
     return mix(low, high, t.y);
 }
 
-// 1 - E from a table of E or of 1 - E.
+// Reads 1 - E from a table of E or, with `complement`, of 1 - E.
 float table_missing(sampler2D table, vec4 layout_, float nov, float roughness)
 {
     float value = table_read(table, layout_, nov, roughness).r;

@@ -1,13 +1,15 @@
-// Balls by ray casting: for each of n x n rays of a pixel the nearest ball, shaded; the mean is
-// tone-mapped. So edges are smooth, the geometry is exact, and the picture depends on nothing but
-// its options.
+// Draws the scenes of `kiln render` and `kiln view`, balls under a light or a baked environment.
+// In: the uniform block View, filled by viewer/, environment cubemaps and tables. Out: the colour
+// of a pixel. Each pixel casts n x n rays, shades the nearest ball that each ray meets, and
+// tone-maps the mean of their radiance once. docs/theory/realtime.md describes the shading.
 
 #include "brdf.glsl"
 #include "kulla_conty.glsl"
 #include "ibl.glsl"
 #include "tone.glsl"
 
-// The numbers of viewer.h.
+// Names of scenes, methods of compensation, debug views and tone curves. The values are those of
+// viewer/viewer.h.
 const int SCENE_ASSIGNMENT = 0, SCENE_FURNACE = 2, SCENE_COMPARE = 4;
 const int METHOD_KULLA_CONTY = 1, METHOD_HANDOUT = 2, METHOD_FDEZ_AGUERA = 3, METHOD_TURQUIN = 4;
 const int DEBUG_LEVEL = 1, DEBUG_TABLE_E = 2, DEBUG_TABLE_E_AVERAGE = 3, DEBUG_TABLE_SPLIT = 4,
@@ -17,21 +19,27 @@ const int MAX_BALLS = 64, CANDIDATES = 8;
 
 layout(std140) uniform View
 {
-    vec4 eye;
-    vec4 right;               // w: tan(fov / 2) times width / height
-    vec4 up;                  // w: tan(fov / 2)
-    vec4 back;                // w: what radiance is multiplied by
-    vec4 light;               // where it comes from; w: its radiance
-    vec4 turn;                // cosine and sine of the rotation; the handle; the background's roughness
-    vec4 screen;              // width, height, 1 with bent reflections
-    vec4 handout_average;     // what the handout's figure 6 reads for E_avg
-    ivec4 mode;               // scene, debug, rays a side, balls
-    ivec4 flags;              // tone, as printed, occlusion, diffuse light from the cube
-    ivec4 levels;             // of the two environments; the level shown; 1 with G of Schlick's
-    vec4 table_layout[7];     // E, E_avg, split of the assignment's model; of the environment's; dip
-    vec4 level_roughness[8];  // of the two environments
-    vec4 harmonics[18];       // of the two environments
-    vec4 balls[5 * MAX_BALLS]; // centre, radius; f0, roughness; F_avg, method; albedo, metallic; f82
+    vec4 eye;                 // position of the camera
+    vec4 right;               // unit vector; w: tan(fov / 2) times width / height
+    vec4 up;                  // unit vector; w: tan(fov / 2), fov being the vertical field of view
+    vec4 back;                // unit vector against the view; w: the exposure, a factor to radiance
+    vec4 light;               // direction to the light; w: its radiance
+    vec4 turn;                // cosine and sine of the environment's rotation; place of the handle
+                              // between two compared halves, 0 to 1; roughness of the background
+    vec4 screen;              // width, height; z: 1 to bend reflections towards the normal
+    vec4 handout_average;     // E_avg as figure 6 of the GAMES202 handout reads it
+    ivec4 mode;               // scene, debug view, rays along a pixel's side, number of balls
+    ivec4 flags;              // tone curve; 1 to draw figure 6 as printed; 1 with occlusion; 1 to
+                              // take diffuse light from a cubemap instead of harmonics
+    ivec4 levels;             // number of levels of the two environments; level that DEBUG_LEVEL
+                              // shows; 1 to show debug tables of the handout's model
+    vec4 table_layout[7];     // layouts (see table_place) of E, E_avg and the split sum of the
+                              // handout's model, of the same three of the environment's model, and
+                              // of dip_sum
+    vec4 level_roughness[8];  // roughness of the levels of the two environments, 16 numbers each
+    vec4 harmonics[18];       // 9 coefficients of each of the two environments
+    vec4 balls[5 * MAX_BALLS]; // of each ball: centre, radius; f0, roughness; F_avg, method;
+                               // albedo, metallic; f82
 };
 
 uniform highp samplerCube environment, environment_textbook, irradiance;
@@ -60,12 +68,13 @@ Ball ball_at(int i)
 
 // ---------------------------------------------------------------------------------------- the light
 
-// Where the unturned environment has what is seen in direction d: turned from -Z toward +X.
+// Rotates a direction d of the scene into the environment's own frame.
 vec3 turned(vec3 d)
 {
     return vec3(d.x * turn.x - d.z * turn.y, d.y, d.z * turn.x + d.x * turn.y);
 }
 
+// Radiance of environment `slot`, 0 or 1, in direction d, filtered for a roughness.
 vec3 environment_seen(int slot, vec3 d, float roughness)
 {
     if (mode.x == SCENE_FURNACE)
@@ -79,6 +88,7 @@ vec3 environment_seen(int slot, vec3 d, float roughness)
                      : textureLod(environment_textbook, to, level).rgb;
 }
 
+// Irradiance over pi of a surface with the normal n.
 vec3 irradiance_at(int slot, vec3 n)
 {
     if (mode.x == SCENE_FURNACE)
@@ -92,7 +102,7 @@ vec3 irradiance_at(int slot, vec3 n)
     return max(sh_irradiance(c, to), 0.0);
 }
 
-// What the other balls leave of the sky.
+// The share of diffuse light that reaches point p of ball `self` past the other balls.
 float occlusion_at(int self, vec3 p, vec3 n)
 {
     float open = 1.0;
@@ -104,7 +114,8 @@ float occlusion_at(int self, vec3 p, vec3 n)
 
 // --------------------------------------------------------------------------------------- reflection
 
-// Radiance towards v from one directional light: the microfacet lobe and, above, Kulla and Conty's.
+// Radiance towards v from one directional light: by the microfacet lobe and, with two of the
+// methods, by Kulla and Conty's lobe added to it.
 vec3 lit_by_light(Ball ball, vec3 n, vec3 v, float nov)
 {
     vec3 l = light.xyz, h = normalize(v + l);
@@ -119,7 +130,8 @@ vec3 lit_by_light(Ball ball, vec3 n, vec3 v, float nov)
         float a = table_missing(handout_e_average, table_layout[1], 0.0, ball.roughness);
         int form = ball.method == METHOD_HANDOUT ? F_ADD_ASSIGNMENT : F_ADD_BOUNCES;
         if (flags.y != 0) {
-            // Figure 6: the sampler of E_avg is bound to nothing, so that it reads the albedo.
+            // Figure 6 of the handout as printed: its sampler of E_avg is unbound and reads the
+            // albedo.
             vec3 wrong = handout_average.rgb;
             lobe += o * i / (PI * (1.0 - wrong)) * kulla_conty_fresnel(form, ball.f_average, wrong);
         } else {
@@ -130,8 +142,10 @@ vec3 lit_by_light(Ball ball, vec3 n, vec3 v, float nov)
     return lobe * nol * light.w;
 }
 
-// The split sum: the environment through the lobe, times the albedo, which has a third term for metals;
-// what bounces more often leaves as diffuse light; what is not reflected reaches the base.
+// Radiance towards v from the environment. The specular part is the split sum: prefiltered radiance
+// times the lobe's albedo f0 A + B - dip C, whose last term is for metals. Light of further bounces
+// is added as diffuse light. Light that the specular part does not reflect reaches the diffuse
+// base. `open` is the share of diffuse light that other balls leave.
 vec3 lit_by_environment(int slot, Ball ball, vec3 n, vec3 v, float nov, float open)
 {
     vec3 r = 2.0 * nov * n - v;
@@ -148,7 +162,7 @@ vec3 lit_by_environment(int slot, Ball ball, vec3 n, vec3 v, float nov, float op
         int form = ball.method == METHOD_HANDOUT ? F_ADD_ASSIGNMENT : F_ADD_BOUNCES;
         multiple = kulla_conty_fresnel(form, ball.f_average, vec3(1.0 - a)) * missing;
     } else if (ball.method == METHOD_FDEZ_AGUERA) {
-        // fdez_aguera(), with the metal's own F_avg.
+        // The formula of fdez_aguera() with this metal's F_avg in place of Schlick's average.
         vec3 bounces = kulla_conty_fresnel(F_ADD_ASSIGNMENT, ball.f_average, vec3(ab.x + ab.y));
         multiple = single * bounces * ((1.0 - ab.x - ab.y) / (ab.x + ab.y));
     } else if (ball.method == METHOD_TURQUIN) {
@@ -161,7 +175,9 @@ vec3 lit_by_environment(int slot, Ball ball, vec3 n, vec3 v, float nov, float op
 
 // ------------------------------------------------------------------------------------------ picture
 
-// The nearest of the balls in `list` along d; n is the normal there. -1 where there is none.
+// Returns the index of the first ball in `list` that a ray from the eye along d meets, or -1 if the
+// ray meets none of them. Sets n to the normal, p to the point and nov to the cosine at the meeting
+// point.
 int nearest(int list[CANDIDATES], int count, vec3 d, out vec3 n, out vec3 p, out float nov)
 {
     int found = -1;
@@ -187,6 +203,7 @@ int nearest(int list[CANDIDATES], int count, vec3 d, out vec3 n, out vec3 p, out
     return found;
 }
 
+// Radiance, or the value of a debug view, of point p of ball `index`.
 vec3 shaded(int slot, int index, vec3 d, vec3 n, vec3 p, float nov)
 {
     Ball ball = ball_at(index);
@@ -204,15 +221,18 @@ vec3 shaded(int slot, int index, vec3 d, vec3 n, vec3 p, float nov)
     return lit_by_environment(slot, ball, n, -d, nov, open);
 }
 
+// The direction from the eye through the point `at` of the screen, in pixels.
 vec3 direction_at(vec2 at)
 {
     vec2 s = 2.0 * at / screen.xy - 1.0;
     return normalize(s.x * right.w * right.xyz + s.y * up.w * up.xyz - back.xyz);
 }
 
+// The mean over the rays of the pixel whose lower left corner is `corner`.
 vec3 balls_at(vec2 corner, int slot)
 {
-    // Which balls the pixel may touch: those within its half diagonal, taken generously.
+    // Lists the balls that a ray of the pixel can meet: a cone about the pixel's centre, somewhat
+    // wider than the pixel, touches them.
     vec3 middle = direction_at(corner + 0.5);
     float spread = 2.0 * max(up.w / screen.y, right.w / screen.x);
     int list[CANDIDATES], count = 0;
@@ -239,7 +259,8 @@ vec3 balls_at(vec2 corner, int slot)
     return sum / float(side * side);
 }
 
-// A table or a level over the whole screen.
+// Debug views that fill the screen: a level of the environment as a panorama, or a table. `at` is
+// in [0, 1]^2.
 vec3 chart_at(vec2 at)
 {
     bool handout = levels.w != 0;
@@ -264,7 +285,7 @@ void main()
 {
     vec2 corner = gl_FragCoord.xy - 0.5;
     bool chart = mode.y >= DEBUG_LEVEL && mode.y <= DEBUG_TABLE_SPLIT;
-    bool values = mode.y > DEBUG_LEVEL; // numbers, not light: shown as they are
+    bool values = mode.y > DEBUG_LEVEL; // values of tables are shown without a tone curve
     float handle = floor(turn.z * screen.x);
     int slot = mode.x == SCENE_COMPARE && corner.x >= handle ? 1 : 0;
     vec3 c = chart ? chart_at(gl_FragCoord.xy / screen.xy) : balls_at(corner, slot);

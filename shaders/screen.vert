@@ -1,4 +1,4 @@
-// One triangle over the whole screen, without buffers.
+// Vertex shader of one triangle that covers the whole screen. It needs no vertex buffer.
 
 void main()
 {

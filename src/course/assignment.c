@@ -1,5 +1,9 @@
-// The assignment's estimators. mu = n.v and roughness stand at texel centres, (i + 0.5) / size; the
-// view is (sqrt(1 - mu^2), 0, mu), the normal +z, F = 1.
+// Estimates the tables E(mu) and E_avg of the fourth assignment of the course GAMES202 by its
+// methods: Monte Carlo with cosine-distributed light, GGX importance sampling, and the split sum at
+// F0 = 1. In: the method, G, sizes and sample counts. Out: a square table of E, its row averages,
+// and a comparison with exact tables. mu = n.v and roughness are at texel centres, (i + 0.5) /
+// size. The view is (sqrt(1 - mu^2), 0, mu), the normal +z. docs/theory/assignment.md derives the
+// methods and lists their errors.
 #include "course/assignment.h"
 
 #include "brdf/brdf.h"
@@ -7,7 +11,7 @@
 
 #include <math.h>
 
-// What the framework keeps D's denominator above.
+// The lower bound that the assignment's framework puts on the denominator of D.
 static const double least_denominator = 1e-4;
 
 typedef struct assignment {
@@ -15,14 +19,14 @@ typedef struct assignment {
     const kiln_assignment_def *def;
     kiln_model model;
     kiln_image *table;
-    int side;        // Monte Carlo: strata along each side of the square
-    double *cos_phi; // Hammersley: of each sample's azimuth
+    int side;        // number of strata along each side of the unit square, for Monte Carlo
+    double *cos_phi; // cosine of each sample's azimuth, for importance sampling
 } assignment;
 
 // ------------------------------------------------------------------------------------- Monte Carlo
 
-// Number `index` of a sequence, in [0, 1): SplitMix64 (Steele, Lea and Flood 2014), whose state is a
-// counter, so that any number can be had without those before it.
+// Random number `index` of a sequence, in [0, 1), by SplitMix64 (Steele, Lea and Flood 2014). Its
+// state is a counter, so that a number is computed without the numbers before it.
 static double random_number(uint64_t seed, uint64_t index)
 {
     uint64_t z = seed + (index + 1) * 0x9e3779b97f4a7c15u;
@@ -31,26 +35,29 @@ static double random_number(uint64_t seed, uint64_t index)
     return (double)((z ^ (z >> 31)) >> 11) * (1.0 / 9007199254740992.0);
 }
 
-// pi D of the half vector between l and v = (v[0], 0, v[1]).
+// pi D(h) of GGX, where h is the half vector of l and the view (v[0], 0, v[1]). Unless `unclamped`
+// is set, the denominator of D is at least least_denominator.
 static double lobe(double alpha, const double v[2], const double l[3], bool unclamped)
 {
     double a2 = alpha * alpha, x = l[0] + v[0], z = l[2] + v[1];
     double flat = x * x + l[1] * l[1], length = flat + z * z;
-    // (n.h)^2 (alpha^2 - 1) + 1, without the cancellation.
+    // q = (n.h)^2 (alpha^2 - 1) + 1 as a sum of squares, because the difference cancels near n.h =
+    // 1.
     double q = (a2 * z * z + flat) / length, denominator = KI_PI * q * q;
     if (!unclamped && denominator < least_denominator)
         denominator = least_denominator;
     return KI_PI * a2 / denominator;
 }
 
-// With l drawn by (n.l) / pi, E is the mean of f (n.l) pi / (n.l) = pi D G / (4 n.v n.l).
+// Estimates E with light directions l of density (n.l) / pi, by the mean of f (n.l) pi / (n.l) = pi
+// D G / (4 (n.v) (n.l)). The index of the texel selects its part of the random sequence.
 static double monte_carlo(const assignment *r, double roughness, double mu, uint64_t texel)
 {
     double v[2] = {sqrt((1 - mu) * (1 + mu)), mu}, sum = 0;
     uint64_t samples = (uint64_t)r->side * (uint64_t)r->side, at = 2 * samples * texel;
     for (int t = 0; t < r->side; t++)
         for (int p = 0; p < r->side; p++, at += 2) {
-            // sin^2 theta is jittered within 1 / side, and so is phi / 2 pi.
+            // sin^2 theta and phi / (2 pi) are each random within a stratum of width 1 / side.
             double xi[2] = {(p + random_number(r->def->seed, at + 1)) / r->side,
                             (t + random_number(r->def->seed, at)) / r->side};
             double l[3];
@@ -61,15 +68,17 @@ static double monte_carlo(const assignment *r, double roughness, double mu, uint
     return sum / (4 * (double)samples);
 }
 
-// ------------------------------------------------------------------------------ importance sampling
+// ----------------------------------------------------------------------------- importance sampling
 
-// With h drawn by D(h) (n.h) and l = 2 (v.h) h - v, E is the mean of
+// Estimates E with half vectors h of density D(h) (n.h) and l = 2 (v.h) h - v, by the mean of
 //
-//     (v.h) G / ((n.v) (n.h)),        0 for l below the horizon,
+//     (v.h) G / ((n.v) (n.h)),        0 for l below the horizon.
 //
-// and the split sum is the mean of the same times (1 - F5) and times F5. The points are Hammersley's
-// (i / N, radical inverse of i); the first coordinate gives theta, tan^2 = alpha^2 xi / (1 - xi), the
-// second phi. Section 2.2.2 of the assignment; Walter et al. 2007, eqs. 35, 36, 38 and 41.
+// For the split sum, ab[0] is the mean of that weight times 1 - F5 and ab[1] the mean of the weight
+// times F5, where F5 = (1 - v.h)^5. For E alone, ab[0] is E and ab[1] is 0. The N samples are
+// Hammersley's points (i / N, radical inverse of i): the first coordinate xi gives the angle theta
+// of h to n, tan^2 theta = alpha^2 xi / (1 - xi), and the second the azimuth. Section 2.2.2 of the
+// assignment; Walter et al. 2007, eqs. 35, 36, 38 and 41.
 static void importance(const assignment *r, double roughness, double mu, double ab[2])
 {
     int count = r->def->sample_count;
@@ -92,7 +101,7 @@ static void importance(const assignment *r, double roughness, double mu, double 
     ab[1] /= count;
 }
 
-// ------------------------------------------------------------------------------------------- tables
+// ------------------------------------------------------------------------------------------ tables
 
 static void fill_row(void *data, int index)
 {
@@ -106,7 +115,7 @@ static void fill_row(void *data, int index)
             ab[0] = monte_carlo(r, roughness, mu, (uint64_t)index * (uint64_t)size + (uint64_t)x);
         else
             importance(r, roughness, mu, ab);
-        texel[x] = (float)(ab[0] + ab[1]); // F0 = 1: A + B
+        texel[x] = (float)(ab[0] + ab[1]); // E = A + B at F0 = 1
     }
 }
 
@@ -144,10 +153,11 @@ void ki_assignment_average(const kiln_image *energy, kiln_image *average)
     }
 }
 
-// ----------------------------------------------------------------------------------------- comparing
+// --------------------------------------------------------------------------------------- comparing
 
-// sRGB by the decade of the error, from 1e-4 to 1: each step is about as much darker to the eye. Blue
-// is too dark, red too bright.
+// Colours of the error map, sRGB, one for each power of ten of the error's size from 1e-4 to 1.
+// Each colour looks about as much darker than the one before. ramp[0], blue, is for a table that is
+// too dark, and ramp[1], red, for one that is too bright.
 enum { STOPS = 5 };
 static const double ramp[2][STOPS][3] = {
     {{247, 246, 243}, {150, 200, 230}, {70, 145, 200}, {30, 90, 160}, {12, 40, 90}},

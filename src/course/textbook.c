@@ -1,7 +1,12 @@
-// The textbook's loops, with its addressing of texels and its nearest reads.
+// The three loops that textbooks and courses on image-based lighting teach: irradiance by a regular
+// grid of angles, prefiltering by GGX importance sampling, and the split-sum table. In: a panorama,
+// or nothing for the table, and sample counts. Out: levels of a map, or the table. The loops read
+// unfiltered texels, with the addressing and the samples that are taught, so that their errors can
+// be measured. docs/theory/textbook.md derives the loops and lists their errors.
 //
-// The textbook's axes are kiln's after a quarter turn about +Y: its (x, y, z) is kiln's (z, y, -x).
-// With that, a column is the same fraction of the picture's width in both.
+// The textbook's coordinate axes are kiln's after a quarter turn about +Y: the textbook's (x, y, z)
+// is kiln's (z, y, -x). In both, a column of a panorama is then the same fraction of the picture's
+// width.
 #include "course/textbook.h"
 
 #include "brdf/brdf.h"
@@ -11,7 +16,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { ROWS = 16 }; // between two reports of progress
+enum { ROWS = 16 }; // number of rows between two reports of progress
 
 static void cross(const double a[3], const double b[3], double c[3])
 {
@@ -27,9 +32,9 @@ static void normalize(double a[3])
         a[c] /= length;
 }
 
-// The texel of a direction in the textbook's axes: u times (width - 1), cut to a whole number. So
-// the last column and the last row are read only where u or v is exactly 1, and the picture is
-// stretched by width / (width - 1).
+// Returns the texel of a direction d in the textbook's axes. Its column is u (width - 1), cut to a
+// whole number, with u in [0, 1]. Therefore the last column and the last row are read only where u
+// or v is exactly 1, and the picture is stretched by width / (width - 1).
 static const float *nearest(const kiln_map *panorama, const double d[3])
 {
     int height = panorama->size, width = 2 * height;
@@ -41,9 +46,9 @@ static const float *nearest(const kiln_map *panorama, const double d[3])
     return panorama->level[0] + 3 * ((size_t)y * (size_t)width + (size_t)x);
 }
 
-// Where the textbook looks for a texel of its result. On a panorama texels lie at i / (width - 1)
-// and j / (height - 1); a level of one row, for which that is 0 / 0, looks at the horizon. Other
-// shapes have kiln's texel centres.
+// Sets d to the direction, in the textbook's axes, that a texel of the result stands for. On a
+// panorama column i is at u = i / (width - 1) and row j at v = j / (height - 1). A level of one
+// row, for which v is 0 / 0, uses the horizon. Other shapes use kiln's texel centres.
 static void look_direction(const kiln_map *map, int level, int x, int row, int width, double d[3])
 {
     if (map->shape == KILN_SHAPE_PANORAMA) {
@@ -65,7 +70,9 @@ static void look_direction(const kiln_map *map, int level, int x, int row, int w
     }
 }
 
-// A level's rows, one a task, in batches.
+// Runs row(data, i) for all rows of a level in parallel, in batches of ROWS, and reports progress
+// between `from` and `to` after each batch. *first_row is the first row of the batch, to which
+// tasks add their index.
 static kiln_result run_rows(kiln_context *context, const char *stage, int row_count,
                             void (*row)(void *data, int index), void *data, int *first_row,
                             double from, double to, kiln_error *error)
@@ -85,17 +92,22 @@ typedef struct irradiance {
     kiln_map *map;
     int width, first_row;
     int phi_count, theta_count;
-    double (*phi)[2], (*theta)[2]; // sine and cosine of the steps
+    double (*phi)[2], (*theta)[2]; // sine and cosine of each grid angle
 } irradiance;
 
+// Sets texel[] to the irradiance E over pi of a surface with the normal `up`, by a sum over a grid
+// of angles:
+//
 //     E / pi = 1/pi integral L cos theta dw
 //            ~ pi / (n1 n2) sum over i, j of L(phi_i, theta_j) cos theta_j sin theta_j
 //
-// with phi_i = 2 pi i / n1 and theta_j = (pi / 2) j / n2.
+// with phi_i = 2 pi i / n1 and theta_j = (pi / 2) j / n2, where n1 is phi_count, n2 is theta_count
+// and L is the radiance of the panorama.
 static void irradiance_texel(const irradiance *r, const double up[3], float texel[3])
 {
     double front[3] = {0, 0, 1}, right[3];
-    // The textbook tests up.z without the absolute value and divides 0 by 0 at up = -z.
+    // The tangent frame needs another axis where `up` is along z. The textbook tests up.z without
+    // the absolute value, and divides 0 by 0 at up = -z.
     if (!(fabs(up[2]) < 0.999)) {
         front[1] = -1;
         front[2] = 0;
@@ -166,12 +178,13 @@ typedef struct prefilter {
     const kiln_map *panorama;
     kiln_map *map;
     int level, width, first_row;
-    int sample_count;   // that are above the horizon
-    double (*light)[3]; // in the frame of the normal: x, y, n.l
-    double weight_sum;
+    int sample_count;   // number of light directions above the horizon
+    double (*light)[3]; // light directions in a frame whose z axis is the normal
+    double weight_sum;  // sum of n.l over the light directions
 } prefilter;
 
-// The light directions are the same for every texel in the frame of its normal, since N = V = R.
+// Computes the light directions of a level. In a frame whose z axis is a texel's normal they are
+// the same for every texel, because the method takes normal, view and reflection as equal.
 static void set_lights(prefilter *r, double roughness, int sample_count)
 {
     r->sample_count = 0;
@@ -180,7 +193,7 @@ static void set_lights(prefilter *r, double roughness, int sample_count)
         double xi[2], h[3];
         ki_hammersley((uint32_t)i, (uint32_t)sample_count, xi);
         ki_ggx_half_vector(roughness * roughness, xi, h);
-        // L = 2 (v.h) h - v with v = (0, 0, 1).
+        // l = 2 (v.h) h - v with v = (0, 0, 1).
         double nol = 2 * h[2] * h[2] - 1;
         if (!(nol > 0))
             continue;
@@ -230,7 +243,8 @@ kiln_result ki_textbook_prefilter(kiln_context *context, const kiln_map *panoram
     if (!r.light)
         return ki_fail_memory(context, error, "the textbook's samples",
                               (size_t)sample_count * sizeof *r.light);
-    // Progress by texels: each level has a quarter of the one before.
+    // Progress is counted in texels, because each level has a quarter of the texels of the level
+    // before.
     double from = 0, total = 0, texels[KILN_MAX_LEVELS] = {0};
     for (int k = 0; k < map->level_count; k++)
         total += texels[k] = (double)kiln_map_texels(map, k);
@@ -257,15 +271,16 @@ typedef struct brdf_table {
     int sample_count, first_row;
 } brdf_table;
 
-// With h drawn by D(h) (n.h), A and B are the means over the samples of (1 - F5) and F5 times
+// Estimates A and B of the split sum (Karis 2013). With half vectors h of density D(h) (n.h), A is
+// the mean over the samples of 1 - F5, and B the mean of F5, each times
 //
 //     G(l, v) (v.h) / ((n.v) (n.h)),      F5 = (1 - v.h)^5.
 //
-// Karis 2013. G is Schlick's with k = roughness^2 / 2.
+// G is Schlick's with k = roughness^2 / 2. texel[0] is A, texel[1] is B.
 static void brdf_texel(double roughness, double nov, int sample_count, float texel[2])
 {
     double alpha = roughness * roughness, k = ki_schlick_k_ibl(alpha);
-    double v[2] = {sqrt((1 - nov) * (1 + nov)), nov}, a = 0, b = 0; // x and z
+    double v[2] = {sqrt((1 - nov) * (1 + nov)), nov}, a = 0, b = 0; // x and z of the view
     for (int i = 0; i < sample_count; i++) {
         double xi[2], h[3];
         ki_hammersley((uint32_t)i, (uint32_t)sample_count, xi);
@@ -292,7 +307,8 @@ static void brdf_row(void *data, int index)
     double roughness = (double)(size - 1 - row) / (size - 1);
     float *texel = r->image->pixels + 2 * (size_t)row * (size_t)size;
     for (int x = 0; x < size; x++, texel += 2) {
-        // At n.v = 0 the textbook divides 0 by 0; its limit is taken this near to it.
+        // At n.v = 0 the textbook divides 0 by 0. The column takes the value at n.v = 1e-4, which
+        // differs from the limit by about 1e-4.
         double nov = x > 0 ? (double)x / (size - 1) : 1e-4;
         brdf_texel(roughness, nov, r->sample_count, texel);
     }

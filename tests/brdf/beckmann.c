@@ -1,4 +1,5 @@
-// Beckmann's distribution: its laws, and A and B against brute force over the half vector.
+// Beckmann's distribution: D and Lambda obey their laws, and A and B agree with integrals over half
+// vectors.
 #include "check.h"
 #include "half.h"
 
@@ -12,8 +13,9 @@ static double lambda(double alpha, double cosine)
     return a > 20 ? 0 : (exp(-a * a) / (a * sqrt(pi)) - erfc(a)) / 2;
 }
 
-// The projected areas of the microfacets add up to the surface's, and those that are seen along v to
-// that of the surface along v: int D (n.h) = 1, int D G1(v) max(v.h, 0) = n.v. Heitz 2014.
+// The projected areas of all microfacets sum to the area of the surface, int D (n.h) dh = 1. The
+// projected areas of the microfacets that v sees sum to the surface's, int D G1(v) max(v.h, 0) dh =
+// n.v. Heitz 2014.
 static void normals_are_normalized(void **unused)
 {
     (void)unused;
@@ -22,7 +24,7 @@ static void normals_are_normalized(void **unused)
             double alpha = 0.02 + 0.14 * a, nov = 0.03 + 0.16 * b;
             double area = 0, seen = 0, sin_v = sqrt(1 - nov * nov);
             double theta[HALF_NODES], w[HALF_NODES], phi[HALF_NODES], u[HALF_NODES];
-            // Cut where D has fallen, and where v leaves the hemisphere of h.
+            // theta is cut where D has become small, and where v.h < 0 at some azimuths.
             double cut1 = fmin(4 * alpha, 1), cut2 = asin(nov);
             double cuts[] = {0, fmin(cut1, cut2), fmax(cut1, cut2), HALF_PI};
             for (int part = 0; part < 3; part++) {
@@ -75,7 +77,7 @@ static double shadowing(const setting *s, double nol)
     return s->nov / (s->nov * (1 - k) + k) * nol / (nol * (1 - k) + k);
 }
 
-// D G (v.h) / (n.v), and that times (1 - v.h)^5.
+// The integrands of E, x[0] = D G (v.h) / (n.v), and of B, x[1] = x[0] (1 - v.h)^5.
 static void facet(const void *user, const half *h, double *x)
 {
     const setting *s = user;
@@ -110,7 +112,7 @@ static void energy_agrees_with_brute_force(void **unused)
                     worst = error, at = s;
             }
     uint64_t state = 88172645463325252u;
-    for (int i = 0; i < 60; i++) { // and at random
+    for (int i = 0; i < 60; i++) { // random settings
         double x[2];
         for (int k = 0; k < 2; k++) {
             state = state * 6364136223846793005u + 1442695040888963407u;
@@ -125,7 +127,8 @@ static void energy_agrees_with_brute_force(void **unused)
     CHECK_BELOW(worst, 1e-8);
 }
 
-// E = A + B is 1 less what G hides; the limits; what is outside the ranges is clamped into them.
+// A and B are positive, and E = A + B is at most 1. At roughness 0 and at n.v = 0 they are the
+// limits. Arguments out of range are clamped.
 static void corners(void **unused)
 {
     (void)unused;
@@ -144,7 +147,7 @@ static void corners(void **unused)
             CHECK_NEAR(ab[0] + ab[1], visible, 1e-15);
             CHECK_NEAR(ab[1], visible * pow(1 - nov, 5), 1e-15);
         }
-        ki_beckmann_energy(&model, 0.6, 0, ab); // n.v = 0 is the limit
+        ki_beckmann_energy(&model, 0.6, 0, ab); // n.v = 0 gives the limit
         ki_beckmann_energy(&model, 0.6, 1e-7, last);
         CHECK_NEAR(ab[0], last[0], 1e-5);
         CHECK_NEAR(ab[1], last[1], 1e-5);
@@ -155,12 +158,13 @@ static void corners(void **unused)
         ki_beckmann_energy(&model, 1, 0, last);
         assert_memory_equal(ab, last, sizeof ab);
     }
-    // A narrow lobe seen head-on loses no digits.
+    // E of a narrow lobe at n.v = 1 is precise.
     for (int i = 1; i <= 20; i++) {
         ki_beckmann_energy(&(kiln_model){.d = KILN_D_BECKMANN}, 1e-4 * i, 1, ab);
         CHECK_NEAR(ab[0] + ab[1], 1, 1e-11);
     }
-    // With slopes far below the view's, nothing is hidden but by chance: E is 1 with Smith's G.
+    // At low roughness and n.v = 0.7 hardly a slope is steep enough to mask light: E is 1 with
+    // Smith's G.
     ki_beckmann_energy(&(kiln_model){.d = KILN_D_BECKMANN}, 0.1, 0.7, ab);
     CHECK_NEAR(ab[0] + ab[1], 1, 1e-9);
 }

@@ -1,4 +1,5 @@
-// What the tests of the reflection model share: quadrature and random numbers of their own.
+// Quadrature and random numbers shared by the tests of the reflection model, independent of the
+// library's own integrators.
 #ifndef KILN_BRDF_TEST_H
 #define KILN_BRDF_TEST_H
 
@@ -10,7 +11,7 @@ static const double pi = 3.14159265358979323846;
 
 enum { GAUSS = 24, DISTRIBUTIONS = 2 };
 
-/// int f over [from, to] by `panels` equal panels of 24 Gauss nodes.
+/// The integral of f over [from, to], by `panels` equal panels of 24 Gauss nodes each.
 static inline double integrate(double (*f)(void *data, double x), void *data, double from,
                                double to, int panels)
 {
@@ -22,7 +23,7 @@ static inline double integrate(double (*f)(void *data, double x), void *data, do
     return sum;
 }
 
-/// Uniform in [0, 1).
+/// A random number, uniform in [0, 1), by xorshift64.
 static inline double uniform(uint64_t *state)
 {
     *state ^= *state << 13;

@@ -1,4 +1,5 @@
-// Every compensation of energy against the random walk, and a table of walks against other walks.
+// Errors of the compensations of lost energy, and of a table of KILN_TABLE_E_WALK, against random
+// walks.
 #include "brdf_test.h"
 
 #include "brdf/walk.h"
@@ -9,7 +10,7 @@ enum { SINGLE, ASSIGNMENT, SECOND, TURQUIN, FDEZ_AGUERA, MODELS };
 
 enum { GRID = 16 };
 
-// The albedo in a white environment of each model at (roughness, nov).
+// Sets albedo[] to the directional albedo by each method of compensation at (roughness, nov).
 static void model_albedos(double roughness, double nov, double e_average, double f0,
                           double albedo[MODELS])
 {
@@ -26,8 +27,8 @@ static void model_albedos(double roughness, double nov, double e_average, double
     albedo[FDEZ_AGUERA] = single + multiple;
 }
 
-// Signed error of the largest size and RMS over roughness and nov, by f0. docs/theory/compensation.md
-// has the table.
+// The errors of each method are those that docs/theory/compensation.md lists: for each f0, the
+// error of the largest absolute value over roughness and nov, with its sign, and the RMS error.
 static void models_err_as_documented(void **state)
 {
     (void)state;
@@ -75,10 +76,11 @@ enum { POINTS = 400, COLORS = 10, LUMPS = 5 };
 
 typedef struct scaled {
     kiln_table walk, split;
-    double worst, square, looked_up; // off from the truth: with A and B as they are, and looked up
+    double worst, square; // greatest error and sum of squared errors with exact A and B
+    double looked_up;     // greatest error with A and B from the table `split`
 } scaled;
 
-// The albedo of the lobe scaled to the table, against walks that the table has not seen.
+// Compares the albedo of the lobe that is scaled by the table with random walks of another seed.
 static void scale_at(scaled *s, double r, double nov, int paths)
 {
     static const double f0[COLORS] = {0, 0.02, 0.04, 0.2, 0.43, 0.61, 0.77, 0.9, 0.97, 1};
@@ -97,8 +99,9 @@ static void scale_at(scaled *s, double r, double nov, int paths)
     }
 }
 
-// Random places: anywhere; grazing; at low roughness; in the grazing layer, n.v of the order of alpha,
-// of low roughness; and in that of roughness 1e-6 to 1, evenly in its logarithm.
+// A random roughness r and n.v, by `lump`. 0: uniform. 1: grazing views. 2: low roughness. 3: low
+// roughness and n.v of the order of alpha. 4: roughness from 1e-6 to 1, even in its logarithm, and
+// n.v of the order of alpha.
 static void random_place(int lump, uint64_t *random, double *r, double *nov)
 {
     double x = uniform(random), y = uniform(random);
@@ -108,9 +111,10 @@ static void random_place(int lump, uint64_t *random, double *r, double *nov)
         *nov = fmin(1, *r * *r * y / (1.0001 - y));
 }
 
-// Scaled to the table as {0} makes it, the specular lobe's albedo is the walk's within 2e-3, for every
-// f0, roughness and n.v: A and B exact, or looked up in a table of their own. Only below roughness 1e-6
-// and n.v 1e-9 at once, where the grazing axis has no layer left, it is not.
+// The specular lobe scaled by the default table has the albedo of random walks within 2e-3, for
+// every f0, roughness and n.v, both with exact A and B and with A and B from a table. The exception
+// is roughness below 1e-6 together with n.v below 1e-9, where the grazing axis does not resolve the
+// layer of fast change.
 static void scaled_lobe_has_the_albedo_of_the_walk(void **state)
 {
     (void)state;

@@ -1,4 +1,5 @@
-// Rough glass: its laws, and reflected and transmitted flux against brute force over the light.
+// Rough glass: conservation of energy, reciprocity, the smooth limit, and the reflected and
+// transmitted flux against integrals over light directions in two dimensions.
 #include "check.h"
 #include "rule.h"
 
@@ -37,7 +38,7 @@ static double masking(const setting *s, double nol, bool transmitted)
     return s->nov / (s->nov * (1 - k) + k) * nol / (nol * (1 - k) + k);
 }
 
-// By the sines of Fresnel's own formulas; `g` is the cosine beyond.
+// Fresnel's reflectance, where c is the cosine of incidence and g the cosine of refraction.
 static double fresnel(double ior, double c, double g)
 {
     double s = (c - ior * g) / (c + ior * g), p = (ior * c - g) / (ior * c + g);
@@ -52,7 +53,9 @@ static double density(const setting *s, double sin2_h, double cos2_h)
     return a2 / (pi * d * d);
 }
 
-// Light at theta from +-n, phi from the mirror or the refracted side on. d(R) and d(T) less measure.
+// The integrands of R and of T per steradian of light. theta is the light's angle to n in
+// reflection and to -n in transmission. phi is its azimuth, 0 in the direction of mirror reflection
+// and of smooth refraction.
 static double reflected(const setting *s, double theta, double phi)
 {
     double sin_v = sqrt(1 - s->nov * s->nov), nol = cos(theta), turn = sin(phi / 2);
@@ -67,14 +70,14 @@ static double reflected(const setting *s, double theta, double phi)
 
 static double transmitted(const setting *s, double theta, double phi)
 {
-    // h ~ eta v + l; Walter et al. 2007, eqs. 16 and 21.
+    // The half vector is parallel to eta v + l: Walter et al. 2007, eqs. 16 and 21.
     double eta = 1 / s->ior, sin_v = sqrt(1 - s->nov * s->nov), turn = sin(phi / 2);
     double nol = cos(theta), flat = eta * sin_v - sin(theta);
     double sin2 = flat * flat + 4 * eta * sin_v * sin(theta) * turn * turn;
     double up = eta * s->nov - nol, size2 = sin2 + up * up;
     double vol = -cos(acos(s->nov) - theta) + 2 * sin_v * sin(theta) * turn * turn;
     double c = (eta + vol) / sqrt(size2), g = (eta * vol + 1) / sqrt(size2);
-    // h is +-(eta v + l), on the side of v; l.h = -g.
+    // Of h = eta v + l and h = -(eta v + l) the one with n.h > 0 counts; l.h is -g.
     if (eta < 1) {
         c = -c;
         up = -up;
@@ -87,14 +90,15 @@ static double transmitted(const setting *s, double theta, double phi)
            density(s, sin2 / size2, up * up / size2) / (s->nov * size2);
 }
 
-// Between cuts of theta, in one or two parts of phi that end where cos phi = y(theta).
+// Integrates f over theta between the cuts, and over phi in one part, or with `beyond` two, that
+// meet at cos phi = sign (m - (n.v) cos theta) / (sin theta_v sin theta).
 typedef double light_function(const setting *s, double theta, double phi);
 
 static double integrate(const setting *s, light_function *f, double *cuts, int cut_count,
                         double sign, double m, bool beyond)
 {
     double sin_v = sqrt(1 - s->nov * s->nov), sum = 0;
-    for (int i = 0; i < cut_count; i++) // in order
+    for (int i = 0; i < cut_count; i++) // sorts the cuts
         for (int j = i + 1; j < cut_count; j++)
             if (cuts[j] < cuts[i]) {
                 double swap = cuts[i];
@@ -179,7 +183,7 @@ static void flux_agrees_with_brute_force(void **unused)
         compare(&s);
         s.model.g = (kiln_g)((i + 1) % 4);
         compare(&s);
-        // Beckmann's narrow lobes are beyond the brute force.
+        // The reference integral does not resolve Beckmann's lobes below roughness 0.3.
         s.model = (kiln_model){KILN_D_BECKMANN, (kiln_g)((i + i / 6) % 4)};
         s.roughness = fmax(s.roughness, 0.3);
         compare(&s);
@@ -201,7 +205,7 @@ static void flux_agrees_with_brute_force(void **unused)
     printf("worst %g for R, %g for T\n", worst[0], worst[1]);
 }
 
-// What is hidden is lost: R + T <= 1, and R <= E. Without roughness nothing is.
+// Masked light is lost, not gained: R + T <= 1 and R <= E. Without a boundary, at ior 1, R is 0.
 static void no_energy_is_made(void **unused)
 {
     (void)unused;
@@ -230,7 +234,7 @@ static void smooth_glass_is_fresnel(void **unused)
         ki_dielectric(&model, 0, n, nov, rt);
         CHECK_NEAR(rt[0], f, 1e-15);
         CHECK_NEAR(rt[1], 1 - f, 1e-15);
-        // Just above 0: as near as the lobe's tail and, by the critical angle, its width allow.
+        // A roughness just above 0 gives nearly the same, except near the critical angle.
         if (nov > 0.1 && fabs(nov - sqrt(fmax(0, 1 - n * n))) > 0.02) {
             ki_dielectric(&model, 0.003, n, nov, rt);
             CHECK_NEAR(rt[0], f, 1e-5);
@@ -239,8 +243,9 @@ static void smooth_glass_is_fresnel(void **unused)
     }
 }
 
-// Helmholtz across the boundary: n_o^2 (n.v) T(v -> l) is symmetric, so the averages over diffuse light
-// are as n_o^2 T_o = n_i^2 T_i. It links the two sides, which share no arc of the integrals.
+// Helmholtz reciprocity across the boundary: n_v^2 (n.v) T(v -> l) is symmetric in v and l. The
+// averages over diffuse light therefore obey T_avg(ior) = ior^2 T_avg(1 / ior). The two sides are
+// computed by different integrals, so that this law checks one against the other.
 static void both_sides_are_reciprocal(void **unused)
 {
     (void)unused;
@@ -252,7 +257,7 @@ static void both_sides_are_reciprocal(void **unused)
         ki_dielectric_average(&model, roughness, 1 / n, in);
         CHECK_NEAR(out[1], n * n * in[1], 2e-6);
     }
-    // Without roughness 1 - F_avg is linked likewise.
+    // At roughness 0 the same law holds for 1 - F_avg.
     double out[2], in[2];
     ki_dielectric_average(&(kiln_model){0}, 0, 1.5, out);
     ki_dielectric_average(&(kiln_model){0}, 0, 1 / 1.5, in);

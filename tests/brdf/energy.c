@@ -1,4 +1,5 @@
-// E, E_avg, A and B against a second method, in the furnace, and through tables.
+// The albedo E, its average E_avg and the split sum's A and B: against integrals over half vectors,
+// against closed forms, in a white furnace with Kulla and Conty's lobe, and through tables.
 #include "brdf_test.h"
 #include "half.h"
 
@@ -18,13 +19,13 @@ typedef struct point {
     double roughness, nov;
 } point;
 
-// E and B by half vectors: D (n.h) dh = D (n.h) dl / (4 v.h), so int f (n.l) dl is
-// int D G (v.h) / (n.v) dh.
+// The integrands of E and B over half vectors, for each masking. From dl = 4 (v.h) dh, int f (n.l)
+// dl is int D G (v.h) / (n.v) dh.
 static void densities(const void *user, const half *h, double *x)
 {
     const point *p = user;
     double alpha = p->roughness * p->roughness, c = 1 - h->voh;
-    // sin_h keeps the digits that 1 - noh has lost.
+    // sin_h is more precise than the sine that follows from noh near 1.
     double spread = alpha * alpha * h->noh * h->noh + h->sin_h * h->sin_h;
     double d = alpha * alpha / (pi * spread * spread);
     for (size_t g = 0; g < MASKINGS; g++) {
@@ -69,7 +70,7 @@ static void agree_with_the_two_dimensional_rule(void **unused)
     print_message("E, A and B: largest difference from the two-dimensional rule %.1e\n", worst);
 }
 
-// With sixteen digits of roughness and n.v in hand the corners are reached by walking into them.
+// E at roughness 0 and at n.v = 0 is the limit from small roughness and from small n.v.
 static void corners_are_limits(void **unused)
 {
     (void)unused;
@@ -89,7 +90,7 @@ static void corners_are_limits(void **unused)
             double roughness = 1e-5 * pow(3, i), near = 1e-13 * roughness * roughness;
             CHECK_NEAR(kiln_energy(m, roughness, near), kiln_energy(m, roughness, 0), 1e-10);
         }
-        // Down to where squares of alpha leave the range of doubles.
+        // Roughness so small that alpha^2 underflows.
         for (int i = 0; i < 22; i++)
             for (int j = 0; j < 29; j++) {
                 double roughness = pow(7, -i), nov = pow(11, -j);
@@ -119,7 +120,8 @@ typedef struct mean {
     double roughness;
 } mean;
 
-// In nov = x^3, which is fine at grazing angles.
+// The integrand of E_avg after the substitution nov = x^3, which makes nodes dense at grazing
+// angles.
 static double mean_density(void *data, double x)
 {
     const mean *m = data;
@@ -142,7 +144,8 @@ static void average_is_the_mean_over_the_cosine(void **unused)
 
 typedef struct furnace {
     const kiln_model *model;
-    const kiln_table *table, *average; // NULL for the functions themselves
+    const kiln_table *table, *average; // NULL: exact values from kiln_energy and
+                                       // kiln_energy_average
     double roughness, nov;
 } furnace;
 
@@ -172,7 +175,8 @@ static double added_light(void *data, double x)
     return lobe * nol * 2 * pi * 3 * x * x;
 }
 
-// A white surface in white light is white: the single bounce and Kulla and Conty's lobe.
+// In a white environment, the specular lobe with F = 1 and Kulla and Conty's lobe together return
+// all light. Returns the absolute error.
 static double furnace_error(furnace *f)
 {
     double single = kiln_energy(f->model, f->roughness, f->nov);
@@ -258,7 +262,8 @@ static void texels_are_the_integrals(void **unused)
                 for (int c = 0; c < table.image.channels; c++) {
                     int at = (y * table.def.width + x) * table.image.channels + c;
                     CHECK_NEAR((double)table.image.pixels[at], wanted[c], 6e-8);
-                    // The grazing axis' first row stands a little beside v = 0.
+                    // Below the least roughness of the grazing axis, a row's texels belong to
+                    // another roughness than the lookup's.
                     if (roughness > 1e-3)
                         CHECK_NEAR(value[c], wanted[c], 1e-7);
                 }
@@ -268,7 +273,7 @@ static void texels_are_the_integrals(void **unused)
     kiln_context_destroy(context);
 }
 
-// They come from a series.
+// Large tables of E are computed by a Chebyshev series and not texel by texel.
 static void large_tables_are_the_integrals_too(void **unused)
 {
     (void)unused;

@@ -1,4 +1,5 @@
-// D, G, F and the compensation of energy keep their laws.
+// The distributions D, the maskings G, the Fresnel terms F with their averages, and the
+// compensations of lost energy obey their laws and have their published values.
 #include "brdf_test.h"
 
 #include <float.h>
@@ -14,8 +15,8 @@ typedef struct lobe {
     double roughness;
 } lobe;
 
-// D (n.h) over the hemisphere in x, with tan^2 theta = T = alpha^2 x / (1 - x):
-// (n.h) dh = d phi dT / (2 (1 + T)^2).
+// The integrand of int D (n.h) dh over x in [0, 1], after tan^2 theta = T = alpha^2 x / (1 - x),
+// with (n.h) dh = dphi dT / (2 (1 + T)^2).
 static double d_over_x(void *data, double x)
 {
     const lobe *l = data;
@@ -30,8 +31,8 @@ static void distributions_integrate_to_one(void **state)
     for (int i = 0; i < DISTRIBUTIONS; i++)
         for (int r = 2; r <= 100; r++) {
             lobe l = {i ? KILN_D_BECKMANN : KILN_D_GGX, r / 100.0};
-            // D's argument is a rounded cosine: 1 - noh has an error of 1e-16, to be compared with
-            // the lobe's alpha^2 / 2.
+            // D's argument noh is rounded: 1 - noh has an error of 1e-16, and the lobe's width in 1
+            // - noh is alpha^2 / 2.
             CHECK_NEAR(integrate(d_over_x, &l, 0, 1, 8), 1, 1e-12 + 1e-15 / pow(l.roughness, 4));
         }
 }
@@ -62,10 +63,10 @@ static void shadowing_is_a_symmetric_share(void **state)
                         double here = kiln_brdf_g(&m, rough, v, l);
                         assert_true(here >= 0 && here <= 1);
                         assert_true(here == kiln_brdf_g(&m, rough, l, v));
-                        // Rougher or more grazing is darker.
+                        // G falls with roughness and towards grazing angles.
                         assert_true(kiln_brdf_g(&m, rough + 0.05, v, l) <= here + rounding);
                         assert_true(kiln_brdf_g(&m, rough, v - 0.05, l) <= here + rounding);
-                        // Shadows that know of each other darken less.
+                        // Height-correlated masking is weaker than uncorrelated masking.
                         kiln_model u = {m.d, KILN_G_SMITH_UNCORRELATED};
                         if (m.g == KILN_G_SMITH)
                             assert_true(kiln_brdf_g(&u, rough, v, l) <= here + rounding);
@@ -75,11 +76,11 @@ static void shadowing_is_a_symmetric_share(void **state)
             CHECK_NEAR(kiln_brdf_g(&m, 0.5, 0, 0.5), 0, 0);
             CHECK_NEAR(kiln_brdf_g(&m, 0.5, 1, 1), 1, 1e-15);
         }
-    // Schlick's in the figures and in the text: nox / (nox (1 - k) + k).
+    // Schlick's G1 = nox / (nox (1 - k) + k) with the two k.
     kiln_model k2 = {.g = KILN_G_SCHLICK_K2}, text = {.g = KILN_G_SCHLICK_TEXT};
     CHECK_NEAR(kiln_brdf_g(&k2, 0.6, 0.25, 1), 0.25 / (0.25 * 0.82 + 0.18), 1e-15);
     CHECK_NEAR(kiln_brdf_g(&text, 0.6, 0.25, 1), 0.25 / (0.25 * 0.68 + 0.32), 1e-15);
-    // And Smith's of GGX at 60 degrees, alpha = 1: Lambda = (sqrt(1 + 3) - 1) / 2.
+    // Smith's G for GGX at 60 degrees and alpha = 1, where Lambda = (sqrt(1 + 3) - 1) / 2.
     kiln_model hc = {0}, un = {.g = KILN_G_SMITH_UNCORRELATED};
     CHECK_NEAR(kiln_brdf_g(&hc, 1, 0.5, 0.5), 0.5, 1e-15);
     CHECK_NEAR(kiln_brdf_g(&un, 1, 0.5, 0.5), 4 / 9.0, 1e-15);
@@ -99,7 +100,7 @@ static void specular_is_reciprocal_and_finite(void **state)
                 double d_g = kiln_brdf_d(m.d, r, h) * kiln_brdf_g(&m, r, v, l);
                 CHECK_NEAR(f * (4 * v * l), d_g, 1e-14 * d_g);
             }
-            // The limit at the horizon is reached smoothly.
+            // The specular lobe is continuous at n.v = 0.
             double at = kiln_brdf_specular(&m, 0.5, 0, 0.7, 0.9);
             assert_true(isfinite(at) && at > 0);
             CHECK_NEAR(kiln_brdf_specular(&m, 0.5, 1e-9, 0.7, 0.9) / at, 1, 1e-7);
@@ -134,7 +135,8 @@ static double schlick_mu(void *data, double mu)
     return 2 * mu * kiln_fresnel_schlick(((index *)data)->n, mu);
 }
 
-// [0, 1] cut at `split` and, towards it from both sides, into panels that shrink by 4: for kinks.
+// The integral of f over [0, 1], where f has a kink at `split`: panels from both ends towards
+// `split` shrink by a factor of 4 each.
 static double graded(double (*f)(void *data, double x), void *data, double split)
 {
     double sum = 0, left = split, right = 1 - split;
@@ -160,7 +162,7 @@ static void fresnel_at_its_ends(void **state)
         CHECK_NEAR(kiln_fresnel_conductor(n, 3, 1),
                    ((n - 1) * (n - 1) + 9) / ((n + 1) * (n + 1) + 9), 1e-15);
         CHECK_NEAR(kiln_fresnel_conductor(n, 3, 0), 1, 0);
-        // Total reflection from the critical angle on.
+        // F is 1 beyond the critical angle.
         if (n < 1) {
             CHECK_NEAR(kiln_fresnel_dielectric(n, sqrt(1 - n * n) - 1e-9), 1, 0);
             assert_true(kiln_fresnel_dielectric(n, sqrt(1 - n * n) + 1e-3) < 1);
@@ -168,7 +170,7 @@ static void fresnel_at_its_ends(void **state)
         // At Brewster's angle, tan theta = n, half of the light is reflected by R_s only.
         double rs = (1 - n * n) / (1 + n * n);
         CHECK_NEAR(kiln_fresnel_dielectric(n, 1 / sqrt(1 + n * n)), rs * rs / 2, 4e-15);
-        // Both sides of an interface reflect alike along the refracted ray.
+        // F is the same for a ray and, from the other side, for the refracted ray.
         for (int j = 1; j <= 10; j++) {
             double c = j / 10.0, s2 = (1 - c * c) / (n * n);
             if (s2 < 1)
@@ -197,7 +199,8 @@ static void gulbrandsen_gives_the_reflectivity_back(void **state)
         }
 }
 
-// It passes through its three points, is Schlick's where f82 is Schlick's, and stays in [0, 1].
+// The Fresnel term of metals is f0 at voh = 1, f82 at voh = 1/7 and 1 at voh = 0. It equals
+// Schlick's if f82 is Schlick's value, and stays in [0, 1].
 static void metals_dip_at_82_degrees(void **state)
 {
     (void)state;
@@ -247,18 +250,19 @@ static void averages_agree_with_quadrature(void **state)
             CHECK_NEAR(kiln_fresnel_conductor_average(f.n, f.k), graded(conductor_mu, &f, split),
                        1e-12);
         }
-    // The denser side, which little light leaves by a narrow cone; with little absorption.
+    // Small n: light from the denser side leaves through a narrow cone only. Small k: the average
+    // is near that of a dielectric.
     for (int i = 0; i <= 40; i++)
         for (int j = 0; j <= 6; j++) {
             index f = {pow(10, -i / 10.0), j ? pow(10, j - 10) : 0, 0};
             double off = kiln_fresnel_conductor_average(f.n, f.k);
             off -= kiln_fresnel_dielectric_average(f.n);
-            // Absorption adds to what is reflected, by less than a few k.
+            // Absorption changes the average by less than a few k.
             CHECK_NEAR(off, 0, 1e-12 + 8 * f.k);
         }
 }
 
-// The figures that kiln.h and docs/theory/fresnel.md state.
+// The fits have the errors that kiln/brdf.h and docs/theory/fresnel.md state.
 static void fits_err_as_documented(void **state)
 {
     (void)state;
@@ -289,7 +293,7 @@ static void fits_err_as_documented(void **state)
 
 // ----------------------------------------------------------------------------------- compensation
 
-// Some albedo that is no constant.
+// An arbitrary albedo E(mu) that is not constant.
 static double albedo(double mu)
 {
     return 0.4 + 0.5 * mu - 0.3 * mu * mu * mu;
@@ -311,7 +315,7 @@ static double added_light(void *data, double mu)
     return 2 * pi * mu * kiln_kulla_conty(albedo(p->mu_o), albedo(mu), p->e_average);
 }
 
-// The cosine integral of f_ms is 1 - E(mu_o), whatever E: what is missing comes back.
+// The cosine integral of Kulla and Conty's lobe over the light is 1 - E(mu_o), for any function E.
 static void kulla_conty_closes_the_furnace(void **state)
 {
     (void)state;
@@ -327,7 +331,7 @@ static void kulla_conty_closes_the_furnace(void **state)
     CHECK_NEAR(kiln_kulla_conty(1 - 1e-12, 1 - 1e-12, 1 - 1e-12), 1e-12 / pi, 1e-16);
 }
 
-// f_add is the sum of what each bounce brings.
+// The factors that colour Kulla and Conty's lobe are sums of the light of each bounce.
 static void f_add_sums_the_bounces(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-// Brute force over the half vector.
+// Integrates a function over half vectors in two dimensions, without the library's closed forms.
 #ifndef KILN_TEST_HALF_H
 #define KILN_TEST_HALF_H
 
@@ -6,15 +6,17 @@
 
 #include <stdbool.h>
 
-// One half vector: its cosines with the normal, the view and, mirrored, the light.
+// A half vector h: n.h, the sine of its angle to n, v.h, and n.l of the light l that h mirrors the
+// view to.
 typedef struct half {
     double noh, sin_h, voh, nol;
 } half;
 
-// The integral of f over all half vectors that mirror the view to above the horizon, from x_count
-// values of f: `sums` are added to. theta is cut where the full circle of phi ends, which is at half
-// the view's elevation, and phi where n.l = 0, cos phi = -cot theta_v cot 2 theta. `width` is the
-// theta within which f changes first.
+// Adds to sums[x_count] the integrals of the x_count values of f over all half vectors that mirror
+// the view to above the horizon. For angles theta of h to n below half the view's elevation, the
+// azimuth phi runs over the full circle; above that, up to where n.l = 0, at cos phi = -cot theta_v
+// cot 2 theta. theta is cut there, and at `width`, the angle over which f changes first, times
+// powers of STRETCH.
 static void half_integrate(double nov, double width,
                            void (*f)(const void *user, const half *h, double *x), const void *user,
                            int x_count, double *sums)

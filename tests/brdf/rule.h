@@ -1,4 +1,4 @@
-// The double exponential rule on libm alone, for brute force.
+// The double exponential quadrature rule, computed with libm, for reference integrals in tests.
 #ifndef KILN_TEST_RULE_H
 #define KILN_TEST_RULE_H
 
@@ -7,7 +7,8 @@
 enum { HALF_NODES = 101 };
 #define HALF_PI 1.57079632679489661923
 
-// Nodes on (a, b), doubly exponentially close to both ends, and weights. Takahasi and Mori 1974.
+// Sets the nodes and weights of the rule on (a, b). The nodes come doubly exponentially close to
+// both ends. Takahasi and Mori 1974.
 static void half_rule(double a, double b, double nodes[HALF_NODES], double weights[HALF_NODES])
 {
     for (int i = 0; i < HALF_NODES; i++) {

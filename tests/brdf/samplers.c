@@ -1,4 +1,5 @@
-// Samples have the densities that the pdfs say: both are counted in the same bins.
+// Samplers draw directions with the densities that the pdf functions return: the samples in bins of
+// the sphere are compared with integrals of the pdf over the bins.
 #include "brdf_test.h"
 
 #include "brdf/brdf.h"
@@ -10,10 +11,10 @@ typedef struct sampler {
     double (*pdf)(const struct sampler *s, const double w[3]);
     double roughness, v[3];
     kiln_d d;
-    // Bins lie on the whole sphere, uniform in z; else on the upper half, with
-    // tan^2 theta = alpha^2 (1 / t - 1), t = (1 - y)^2.
+    // true: bins cover the whole sphere, uniform in z. false: bins cover the upper hemisphere,
+    // uniform in y with tan^2 theta = alpha^2 (1 / t - 1), t = (1 - y)^2.
     bool sphere;
-    double area; // that the density is divided by
+    double area; // integral of the density before it is divided by `area`
 } sampler;
 
 static double dot(const double a[3], const double b[3])
@@ -21,7 +22,7 @@ static double dot(const double a[3], const double b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-// Cosine to the normal at a place y in [0, 1], and dz / dy.
+// The cosine z to the normal at the coordinate y in [0, 1] of the bins. Sets *slope to |dz / dy|.
 static double place(const sampler *s, double y, double *slope)
 {
     if (s->sphere) {
@@ -41,7 +42,8 @@ static double place_of(const sampler *s, double z)
     return 1 - sqrt(a2 / (a2 + t));
 }
 
-// The share of each bin by midpoints; the sum is returned.
+// Sets share[] to the integral of the pdf over each bin, by the midpoint rule. Returns the sum of
+// all shares.
 static double expected_shares(const sampler *s, double share[BINS])
 {
     double total = 0;
@@ -61,8 +63,9 @@ static double expected_shares(const sampler *s, double share[BINS])
     return total;
 }
 
-// Pearson's chi^2 of `SAMPLES` random samples has the mean K - 1 and the variance 2 (K - 1) where the
-// density is right. Bins with few samples are put together.
+// Checks a sampler by Pearson's chi^2 test. If the density is right, chi^2 of K bins has the mean K
+// - 1 and the variance 2 (K - 1). Bins in which fewer than 20 samples are expected are combined
+// into one.
 static void check_sampler(const sampler *s, double bound)
 {
     static double share[BINS];
@@ -190,8 +193,8 @@ static void visible_normals(void **state)
         }
 }
 
-// Seen from below, as by rays that go up inside the microsurface: normals have the density
-// max(v.h, 0) D(h) over its own integral.
+// For a view from below, as of rays that go up inside the microsurface, visible normals have the
+// density max(v.h, 0) D(h), divided by its integral.
 static void sample_below(const sampler *s, const double xi[2], double w[3])
 {
     ki_sample_visible(s->roughness * s->roughness, s->v, xi, w);
@@ -216,14 +219,15 @@ static void normals_seen_from_below(void **state)
                          .v = {0.6 * sine, -0.8 * sine, z},
                          .area = 1};
             s.area = expected_shares(&s, share);
-            // The projected area is cos theta (1 + Lambda), Lambda(v) + Lambda(-v) = -1.
+            // The integral is the projected area cos theta (1 + Lambda(v)) of the microfacets that
+            // v sees, where Lambda(v) + Lambda(-v) = -1.
             double a2 = pow(s.roughness, 4);
             CHECK_NEAR(s.area, (z + sqrt(z * z + a2 * (1 - z * z))) / 2, 1e-3 * s.area);
             check_sampler(&s, 1e-12);
         }
 }
 
-// The mirror has one normal.
+// At roughness 0 every sampled half vector is the normal.
 static void mirrors(void **state)
 {
     (void)state;
@@ -236,7 +240,7 @@ static void mirrors(void **state)
     assert_true(h[0] == 0 && h[1] == 0 && h[2] == 1);
     kiln_sample_visible(0, (double[]){1, 0, 0}, xi, h);
     assert_true(h[0] == 0 && h[1] == 0 && h[2] == 1);
-    // Generators of floats round up to 1.
+    // A random number of 1, which generators of floats return by rounding, does no harm.
     kiln_sample_half_vector(KILN_D_BECKMANN, 0.5, (double[]){1, 1}, h);
     CHECK_NEAR(h[0] * h[0] + h[1] * h[1] + h[2] * h[2], 1, 1e-14);
     assert_true(kiln_pdf_visible(0, 0.8, 0.9, 0.7) == 0 && kiln_pdf_half_vector(0, 0, 0.5) == 0);

@@ -1,4 +1,5 @@
-// Charlie sheen: its laws, and the albedo against brute force over the half vector.
+// Charlie sheen: D is normalised, masking has its published values, and the albedo agrees with
+// integrals over half vectors, over light directions, and with closed forms.
 #include "check.h"
 #include "half.h"
 
@@ -6,7 +7,7 @@
 
 static const double pi = 3.14159265358979323846;
 
-// int D (n.h) dh = 1. Estevez and Kulla 2017.
+// D is normalised: int D (n.h) dh = 1. Estevez and Kulla 2017.
 static void normals_are_normalized(void **unused)
 {
     (void)unused;
@@ -20,7 +21,8 @@ static void normals_are_normalized(void **unused)
     }
 }
 
-// The numbers of KHR_materials_sheen's text, evaluated with libm.
+// Lambda by the formula and the coefficients of the extension KHR_materials_sheen, evaluated with
+// libm.
 static double khronos_lambda(double alpha, double x)
 {
     double w = (1 - alpha) * (1 - alpha), l[2];
@@ -59,7 +61,7 @@ static void visibility_is_the_published(void **unused)
     }
 }
 
-// D V (n.l) 4 (v.h).
+// The integrand of the albedo over half vectors, D V (n.l) 4 (v.h).
 static void fibre(const void *user, const half *h, double *x)
 {
     const setting *s = user;
@@ -70,12 +72,13 @@ static void fibre(const void *user, const half *h, double *x)
 
 static double half_albedo(const setting *s)
 {
-    double sum = 0, width = HALF_PI - 8 * s->roughness; // D is next to 0 below
+    double sum = 0, width = HALF_PI - 8 * s->roughness; // D is near 0 for smaller theta
     half_integrate(s->nov, width > 0 ? width : 1, fibre, s, 1, &sum);
     return sum;
 }
 
-// Over the light instead, D V (n.l), in parts between which it is smooth.
+// The albedo as an integral of D V (n.l) over light directions, cut at the n.l where the integrand
+// is not smooth.
 static double light_albedo(const setting *s)
 {
     double p = 1 / (s->roughness * s->roughness), sin_v = sqrt(1 - s->nov * s->nov), sum = 0;
@@ -127,8 +130,9 @@ static void albedo_agrees_with_brute_force(void **unused)
     check(light_albedo, KILN_SHEEN_ESTEVEZ, 1e-7);
 }
 
-// Over the half vector the second kind's bends at n.l = 1/2 and 1 are anywhere: less exact at high
-// roughness, where they count, but nothing in common with the integrals above.
+// The albedo with Estevez and Kulla's masking agrees with an integral over half vectors, which
+// shares no code with the integrals above. The masking is not smooth at n.l = 1/2 and 1, which are
+// not at the cuts of this integral: it is less precise.
 static void fit_agrees_over_the_half_vector(void **unused)
 {
     (void)unused;
@@ -139,8 +143,9 @@ static void fit_agrees_over_the_half_vector(void **unused)
     }
 }
 
-// In closed form with p = 1/alpha: at n.v = 1, 2^(-p/2) / (p + 4); at n.v = 0,
-// (2 + p) / (2 sqrt pi) Gamma((p + 3) / 2) / Gamma((p + 4) / 2), far above 1 for smooth cloth.
+// With Ashikhmin's masking and p = 1/alpha, the albedo has closed forms at both ends of n.v. At n.v
+// = 1 it is 2^(-p/2) / (p + 4). At n.v = 0 it is (2 + p) / (2 sqrt pi) Gamma((p + 3) / 2) /
+// Gamma((p + 4) / 2), which is far above 1 for smooth cloth.
 static void ends_are_analytic(void **unused)
 {
     (void)unused;
@@ -161,7 +166,7 @@ static void arguments_are_clamped(void **unused)
         CHECK_NEAR(kiln_sheen_albedo(sheen, 0, 0.02), kiln_sheen_albedo(sheen, 0.01, 0.02), 0);
         CHECK_NEAR(kiln_sheen_albedo(sheen, 9, 7), kiln_sheen_albedo(sheen, 1, 1), 0);
         CHECK_NEAR(kiln_sheen_albedo(sheen, 1, -1), kiln_sheen_albedo(sheen, 1, least), 0);
-        // Toward a mirror nothing stands up: the limit is 0 but at the very horizon.
+        // As roughness tends to 0, the albedo tends to 0 except at grazing angles.
         CHECK_NEAR(kiln_sheen_albedo(sheen, 0, 0.2), 0, 1e-12);
     }
 }

@@ -1,4 +1,5 @@
-// Tables of sheen, cloth and glass hold what the functions of the header give, where they say.
+// Each texel of tables of sheen, multiscatter DFG and rough glass has the value of the public
+// function at the arguments that kiln_table_texel returns.
 #include "check.h"
 
 #include <kiln/brdf.h>
@@ -65,7 +66,7 @@ static void tables_hold_the_integrals(void **unused)
             check_texel(&table, t % 5, t / 5 % 4, t / 20);
         kiln_table_free(&table);
     }
-    // The slices run from no boundary at all, ior 1, to ior 3.
+    // The first slice is ior 1, without a boundary, and the last is ior 3.
     kiln_table_def def = {
         .kind = KILN_TABLE_GLASS, .width = 2, .height = 2, .depth = 2, .corners = true};
     kiln_table table;

@@ -1,4 +1,5 @@
-// The random walk keeps the laws of light, has the exact single bounce, and says how far it errs.
+// The random walk between microfacets conserves energy, is reciprocal, agrees with the exact albedo
+// of a single bounce, and returns a correct standard error.
 #include "brdf_test.h"
 
 #include "brdf/walk.h"
@@ -15,8 +16,8 @@ static kiln_walk walk(kiln_walk_def def, double roughness, double nov)
     return w;
 }
 
-// With F = 1 all light returns, from every path, and so does it with Schlick's F of f0 = 1 and from
-// an index without bound.
+// All light returns if nothing absorbs: with F = 1, with Schlick's F of f0 = 1, and from a
+// conductor with a very large k.
 static void white_furnace_stays_white(void **state)
 {
     (void)state;
@@ -39,7 +40,8 @@ static void white_furnace_stays_white(void **state)
         }
 }
 
-// Mean and standard error over other seeds, with none of the walk's own bookkeeping.
+// Sets *mean and *deviation to the mean and the standard deviation of the albedo over SEEDS seeds,
+// or with `single` of the first bounce's share.
 enum { SEEDS = 16 };
 
 static void over_seeds(kiln_walk_def def, double roughness, double nov, bool single, double *mean,
@@ -58,8 +60,10 @@ static void over_seeds(kiln_walk_def def, double roughness, double nov, bool sin
     *deviation = sqrt(square / (SEEDS - 1));
 }
 
-// The single bounce is the integral's E, and f0 A + B: within four standard errors (Student's t of 15
-// degrees of freedom: one in 900). Light that few paths have, 1 - E below 16 / N, has Poisson's.
+// The first bounce has the exact albedo, E for F = 1 and f0 A + B for Schlick's F, within four
+// standard errors. By Student's t of 15 degrees of freedom a correct value misses that once in 900.
+// If fewer than 16 of all N paths have a second bounce, the error is that of a Poisson
+// distribution.
 static void single_bounce_is_the_exact_albedo(void **state)
 {
     (void)state;
@@ -83,7 +87,7 @@ static void single_bounce_is_the_exact_albedo(void **state)
     CHECK_BELOW(worst, 1e-3);
 }
 
-// The spread over seeds is what standard_error says.
+// standard_error agrees with the standard deviation of the albedo over seeds.
 static void standard_error_is_honest(void **state)
 {
     (void)state;
@@ -100,11 +104,12 @@ static void standard_error_is_honest(void **state)
                 said += e * e / SEEDS;
             }
         }
-    // 20 places of 15 degrees of freedom each: the ratio varies by 8 %.
+    // 20 settings with 15 degrees of freedom each: the ratio has a standard deviation of 8 %.
     CHECK_NEAR(spread / said, 1, 0.4);
 }
 
-// F = f scales the n-th bounce by f^n: the walk's angles do not depend on F.
+// A constant F = f multiplies the light of the n-th bounce by f^n, because a walk's angles do not
+// depend on F.
 static void bounces_scale_with_constant_f(void **state)
 {
     (void)state;
@@ -132,7 +137,7 @@ static void albedo_grows_with_f0(void **state)
                 last = w.albedo;
             }
         }
-    // A mirror has one bounce.
+    // At roughness 0 there is one bounce.
     kiln_walk w = walk((kiln_walk_def){.f0 = 0.3}, 0, 0.5);
     CHECK_NEAR(w.albedo, kiln_fresnel_schlick(0.3, 0.5), 0);
     assert_true(w.standard_error == 0 && w.bounce[1] == 0);
@@ -140,8 +145,9 @@ static void albedo_grows_with_f0(void **state)
     assert_int_equal(walk((kiln_walk_def){.path_count = 1025}, 0.5, 0.5).path_count, 2048);
 }
 
-// Light goes from one band of cosines to another as it comes back, by any number of bounces. n.v is
-// drawn with the density 2 mu, so that a band's share is its area.
+// The flux from one band of directions to another equals the flux back, for the first bounce and
+// for all later bounces. Bands are equal in mu^2; n.v = mu is drawn with the density 2 mu, as in
+// diffuse light.
 static void walks_are_reciprocal(void **state)
 {
     (void)state;
@@ -169,7 +175,7 @@ static void walks_are_reciprocal(void **state)
         }
         for (int i = 0; i < BANDS; i++)
             for (int j = 0; j < i; j++) {
-                // A path leaves in a band more than once at times: twice the variance of one.
+                // A path can add to a band several times: its variance is taken twice.
                 double many = sqrt(2 * (square[i][j] + square[j][i]) / PATHS);
                 CHECK_NEAR(flux[i][j][1], flux[j][i][1], 4 * many);
                 double one = sqrt((flux[i][j][0] + flux[j][i][0]) / PATHS);
@@ -178,7 +184,7 @@ static void walks_are_reciprocal(void **state)
     }
 }
 
-// The same bits from gcc and clang, with every instruction set.
+// The results are bit-identical for every compiler and instruction set.
 static void bits_are_the_same_everywhere(void **state)
 {
     (void)state;
@@ -193,7 +199,7 @@ static void bits_are_the_same_everywhere(void **state)
     CHECK_NEAR(walk(def, 0.3, 0.05).albedo, 0.9415966679090807, 0);
 }
 
-// A column is the walks of its f0, one by one.
+// ki_walk_column agrees with kiln_walk_albedo of each f0.
 static void columns_agree_with_walks(void **state)
 {
     (void)state;
@@ -206,7 +212,7 @@ static void columns_agree_with_walks(void **state)
             for (int k = 0; k < 5; k++) {
                 kiln_walk w = walk((kiln_walk_def){.f0 = f0[k], .path_count = 16384, .seed = 2},
                                    roughnesses[i], cosines[j]);
-                // Both err, the column less.
+                // The tolerance allows for the errors of both, of which the column's is smaller.
                 CHECK_NEAR(f0[k] * ab[0] + ab[1] + column[k], w.albedo,
                            5 * sqrt(2) * w.standard_error + 1e-5);
             }

@@ -1,4 +1,5 @@
-// The elementary functions against libm, and quadrature against what it must integrate exactly.
+// Elementary functions agree with libm, quadrature rules integrate what they must integrate
+// exactly, and eigenvalues of constructed matrices are found.
 #include "check.h"
 
 #include "math/math.h"
@@ -16,7 +17,7 @@ static double uniform(double low, double high)
     return low + (high - low) * ((double)(state >> 11) / 9007199254740992.0);
 }
 
-// The error in units of the last place of the wanted value.
+// The error of `value` in units of the last place of `wanted`.
 static double ulps(double value, long double wanted)
 {
     int exponent;
@@ -71,7 +72,7 @@ static void error_functions_agree_with_libm(void **unused)
     }
     CHECK_BELOW(error, 2);
     CHECK_BELOW(scaled, 5);
-    // The rise and the fall: 1 - 2 x / sqrt(pi), and 1 / (x sqrt(pi)).
+    // The limits: erf x is 2 x / sqrt(pi) for small x, and erfcx x is 1 / (x sqrt(pi)) for large x.
     CHECK_NEAR(ki_erf(1e-300) / 1e-300, 1.1283791670955126, 3e-16);
     CHECK_NEAR(ki_erfcx(0), 1, 3e-16);
     CHECK_NEAR(ki_erfcx(1e200) * 1e200, 0.56418958354775629, 3e-16);
@@ -159,13 +160,14 @@ static void gauss_legendre_is_exact_to_its_degree(void **unused)
     }
 }
 
-// A known matrix: turned about random axes, the eigenvalues come back and the axes with them.
+// A diagonal matrix with known eigenvalues is multiplied from both sides by random reflections. The
+// function returns the eigenvalues, and unit vectors that are eigenvectors of the matrix.
 static void axes_of_symmetric_matrices(void **unused)
 {
     (void)unused;
     enum { COUNT = 34 };
     static double a[COUNT][COUNT], kept[COUNT][COUNT], axes[COUNT][COUNT], values[COUNT];
-    // From 1 down to 1e-8.
+    // The eigenvalues fall from 1 to 1e-8.
     for (int i = 0; i < COUNT; i++)
         a[i][i] = pow(10, -8.0 * i / (COUNT - 1));
     for (int turn = 0; turn < 20; turn++) {
