@@ -11,16 +11,13 @@ enum { LONGEST = 16 }; // different bakes in a case
 static bool bake_once(bench *b, kiln_context *context, const kiln_map *source,
                       const kiln_prefilter_def *def, kiln_map *map, int *degree)
 {
-    kiln_plan *plan = NULL;
-    *map = (kiln_map){0};
-    bool done = !kiln_plan_create(context, source->size, def, &plan, &b->error) &&
-                !kiln_plan_map(plan, map, &b->error) &&
-                !kiln_plan_execute(plan, source, map, &b->error);
-    if (done && degree) {
-        const kiln_spectrum *spectrum = kiln_plan_spectrum(plan);
-        *degree = spectrum ? kiln_spectrum_degree(spectrum) : 0;
-    }
-    kiln_plan_destroy(plan);
+    kiln_bake_def bake = {.levels = def ? *def : (kiln_prefilter_def){0},
+                          .irradiance_size = KILN_NO_IRRADIANCE};
+    kiln_environment environment;
+    bool done = !kiln_bake(context, source, &bake, &environment, &b->error);
+    *map = environment.levels;
+    if (done && degree)
+        *degree = environment.degree;
     return done;
 }
 
@@ -28,8 +25,10 @@ static bool bake_once(bench *b, kiln_context *context, const kiln_map *source,
 
 static bool probe_at(bench *b, kiln_context *context, const kiln_map *source, double tolerance)
 {
-    kiln_prefilter_def def = {.size = 64, .level_count = 7, .tolerance = tolerance};
-    kiln_map map = {0};
+    kiln_bake_def def = {.levels = {.size = 64, .level_count = 7, .tolerance = tolerance},
+                         .irradiance_size = KILN_NO_IRRADIANCE};
+    kiln_environment environment = {0};
+    const kiln_map *map = &environment.levels;
     kiln_plan *plan = NULL;
     double create[BENCH_MAX_RUNS], execute[BENCH_MAX_RUNS];
     bench_figures worst = {0};
@@ -38,22 +37,22 @@ static bool probe_at(bench *b, kiln_context *context, const kiln_map *source, do
         kiln_plan_destroy(plan);
         plan = NULL;
         double start = bench_cpu();
-        done = !kiln_plan_create(context, source->size, &def, &plan, &b->error);
+        done = !kiln_plan_create(context, source->shape, source->size, &def, &plan, &b->error);
         create[i] = bench_cpu() - start;
     }
-    done = done && !kiln_plan_map(plan, &map, &b->error);
+    done = done && !kiln_plan_environment(plan, &environment, &b->error);
     // An execution is short: each run is the best of many in a row.
     for (int i = 0; i < b->runs && done; i++) {
         execute[i] = INFINITY;
         for (int k = 0; k < 20 && done; k++) {
             double start = bench_cpu();
-            done = !kiln_plan_execute(plan, source, &map, &b->error);
+            done = !kiln_plan_execute(plan, source, &environment, &b->error);
             execute[i] = fmin(execute[i], bench_cpu() - start);
         }
     }
-    for (int l = 1; l < map.level_count && done; l++) {
+    for (int l = 1; l < map->level_count && done; l++) {
         bench_figures f;
-        done = bench_check_level(b, context, source, &map, l, &f);
+        done = bench_check_level(b, context, source, map, l, &f);
         worst.rms = fmax(worst.rms, f.rms);
         worst.largest = fmax(worst.largest, f.largest);
     }
@@ -69,7 +68,7 @@ static bool probe_at(bench *b, kiln_context *context, const kiln_map *source, do
         bench_row(b, name, "s", e);
         bench_aim("execute, CPU", 1e3 * e.median, "ms", 2);
     }
-    kiln_map_free(&map);
+    kiln_environment_free(&environment);
     kiln_plan_destroy(plan);
     return done;
 }
@@ -197,32 +196,22 @@ bool bench_files(bench *b)
         return false;
     bool done = true;
     for (int i = 0; i < b->runs && done; i++) {
-        kiln_map source = {0}, map = {0}, irradiance = {0};
-        kiln_plan *plan = NULL;
-        kiln_sh sh;
-        kiln_lobe lambert = kiln_lobe_lambert();
+        kiln_map source = {0};
+        kiln_environment made = {0};
         double t[STAGES + 1];
         t[0] = bench_cpu();
         done = !kiln_map_load(context, path, NULL, &source, &b->error);
         t[1] = bench_cpu();
-        done = done && !kiln_plan_create(context, source.size, NULL, &plan, &b->error) &&
-               !kiln_plan_map(plan, &map, &b->error) &&
-               !kiln_plan_execute(plan, &source, &map, &b->error) &&
-               !kiln_spectrum_sh(kiln_plan_spectrum(plan), 3, false, 0, 0, &sh, &b->error) &&
-               !kiln_map_create(context, KILN_SHAPE_CUBE, 64, 1, &irradiance, &b->error) &&
-               !kiln_spectrum_filter(context, kiln_plan_spectrum(plan), &lambert, 0, &irradiance, 0,
-                                     &b->error);
+        done = done && !kiln_bake(context, &source, NULL, &made, &b->error);
         t[2] = bench_cpu();
-        kiln_save_def def = {.sh = &sh};
-        done = done && !kiln_map_save(context, &map, output, &def, NULL, &b->error);
+        kiln_save_def def = {.sh = &made.sh};
+        done = done && !kiln_map_save(context, &made.levels, output, &def, NULL, &b->error);
         t[3] = bench_cpu();
         for (int k = 0; k < STAGES && done; k++)
             times[k][i] = t[k + 1] - t[k];
         if (done && i == 0)
             floor_time = read_all(&source);
-        kiln_plan_destroy(plan);
-        kiln_map_free(&irradiance);
-        kiln_map_free(&map);
+        kiln_environment_free(&made);
         kiln_map_free(&source);
     }
     remove(output);

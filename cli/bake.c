@@ -135,10 +135,10 @@ typedef struct bake {
     float roughness[KILN_MAX_LEVELS];
 
     cli_job job;
-    kiln_map source, map, irradiance;
-    kiln_sh stored_sh, sh; // for the file's metadata, and for --sh
-    bool stores_sh;
-    int source_width, source_height, degree, file_count, main_count;
+    kiln_map source;
+    kiln_environment made;
+    bool stores_sh; // in the file's metadata
+    int source_width, source_height, file_count, main_count;
     kiln_shape source_shape;
     enum { LOAD, FILTER, BESIDE, SAVE, STAGES } stage;
     double seconds[STAGES], since;
@@ -423,77 +423,33 @@ static int load(bake *b)
     return CLI_GO;
 }
 
-// Degree of the analysis for an irradiance map where the filter needed none or less: the cosine
-// is filtered up to 303, where its terms are below 1e-7 of the whole.
-enum { BESIDE_DEGREE = 320 };
-
-static int take_beside(bake *b, const kiln_spectrum *spectrum)
+// Bands of harmonics to make: those of the file's metadata, which engines want three of, and of --sh.
+static int most_bands(const bake *b)
 {
-    cli_job *job = &b->job;
-    bool wants_map = b->irradiance_path && !b->textbook;
-    if (!b->stores_sh && !b->sh_path && !wants_map)
-        return CLI_GO;
-    kiln_spectrum *own = NULL;
-    int wanted = wants_map                             ? BESIDE_DEGREE
-                 : 2 * b->source.size < KILN_MAX_BANDS ? 2 * b->source.size
-                                                       : KILN_MAX_BANDS;
-    kiln_result result = KILN_OK;
-    if (!spectrum || kiln_spectrum_degree(spectrum) < wanted) {
-        result = kiln_spectrum_analyze(job->context, &b->source, wanted, &own, &job->error);
-        spectrum = own;
-    }
-    if (!result && b->stores_sh)
-        result = kiln_spectrum_sh(spectrum, b->engine ? 3 : b->sh_bands, false, 0, b->rotation,
-                                  &b->stored_sh, &job->error);
-    if (!result && b->sh_path)
-        result = kiln_spectrum_sh(spectrum, b->sh_bands, b->sh_irradiance, b->sh_window,
-                                  b->rotation, &b->sh, &job->error);
-    if (!result && wants_map) {
-        kiln_lobe lambert = kiln_lobe_lambert();
-        result = kiln_map_create(job->context, (kiln_shape)b->shape, b->irradiance_size, 1,
-                                 &b->irradiance, &job->error);
-        if (!result)
-            result = kiln_spectrum_filter(job->context, spectrum, &lambert, b->rotation,
-                                          &b->irradiance, 0, &job->error);
-        b->irradiance.roughness[0] = 1;
-    }
-    kiln_spectrum_destroy(own);
-    return result ? CLI_FAILED : CLI_GO;
+    return b->engine && b->sh_bands < 3 ? 3 : b->sh_bands;
 }
 
 static int filter_exactly(bake *b)
 {
     cli_job *job = &b->job;
-    kiln_prefilter_def def = {
-        .shape = (kiln_shape)b->shape,
-        .has_shape = true,
-        .size = b->size,
-        .level_count = b->level_count,
-        .smallest = b->smallest,
-        .roughness = b->has_roughness ? b->roughness : NULL,
-        .lobe = (enum kiln_lobe_kind)b->lobe,
-        .rotation = b->rotation,
-        .shown_by = b->fit ? b->engine : NULL,
-        .soft = b->fit == 2,
+    kiln_bake_def def = {
+        .levels = {.shape = (kiln_shape)b->shape,
+                   .has_shape = true,
+                   .size = b->size,
+                   .level_count = b->level_count,
+                   .smallest = b->smallest,
+                   .roughness = b->has_roughness ? b->roughness : NULL,
+                   .lobe = (enum kiln_lobe_kind)b->lobe,
+                   .rotation = b->rotation,
+                   .shown_by = b->fit ? b->engine : NULL,
+                   .soft = b->fit == 2},
+        .irradiance_size = b->irradiance_path ? b->irradiance_size : KILN_NO_IRRADIANCE,
+        .sh_bands = most_bands(b),
     };
-    int code = CLI_FAILED;
-    kiln_plan *plan = NULL;
-    const kiln_spectrum *spectrum = NULL;
-    if (b->source.shape == KILN_SHAPE_PANORAMA) {
-        if (kiln_plan_create(job->context, b->source.size, &def, &plan, &job->error) ||
-            kiln_plan_map(plan, &b->map, &job->error) ||
-            kiln_plan_execute(plan, &b->source, &b->map, &job->error))
-            goto done;
-        spectrum = kiln_plan_spectrum(plan);
-        b->degree = spectrum ? kiln_spectrum_degree(spectrum) : 0;
-    } else if (kiln_prefilter(job->context, &b->source, &def, &b->map, &job->error)) {
-        goto done;
-    }
+    if (kiln_bake(job->context, &b->source, &def, &b->made, &job->error))
+        return CLI_FAILED;
     next_stage(b);
-    code = take_beside(b, spectrum);
-done:
-    kiln_plan_destroy(plan);
-    return code;
+    return CLI_GO;
 }
 
 // The textbook's methods read a panorama as it is.
@@ -526,15 +482,18 @@ static int filter_by_textbook(bake *b)
     if (make_panorama(b) != CLI_GO)
         return CLI_FAILED;
     if (b->lobe == KILN_LOBE_LAMBERT
-            ? kiln_textbook_irradiance(job->context, &b->source, &def, &b->map, &job->error)
-            : kiln_textbook_prefilter(job->context, &b->source, &def, &b->map, &job->error))
+            ? kiln_textbook_irradiance(job->context, &b->source, &def, &b->made.levels, &job->error)
+            : kiln_textbook_prefilter(job->context, &b->source, &def, &b->made.levels, &job->error))
         return CLI_FAILED;
     next_stage(b);
     def.size = b->irradiance_size;
     if (b->irradiance_path &&
-        kiln_textbook_irradiance(job->context, &b->source, &def, &b->irradiance, &job->error))
+        kiln_textbook_irradiance(job->context, &b->source, &def, &b->made.irradiance, &job->error))
         return CLI_FAILED;
-    return take_beside(b, NULL);
+    return kiln_map_sh(job->context, &b->source, most_bands(b), b->rotation, &b->made.sh,
+                       &job->error)
+               ? CLI_FAILED
+               : CLI_GO;
 }
 
 // The largest value that the output's format holds; 0 for no limit.
@@ -581,36 +540,41 @@ static void warn_of_clamping(bake *b, const kiln_map *map, const char *path)
 static int save(bake *b)
 {
     cli_job *job = &b->job;
+    kiln_sh stored, sh;
     kiln_save_def def = {
         .format = (kiln_format)b->format,
         .zstd = b->zstd,
-        .sh = b->stores_sh ? &b->stored_sh : NULL,
+        .sh = b->stores_sh ? &stored : NULL,
         .lobe = lobes[b->lobe],
     };
+    if (kiln_sh_filter(&b->made.sh, b->engine ? 3 : b->sh_bands, false, 0, &stored, &job->error) ||
+        kiln_sh_filter(&b->made.sh, b->sh_bands, b->sh_irradiance, b->sh_window, &sh, &job->error))
+        return CLI_FAILED;
     int count = 0;
     kiln_map_free(&b->source);
-    if (b->engine ? kiln_engine_save(job->context, b->engine, &b->map, &b->stored_sh,
-                                     (kiln_format)b->format, b->output, &count, &job->error)
-                  : kiln_map_save(job->context, &b->map, b->output, &def, &count, &job->error))
+    if (b->engine
+            ? kiln_engine_save(job->context, b->engine, &b->made.levels, &stored,
+                               (kiln_format)b->format, b->output, &count, &job->error)
+            : kiln_map_save(job->context, &b->made.levels, b->output, &def, &count, &job->error))
         return CLI_FAILED;
     b->file_count = b->main_count = count;
     if (b->irradiance_path) {
         def.lobe = "lambert";
         def.sh = NULL;
         def.zstd = !strcmp(cli_ending(b->irradiance_path), "ktx2") ? b->zstd : 0;
-        if (cli_interrupted() || kiln_map_save(job->context, &b->irradiance, b->irradiance_path,
-                                               &def, &count, &job->error))
+        if (cli_interrupted() || kiln_map_save(job->context, &b->made.irradiance,
+                                               b->irradiance_path, &def, &count, &job->error))
             return CLI_FAILED;
         b->file_count += count;
     }
     if (b->sh_path) {
-        if (cli_interrupted() || kiln_sh_save(job->context, &b->sh, b->sh_path, &job->error))
+        if (cli_interrupted() || kiln_sh_save(job->context, &sh, b->sh_path, &job->error))
             return CLI_FAILED;
         b->file_count++;
     }
-    warn_of_clamping(b, &b->map, b->output);
+    warn_of_clamping(b, &b->made.levels, b->output);
     if (b->irradiance_path)
-        warn_of_clamping(b, &b->irradiance, b->irradiance_path);
+        warn_of_clamping(b, &b->made.irradiance, b->irradiance_path);
     return CLI_GO;
 }
 
@@ -640,16 +604,16 @@ static int report_json(const bake *b)
     if (b->sh_path)
         cJSON_AddStringToObject(output, "sh", b->sh_path);
     cJSON_AddNumberToObject(output, "file_count", b->file_count);
-    cJSON_AddStringToObject(output, "shape", shapes[b->map.shape]);
-    cJSON_AddNumberToObject(output, "size", b->map.size);
-    cJSON_AddNumberToObject(output, "level_count", b->map.level_count);
+    cJSON_AddStringToObject(output, "shape", shapes[b->made.levels.shape]);
+    cJSON_AddNumberToObject(output, "size", b->made.levels.size);
+    cJSON_AddNumberToObject(output, "level_count", b->made.levels.level_count);
     cJSON *levels = cJSON_AddArrayToObject(output, "levels");
-    for (int k = 0; k < b->map.level_count; k++) {
+    for (int k = 0; k < b->made.levels.level_count; k++) {
         cJSON *level = cJSON_CreateObject();
-        cJSON_AddNumberToObject(level, "size", kiln_map_level_size(&b->map, k));
+        cJSON_AddNumberToObject(level, "size", kiln_map_level_size(&b->made.levels, k));
         // Nine digits tell every float; the nearest such double prints shortest.
         char text[32];
-        snprintf(text, sizeof text, "%.9g", (double)b->map.roughness[k]);
+        snprintf(text, sizeof text, "%.9g", (double)b->made.levels.roughness[k]);
         cJSON_AddNumberToObject(level, "roughness", strtod(text, NULL));
         cJSON_AddItemToArray(levels, level);
     }
@@ -657,8 +621,8 @@ static int report_json(const bake *b)
     cJSON_AddStringToObject(json, "lobe", lobes[b->lobe]);
     if (b->engine)
         cJSON_AddStringToObject(json, "fit", fits[b->fit]);
-    if (b->degree)
-        cJSON_AddNumberToObject(json, "degree", b->degree);
+    if (b->made.degree)
+        cJSON_AddNumberToObject(json, "degree", b->made.degree);
     cJSON_AddStringToObject(json, "cpu", kiln_context_cpu(b->job.context));
 
     static const char *const stages[STAGES] = {"load", "filter", "beside", "save"};
@@ -685,22 +649,23 @@ static int report(bake *b)
     if (b->main_count > 1)
         snprintf(files, sizeof files, " in %d files", b->main_count);
     printf("%s: %s of %d, %d level%s%s, %s %s, from %s %s of %d x %d, %.2f s\n", b->output,
-           shapes[b->map.shape], b->map.size, b->map.level_count, b->map.level_count > 1 ? "s" : "",
-           files, b->fit ? "fitted" : methods[b->textbook], lobes[b->lobe],
+           shapes[b->made.levels.shape], b->made.levels.size, b->made.levels.level_count,
+           b->made.levels.level_count > 1 ? "s" : "", files,
+           b->fit ? "fitted" : methods[b->textbook], lobes[b->lobe],
            b->source_shape == KILN_SHAPE_OCTAHEDRON ? "an" : "a", shapes[b->source_shape],
            b->source_width, b->source_height, total_seconds(b));
     if (!b->verbose)
         return CLI_DONE;
-    for (int k = 0; k < b->map.level_count; k++)
-        printf("  level %-2d  size %-5d  roughness %.4g\n", k, kiln_map_level_size(&b->map, k),
-               (double)b->map.roughness[k]);
+    for (int k = 0; k < b->made.levels.level_count; k++)
+        printf("  level %-2d  size %-5d  roughness %.4g\n", k,
+               kiln_map_level_size(&b->made.levels, k), (double)b->made.levels.roughness[k]);
     if (b->irradiance_path)
-        printf("  irradiance %s, size %d\n", b->irradiance_path, b->irradiance.size);
+        printf("  irradiance %s, size %d\n", b->irradiance_path, b->made.irradiance.size);
     if (b->sh_path)
         printf("  harmonics  %s, %d bands of %s\n", b->sh_path, b->sh_bands,
                b->sh_irradiance ? "irradiance" : "radiance");
-    if (b->degree)
-        printf("  degree     %d\n", b->degree);
+    if (b->made.degree)
+        printf("  degree     %d\n", b->made.degree);
     printf("  seconds    load %.3f, filter %.3f, beside %.3f, save %.3f (%s)\n", b->seconds[LOAD],
            b->seconds[FILTER], b->seconds[BESIDE], b->seconds[SAVE],
            kiln_context_cpu(b->job.context));
@@ -729,8 +694,7 @@ static int run(int argc, const char **argv)
             code = report(&b);
         }
         kiln_map_free(&b.source);
-        kiln_map_free(&b.map);
-        kiln_map_free(&b.irradiance);
+        kiln_environment_free(&b.made);
         code = cli_job_end(&b.job, code);
     }
     cli_arguments_free(&b.arguments);

@@ -155,12 +155,12 @@ int look_load(cli_job *job, const look *l, kiln_map *source)
 int look_bake_slot(cli_job *job, const look *l, const kiln_map *source, view_slot slot, int samples,
                    view_renderer *renderer)
 {
-    view_environment e;
+    kiln_environment e;
     if (view_bake(job->context, source, l->bake_size, samples, &e, &job->error) != KILN_OK)
         return CLI_FAILED;
     kiln_result result =
         view_set_environment(renderer, slot, &e.levels, &e.sh, &e.irradiance, &job->error);
-    view_environment_free(&e);
+    kiln_environment_free(&e);
     return result == KILN_OK ? CLI_GO : CLI_FAILED;
 }
 

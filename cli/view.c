@@ -29,7 +29,7 @@ typedef struct textbook {
     atomic_bool stop, finished;
     atomic_int thousandths;
     kiln_context *context;
-    view_environment environment;
+    kiln_environment environment;
     kiln_result result;
     kiln_error error;
 } textbook;
@@ -100,7 +100,7 @@ static kiln_result ask_textbook(void *user, view_renderer *renderer, bool wait, 
     pthread_join(t->thread, NULL);
     t->set = true;
     *done = 1;
-    const view_environment *e = &t->environment;
+    const kiln_environment *e = &t->environment;
     if (t->result == KILN_OK)
         return view_set_environment(renderer, VIEW_SLOT_TEXTBOOK, &e->levels, &e->sh,
                                     &e->irradiance, error);
@@ -113,7 +113,7 @@ static void end_textbook(textbook *t)
     atomic_store(&t->stop, true);
     if (t->begun && !t->set)
         pthread_join(t->thread, NULL);
-    view_environment_free(&t->environment);
+    kiln_environment_free(&t->environment);
     kiln_context_destroy(t->context);
 }
 

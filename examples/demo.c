@@ -41,7 +41,8 @@ typedef struct demo {
 
     // Of the environment at hand.
     int index;
-    kiln_map source, map;
+    kiln_map source;
+    kiln_environment environment;
     kiln_map soft[KILN_MAX_LEVELS]; ///< the smallest levels again, with more texels
     demo_level balls[KILN_MAX_LEVELS];
     kiln_plan *plan;
@@ -165,11 +166,12 @@ static kiln_result show_levels(demo *d)
             "<div class=\"balls\" id=\"balls%d\">\n",
             d->index, d->index);
     char caption[128];
-    for (int k = 0; k < d->map.level_count && !result; k++) {
+    for (int k = 0; k < d->environment.levels.level_count && !result; k++) {
         kiln_image image;
         result =
             demo_picture_ball(d->context, d->balls[k], false, BALL, &d->view, &image, &d->error);
-        snprintf(caption, sizeof caption, "<b>%.3g</b>", (double)d->map.roughness[k]);
+        snprintf(caption, sizeof caption, "<b>%.3g</b>",
+                 (double)d->environment.levels.roughness[k]);
         if (!result)
             result = figure(d, &image, "ball", "A ball mirroring one level", caption);
     }
@@ -178,12 +180,13 @@ static kiln_result show_levels(demo *d)
           "so left and right are swapped. Blurred levels need few texels; each is half as large "
           "as the one before.</p>\n<div class=\"crosses\">\n",
           f);
-    for (int k = 0; k < d->map.level_count && !result; k++) {
+    for (int k = 0; k < d->environment.levels.level_count && !result; k++) {
         kiln_image image;
-        int size = kiln_map_level_size(&d->map, k);
-        result = demo_picture_cross(d->context, &d->map, k, CROSS, &d->view, &image, &d->error);
+        int size = kiln_map_level_size(&d->environment.levels, k);
+        result = demo_picture_cross(d->context, &d->environment.levels, k, CROSS, &d->view, &image,
+                                    &d->error);
         snprintf(caption, sizeof caption, "Roughness <b>%.3g</b>, six faces of %d&times;%d",
-                 (double)d->map.roughness[k], size, size);
+                 (double)d->environment.levels.roughness[k], size, size);
         if (!result)
             result = figure(d, &image, "texels", "An unfolded cube", caption);
     }
@@ -442,7 +445,7 @@ static kiln_result measure(demo *d)
     d->textbook = since(start);
     start = now();
     if (!result)
-        result = kiln_plan_execute(d->plan, &d->source, &d->map, &d->error);
+        result = kiln_plan_execute(d->plan, &d->source, &d->environment, &d->error);
     d->again = since(start);
     kiln_map_free(&exact);
     kiln_map_free(&textbook);
@@ -466,8 +469,9 @@ static void show_times(demo *d, const char *load_name)
     double longest = fmax(fmax(d->load.wall, d->bake.wall), d->again.wall);
     show_bar(d, load_name, d->load, longest, false);
     char name[128];
-    snprintf(name, sizeof name, "bake it: 6 &times; %d&times;%d, %d levels", d->map.size,
-             d->map.size, d->map.level_count);
+    snprintf(name, sizeof name, "bake it: 6 &times; %d&times;%d, %d levels",
+             d->environment.levels.size, d->environment.levels.size,
+             d->environment.levels.level_count);
     show_bar(d, name, d->bake, longest, true);
     show_bar(d, "bake again with the same plan", d->again, longest, true);
     fputs("</div>\n<div class=\"bars\">\n", f);
@@ -491,23 +495,24 @@ static void show_times(demo *d, const char *load_name)
 
 static kiln_result bake(demo *d)
 {
-    kiln_prefilter_def def = {0};
+    kiln_bake_def def = {.irradiance_size = KILN_NO_IRRADIANCE};
     demo_time start = now();
-    kiln_result result = kiln_plan_create(d->context, d->source.size, &def, &d->plan, &d->error);
+    kiln_result result =
+        kiln_plan_create(d->context, d->source.shape, d->source.size, &def, &d->plan, &d->error);
     if (!result)
-        result = kiln_plan_map(d->plan, &d->map, &d->error);
+        result = kiln_plan_environment(d->plan, &d->environment, &d->error);
     if (!result)
-        result = kiln_plan_execute(d->plan, &d->source, &d->map, &d->error);
+        result = kiln_plan_execute(d->plan, &d->source, &d->environment, &d->error);
     d->bake = since(start);
     if (result)
         return result;
     d->spectrum = kiln_plan_spectrum(d->plan);
     // Few texels show on a ball: what is smaller is filtered once more onto larger faces.
-    for (int k = 0; k < d->map.level_count && !result; k++) {
-        double r = (double)d->map.roughness[k];
+    for (int k = 0; k < d->environment.levels.level_count && !result; k++) {
+        double r = (double)d->environment.levels.roughness[k];
         kiln_lobe lobe = kiln_lobe_ggx(r * r);
-        d->balls[k] = (demo_level){&d->map, k};
-        if (kiln_map_level_size(&d->map, k) >= SOFT)
+        d->balls[k] = (demo_level){&d->environment.levels, k};
+        if (kiln_map_level_size(&d->environment.levels, k) >= SOFT)
             continue;
         d->balls[k] = (demo_level){&d->soft[k], 0};
         result = kiln_map_create(d->context, KILN_SHAPE_CUBE, SOFT, 1, &d->soft[k], &d->error);
@@ -523,7 +528,7 @@ static void release(demo *d)
 {
     kiln_plan_destroy(d->plan);
     d->plan = NULL;
-    kiln_map_free(&d->map);
+    kiln_environment_free(&d->environment);
     kiln_map_free(&d->source);
     for (int k = 0; k < KILN_MAX_LEVELS; k++)
         kiln_map_free(&d->soft[k]);

@@ -4,7 +4,7 @@
 #include <kiln/course.h>
 #include <string.h>
 
-enum { SIZE = 256, SMALLEST = 8, IRRADIANCE_SIZE = 32, BANDS = 3 };
+enum { SIZE = 256, SMALLEST = 8, IRRADIANCE_SIZE = 32 };
 
 // Down to SMALLEST texels: a level of one texel has six values for the whole sphere.
 static int count_levels(int size)
@@ -48,46 +48,42 @@ static kiln_result textbook_levels(kiln_context *context, const kiln_map *source
     return result;
 }
 
-static kiln_result make_levels(kiln_context *context, const kiln_map *source, int size, int samples,
-                               kiln_map *levels, kiln_error *error)
+// Irradiance and harmonics of a source whose levels come from elsewhere: the one level that is made is
+// of the cosine lobe.
+static kiln_result bake_diffuse(kiln_context *context, const kiln_map *source,
+                                kiln_environment *environment, kiln_error *error)
 {
-    int level_count = count_levels(size);
-    if (samples)
-        return textbook_levels(context, source, size, level_count, samples, levels, error);
-    if (source->shape == KILN_SHAPE_CUBE && source->level_count > 1)
-        return copy(context, source, levels, error);
-    kiln_prefilter_def def = {.size = size, .level_count = level_count};
-    return kiln_prefilter(context, source, &def, levels, error);
+    kiln_bake_def def = {
+        .levels = {.size = IRRADIANCE_SIZE, .level_count = 1, .lobe = KILN_LOBE_LAMBERT},
+        .irradiance_size = KILN_NO_IRRADIANCE};
+    kiln_result result = kiln_bake(context, source, &def, environment, error);
+    environment->irradiance = environment->levels;
+    environment->levels = (kiln_map){0};
+    environment->lobe = KILN_LOBE_GGX;
+    return result;
 }
 
 kiln_result view_bake(kiln_context *context, const kiln_map *source, int size, int samples,
-                      view_environment *environment, kiln_error *error)
+                      kiln_environment *environment, kiln_error *error)
 {
-    *environment = (view_environment){0};
+    *environment = (kiln_environment){0};
     size = size ? size : SIZE;
     if (size < 16 || size > 2048)
         return view_fail(error, KILN_ERROR_ARGUMENT, "a cube of %d, it must be from 16 to 2048",
                          size);
-    kiln_spectrum *spectrum = NULL;
-    const kiln_prefilter_def lambert = {
-        .size = IRRADIANCE_SIZE, .level_count = 1, .lobe = KILN_LOBE_LAMBERT};
-    kiln_map *irradiance = &environment->irradiance;
-    kiln_result result = make_levels(context, source, size, samples, &environment->levels, error);
+    int level_count = count_levels(size);
+    bool is_baked = source->shape == KILN_SHAPE_CUBE && source->level_count > 1;
+    if (!samples && !is_baked) {
+        kiln_bake_def def = {.levels = {.size = size, .level_count = level_count},
+                             .irradiance_size = IRRADIANCE_SIZE};
+        return kiln_bake(context, source, &def, environment, error);
+    }
+    kiln_result result = bake_diffuse(context, source, environment, error);
     if (result == KILN_OK)
-        result = kiln_spectrum_analyze(context, source, BANDS, &spectrum, error);
-    if (result == KILN_OK)
-        result = kiln_spectrum_sh(spectrum, BANDS, false, 0, 0, &environment->sh, error);
-    if (result == KILN_OK)
-        result = kiln_prefilter(context, source, &lambert, irradiance, error);
-    kiln_spectrum_destroy(spectrum);
+        result = samples ? textbook_levels(context, source, size, level_count, samples,
+                                           &environment->levels, error)
+                         : copy(context, source, &environment->levels, error);
     if (result != KILN_OK)
-        view_environment_free(environment);
+        kiln_environment_free(environment);
     return result;
-}
-
-void view_environment_free(view_environment *environment)
-{
-    kiln_map_free(&environment->levels);
-    kiln_map_free(&environment->irradiance);
-    *environment = (view_environment){0};
 }

@@ -122,18 +122,11 @@ void view_tone(view_scene scene, const double radiance[3], double shown[3]);
 
 // ------------------------------------------------------------------------------------- environment
 
-/// What the shaders read of an environment.
-typedef struct view_environment {
-    kiln_map levels;     ///< GGX, a cube, the last level of 8 texels
-    kiln_map irradiance; ///< divided by pi, a cube
-    kiln_sh sh;          ///< of the radiance
-} view_environment;
-
-/// Bakes any map; a cube with levels is taken as baked already. with `samples` above
-/// 0 the levels are the textbook's, of so many samples a texel (it has 1024). `size` 16 to 2048, 0 for 256.
+/// Bakes what the shaders read of any map: GGX levels in a cube, the last of 8 texels, a cube of
+/// irradiance, and harmonics. A cube with levels is taken as baked already. With `samples` above 0 the
+/// levels are the textbook's, of so many samples a texel (it has 1024). `size` 16 to 2048, 0 for 256.
 KILN_CHECKED kiln_result view_bake(kiln_context *context, const kiln_map *source, int size,
-                                   int samples, view_environment *environment, kiln_error *error);
-void view_environment_free(view_environment *environment);
+                                   int samples, kiln_environment *environment, kiln_error *error);
 
 // ---------------------------------------------------------------------------------------- renderer
 

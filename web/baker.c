@@ -11,9 +11,8 @@
 struct baker {
     kiln_context *context;
     kiln_error error;
-    kiln_map source, baked, irradiance;
-    kiln_sh sh;
-    view_environment scenery;
+    kiln_map source;
+    kiln_environment baked, scenery;
     kiln_image truth;
     double truth_noise;
 };
@@ -96,131 +95,46 @@ const float *baker_source_texels(const baker *b)
     return b->source.level[0];
 }
 
-static kiln_result exposed(baker *b, double stops, kiln_map *map)
-{
-    kiln_result result =
-        kiln_map_create(b->context, b->source.shape, b->source.size, 1, map, &b->error);
-    if (result)
-        return result;
-    memcpy(map->level[0], b->source.level[0], 3 * sizeof(float) * kiln_map_texels(map, 0));
-    kiln_map_expose(map, stops);
-    return KILN_OK;
-}
-
-// The harmonics that `kiln bake` stores: of the filter's spectrum where that has enough degrees.
-static kiln_result harmonics(baker *b, const kiln_map *source, const kiln_spectrum *spectrum,
-                             double rotation)
-{
-    kiln_spectrum *own = NULL;
-    kiln_result result = KILN_OK;
-    int wanted = 2 * source->size < KILN_MAX_BANDS ? 2 * source->size : KILN_MAX_BANDS;
-    if (!spectrum || kiln_spectrum_degree(spectrum) < wanted) {
-        result = kiln_spectrum_analyze(b->context, source, wanted, &own, &b->error);
-        spectrum = own;
-    }
-    if (!result)
-        result = kiln_spectrum_sh(spectrum, 3, false, 0, rotation, &b->sh, &b->error);
-    kiln_spectrum_destroy(own);
-    return result;
-}
-
-// The irradiance that `kiln bake --irradiance` makes: the cosine is filtered up to degree 303.
-static kiln_result irradiance(baker *b, const kiln_map *source, const kiln_spectrum *spectrum,
-                              double rotation, kiln_map *map)
-{
-    enum { DEGREE = 320, SIZE = 64 };
-    kiln_spectrum *own = NULL;
-    kiln_lobe lambert = kiln_lobe_lambert();
-    kiln_result result = kiln_map_create(b->context, KILN_SHAPE_CUBE, SIZE, 1, map, &b->error);
-    if (!result && (!spectrum || kiln_spectrum_degree(spectrum) < DEGREE)) {
-        result = kiln_spectrum_analyze(b->context, source, DEGREE, &own, &b->error);
-        spectrum = own;
-    }
-    if (!result)
-        result = kiln_spectrum_filter(b->context, spectrum, &lambert, rotation, map, 0, &b->error);
-    kiln_spectrum_destroy(own);
-    map->roughness[0] = 1;
-    return result;
-}
-
-static kiln_result beside(baker *b, const kiln_map *source, const kiln_spectrum *spectrum,
-                          double rotation, kiln_map *diffuse)
-{
-    kiln_result result = harmonics(b, source, spectrum, rotation);
-    return result ? result : irradiance(b, source, spectrum, rotation, diffuse);
-}
-
-static kiln_result filter(baker *b, const kiln_map *source, const kiln_prefilter_def *def,
-                          kiln_map *map, kiln_map *diffuse)
-{
-    kiln_plan *plan = NULL;
-    kiln_result result;
-    if (source->shape != KILN_SHAPE_PANORAMA) {
-        result = kiln_prefilter(b->context, source, def, map, &b->error);
-        return result ? result : beside(b, source, NULL, def->rotation, diffuse);
-    }
-    if ((result = kiln_plan_create(b->context, source->size, def, &plan, &b->error)) == KILN_OK &&
-        (result = kiln_plan_map(plan, map, &b->error)) == KILN_OK &&
-        (result = kiln_plan_execute(plan, source, map, &b->error)) == KILN_OK)
-        result = beside(b, source, kiln_plan_spectrum(plan), def->rotation, diffuse);
-    kiln_plan_destroy(plan);
-    return result;
-}
-
 bool baker_bake(baker *b, int size, int levels, double rotation, double exposure)
 {
-    kiln_prefilter_def def = {.size = size, .level_count = levels, .rotation = rotation};
-    kiln_map brighter = {0}, map = {0}, diffuse = {0};
-    kiln_sh before = b->sh;
-    kiln_result result = KILN_OK;
-    if (!b->source.size)
-        result = KILN_ERROR_ARGUMENT;
-    else if (exposure != 0)
-        result = exposed(b, exposure, &brighter);
-    if (!result)
-        result = filter(b, exposure != 0 ? &brighter : &b->source, &def, &map, &diffuse);
-    kiln_map_free(&brighter);
-    if (result) {
-        kiln_map_free(&map);
-        kiln_map_free(&diffuse);
-        b->sh = before;
+    kiln_bake_def def = {.levels = {.size = size, .level_count = levels, .rotation = rotation},
+                         .exposure = exposure};
+    kiln_environment made;
+    if (!b->source.size || kiln_bake(b->context, &b->source, &def, &made, &b->error))
         return false;
-    }
-    kiln_map_free(&b->baked);
-    b->baked = map;
-    kiln_map_free(&b->irradiance);
-    b->irradiance = diffuse;
+    kiln_environment_free(&b->baked);
+    b->baked = made;
     return true;
 }
 
 int baker_level_count(const baker *b)
 {
-    return b->baked.level_count;
+    return b->baked.levels.level_count;
 }
 
 int baker_level_size(const baker *b, int level)
 {
-    return kiln_map_level_size(&b->baked, level);
+    return kiln_map_level_size(&b->baked.levels, level);
 }
 
 double baker_roughness(const baker *b, int level)
 {
-    return (double)b->baked.roughness[level];
+    return (double)b->baked.levels.roughness[level];
 }
 
 const float *baker_texels(const baker *b, int level)
 {
-    return b->baked.level[level];
+    return b->baked.levels.level[level];
 }
 
 const double *baker_harmonics(const baker *b)
 {
-    return &b->sh.c[0][0];
+    return &b->baked.sh.c[0][0];
 }
 
 bool baker_scenery(baker *b, int size, int samples)
 {
-    view_environment_free(&b->scenery);
+    kiln_environment_free(&b->scenery);
     return !view_bake(b->context, &b->source, size, samples, &b->scenery, &b->error);
 }
 
@@ -286,14 +200,14 @@ double baker_truth_noise(const baker *b)
 bool baker_save_irradiance(baker *b, const char *path, int format)
 {
     kiln_save_def def = {.format = (kiln_format)format, .lobe = "lambert"};
-    return !kiln_map_save(b->context, &b->irradiance, path, &def, NULL, &b->error);
+    return !kiln_map_save(b->context, &b->baked.irradiance, path, &def, NULL, &b->error);
 }
 
 bool baker_save(baker *b, const char *path, int format)
 {
     const char *dot = strrchr(path, '.');
     bool texture = dot && (!strcmp(dot, ".ktx2") || !strcmp(dot, ".dds"));
-    kiln_save_def def = {.format = (kiln_format)format, .sh = &b->sh, .lobe = "ggx"};
-    return !(texture ? kiln_map_save(b->context, &b->baked, path, &def, NULL, &b->error)
-                     : kiln_sh_save(b->context, &b->sh, path, &b->error));
+    kiln_save_def def = {.format = (kiln_format)format, .sh = &b->baked.sh, .lobe = "ggx"};
+    return !(texture ? kiln_map_save(b->context, &b->baked.levels, path, &def, NULL, &b->error)
+                     : kiln_sh_save(b->context, &b->baked.sh, path, &b->error));
 }

@@ -11,7 +11,7 @@ struct stage {
     kiln_context *context;
     kiln_error error;
     view_renderer *renderer;
-    view_environment coming;
+    kiln_environment coming;
     kiln_image truth;
     double numbers[STAGE_NUMBERS];
 };
@@ -95,7 +95,7 @@ bool stage_furnace(stage *s, int width, int height, double *off)
 
 bool stage_room(stage *s, int size, int levels, int irradiance_size)
 {
-    view_environment_free(&s->coming);
+    kiln_environment_free(&s->coming);
     return !kiln_map_create(s->context, KILN_SHAPE_CUBE, size, levels, &s->coming.levels,
                             &s->error) &&
            !kiln_map_create(s->context, KILN_SHAPE_CUBE, irradiance_size, 1, &s->coming.irradiance,
@@ -122,7 +122,7 @@ bool stage_light(stage *s, int slot)
     s->coming.sh.bands = 3;
     bool good = !view_set_environment(s->renderer, (view_slot)slot, &s->coming.levels,
                                       &s->coming.sh, &s->coming.irradiance, &s->error);
-    view_environment_free(&s->coming);
+    kiln_environment_free(&s->coming);
     return good;
 }
 

@@ -358,23 +358,6 @@ KILN_API KILN_CHECKED kiln_result kiln_prefilter(kiln_context *context, const ki
                                                  const kiln_prefilter_def *def, kiln_map *map,
                                                  kiln_error *error);
 
-/// The same sizes many times: everything that depends on them only is computed once.
-typedef struct kiln_plan kiln_plan;
-
-/// For panoramas of `source_size` rows. The plan keeps the context: destroy it first.
-KILN_API KILN_CHECKED kiln_result kiln_plan_create(kiln_context *context, int source_size,
-                                                   const kiln_prefilter_def *def, kiln_plan **plan,
-                                                   kiln_error *error);
-/// `map` is made by kiln_plan_map or has the same shape, size and levels.
-KILN_API KILN_CHECKED kiln_result kiln_plan_execute(kiln_plan *plan, const kiln_map *panorama,
-                                                    kiln_map *map, kiln_error *error);
-/// An empty map of the plan's shape, size, levels and roughness.
-KILN_API KILN_CHECKED kiln_result kiln_plan_map(const kiln_plan *plan, kiln_map *map,
-                                                kiln_error *error);
-/// The spectrum of the panorama executed last; the plan's own, valid until the next execution.
-KILN_API const kiln_spectrum *kiln_plan_spectrum(const kiln_plan *plan);
-KILN_API void kiln_plan_destroy(kiln_plan *plan);
-
 // ------------------------------------------------------------------------------ spherical harmonics
 
 /// Real, orthonormal, no Condon-Shortley sign, z the polar axis of the formulas but the directions
@@ -391,8 +374,84 @@ typedef struct kiln_sh {
 KILN_API KILN_CHECKED kiln_result kiln_spectrum_sh(const kiln_spectrum *spectrum, int bands,
                                                    bool irradiance, double window, double rotation,
                                                    kiln_sh *sh, kiln_error *error);
+/// The same of a map: its level 0 is analysed just as far as five bands need, which takes a few
+/// milliseconds. Harmonics of radiance, without a window: kiln_sh_filter makes others of them.
+KILN_API KILN_CHECKED kiln_result kiln_map_sh(kiln_context *context, const kiln_map *map, int bands,
+                                              double rotation, kiln_sh *sh, kiln_error *error);
+/// The first `bands` bands of harmonics of radiance, as irradiance or with a window as
+/// kiln_spectrum_sh makes them, to the same bits. `radiance` has no window and at least as many bands;
+/// the two may be the same.
+KILN_API KILN_CHECKED kiln_result kiln_sh_filter(const kiln_sh *radiance, int bands,
+                                                 bool irradiance, double window, kiln_sh *sh,
+                                                 kiln_error *error);
 /// The value of the series in a unit direction; may be negative.
 KILN_API void kiln_sh_evaluate(const kiln_sh *sh, const double direction[3], double value[3]);
+
+// ----------------------------------------------------------------------------------- environments
+
+/// What a scene is lit by, all made from one source. Made by kiln_bake or kiln_plan_environment,
+/// released by kiln_environment_free. Who fills one in with maps of their own may save it all the same.
+typedef struct kiln_environment {
+    kiln_map levels;     ///< radiance through the lobe, each level for its roughness[]
+    kiln_map irradiance; ///< irradiance / pi, one level; empty ({0}) where none was asked for
+    kiln_sh sh;          ///< of the radiance, without a window; kiln_sh_filter makes others
+    kiln_lobe_kind lobe; ///< of the levels
+    int degree;          ///< of the spectrum that the levels were made from; 0 where they were not
+} kiln_environment;
+
+enum { KILN_NO_IRRADIANCE = -1 };
+
+/// Whether levels are tuned for the engine that reads them: see kiln_prefilter_def.
+typedef enum kiln_tune {
+    KILN_TUNE_AUTO = 0, ///< sharp where the engine was measured to show less error so, else none
+    KILN_TUNE_NONE,     ///< exact levels
+    KILN_TUNE_SHARP,    ///< level 0 stays the mirror
+    KILN_TUNE_SOFT      ///< level 0 may be softer
+} kiln_tune;
+
+/// {0} is a good default: what kiln_prefilter makes by default, irradiance of 64 and three bands.
+typedef struct kiln_bake_def {
+    kiln_prefilter_def levels; ///< `rotation` turns irradiance and harmonics too, after the mirror
+    /// Whose levels to make; may be NULL. The engine decides lobe, roughness, smallest and tuning of
+    /// `levels`, which stay 0 there, and size and level_count where these are 0.
+    const kiln_engine *engine;
+    kiln_tune tune;      ///< with an engine only
+    bool mirror;         ///< swaps left and right of the source
+    double exposure;     ///< multiplies the source by 2^exposure: -600 to 600
+    int irradiance_size; ///< 1 to KILN_MAX_SIZE; 0 for 64, KILN_NO_IRRADIANCE for none
+    int sh_bands;        ///< 1 to KILN_MAX_BANDS; 0 for 3
+} kiln_bake_def;
+
+/// Bakes a source of any shape, of which level 0 is used: mirrored, exposed, turned, then analysed and
+/// filtered. `def` may be NULL. The irradiance has the shape of the levels.
+KILN_API KILN_CHECKED kiln_result kiln_bake(kiln_context *context, const kiln_map *source,
+                                            const kiln_bake_def *def, kiln_environment *environment,
+                                            kiln_error *error);
+/// May be NULL.
+KILN_API void kiln_environment_free(kiln_environment *environment);
+
+/// The same sizes many times: what depends on them only is computed once, and the memory that a bake
+/// needs is allocated once.
+typedef struct kiln_plan kiln_plan;
+
+/// For panoramas of `source_size` rows or cubes of `source_size` texels along a face (octahedra too).
+/// `def` may be NULL. The plan keeps the context: destroy the plan first.
+KILN_API KILN_CHECKED kiln_result kiln_plan_create(kiln_context *context, kiln_shape source_shape,
+                                                   int source_size, const kiln_bake_def *def,
+                                                   kiln_plan **plan, kiln_error *error);
+/// An empty environment of the plan's shapes, sizes, levels and roughness.
+KILN_API KILN_CHECKED kiln_result kiln_plan_environment(const kiln_plan *plan,
+                                                        kiln_environment *environment,
+                                                        kiln_error *error);
+/// Bakes into maps that are there: made by kiln_plan_environment, or of the same shape, size and
+/// levels. The result is kiln_bake's, to the same bits. Where it fails the maps hold anything.
+KILN_API KILN_CHECKED kiln_result kiln_plan_execute(kiln_plan *plan, const kiln_map *source,
+                                                    kiln_environment *environment,
+                                                    kiln_error *error);
+/// The spectrum that the last execution's levels were made from; the plan's own, valid until the next.
+KILN_API const kiln_spectrum *kiln_plan_spectrum(const kiln_plan *plan);
+/// May be NULL.
+KILN_API void kiln_plan_destroy(kiln_plan *plan);
 
 // --------------------------------------------------------------------------------------- reference
 

@@ -1,112 +1,139 @@
-// The recipe and its plan.
-#include "bake/prefilter.h"
-
-#include "bake/plan.h"
+// Environments, plans and levels as the caller asks for them: which engine's reads tuned levels are
+// for is looked up here.
+#include "bake/environment.h"
 #include "engine/engine.h"
 #include "image/image.h"
 
-// A plan whose def may name an engine.
-static kiln_result create_plan(kiln_context *context, int panorama_size, const kiln_map *source,
-                               const kiln_prefilter_def *def, kiln_plan **plan, kiln_error *error)
+// How the engine that levels are tuned for reads them; `shown` is NULL for exact levels.
+static kiln_result find_shown(const kiln_prefilter_def *def, ki_shown *room, const ki_shown **shown,
+                              kiln_error *error)
 {
-    *plan = NULL;
+    *shown = NULL;
     if (!def || !def->shown_by)
-        return ki_plan_create(context, panorama_size, source, def, NULL, plan, error);
+        return KILN_OK;
     const ki_recipe *recipe = ki_recipe_of(def->shown_by);
     if (!recipe || !recipe->level)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
                        "shown_by is no engine of kiln's that reads levels");
-    ki_shown shown = {.level = recipe->level,
-                      .keep_last = recipe->keeps_last,
-                      .flat = recipe->flat,
-                      .soft = def->soft};
-    return ki_plan_create(context, panorama_size, source, def, &shown, plan, error);
+    *room = (ki_shown){.level = recipe->level,
+                       .keep_last = recipe->keeps_last,
+                       .flat = recipe->flat,
+                       .soft = def->soft};
+    *shown = room;
+    return KILN_OK;
 }
 
-kiln_result kiln_plan_create(kiln_context *context, int source_size, const kiln_prefilter_def *def,
-                             kiln_plan **plan, kiln_error *error)
+static bool decides_itself(const kiln_prefilter_def *levels)
 {
+    return levels->roughness || levels->smallest || levels->lobe != KILN_LOBE_GGX ||
+           levels->shown_by || levels->soft;
+}
+
+// The levels that a definition asks for: its own, or the engine's of the size that it names.
+static kiln_result find_levels(const kiln_bake_def *def, float roughness[KILN_MAX_LEVELS],
+                               kiln_prefilter_def *levels, kiln_error *error)
+{
+    *levels = def->levels;
+    if ((int)def->tune < 0 || def->tune > KILN_TUNE_SOFT || (def->tune && !def->engine))
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "tune is %d, it must be 0 to %d, and 0 without an engine", (int)def->tune,
+                       (int)KILN_TUNE_SOFT);
+    if (!def->engine)
+        return KILN_OK;
+    if (decides_itself(levels))
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "the engine decides lobe, roughness, smallest and tuning of the levels: "
+                       "leave them 0");
+    kiln_prefilter_def wanted;
+    kiln_result result = kiln_engine_levels(def->engine, levels->size, levels->level_count,
+                                            roughness, &wanted, error);
+    if (result != KILN_OK)
+        return result;
+    levels->size = wanted.size;
+    levels->level_count = wanted.level_count;
+    levels->smallest = wanted.smallest;
+    levels->roughness = wanted.roughness;
+    bool tuned = def->tune == KILN_TUNE_AUTO ? def->engine->fit : def->tune != KILN_TUNE_NONE;
+    levels->shown_by = tuned ? def->engine : NULL;
+    levels->soft = def->tune == KILN_TUNE_SOFT;
+    return KILN_OK;
+}
+
+kiln_result kiln_plan_create(kiln_context *context, kiln_shape source_shape, int source_size,
+                             const kiln_bake_def *def, kiln_plan **plan, kiln_error *error)
+{
+    static const kiln_bake_def defaults = {0};
+    float roughness[KILN_MAX_LEVELS];
+    kiln_prefilter_def levels;
+    ki_shown room;
+    const ki_shown *shown;
+    def = def ? def : &defaults;
     *plan = NULL;
-    if (source_size < 1 || source_size > KILN_MAX_SIZE / 2)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "source_size is %d rows, it must be 1 to %d",
-                       source_size, KILN_MAX_SIZE / 2);
-    return create_plan(context, source_size, NULL, def, plan, error);
+    kiln_result result = find_levels(def, roughness, &levels, error);
+    if (result == KILN_OK)
+        result = find_shown(&levels, &room, &shown, error);
+    if (result == KILN_OK && def->irradiance_size < KILN_NO_IRRADIANCE)
+        result = ki_fail(error, KILN_ERROR_ARGUMENT, "irradiance_size is %d, it must be %d to %d",
+                         def->irradiance_size, KILN_NO_IRRADIANCE, KILN_MAX_SIZE);
+    if (result != KILN_OK)
+        return result;
+    ki_plan_def full = {.source_shape = source_shape,
+                        .source_size = source_size,
+                        .levels = &levels,
+                        .shown = shown,
+                        .mirror = def->mirror,
+                        .exposure = def->exposure,
+                        .irradiance_size = def->irradiance_size ? def->irradiance_size : 64,
+                        .sh_bands = def->sh_bands ? def->sh_bands : 3};
+    if (def->irradiance_size == KILN_NO_IRRADIANCE)
+        full.irradiance_size = 0;
+    return ki_plan_create(context, &full, plan, error);
 }
 
-void kiln_plan_destroy(kiln_plan *plan)
+// An environment of a plan that serves once.
+static kiln_result execute_once(kiln_plan *plan, const kiln_map *source,
+                                kiln_environment *environment, kiln_error *error)
 {
-    ki_plan_destroy(plan);
-}
-
-kiln_result kiln_plan_map(const kiln_plan *plan, kiln_map *map, kiln_error *error)
-{
-    *map = (kiln_map){.shape = plan->def.shape,
-                      .size = plan->def.size,
-                      .level_count = plan->def.level_count,
-                      .smallest = plan->def.smallest};
-    kiln_result result = ki_map_allocate(plan->context, map, error);
-    for (int i = 0; i < map->level_count; i++)
-        map->roughness[i] = plan->roughness[i];
+    kiln_result result = kiln_plan_environment(plan, environment, error);
+    if (result == KILN_OK)
+        result = kiln_plan_execute(plan, source, environment, error);
+    if (result != KILN_OK)
+        kiln_environment_free(environment);
     return result;
 }
 
-static kiln_result check_and_execute(kiln_plan *plan, const kiln_map *panorama,
-                                     const kiln_map *source, kiln_map *map, kiln_error *error)
+kiln_result kiln_bake(kiln_context *context, const kiln_map *source, const kiln_bake_def *def,
+                      kiln_environment *environment, kiln_error *error)
 {
-    kiln_result result = ki_map_check(panorama, error);
-    if (result != KILN_OK || (result = ki_map_check(map, error)) != KILN_OK)
-        return result;
-    if (panorama->shape != KILN_SHAPE_PANORAMA || panorama->size != plan->source_size)
-        return ki_fail(error, KILN_ERROR_ARGUMENT,
-                       "the plan is for panoramas of %d rows, this map has shape %d and size %d",
-                       plan->source_size, (int)panorama->shape, panorama->size);
-    if (map->shape != plan->def.shape || map->size != plan->def.size ||
-        map->level_count != plan->def.level_count)
-        return ki_fail(error, KILN_ERROR_ARGUMENT,
-                       "the plan writes shape %d, size %d, %d levels; this map has %d, %d, %d",
-                       (int)plan->def.shape, plan->def.size, plan->def.level_count, (int)map->shape,
-                       map->size, map->level_count);
-    if (map->smallest != plan->def.smallest)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "the plan's smallest is %d, this map's is %d",
-                       plan->def.smallest, map->smallest);
-    return ki_plan_execute(plan, panorama, source, map, error);
-}
-
-kiln_result kiln_plan_execute(kiln_plan *plan, const kiln_map *panorama, kiln_map *map,
-                              kiln_error *error)
-{
-    return check_and_execute(plan, panorama, NULL, map, error);
-}
-
-const kiln_spectrum *kiln_plan_spectrum(const kiln_plan *plan)
-{
-    return plan->spectrum;
+    kiln_plan *plan = NULL;
+    *environment = (kiln_environment){0};
+    kiln_result result = ki_map_check(source, error);
+    if (result == KILN_OK)
+        result = kiln_plan_create(context, source->shape, source->size, def, &plan, error);
+    if (result == KILN_OK)
+        result = execute_once(plan, source, environment, error);
+    kiln_plan_destroy(plan);
+    return result;
 }
 
 kiln_result kiln_prefilter(kiln_context *context, const kiln_map *source,
                            const kiln_prefilter_def *def, kiln_map *map, kiln_error *error)
 {
-    kiln_map made = {0};
-    const kiln_map *panorama = source;
     kiln_plan *plan = NULL;
+    kiln_environment environment = {0};
+    ki_plan_def full = {.levels = def};
+    ki_shown room;
     *map = (kiln_map){0};
     kiln_result result = ki_map_check(source, error);
-    if (result == KILN_OK && source->shape == KILN_SHAPE_PANORAMA) {
-        result = kiln_plan_create(context, source->size, def, &plan, error);
-    } else if (result == KILN_OK) {
-        int size = ki_min(2 * source->size, KILN_MAX_SIZE / 2);
-        panorama = &made;
-        result = kiln_map_convert(context, source, KILN_SHAPE_PANORAMA, size, 0, &made, error);
-        if (result == KILN_OK)
-            result = create_plan(context, size, source, def, &plan, error);
-    }
     if (result == KILN_OK)
-        result = kiln_plan_map(plan, map, error);
+        result = find_shown(def, &room, &full.shown, error);
+    full.source_shape = source->shape;
+    full.source_size = source->size;
     if (result == KILN_OK)
-        result = check_and_execute(plan, panorama, source, map, error);
-    if (result != KILN_OK)
-        kiln_map_free(map);
+        result = ki_plan_create(context, &full, &plan, error);
+    if (result == KILN_OK)
+        result = execute_once(plan, source, &environment, error);
     kiln_plan_destroy(plan);
-    kiln_map_free(&made);
+    *map = environment.levels;
     return result;
 }

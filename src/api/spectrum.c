@@ -156,15 +156,13 @@ kiln_result kiln_spectrum_sh(const kiln_spectrum *spectrum, int bands, bool irra
                              double window, double rotation, kiln_sh *sh, kiln_error *error)
 {
     *sh = (kiln_sh){0};
-    if (bands < 1 || bands > KILN_MAX_BANDS)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "bands is %d, it must be 1 to %d", bands,
-                       KILN_MAX_BANDS);
-    if (!(window >= 0 && window <= 1e6))
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "window is %g, it must be 0 to 1e6", window);
-    if (!(fabs(rotation) <= 1e6))
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "rotation is %g degrees, it must be within 1e6",
-                       rotation);
-    return ki_sh_project(spectrum, bands, irradiance, window, rotation, sh, error);
+    kiln_sh radiance = {0};
+    kiln_result result = ki_sh_check(bands, window, rotation, error);
+    if (result == KILN_OK)
+        result = ki_sh_project(spectrum, bands, rotation, &radiance, error);
+    if (result == KILN_OK)
+        result = kiln_sh_filter(&radiance, bands, irradiance, window, sh, error);
+    return result;
 }
 
 void kiln_sh_evaluate(const kiln_sh *sh, const double direction[3], double value[3])

@@ -1,6 +1,5 @@
 #include "bake/prefilter.h"
 
-#include "bake/plan.h"
 #include "math/math.h"
 #include "sphere/grid.h"
 #include "sphere/lobe.h"
@@ -114,7 +113,8 @@ kiln_result ki_lobe_spectrum(kiln_context *context, const kiln_lobe *lobe, doubl
 // A mirror shows the source itself, so that what was a cube stays as sharp, or the same; where its
 // texels are much finer than the mirror's, the way by the panorama, which adds all of them up, is
 // better and as sharp.
-static kiln_result plan_mirror(kiln_plan *p, int level, const kiln_map *source, kiln_error *error)
+static kiln_result plan_mirror(ki_prefilter *p, int level, const kiln_map *source,
+                               kiln_error *error)
 {
     kiln_map panorama = {.shape = KILN_SHAPE_PANORAMA, .size = p->source_size, .level_count = 1};
     kiln_map target = {.shape = p->def.shape,
@@ -133,12 +133,12 @@ static kiln_result plan_mirror(kiln_plan *p, int level, const kiln_map *source, 
                                    &p->mirrors[level], error);
 }
 
-static bool is_fitted(const kiln_plan *p, int level)
+static bool is_fitted(const ki_prefilter *p, int level)
 {
     return p->display && ki_display_fits(p->display, level);
 }
 
-static kiln_result plan_display(kiln_plan *p, const ki_shown *shown, const kiln_lobe *first,
+static kiln_result plan_display(ki_prefilter *p, const ki_shown *shown, const kiln_lobe *first,
                                 kiln_error *error)
 {
     if (!ki_is_mirror(first))
@@ -150,9 +150,9 @@ static kiln_result plan_display(kiln_plan *p, const ki_shown *shown, const kiln_
     return ki_display_create(p->context, &p->def, p->roughness, shown, &p->display, error);
 }
 
-kiln_result ki_plan_create(kiln_context *context, int panorama_size, const kiln_map *source,
-                           const kiln_prefilter_def *def, const ki_shown *shown, kiln_plan **plan,
-                           kiln_error *error)
+kiln_result ki_prefilter_create(kiln_context *context, int panorama_size, const kiln_map *source,
+                                const kiln_prefilter_def *def, const ki_shown *shown,
+                                ki_prefilter **plan, kiln_error *error)
 {
     static const char stage[] = "planning";
     kiln_result result = KILN_OK;
@@ -160,7 +160,7 @@ kiln_result ki_plan_create(kiln_context *context, int panorama_size, const kiln_
     ki_zonal zonals[KILN_MAX_LEVELS];
     ki_zonal_spectrum spectra[KILN_MAX_LEVELS] = {{0}};
     double *density = NULL;
-    kiln_plan *p = *plan = ki_alloc(context, 1, sizeof *p);
+    ki_prefilter *p = *plan = ki_alloc(context, 1, sizeof *p);
     if (!p)
         return ki_fail_memory(context, error, "a plan", sizeof *p);
     p->context = context;
@@ -212,14 +212,14 @@ done:
     for (int i = 0; i < KILN_MAX_LEVELS; i++)
         ki_zonal_free(&spectra[i]);
     if (result != KILN_OK) {
-        ki_plan_destroy(p);
+        ki_prefilter_destroy(p);
         *plan = NULL;
     }
     return result;
 }
 
-kiln_result ki_plan_execute(kiln_plan *p, const kiln_map *panorama, const kiln_map *source,
-                            kiln_map *map, kiln_error *error)
+kiln_result ki_prefilter_execute(ki_prefilter *p, const kiln_map *panorama, const kiln_map *source,
+                                 kiln_map *map, kiln_error *error)
 {
     static const char stage[] = "filtering";
     kiln_result result;
@@ -252,7 +252,7 @@ kiln_result ki_plan_execute(kiln_plan *p, const kiln_map *panorama, const kiln_m
     return result;
 }
 
-void ki_plan_destroy(kiln_plan *plan)
+void ki_prefilter_destroy(ki_prefilter *plan)
 {
     if (!plan)
         return;

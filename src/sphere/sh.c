@@ -47,13 +47,14 @@ void ki_sh_basis(const double d[3], double y[25])
 
 // The engine's polar axis is +Y, the basis' is z: the first bands are evaluated on a product grid
 // that integrates polynomials of twice the degree exactly, and projected again.
-kiln_result ki_sh_project(const kiln_spectrum *spectrum, int bands, bool irradiance, double window,
-                          double rotation, kiln_sh *sh, kiln_error *error)
+kiln_result ki_sh_project(const kiln_spectrum *spectrum, int bands, double rotation, kiln_sh *sh,
+                          kiln_error *error)
 {
     enum { DEGREE = KILN_MAX_BANDS - 1, RINGS = 8, COLUMNS = 16 };
     kiln_context *context = spectrum->context;
     ki_legendre legendre;
     size_t count = ki_coefficient_count(DEGREE);
+    *sh = (kiln_sh){.bands = bands};
     double *a = ki_alloc(context, count, sizeof *a);
     if (!a || !ki_legendre_create(context, DEGREE, &legendre)) {
         ki_free(a);
@@ -97,24 +98,51 @@ kiln_result ki_sh_project(const kiln_spectrum *spectrum, int bands, bool irradia
                 for (int n = 0; n < 3; n++)
                     sh->c[k][n] += y[k] * value[n] * weights[j] * 2 * KI_PI / COLUMNS;
         }
-
-    // Ramamoorthi and Hanrahan 2001, eq. 8; A_3 = 0, A_4 = -pi / 24.
-    static const double cosine_lobe[] = {KI_PI, 2 * KI_PI / 3, KI_PI / 4, 0, -KI_PI / 24};
-    for (int l = 0; l < bands; l++)
-        for (int k = l * l; k < (l + 1) * (l + 1); k++)
-            for (int c = 0; c < 3; c++) {
-                double factor = irradiance ? cosine_lobe[l] : 1;
-                if (window > 0)
-                    factor *= l < window ? (1 + ki_cos(KI_PI * l / window)) / 2 : 0;
-                sh->c[k][c] *= factor;
-            }
-    sh->bands = bands;
-    sh->irradiance = irradiance;
-    sh->window = window;
 done:
     ki_legendre_destroy(&legendre);
     ki_free(a);
     return result;
+}
+
+kiln_result ki_sh_check(int bands, double window, double rotation, kiln_error *error)
+{
+    if (bands < 1 || bands > KILN_MAX_BANDS)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "bands is %d, it must be 1 to %d", bands,
+                       KILN_MAX_BANDS);
+    if (!(window >= 0 && window <= 1e6))
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "window is %g, it must be 0 to 1e6", window);
+    if (!(fabs(rotation) <= 1e6))
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "rotation is %g degrees, it must be within 1e6",
+                       rotation);
+    return KILN_OK;
+}
+
+kiln_result kiln_sh_filter(const kiln_sh *radiance, int bands, bool irradiance, double window,
+                           kiln_sh *sh, kiln_error *error)
+{
+    // Ramamoorthi and Hanrahan 2001, eq. 8; A_3 = 0, A_4 = -pi / 24.
+    static const double cosine_lobe[] = {KI_PI, 2 * KI_PI / 3, KI_PI / 4, 0, -KI_PI / 24};
+    kiln_sh from = *radiance;
+    *sh = (kiln_sh){0};
+    kiln_result result = ki_sh_check(bands, window, 0, error);
+    if (result != KILN_OK)
+        return result;
+    if (from.bands < bands || from.bands > KILN_MAX_BANDS || from.irradiance || from.window > 0)
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "%d bands are wanted of %d bands of %s%s, they must be of radiance without "
+                       "a window",
+                       bands, from.bands, from.irradiance ? "irradiance" : "radiance",
+                       from.window > 0 ? " with a window" : "");
+    *sh = (kiln_sh){.bands = bands, .irradiance = irradiance, .window = window};
+    for (int l = 0; l < bands; l++) {
+        double factor = irradiance ? cosine_lobe[l] : 1;
+        if (window > 0)
+            factor *= l < window ? (1 + ki_cos(KI_PI * l / window)) / 2 : 0;
+        for (int k = l * l; k < (l + 1) * (l + 1); k++)
+            for (int c = 0; c < 3; c++)
+                sh->c[k][c] = from.c[k][c] * factor;
+    }
+    return KILN_OK;
 }
 
 void ki_sh_evaluate(const kiln_sh *sh, const double direction[3], double value[3])

@@ -6,8 +6,11 @@
 
 /// The 25 basis functions in a unit direction; see kiln_sh.
 void ki_sh_basis(const double direction[3], double y[KILN_MAX_BANDS * KILN_MAX_BANDS]);
-kiln_result ki_sh_project(const kiln_spectrum *spectrum, int bands, bool irradiance, double window,
-                          double rotation, kiln_sh *sh, kiln_error *error);
+/// Fails unless the numbers are in the ranges that kiln_spectrum_sh states.
+kiln_result ki_sh_check(int bands, double window, double rotation, kiln_error *error);
+/// The first bands of the radiance, in the world's directions.
+kiln_result ki_sh_project(const kiln_spectrum *spectrum, int bands, double rotation, kiln_sh *sh,
+                          kiln_error *error);
 void ki_sh_evaluate(const kiln_sh *sh, const double direction[3], double value[3]);
 
 /// Sum over m of |a_lm|^2 by channel, degrees 0 to the spectrum's: of the suns too, or without them.

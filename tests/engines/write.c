@@ -57,7 +57,8 @@ static kiln_result save_default(kiln_context *context, const kiln_engine *engine
 static kiln_result save_known(kiln_context *context, const kiln_engine *engine, bool coded,
                               int size, const char *path, kiln_format format, kiln_error *error)
 {
-    kiln_map map = {0};
+    kiln_environment made = {0};
+    kiln_map *map = &made.levels;
     kiln_plan *plan = NULL; // knows how the levels are laid out, and is quick where all are rough
     kiln_prefilter_def def;
     float roughness[KILN_MAX_LEVELS], rough[KILN_MAX_LEVELS];
@@ -67,15 +68,16 @@ static kiln_result save_known(kiln_context *context, const kiln_engine *engine, 
         rough[k] = 1;
     def.roughness = rough;
     if (!result)
-        result = kiln_plan_create(context, 16, &def, &plan, error);
+        result = kiln_plan_create(context, KILN_SHAPE_PANORAMA, 16, &(kiln_bake_def){.levels = def},
+                                  &plan, error);
     if (!result)
-        result = kiln_plan_map(plan, &map, error);
+        result = kiln_plan_environment(plan, &made, error);
     if (!result) {
-        memcpy(map.roughness, roughness, (size_t)map.level_count * sizeof *roughness);
-        paint(&map, coded);
-        result = kiln_engine_save(context, engine, &map, &sh, format, path, NULL, error);
+        memcpy(map->roughness, roughness, (size_t)map->level_count * sizeof *roughness);
+        paint(map, coded);
+        result = kiln_engine_save(context, engine, map, &sh, format, path, NULL, error);
     }
-    kiln_map_free(&map);
+    kiln_environment_free(&made);
     kiln_plan_destroy(plan);
     return result;
 }

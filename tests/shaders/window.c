@@ -65,7 +65,7 @@ static kiln_result light_slot(view_renderer *renderer, view_slot slot, kiln_erro
 {
     kiln_sky_def def = {.size = 64};
     kiln_map sky = {0};
-    view_environment e = {.sh = {.bands = 0}};
+    kiln_environment e = {.sh = {.bands = 0}};
     kiln_result result = kiln_sky(context, &def, &sky, error);
     if (result == KILN_OK) {
         kiln_map_expose(&sky, -4);
@@ -73,7 +73,7 @@ static kiln_result light_slot(view_renderer *renderer, view_slot slot, kiln_erro
     }
     if (result == KILN_OK)
         result = view_set_environment(renderer, slot, &e.levels, &e.sh, &e.irradiance, error);
-    view_environment_free(&e);
+    kiln_environment_free(&e);
     kiln_map_free(&sky);
     return result;
 }

@@ -138,24 +138,24 @@ static void a_plan_repeats_itself(void **state)
     (void)state;
     kiln_context *context = scene_context(2, KILN_CPU_BEST);
     kiln_error error;
-    kiln_map one = scene_panorama(context, 64, 1), two = scene_panorama(context, 64, 2), out,
-             wanted;
-    kiln_prefilter_def def = {.size = 32};
+    kiln_map one = scene_panorama(context, 64, 1), two = scene_panorama(context, 64, 2), wanted;
+    kiln_environment out;
+    kiln_bake_def def = {.levels = {.size = 32}};
     kiln_plan *plan;
-    CHECK_OK(kiln_plan_create(context, 64, &def, &plan, &error));
-    CHECK_OK(kiln_plan_map(plan, &out, &error));
+    CHECK_OK(kiln_plan_create(context, KILN_SHAPE_PANORAMA, 64, &def, &plan, &error));
+    CHECK_OK(kiln_plan_environment(plan, &out, &error));
     const kiln_map *inputs[] = {&one, &two, &one};
     for (int i = 0; i < 3; i++) {
         CHECK_OK(kiln_plan_execute(plan, inputs[i], &out, &error));
-        CHECK_OK(kiln_prefilter(context, inputs[i], &def, &wanted, &error));
-        assert_true(hash_map(&out) == hash_map(&wanted));
+        CHECK_OK(kiln_prefilter(context, inputs[i], &def.levels, &wanted, &error));
+        assert_true(hash_map(&out.levels) == hash_map(&wanted));
         kiln_map_free(&wanted);
     }
     kiln_map wrong;
     CHECK_OK(kiln_map_create(context, KILN_SHAPE_PANORAMA, 65, 1, &wrong, &error));
     assert_int_equal(kiln_plan_execute(plan, &wrong, &out, &error), KILN_ERROR_ARGUMENT);
     kiln_map_free(&wrong);
-    kiln_map_free(&out);
+    kiln_environment_free(&out);
     kiln_map_free(&one);
     kiln_map_free(&two);
     kiln_plan_destroy(plan);

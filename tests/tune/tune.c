@@ -248,23 +248,21 @@ static void a_plan_may_be_executed_again(void **state)
     kiln_context *context = make_context(0);
     kiln_map source[2] = {make_environment(context, 32, true),
                           make_environment(context, 32, false)};
-    float roughness[KILN_MAX_LEVELS];
-    kiln_prefilter_def def;
+    kiln_bake_def def = {
+        .levels = {.size = 32}, .engine = kiln_engine_find("three"), .tune = KILN_TUNE_SHARP};
     kiln_plan *plan;
-    kiln_map first, again;
-    CHECK_OK(kiln_engine_levels(kiln_engine_find("three"), 32, 0, roughness, &def, &error));
-    def.shown_by = kiln_engine_find("three");
-    CHECK_OK(kiln_plan_create(context, 32, &def, &plan, &error));
-    CHECK_OK(kiln_plan_map(plan, &first, &error));
-    CHECK_OK(kiln_plan_map(plan, &again, &error));
+    kiln_environment first, again;
+    CHECK_OK(kiln_plan_create(context, KILN_SHAPE_PANORAMA, 32, &def, &plan, &error));
+    CHECK_OK(kiln_plan_environment(plan, &first, &error));
+    CHECK_OK(kiln_plan_environment(plan, &again, &error));
     CHECK_OK(kiln_plan_execute(plan, &source[0], &first, &error));
     CHECK_OK(kiln_plan_execute(plan, &source[1], &again, &error));
     CHECK_OK(kiln_plan_execute(plan, &source[0], &again, &error));
-    for (int k = 0; k < first.level_count; k++)
-        assert_memory_equal(first.level[k], again.level[k],
-                            3 * kiln_map_texels(&first, k) * sizeof(float));
-    kiln_map_free(&first);
-    kiln_map_free(&again);
+    for (int k = 0; k < first.levels.level_count; k++)
+        assert_memory_equal(first.levels.level[k], again.levels.level[k],
+                            3 * kiln_map_texels(&first.levels, k) * sizeof(float));
+    kiln_environment_free(&first);
+    kiln_environment_free(&again);
     kiln_plan_destroy(plan);
     kiln_map_free(&source[0]);
     kiln_map_free(&source[1]);

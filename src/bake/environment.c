@@ -1,0 +1,361 @@
+// From a source to what a scene is lit by. In goes a map of any shape, out come levels, irradiance and
+// spherical harmonics, always by this one sequence:
+//
+//   source -> mirrored, exposed -> panorama -> spectrum -> levels      (bake/prefilter.c)
+//                                                       -> harmonics   (sphere/sh.c)
+//                                                       -> irradiance  (a level of the cosine lobe)
+//
+// A plan holds all that depends on sizes only, and all memory that an execution needs. A panorama is
+// analysed once where that analysis reaches the degree that the irradiance needs. The panorama made of
+// another shape is analysed again for harmonics and irradiance, to their own low degree, which costs
+// little: so their bits do not depend on which levels are asked for.
+#include "bake/environment.h"
+
+#include "image/image.h"
+#include "math/math.h"
+#include "sphere/grid.h"
+#include "sphere/sh.h"
+
+#include <math.h>
+#include <string.h>
+
+enum {
+    // The cosine lobe is filtered up to degree 303, where its terms are below 1e-7 of the whole.
+    IRRADIANCE_DEGREE = 320,
+    // The least that an analysis has; harmonics need KILN_MAX_BANDS - 1.
+    SH_DEGREE = 8
+};
+
+// A spectrum of its own.
+typedef struct analyzer {
+    ki_analysis *analysis;
+    ki_intake *intake;
+    kiln_spectrum *spectrum; // of the last execution
+} analyzer;
+
+struct kiln_plan {
+    kiln_context *context;
+    kiln_shape source_shape;
+    int source_size;
+    bool mirror;
+    double exposure, rotation;
+    int irradiance_size, sh_bands; // 0 for none
+    kiln_map changed; // the source mirrored and exposed; empty where neither is asked for
+    ki_resample_plan *to_panorama; // NULL where the source is a panorama
+    kiln_map panorama;
+    ki_prefilter *prefilter;
+    analyzer for_sh, for_irradiance; // empty where the prefilter's spectrum serves
+    ki_level *irradiance;            // the cosine lobe's level
+};
+
+// ---------------------------------------------------------------------------------------- analysis
+
+static void analyzer_destroy(analyzer *a)
+{
+    kiln_spectrum_destroy(a->spectrum);
+    ki_intake_destroy(a->intake);
+    ki_analysis_destroy(a->analysis);
+    *a = (analyzer){0};
+}
+
+static kiln_result analyzer_create(kiln_context *context, int size, int degree, analyzer *a,
+                                   kiln_error *error)
+{
+    *a = (analyzer){0};
+    double density[IRRADIANCE_DEGREE + 1];
+    ki_model_density(degree, density);
+    kiln_result result = ki_analysis_create(context, size, degree, density, &a->analysis, error);
+    if (result == KILN_OK)
+        result = ki_intake_create(a->analysis, true, &a->intake, error);
+    if (result == KILN_OK)
+        result = ki_spectrum_create(a->analysis, &a->spectrum, error);
+    if (result != KILN_OK)
+        analyzer_destroy(a);
+    return result;
+}
+
+// The analyzer's own spectrum of the panorama, or the prefilter's where there is no analyzer.
+static kiln_result find_spectrum(const kiln_plan *p, const analyzer *a, const kiln_map *panorama,
+                                 const kiln_spectrum **spectrum, kiln_error *error)
+{
+    *spectrum = a->spectrum ? a->spectrum : p->prefilter->spectrum;
+    return a->spectrum ? ki_intake_whole(a->intake, panorama->level[0], a->spectrum, error)
+                       : KILN_OK;
+}
+
+// -------------------------------------------------------------------------------------------- plan
+
+// Rows of the panorama that a source is analysed as: as many as a cube has texels around a half turn.
+static int panorama_rows(kiln_shape shape, int size)
+{
+    return shape == KILN_SHAPE_PANORAMA ? size : ki_min(2 * size, KILN_MAX_SIZE / 2);
+}
+
+static kiln_result check_def(const ki_plan_def *def, kiln_error *error)
+{
+    int most = def->source_shape == KILN_SHAPE_PANORAMA ? KILN_MAX_SIZE / 2 : KILN_MAX_SIZE;
+    if ((int)def->source_shape < 0 || def->source_shape > KILN_SHAPE_OCTAHEDRON)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "source_shape is %d, it must be 0 to %d",
+                       (int)def->source_shape, (int)KILN_SHAPE_OCTAHEDRON);
+    if (def->source_size < 1 || def->source_size > most)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "source_size is %d, it must be 1 to %d",
+                       def->source_size, most);
+    if (!(fabs(def->exposure) <= 600))
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "exposure is %g stops, it must be -600 to 600",
+                       def->exposure);
+    if (def->irradiance_size < 0 || def->irradiance_size > KILN_MAX_SIZE)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "irradiance_size is %d, it must be 1 to %d",
+                       def->irradiance_size, KILN_MAX_SIZE);
+    if (def->sh_bands < 0 || def->sh_bands > KILN_MAX_BANDS)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "sh_bands is %d, it must be 1 to %d",
+                       def->sh_bands, KILN_MAX_BANDS);
+    return KILN_OK;
+}
+
+// Memory for what a source becomes before it is analysed.
+static kiln_result plan_source(kiln_plan *p, kiln_error *error)
+{
+    kiln_result result = KILN_OK;
+    if (p->mirror || p->exposure != 0) {
+        p->changed = (kiln_map){.shape = p->source_shape, .size = p->source_size, .level_count = 1};
+        result = ki_map_allocate(p->context, &p->changed, error);
+    }
+    if (result != KILN_OK || p->source_shape == KILN_SHAPE_PANORAMA)
+        return result;
+    int rows = panorama_rows(p->source_shape, p->source_size);
+    p->panorama = (kiln_map){.shape = KILN_SHAPE_PANORAMA, .size = rows, .level_count = 1};
+    result = ki_map_allocate(p->context, &p->panorama, error);
+    if (result == KILN_OK)
+        result = ki_resample_plan_create(p->context, p->source_shape, p->source_size,
+                                         KILN_SHAPE_PANORAMA, rows, 0, &p->to_panorama, error);
+    return result;
+}
+
+static kiln_result plan_irradiance(kiln_plan *p, int rows, kiln_error *error)
+{
+    const ki_analysis *analysis = p->prefilter->analysis;
+    kiln_result result = KILN_OK;
+    if (p->to_panorama || analysis->degree < IRRADIANCE_DEGREE) {
+        result = analyzer_create(p->context, rows, IRRADIANCE_DEGREE, &p->for_irradiance, error);
+        analysis = p->for_irradiance.analysis;
+    }
+    kiln_lobe lambert = kiln_lobe_lambert();
+    ki_zonal zonal;
+    ki_zonal_spectrum lobe = {0};
+    if (result == KILN_OK)
+        result = ki_lobe_spectrum(p->context, &lambert, ki_prefilter_tolerance, false, &zonal,
+                                  &lobe, error);
+    if (result == KILN_OK)
+        result =
+            ki_level_create(p->context, &analysis->legendre, &zonal, &lobe, p->prefilter->def.shape,
+                            p->irradiance_size, &p->irradiance, error);
+    return result;
+}
+
+kiln_result ki_plan_create(kiln_context *context, const ki_plan_def *def, kiln_plan **plan,
+                           kiln_error *error)
+{
+    *plan = NULL;
+    kiln_result result = check_def(def, error);
+    if (result != KILN_OK)
+        return result;
+    kiln_plan *p = ki_alloc(context, 1, sizeof *p);
+    if (!p)
+        return ki_fail_memory(context, error, "a plan", sizeof *p);
+    *p = (kiln_plan){.context = context,
+                     .source_shape = def->source_shape,
+                     .source_size = def->source_size,
+                     .mirror = def->mirror,
+                     .exposure = def->exposure,
+                     .irradiance_size = def->irradiance_size,
+                     .sh_bands = def->sh_bands};
+    kiln_map source = {.shape = def->source_shape, .size = def->source_size, .level_count = 1};
+    int rows = panorama_rows(def->source_shape, def->source_size);
+    result = plan_source(p, error);
+    if (result == KILN_OK)
+        result = ki_prefilter_create(context, rows, p->to_panorama ? &source : NULL, def->levels,
+                                     def->shown, &p->prefilter, error);
+    if (result == KILN_OK)
+        p->rotation = p->prefilter->def.rotation;
+    if (result == KILN_OK && p->sh_bands && p->to_panorama)
+        result = analyzer_create(context, rows, SH_DEGREE, &p->for_sh, error);
+    if (result == KILN_OK && p->irradiance_size)
+        result = plan_irradiance(p, rows, error);
+    if (result == KILN_OK)
+        *plan = p;
+    else
+        kiln_plan_destroy(p);
+    return result;
+}
+
+void kiln_plan_destroy(kiln_plan *plan)
+{
+    if (!plan)
+        return;
+    ki_level_destroy(plan->irradiance);
+    analyzer_destroy(&plan->for_sh);
+    analyzer_destroy(&plan->for_irradiance);
+    ki_prefilter_destroy(plan->prefilter);
+    ki_resample_plan_destroy(plan->to_panorama);
+    kiln_map_free(&plan->panorama);
+    kiln_map_free(&plan->changed);
+    ki_free(plan);
+}
+
+kiln_result kiln_plan_environment(const kiln_plan *plan, kiln_environment *environment,
+                                  kiln_error *error)
+{
+    const kiln_prefilter_def *def = &plan->prefilter->def;
+    *environment = (kiln_environment){.lobe = def->lobe};
+    environment->levels = (kiln_map){.shape = def->shape,
+                                     .size = def->size,
+                                     .level_count = def->level_count,
+                                     .smallest = def->smallest};
+    kiln_result result = ki_map_allocate(plan->context, &environment->levels, error);
+    if (result == KILN_OK && plan->irradiance_size) {
+        environment->irradiance =
+            (kiln_map){.shape = def->shape, .size = plan->irradiance_size, .level_count = 1};
+        result = ki_map_allocate(plan->context, &environment->irradiance, error);
+    }
+    if (result != KILN_OK) {
+        kiln_environment_free(environment);
+        return result;
+    }
+    for (int i = 0; i < def->level_count; i++)
+        environment->levels.roughness[i] = plan->prefilter->roughness[i];
+    environment->irradiance.roughness[0] = plan->irradiance_size ? 1 : 0;
+    return KILN_OK;
+}
+
+const kiln_spectrum *kiln_plan_spectrum(const kiln_plan *plan)
+{
+    return plan->prefilter->spectrum;
+}
+
+// --------------------------------------------------------------------------------------- execution
+
+static const char *const shape_names[] = {"panoramas", "cubes", "octahedra"};
+
+static kiln_result check_source(const kiln_plan *p, const kiln_map *source, kiln_error *error)
+{
+    kiln_result result = ki_map_check(source, error);
+    if (result == KILN_OK && (source->shape != p->source_shape || source->size != p->source_size))
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "the plan is for %s of size %d, this map is one of the %s of size %d",
+                       shape_names[p->source_shape], p->source_size, shape_names[source->shape],
+                       source->size);
+    return result;
+}
+
+static kiln_result check_target(const kiln_plan *p, const kiln_environment *environment,
+                                kiln_error *error)
+{
+    const kiln_prefilter_def *def = &p->prefilter->def;
+    const kiln_map *map = &environment->levels, *irradiance = &environment->irradiance;
+    kiln_result result = ki_map_check(map, error);
+    if (result == KILN_OK && p->irradiance_size)
+        result = ki_map_check(irradiance, error);
+    if (result != KILN_OK)
+        return result;
+    if (map->shape != def->shape || map->size != def->size || map->level_count != def->level_count)
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "the plan writes shape %d, size %d, %d levels; this map has %d, %d, %d",
+                       (int)def->shape, def->size, def->level_count, (int)map->shape, map->size,
+                       map->level_count);
+    if (map->smallest != def->smallest)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "the plan's smallest is %d, this map's is %d",
+                       def->smallest, map->smallest);
+    if (p->irradiance_size &&
+        (irradiance->shape != def->shape || irradiance->size != p->irradiance_size))
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "the plan writes irradiance of shape %d, size %d; this map has %d, %d",
+                       (int)def->shape, p->irradiance_size, (int)irradiance->shape,
+                       irradiance->size);
+    return KILN_OK;
+}
+
+// The source as it is analysed, mirrored and exposed, and as a panorama.
+static kiln_result take_source(kiln_plan *p, const kiln_map **source, const kiln_map **panorama,
+                               kiln_error *error)
+{
+    static const ki_stage stage = {"converting", 0, 1};
+    if (p->changed.size) {
+        memcpy(p->changed.level[0], (*source)->level[0],
+               3 * sizeof(float) * kiln_map_texels(*source, 0));
+        if (p->mirror)
+            kiln_map_mirror(&p->changed);
+        kiln_map_expose(&p->changed, p->exposure);
+        *source = &p->changed;
+    }
+    *panorama = *source;
+    if (!p->to_panorama)
+        return KILN_OK;
+    *panorama = &p->panorama;
+    return ki_resample_execute(p->to_panorama, (*source)->level[0], p->panorama.level[0], &stage)
+               ? KILN_OK
+               : ki_fail_cancelled(error, stage.name);
+}
+
+kiln_result kiln_plan_execute(kiln_plan *plan, const kiln_map *source,
+                              kiln_environment *environment, kiln_error *error)
+{
+    const kiln_map *panorama;
+    const kiln_spectrum *spectrum;
+    kiln_result result = check_source(plan, source, error);
+    if (result == KILN_OK)
+        result = check_target(plan, environment, error);
+    if (result == KILN_OK)
+        result = take_source(plan, &source, &panorama, error);
+    if (result == KILN_OK)
+        result =
+            ki_prefilter_execute(plan->prefilter, panorama, source, &environment->levels, error);
+    environment->lobe = plan->prefilter->def.lobe;
+    environment->degree = plan->prefilter->spectrum->degree;
+    if (result == KILN_OK && plan->sh_bands)
+        result = find_spectrum(plan, &plan->for_sh, panorama, &spectrum, error);
+    if (result == KILN_OK && plan->sh_bands)
+        result = ki_sh_project(spectrum, plan->sh_bands, plan->rotation, &environment->sh, error);
+    if (result == KILN_OK && plan->irradiance_size)
+        result = find_spectrum(plan, &plan->for_irradiance, panorama, &spectrum, error);
+    if (result == KILN_OK && plan->irradiance_size)
+        result = ki_level_execute(plan->irradiance, spectrum, NULL, plan->rotation,
+                                  &environment->irradiance, 0, NULL, error);
+    environment->irradiance.roughness[0] = plan->irradiance_size ? 1 : 0;
+    return result;
+}
+
+// --------------------------------------------------------------------------------------- harmonics
+
+kiln_result kiln_map_sh(kiln_context *context, const kiln_map *map, int bands, double rotation,
+                        kiln_sh *sh, kiln_error *error)
+{
+    *sh = (kiln_sh){0};
+    kiln_map converted = {0};
+    analyzer a = {0};
+    kiln_result result = ki_map_check(map, error);
+    if (result == KILN_OK)
+        result = ki_sh_check(bands, 0, rotation, error);
+    if (result == KILN_OK && map->shape != KILN_SHAPE_PANORAMA) {
+        result = kiln_map_convert(context, map, KILN_SHAPE_PANORAMA,
+                                  panorama_rows(map->shape, map->size), 0, &converted, error);
+        map = &converted;
+    }
+    if (result == KILN_OK)
+        result = analyzer_create(context, map->size, SH_DEGREE, &a, error);
+    if (result == KILN_OK)
+        result = ki_intake_whole(a.intake, map->level[0], a.spectrum, error);
+    if (result == KILN_OK)
+        result = ki_sh_project(a.spectrum, bands, rotation, sh, error);
+    analyzer_destroy(&a);
+    kiln_map_free(&converted);
+    return result;
+}
+
+void kiln_environment_free(kiln_environment *environment)
+{
+    if (!environment)
+        return;
+    kiln_map_free(&environment->levels);
+    kiln_map_free(&environment->irradiance);
+    *environment = (kiln_environment){0};
+}
