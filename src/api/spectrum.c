@@ -157,7 +157,7 @@ kiln_result kiln_spectrum_sh(const kiln_spectrum *spectrum, int bands, bool irra
 {
     *sh = (kiln_sh){0};
     kiln_sh radiance = {0};
-    kiln_result result = ki_sh_check(bands, window, rotation, error);
+    kiln_result result = ki_sh_check_bands(bands, window, rotation, error);
     if (result == KILN_OK)
         result = ki_sh_project(spectrum, bands, rotation, &radiance, error);
     if (result == KILN_OK)

@@ -334,7 +334,7 @@ kiln_result kiln_map_sh(kiln_context *context, const kiln_map *map, int bands, d
     analyzer a = {0};
     kiln_result result = ki_map_check(map, error);
     if (result == KILN_OK)
-        result = ki_sh_check(bands, 0, rotation, error);
+        result = ki_sh_check_bands(bands, 0, rotation, error);
     if (result == KILN_OK && map->shape != KILN_SHAPE_PANORAMA) {
         result = kiln_map_convert(context, map, KILN_SHAPE_PANORAMA,
                                   panorama_rows(map->shape, map->size), 0, &converted, error);

@@ -104,7 +104,7 @@ done:
     return result;
 }
 
-kiln_result ki_sh_check(int bands, double window, double rotation, kiln_error *error)
+kiln_result ki_sh_check_bands(int bands, double window, double rotation, kiln_error *error)
 {
     if (bands < 1 || bands > KILN_MAX_BANDS)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "bands is %d, it must be 1 to %d", bands,
@@ -124,7 +124,7 @@ kiln_result kiln_sh_filter(const kiln_sh *radiance, int bands, bool irradiance, 
     static const double cosine_lobe[] = {KI_PI, 2 * KI_PI / 3, KI_PI / 4, 0, -KI_PI / 24};
     kiln_sh from = *radiance;
     *sh = (kiln_sh){0};
-    kiln_result result = ki_sh_check(bands, window, 0, error);
+    kiln_result result = ki_sh_check_bands(bands, window, 0, error);
     if (result != KILN_OK)
         return result;
     if (from.bands < bands || from.bands > KILN_MAX_BANDS || from.irradiance || from.window > 0)
