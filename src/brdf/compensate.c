@@ -39,7 +39,7 @@ double ki_turquin(double f0, double e)
 // diffuse light. Fdez-Aguera 2019, section 3.
 void ki_fdez_aguera(double f0, double a, double b, double *single, double *multiple)
 {
-    double f = (1 + 20 * f0) / 21, e = a + b, rest = (1 - f) + f * e; // 1 - f m
+    double f = (1 + 20 * f0) / 21, e = a + b, rest = (1 - f) + f * e; // rest = 1 - f m
     *single = f0 * a + b;
     *multiple = rest > 0 ? *single * f * (1 - e) / rest : 1;
 }

@@ -44,7 +44,7 @@ typedef struct boundary {
     double critical; // cosine c at which total reflection begins; 0 from the thinner side
     double lambda_v; // Smith's Lambda(v), for masking in transmission
     double root_v;   // n.v (1 + 2 Lambda(v)) for GGX with KILN_G_SMITH, 0 for other models
-    double pole;     // G has its nearest pole at about n.l = -pole
+    double pole;     // the pole of G nearest to 0 is at about n.l = -pole
     double most;     // upper bound of G(v, l) / (n.v)
     double light;    // bound on a ring's share of the result below which 8 nodes per panel suffice
 } boundary;
@@ -178,7 +178,7 @@ static double integrate_arc(const boundary *s, part what, const double h[2], dou
 // on the result.
 static double ring(const boundary *s, part what, const double h[2], bool light)
 {
-    double k = s->sin_v * h[0], least = h[1] * s->mu; // v.h = c = least + k cos phi
+    double k = s->sin_v * h[0], least = h[1] * s->mu; // v.h = least + k cos phi at azimuth phi
     double critical = (s->critical - least) / k, y, pole;
     if (what == REFLECTED) {
         y = (s->mu / (2 * h[1]) - least) / k;

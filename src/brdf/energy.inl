@@ -48,7 +48,7 @@ typedef struct view {
     double root;             // sqrt(alpha^2 + s mu^2)
     double front;            // factor of G / mu that depends on the view only
     double split;            // mu_i at which the second interval begins
-    double pole;             // c: G has its nearest pole at mu_i = -c
+    double pole;             // c of the first interval: the pole nearest to 0 is at mu_i = -c
 } view;
 
 // The nodes of a panel: mu_i, rest = 1 - mu_i, delta = mu_i - mu, q = Q and the weight w. The two
@@ -77,7 +77,7 @@ static void view_set(view *v, const kiln_model *model, double roughness, double 
         v->front = 4 / (nov + v->root);
         v->pole = v->alpha;
         break;
-    default: // Schlick
+    default: // Schlick's masking with either k
         v->front = 1 / (nov * (1 - v->k) + v->k);
         v->pole = v->k / (1 - v->k);
         break;
@@ -168,9 +168,9 @@ static void even_nodes(const view *v, panel *p)
 
 // The parameters of the second interval's substitution mu_i = m + d sinh t.
 typedef struct stretch {
-    double m_rest; // 1 - m
-    double ahead;  // m - mu
-    double d;
+    double m_rest; // 1 - m, where m is the centre of the peak of D
+    double ahead;  // m - mu, where mu is the cosine of the view
+    double d;      // width of the peak of D
 } stretch;
 
 // The nodes of a panel of the second interval, mu_i = m + d sinh t. The panel is t0 - h to t0 + h,
@@ -326,7 +326,7 @@ static void add_b(const view *v, const panel *p, const double top[NODES],
     for (int j = 0; j < NODES; j++) {
         double mu = p->mu[j], total = v->mu + mu, s2 = total * total, sin2 = p->rest[j] * (1 + mu);
         double sine = sqrt(sin2), spread = p->delta[j] * total / (sine + v->sine + 1e-300);
-        double w0 = spread * spread + v->alpha2 * s2; // P - q as a sum of squares
+        double w0 = spread * spread + v->alpha2 * s2; // P - q, least value of P + q cos phi
         total_a[j] = v->s * s2;
         big_p[j] = v->sin2 + sin2 + v->alpha2 * s2;
         q[j] = 2 * v->sine * sine;
@@ -378,8 +378,8 @@ static void add(const view *v, const panel *p, double e[HALF], double b[HALF], b
 
 // An interval of u or t cut into `count` panels of equal length.
 typedef struct tiling {
-    double from;     // e^u or e^t at the interval's lower end
-    double ratio;    // e^u or e^t at the upper end over `from`
+    double from;     // e^x at the interval's lower end, where x is u or t
+    double ratio;    // e^x at the interval's upper end over e^x at the lower end
     double h, ahead; // half the length of a panel, and e^h
     int count;
 } tiling;

@@ -161,8 +161,8 @@ static double panel(const average *f, double from, double to)
     return sum * 4 * half * fabs(length);
 }
 
-// Adaptive quadrature: halves panels of t until at two depths in succession the two halves together
-// agree with the whole panel.
+// Adaptive quadrature: halves intervals of t until at two depths in succession the two halves
+// together agree with the whole panel.
 static double refine(const average *f, double from, double to, double whole, bool agreed, int depth)
 {
     double middle = (from + to) / 2;

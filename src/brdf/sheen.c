@@ -81,7 +81,7 @@ static double ashikhmin_azimuth(double theta, double theta_v, double mu)
 {
     double sine, cosine, sin_v = sqrt((1 - mu) * (1 + mu));
     ki_sincos(theta, &sine, &cosine);
-    double nearest = fmax(0, ki_cos(theta_v - 2 * theta)); // n.l at phi = 0 and pi
+    double nearest = fmax(0, ki_cos(theta_v - 2 * theta)); // n.l at phi = 0
     double farthest = ki_cos(theta_v + 2 * theta);
     // n.l = 0 at cos reach = -cot theta_v cot 2 theta. t2 is tan^2(reach / 2).
     bool circle = !(farthest < 0);

@@ -91,8 +91,8 @@ static const uint32_t generators[DIMENSIONS] = {1,      182667, 469891, 498753, 
 
 // A lattice shifted at random: coordinate d of point i is i * step[d] + shift[d], modulo 1.
 typedef struct lattice {
-    uint32_t step[DIMENSIONS];  // in units of 2^-32
-    uint32_t shift[DIMENSIONS]; // in units of 2^-32
+    uint32_t step[DIMENSIONS];  // step of each coordinate from point to point, in units of 2^-32
+    uint32_t shift[DIMENSIONS]; // random shift of each coordinate, in units of 2^-32
     uint64_t key;               // seed of the shifts and of the hashed numbers
 } lattice;
 
@@ -218,7 +218,8 @@ typedef struct column {
     int count;
     double throughput[KI_WALK_COLUMN]; // product of F over the path's bounces
     double sum[KI_WALK_COLUMN];        // light that left after the second or a later bounce
-    double weight;                     // that light for F = 1
+    double weight;                     // light that left after the second or a later bounce, for F
+                                       // = 1
 } column;
 
 static void add_bounces(void *data, int bounce, double voh, double leaves)

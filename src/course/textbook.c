@@ -193,7 +193,7 @@ static void set_lights(prefilter *r, double roughness, int sample_count)
         double xi[2], h[3];
         ki_hammersley((uint32_t)i, (uint32_t)sample_count, xi);
         ki_ggx_half_vector(roughness * roughness, xi, h);
-        // l = 2 (v.h) h - v with v = (0, 0, 1).
+        // The light is the view v = (0, 0, 1) mirrored by h: l = 2 (v.h) h - v.
         double nol = 2 * h[2] * h[2] - 1;
         if (!(nol > 0))
             continue;
@@ -280,7 +280,7 @@ typedef struct brdf_table {
 static void brdf_texel(double roughness, double nov, int sample_count, float texel[2])
 {
     double alpha = roughness * roughness, k = ki_schlick_k_ibl(alpha);
-    double v[2] = {sqrt((1 - nov) * (1 + nov)), nov}, a = 0, b = 0; // x and z of the view
+    double v[2] = {sqrt((1 - nov) * (1 + nov)), nov}, a = 0, b = 0; // x and z of the view direction
     for (int i = 0; i < sample_count; i++) {
         double xi[2], h[3];
         ki_hammersley((uint32_t)i, (uint32_t)sample_count, xi);

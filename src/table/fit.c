@@ -116,7 +116,7 @@ void ki_fit_evaluate(const kiln_fit *fit, float nov, float roughness, float *val
 
 // ------------------------------------------------------------------------------------------ search
 
-// A shape of a part: P has x_count * y_count coefficients, and so has Q if the part is rational.
+// A shape that is tried for a part P or P / Q: P has x_count * y_count coefficients, and so has Q.
 typedef struct candidate {
     kiln_fit_axis axis;
     bool rational;
@@ -125,7 +125,8 @@ typedef struct candidate {
 
 enum { AXES = 2, MAX_CANDIDATES = 2 * AXES * KILN_MAX_FIT_TERMS * KILN_MAX_FIT_TERMS };
 
-// The axes on which parts for a target are tried. Returns their number.
+// Sets axes[] to the functions of n.v that are tried as x for a target function, and returns their
+// number.
 static int axes_of(ki_fit_target target, kiln_fit_axis axes[AXES])
 {
     switch (target) {
@@ -144,7 +145,8 @@ static int axes_of(ki_fit_target target, kiln_fit_axis axes[AXES])
     }
 }
 
-// Lists every allowed shape, sorted by its number of coefficients. Returns the number of shapes.
+// Lists every allowed shape of P and Q, sorted by its number of coefficients. Returns the number of
+// shapes.
 static int list_candidates(const kiln_fit_def *def, ki_fit_target target, candidate *list)
 {
     kiln_fit_axis axes[AXES];

@@ -23,7 +23,7 @@ float ki_fit_evaluate_part(const kiln_fit_def *def, const kiln_fit_part *part, f
 
 // ---------------------------------------------------------------------------- inside the search
 
-/// The function that a part approximates.
+/// The function that one part of a form (a polynomial P or a quotient P / Q) approximates.
 typedef enum ki_fit_target {
     KI_FIT_E,
     KI_FIT_E_AVERAGE,

@@ -1,10 +1,14 @@
+// Writes the source code of a closed form in C or GLSL. In: a fit and a name. Out: a function that
+// evaluates the fit's polynomials by Horner's rule in 32-bit floats, operation by operation as
+// ki_fit_evaluate.
 #include "table/fit_code.h"
 
 #include "codec/decimal.h"
 
 #include <stddef.h>
 
-// How the two languages differ.
+// The words that differ between C and GLSL: the type and the suffix of numbers, the name of the
+// square root, and what precedes a function.
 typedef struct language {
     const char *number, *suffix, *root, *prefix;
 } language;
@@ -20,6 +24,7 @@ static void write_number(ki_writer *w, const language *l, float value)
 
 // ----------------------------------------------------------------------------------------- comment
 
+// Names the function that the form approximates, for the comment in the written code.
 static const char *what(const kiln_fit_def *def)
 {
     switch (def->kind) {
@@ -78,7 +83,8 @@ static void write_clamp(ki_writer *w, const language *l, const char *to, const c
     ki_write_text(w, ";\n");
 }
 
-// y and the variables that stand for x.
+// Writes the code that sets y, the scaled roughness, and the variables m and t from which parts
+// compute x.
 static void write_arguments(ki_writer *w, const kiln_fit *fit, const language *l)
 {
     const char *f = l->suffix, *number = l->number;
@@ -111,6 +117,7 @@ static void write_arguments(ki_writer *w, const kiln_fit *fit, const language *l
     }
 }
 
+// Writes the code that sets x in [-1, 1], the argument of a part's polynomials.
 static void write_x(ki_writer *w, const kiln_fit_part *part, const language *l)
 {
     static const char *const from[] = {"", "t", "t", "m", "m"};
@@ -122,7 +129,8 @@ static void write_x(ki_writer *w, const kiln_fit_part *part, const language *l)
                   l->suffix);
 }
 
-// c0 + v * (c1 + v * (c2 ...)), some terms a line; with `row` the numbers are row0, row1, ...
+// Writes a polynomial of `variable` by Horner's rule, c0 + v * (c1 + v * (c2 ...)), four terms in a
+// line. The coefficients are the numbers c[], or with `row` the variables row0, row1, ...
 static void write_horner(ki_writer *w, const language *l, const float *c, int count,
                          const char *variable, const char *row)
 {
@@ -140,6 +148,7 @@ static void write_horner(ki_writer *w, const language *l, const float *c, int co
     ki_write_text(w, ";\n");
 }
 
+// Writes the code that sets the variable `name` to a polynomial of x and y.
 static void write_polynomial(ki_writer *w, const language *l, const kiln_fit_part *part,
                              const float *c, const char *name)
 {
@@ -156,6 +165,7 @@ static void write_polynomial(ki_writer *w, const language *l, const kiln_fit_par
     write_horner(w, l, NULL, part->y_count, "y", name);
 }
 
+// Writes the code that sets the variable `to` to the value of a part, P or P / Q.
 static void write_part(ki_writer *w, const kiln_fit_part *part, const language *l, const char *to)
 {
     ki_write_text(w, "    %s %s;\n    {\n", l->number, to);

@@ -1,4 +1,4 @@
-// Closed forms as source text.
+// Writes closed forms of the reflection model's integrals as source code.
 #ifndef KI_FIT_CODE_H
 #define KI_FIT_CODE_H
 
@@ -6,8 +6,9 @@
 
 #include <kiln/brdf.h>
 
-/// The function `name` of n.v (mu) and roughness in C (static inline) or GLSL ES 3.00, operation by
-/// operation what kiln_fit_evaluate does.
+/// Appends a function `name` of mu = n.v and roughness in C (static inline), or with `glsl` in GLSL
+/// ES 3.00. The function computes, operation by operation, the values of kiln_fit_evaluate. Forms
+/// of E_avg have no argument mu.
 void ki_fit_write_code(const kiln_fit *fit, const char *name, bool glsl, ki_writer *w);
 
 #endif

@@ -11,7 +11,7 @@
 
 #include <math.h>
 
-// The exact value of a target.
+// The exact value of a target function at this roughness and nov.
 static double target_value(const kiln_fit_def *def, ki_fit_target target, double roughness,
                            double nov)
 {
@@ -147,7 +147,7 @@ kiln_result ki_fit_nodes(kiln_context *context, const kiln_fit_def *def, ki_fit_
 
 static double uniform(uint64_t *state)
 {
-    *state = *state * 6364136223846793005u + 1442695040888963407u; // Knuth's MMIX
+    *state = *state * 6364136223846793005u + 1442695040888963407u; // Knuth's generator for MMIX
     return ((double)(*state >> 32) + 0.5) / 4294967296.0;
 }
 

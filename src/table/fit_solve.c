@@ -10,7 +10,8 @@
 
 enum { MAX_TERMS = KILN_MAX_FIT_TERMS };
 
-// The value that Q must exceed on the whole square. Q is scaled to have a constant term of 1.
+// The value that the denominator Q must exceed for all x and y in [-1, 1]. Q has a constant term of
+// 1.
 static const double LEAST_Q = 0.01;
 
 // Sets t[] to the Chebyshev polynomials T_0(x) to T_{count-1}(x).

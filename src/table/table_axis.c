@@ -50,7 +50,7 @@ static void to_nov(kiln_axis axis, double c, const double *u, int count, double 
             nov[i] = u[i] * u[i] * u[i];
         break;
     case KILN_AXIS_GRAZING:
-        // This form is exactly 1 at u = 1.
+        // Written in this way, n.v is exactly 1 at u = 1.
         for (int i = 0; i < count; i++)
             nov[i] = u[i] * u[i] * c / (c + (1 - u[i] * u[i]));
         break;

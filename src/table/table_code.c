@@ -28,7 +28,7 @@ static const char *real(const code_job *j)
 
 static void write_arguments_comment(const code_job *j)
 {
-    ki_write_text(j->w, "// %sroughness is the perceptual one%s%s. What is outside is clamped.\n",
+    ki_write_text(j->w, "// %sroughness is perceptual%s%s. Arguments out of range are clamped.\n",
                   j->nov ? "nov is n.v, " : "", j->third ? ", " : "",
                   !j->third                                      ? ""
                   : ki_table_third(j->def->kind) == KI_THIRD_IOR ? "ior is from 1 to 3"
@@ -41,12 +41,13 @@ static void write_result_comment(const code_job *j)
         [KILN_TABLE_E] = "E, the albedo of the specular lobe with F = 1",
         [KILN_TABLE_E_AVERAGE] = "E_avg = 2 int E(mu) mu dmu",
         [KILN_TABLE_DFG] = "A and B: specular albedo = f0 A + B",
-        [KILN_TABLE_DFG_MULTISCATTER] = "B, A + B and the cloth's albedo",
+        [KILN_TABLE_DFG_MULTISCATTER] = "B, A + B and the albedo of Charlie sheen",
         [KILN_TABLE_SHEEN] = "the albedo of Charlie sheen",
         [KILN_TABLE_E_DIELECTRIC] = "the albedo of a rough dielectric's reflection",
         [KILN_TABLE_GLASS] = "reflected and transmitted from outside, then from inside",
         [KILN_TABLE_E_WALK] =
-            "what later bounces add: the factor to the lobe is 1 + it / (f0 A + B)",
+            "the albedo of the bounces after the first; the specular lobe is multiplied by\n"
+            "// 1 + result / (f0 A + B)",
     };
     ki_write_text(j->w, "// The result is %s.\n", results[j->def->kind]);
 }
@@ -107,8 +108,8 @@ static void write_c_parts(const code_job *j)
         "    return x > 0 ? x < 1 ? x : 1 : 0;\n"
         "}\n"
         "\n"
-        "// Where a place in [0, 1] is among n texels: the one before it, the step to the one\n"
-        "// behind it (0 at the end), and the share of that one.\n"
+        "// Returns the texel before a place in [0, 1] among n texels. *step is 1, or 0 after the\n"
+        "// last texel, and *share is the weight of the texel that is *step further.\n"
         "static inline int %s_between(double place, int n, int *step, double *share)\n"
         "{\n",
         j->name, j->name);

@@ -1,4 +1,6 @@
-// Tables as files, and the source code of their lookups.
+// Writes tables to files and reads them back from KTX2. In: a table, a path and a format. Out: a
+// file, whose kind follows from the ending of its name: KTX2, EXR, HDR, PNG, plain numbers or
+// source code. docs/tables.md lists the endings and formats.
 #include "base/file.h"
 #include "codec/components.h"
 #include "codec/formats.h"
@@ -79,7 +81,8 @@ static kiln_result find_format(const char *path, const kiln_table_save_def *def,
 
 // ---------------------------------------------------------------------------------------- pictures
 
-// The same with three channels: grey where there was one, no blue where there were two.
+// Creates a copy of an image with three channels. One channel is copied to all three; of two
+// channels the third becomes 0.
 static kiln_result widen(kiln_context *context, const kiln_image *image, kiln_image *rgb,
                          kiln_error *error)
 {
@@ -122,7 +125,8 @@ static kiln_result encode_hdr(const kiln_table *table, const char *path, ki_writ
     return result;
 }
 
-// By RGBD three numbers, which may exceed 1, are in four of 8 bits.
+// Writes a PNG. KILN_TABLE_FORMAT_RGBD stores three numbers, which may exceed 1, in four channels
+// of 8 bits.
 static kiln_result encode_png(const kiln_table *table, kiln_table_format format, const char *path,
                               ki_writer *w, kiln_error *error)
 {
@@ -143,6 +147,7 @@ static kiln_result encode_png(const kiln_table *table, kiln_table_format format,
     return result;
 }
 
+// Writes the numbers of a table, row after row, without a header.
 static kiln_result encode_raw(const kiln_table *table, kiln_table_format format, ki_writer *w,
                               kiln_error *error)
 {
@@ -215,7 +220,7 @@ static kiln_result encode(const kiln_table *table, const char *path, const kiln_
     return KILN_OK;
 }
 
-// ------------------------------------------------------------------------------------- there and back
+// ------------------------------------------------------------------------------ saving and loading
 
 static kiln_result put(kiln_result result, const char *path, ki_writer *w, kiln_error *error)
 {
@@ -266,7 +271,7 @@ kiln_result kiln_table_lookup_save(kiln_context *context, const kiln_table_def *
     return put(KILN_OK, path, &w, error);
 }
 
-// Takes the fourth channel away that three are stored with.
+// Drops the fourth channel, which files with three channels of data have as padding.
 static void narrow(kiln_image *image)
 {
     size_t count = (size_t)image->width * (size_t)image->height;
@@ -275,6 +280,8 @@ static void narrow(kiln_image *image)
     image->channels = 3;
 }
 
+// Checks that a decoded file holds a table and that its description agrees with its image, and
+// moves the image to `table`.
 static kiln_result take(const char *path, ki_decoded *decoded, const kiln_file_info *info,
                         kiln_table *table, kiln_error *error)
 {

@@ -1,3 +1,7 @@
+// Writes tables as source code. In: a table, or a kiln_table_def alone, and a name. Out: text of C
+// or GLSL, of which table_code.c writes the functions that read a table, and this file everything
+// else: the names, the comment at the top, include guards and arrays of numbers. docs/tables.md
+// describes the files.
 #include "table/table_source.h"
 
 #include "codec/components.h"
@@ -20,8 +24,9 @@ static bool is_digit(char c)
     return c >= '0' && c <= '9';
 }
 
-// GLSL keeps names with two underscores in a row and such as begin with gl_ for itself, C some that
-// begin with one.
+// Returns true for an identifier that a program may use in C and in GLSL. GLSL reserves names that
+// contain two underscores in a row or begin with gl_; C reserves some names that begin with an
+// underscore.
 static bool is_name(const char *text)
 {
     if (!is_letter(text[0]) || strstr(text, "__") || !strncmp(text, "gl_", 3))
@@ -87,6 +92,7 @@ static void write_guard(const char *name, const char *rest, ki_writer *w)
 
 // ------------------------------------------------------------------------------------------ arrays
 
+// The number of values in a table.
 static size_t number_count(const kiln_table *table)
 {
     return (size_t)table->image.width * (size_t)table->image.height * (size_t)table->image.channels;
@@ -129,7 +135,8 @@ kiln_result ki_table_write_header(const kiln_table *table, const char *path, con
     return result;
 }
 
-// Halves or whole numbers, the first in the lowest bits of a word.
+// Writes the values as 32-bit words in hexadecimal. A word holds two numbers of 16 bits or four of
+// 8 bits, the first of them in the lowest bits.
 static kiln_result write_words(const kiln_table *table, kiln_table_format format, size_t words,
                                ki_writer *w, kiln_error *error)
 {
@@ -148,6 +155,7 @@ static kiln_result write_words(const kiln_table *table, kiln_table_format format
     return KILN_OK;
 }
 
+// Writes the GLSL function that returns number i of the array of words.
 static void write_unpacking(const char *name, kiln_table_format format, ki_writer *w)
 {
     ki_write_text(w, ");\n\nfloat %s_number(int i)\n{\n", name);

@@ -1,4 +1,4 @@
-// Tables and their lookups as source code, C and GLSL.
+// Writes tables as arrays in C or GLSL source code, with the functions that read them.
 #ifndef KI_TABLE_SOURCE_H
 #define KI_TABLE_SOURCE_H
 
@@ -6,20 +6,24 @@
 
 #include <kiln/brdf.h>
 
-/// What names begin with: `wanted`, or made from the file's own name where that is NULL.
+/// The beginning of all names in written source code.
 typedef struct ki_source_name {
     char text[64];
 } ki_source_name;
+/// Sets *name to `wanted`, or if `wanted` is NULL to a name made from the file's name in `path`.
+/// Fails with KILN_ERROR_ARGUMENT if `wanted` is no identifier of C and GLSL or is too long.
 kiln_result ki_source_name_make(const char *path, const char *wanted, ki_source_name *name,
                                 kiln_error *error);
 
-/// The table in a C header, floats of any format.
+/// Appends a C header with the table as an array of floats. `path` is used in error messages only.
 kiln_result ki_table_write_header(const kiln_table *table, const char *path, const char *name,
                                   ki_writer *w, kiln_error *error);
-/// The table and its lookup in GLSL; halves and whole numbers are packed into words.
+/// Appends GLSL with the table as a constant array and the function that reads it. Halves, 16-bit
+/// and 8-bit numbers are packed into 32-bit words. `path` is used in error messages only.
 kiln_result ki_table_write_glsl(const kiln_table *table, kiln_table_format format, const char *path,
                                 const char *name, ki_writer *w, kiln_error *error);
-/// The lookup alone, as a C header or for a GLSL texture.
+/// Appends the function that reads a table, without the table: a C header for an array of floats,
+/// or with `glsl` a function for a texture.
 void ki_table_write_lookup(const kiln_table_def *def, bool glsl, const char *name, ki_writer *w);
 
 #endif
