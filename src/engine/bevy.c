@@ -25,7 +25,7 @@ static kiln_result add(ki_export *to, const kiln_map *map, const char *lobe, con
     return result;
 }
 
-static kiln_result write(ki_export *to, kiln_error *error)
+static kiln_result write_files(ki_export *to, kiln_error *error)
 {
     int last = to->map->level_count - 1;
     kiln_map diffuse = {.shape = KILN_SHAPE_CUBE,
@@ -55,5 +55,5 @@ const ki_recipe ki_bevy = {
     .level_count_min = 2,
     .roughness = ki_even_roughness,
     .level = ki_even_level,
-    .write = write,
+    .write = write_files,
 };

@@ -62,7 +62,7 @@ static kiln_result add(ki_export *to, const char *ending, ki_writer *bytes, ki_w
     return result;
 }
 
-static kiln_result write(ki_export *to, kiln_error *error)
+static kiln_result write_files(ki_export *to, kiln_error *error)
 {
     ki_writer bytes = {.context = to->context}, text = bytes, name = bytes;
     double factors[9][3];
@@ -111,5 +111,5 @@ const ki_recipe ki_filament = {
     .roughness = ki_quadratic_roughness,
     .level = ki_quadratic_level,
     .keeps_last = true,
-    .write = write,
+    .write = write_files,
 };

@@ -9,7 +9,7 @@
 #include "codec/rgbx.h"
 #include "math/math.h"
 
-static kiln_result write(ki_export *to, kiln_error *error)
+static kiln_result write_files(ki_export *to, kiln_error *error)
 {
     static const double cosine[9] = {1,     -2.0 / 3, 2.0 / 3, -2.0 / 3, 0.25,
                                      -0.25, 0.25,     -0.25,   0.25};
@@ -42,5 +42,5 @@ const ki_recipe ki_gltf = {
     .level_count_min = 2,
     .roughness = ki_even_roughness,
     .level = ki_even_level,
-    .write = write,
+    .write = write_files,
 };

@@ -26,9 +26,9 @@ static kiln_result write_hdr(const kiln_map *p, ki_writer *bytes, kiln_error *er
     return ki_hdr_encode(p->level[0], 2 * p->size, p->size, bytes, error);
 }
 
-static kiln_result write(ki_export *to,
-                         kiln_result (*encode)(const kiln_map *, ki_writer *, kiln_error *),
-                         kiln_error *error)
+static kiln_result
+write_panorama(ki_export *to, kiln_result (*encode)(const kiln_map *, ki_writer *, kiln_error *),
+               kiln_error *error)
 {
     ki_writer bytes = {.context = to->context};
     kiln_map panorama = {.shape = KILN_SHAPE_PANORAMA, .size = 2 * to->map->size, .level_count = 1};
@@ -46,12 +46,12 @@ static kiln_result write(ki_export *to,
 
 static kiln_result write_godot(ki_export *to, kiln_error *error)
 {
-    return write(to, write_exr, error);
+    return write_panorama(to, write_exr, error);
 }
 
 static kiln_result write_unreal(ki_export *to, kiln_error *error)
 {
-    return write(to, write_hdr, error);
+    return write_panorama(to, write_hdr, error);
 }
 
 const ki_recipe ki_godot = {

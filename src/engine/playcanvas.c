@@ -25,7 +25,7 @@ typedef struct view {
     int level;
 } view;
 
-static double read(const void *data, double u, double v, double rgb[3])
+static double read_picture(const void *data, double u, double v, double rgb[3])
 {
     const view *w = data;
     double d[3];
@@ -72,7 +72,7 @@ static bool draw(const atlas *a, const kiln_map *map, int level, int x, int y, i
                     .border = border,
                     .times = sharp || width < size / 4 ? 4 : 2,
                     .roots = a->roots,
-                    .read = read,
+                    .read = read_picture,
                     .data = &shown,
                     .texels = a->texels,
                     .room = a->room};

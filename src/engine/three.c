@@ -8,7 +8,7 @@
 #include "codec/codec.h"
 #include "image/pack.h"
 
-static kiln_result write(ki_export *to, kiln_error *error)
+static kiln_result write_files(ki_export *to, kiln_error *error)
 {
     ki_writer bytes = {.context = to->context};
     kiln_save_def def = {.format = to->format, .sh = to->sh, .lobe = "ggx"};
@@ -39,5 +39,5 @@ const ki_recipe ki_three = {
     .roughness = ki_quadratic_roughness,
     .level = ki_quadratic_level,
     .keeps_last = true,
-    .write = write,
+    .write = write_files,
 };

@@ -60,7 +60,7 @@ typedef struct face {
 } face;
 
 // getUV, inverted: face +X +Y +Z -X -Y -Z, v upwards.
-static double read(const void *data, double u, double v, double rgb[3])
+static double read_picture(const void *data, double u, double v, double rgb[3])
 {
     const face *f = data;
     double s = 2 * u - 1, t = 2 * v - 1;
@@ -88,7 +88,7 @@ static bool draw(kiln_context *context, const sheet *s, int level, int index)
                     .height = size,
                     .border = 1,
                     .times = size > LAST ? 2 : 4,
-                    .read = read,
+                    .read = read_picture,
                     .data = &f,
                     .texels = s->texels,
                     .room = s->room};
@@ -100,7 +100,7 @@ static bool draw(kiln_context *context, const sheet *s, int level, int index)
     return true;
 }
 
-static kiln_result write(ki_export *to, kiln_error *error)
+static kiln_result write_files(ki_export *to, kiln_error *error)
 {
     int base = to->map->size / FINER;
     sheet s = {.map = to->map, .width = 3 * ki_max(base, 7 * LAST), .height = 4 * base};
@@ -150,5 +150,5 @@ const ki_recipe ki_three_cubeuv = {
     .extra_levels = EXTRA,
     .roughness = roughness,
     .level = level,
-    .write = write,
+    .write = write_files,
 };
