@@ -24,6 +24,7 @@
     X(GetWindowSize)                                                                               \
     X(GetWindowUserPointer)                                                                        \
     X(Init)                                                                                        \
+    X(InitHint)                                                                                    \
     X(MakeContextCurrent)                                                                          \
     X(SetCharCallback)                                                                             \
     X(SetCursorPosCallback)                                                                        \
@@ -196,9 +197,26 @@ static kiln_result say(const window *w, const char *what, kiln_error *error)
                      why ? why : "");
 }
 
+// GLFW 3.4 asks for a Wayland screen first, and libwayland prints a line of its own where the folder
+// of Wayland's sockets is not named. No such screen can be found then, so only X11 is asked. GLFW 3.3
+// knows no such hint, which is an error that is dropped here, and asks X11 alone.
+static void choose_platform(const glfw_functions *glfw)
+{
+#ifdef __linux__
+    enum { PLATFORM = 0x00050003, PLATFORM_X11 = 0x00060004 }; // as in the header of GLFW 3.4
+    if (!getenv("XDG_RUNTIME_DIR") && !getenv("WAYLAND_DISPLAY")) {
+        glfw->InitHint(PLATFORM, PLATFORM_X11);
+        glfw->GetError(NULL);
+    }
+#else
+    (void)glfw;
+#endif
+}
+
 static kiln_result open_window(window *w, const view_window_def *def, kiln_error *error)
 {
     const glfw_functions *glfw = &w->glfw;
+    choose_platform(glfw);
     if (!glfw->Init())
         return say(w, "GLFW finds no screen to open a window on", error);
     glfw->WindowHint(GLFW_CLIENT_API, GLFW_OPENGL_ES_API);

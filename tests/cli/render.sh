@@ -39,8 +39,12 @@ expect 0 "" render sky.exr -o a.png --error --size 32x18 --samples 1 --noise 0.3
 grep -q 'error RMS' log/out || die "no error is told"
 expect 0 "" render -o a.png --reference --size 32x18
 
-# No screen.
+# No screen, with a folder for Wayland's socket and without.
 unset DISPLAY WAYLAND_DISPLAY
+XDG_RUNTIME_DIR=$PWD
+export XDG_RUNTIME_DIR
+expect 1 "GLFW" view
+unset XDG_RUNTIME_DIR
 expect 1 "GLFW" view
 # No driver: the loader finds none in an empty folder.
 mkdir none
