@@ -1,11 +1,11 @@
 // EXR, written: scan lines, ZIP, half or float.
 #include "codec/codec.h"
+#include "codec/deflate.h"
 #include "image/pack.h"
 
-#include <libdeflate.h>
 #include <string.h>
 
-enum { LINES = 16, ZIP = 3, LEVEL = 6 };
+enum { LINES = 16, ZIP = 3 };
 
 static void text(ki_writer *w, const char *string)
 {
@@ -130,10 +130,10 @@ kiln_result ki_exr_encode(const float *pixels, int width, int height, int channe
     size_t most = line * LINES, chunks = ((size_t)height + LINES - 1) / LINES;
     size_t file_start = writer->size;
     kiln_result result = KILN_OK;
-    struct libdeflate_compressor *compressor = libdeflate_alloc_compressor(LEVEL);
+    ki_deflater *deflater = ki_deflater_create(writer->context);
     uint8_t *raw = ki_alloc_raw(writer->context, most, 3);
     float *plane = ki_alloc_raw(writer->context, (size_t)width, sizeof(float));
-    if (!compressor || !raw || !plane)
+    if (!deflater || !raw || !plane)
         goto done;
     header(writer, width, height, channels, options);
     ki_write_u8(writer, 0);
@@ -151,17 +151,16 @@ kiln_result ki_exr_encode(const float *pixels, int width, int height, int channe
                options->half, plane, raw);
         predict(raw, size, raw + most);
         // Room for less than `size`: what does not become smaller is stored as it is.
-        size_t packed =
-            libdeflate_zlib_compress(compressor, raw + most, size, raw + 2 * most, size - 1);
+        size_t packed = ki_deflate(deflater, raw + most, size, raw + 2 * most, size - 1);
         ki_patch_u64(writer, table + 8 * i, writer->size - file_start);
         ki_write_u32(writer, (uint32_t)y);
         ki_write_u32(writer, (uint32_t)(packed ? packed : size));
         ki_write(writer, packed ? raw + 2 * most : raw, packed ? packed : size);
     }
 done:
-    if (!compressor || !raw || !plane || writer->failed)
+    if (!deflater || !raw || !plane || writer->failed)
         result = ki_fail_memory(writer->context, error, "an EXR file", 3 * most + writer->size);
-    libdeflate_free_compressor(compressor);
+    ki_deflater_free(deflater);
     ki_free(raw);
     ki_free(plane);
     return result;

@@ -1,25 +1,57 @@
-// zlib's format (RFC 1950, RFC 1951) into a buffer of known size, where libdeflate is left out.
+// zlib's format (RFC 1950, RFC 1951) unpacked into a buffer of known size, which EXR and PNG files
+// need. kiln has code of its own for this so that it builds from nothing but a C compiler; with
+// libdeflate (KILN_DEFLATE) whole buffers go through that library, which is faster and gives the same
+// bytes.
+//
+// A code's next bits look up a table whose entries say what the symbol means; codes longer than the
+// table's index go on in a second table. While input and output have room to spare, eight bytes are
+// read and copied at a time; the last bytes are handled one by one.
 #include "codec/deflate.h"
 
 #include <string.h>
 
-enum { LONGEST = 15, LITERALS = 288, DISTANCES = 30, LENGTHS = 19, FAST = 9 };
+enum {
+    LONGEST = 15,
+    LITERALS = 288,
+    DISTANCES = 32,
+    LENGTH_CODES = 19,
+    LITERAL_BITS = 11, // index of the first table
+    DISTANCE_BITS = 8,
+    LENGTH_BITS = 7,
+    // A second table of 2^k entries holds k + 1 codes at least, k being 4 and 7 at most.
+    LITERAL_ROOM = (1 << LITERAL_BITS) + LITERALS * 16 / 5,
+    DISTANCE_ROOM = (1 << DISTANCE_BITS) + DISTANCES * 128 / 8,
+};
 
-typedef struct code {
-    uint16_t count[LONGEST + 1]; // codes of each length
-    uint16_t symbol[LITERALS];   // in the order of their codes
-    uint16_t fast[1 << FAST];    // symbol << 4 | length by the next bits, 0 for longer codes
-} code;
+// A table's entry: bits 0 to 3 the length of the code (in a second table: of its rest), bits 4 to 7
+// the number of extra bits, bits 8 to 10 the kind, from bit 16 on a value.
+enum { KIND_BAD, KIND_LITERAL, KIND_RANGE, KIND_END, KIND_TABLE };
+#define ENTRY(kind, value, extra)                                                                  \
+    ((uint32_t)(value) << 16 | (uint32_t)(kind) << 8 | (uint32_t)(extra) << 4)
 
-typedef struct state {
+static inline uint32_t kind_of(uint32_t entry)
+{
+    return entry >> 8 & 7;
+}
+
+// Bits of the input, the first the lowest.
+typedef struct stream {
     const uint8_t *in, *in_end;
-    uint8_t *out, *begin, *end;
     uint64_t bits;
     int held, missing; // bits held; zeros held that the input does not have
-    code literals, distances;
+} stream;
+
+typedef struct state {
+    stream s;
+    uint8_t *out, *begin, *end;
+    bool full; // the output has no room for what follows
+    uint32_t literals[LITERAL_ROOM], distances[DISTANCE_ROOM];
 } state;
 
-static inline void fill(state *s)
+// -------------------------------------------------------------------------------------------- bits
+
+// Holds 57 bits at least.
+static inline void fill(stream *s)
 {
     while (s->held <= 56) {
         s->missing += s->in == s->in_end ? 8 : 0;
@@ -28,157 +60,325 @@ static inline void fill(state *s)
     }
 }
 
+// Holds 56 bits at least; eight bytes of input must be left. What lies in `bits` above those that are
+// held is what will be read there.
+static inline void fill_fast(stream *s)
+{
+    uint64_t next;
+    memcpy(&next, s->in, sizeof next);
+    s->bits |= next << s->held;
+    s->in += (63 - s->held) >> 3;
+    s->held |= 56;
+}
+
 // More was used than the input holds.
-static inline bool overdrawn(const state *s)
+static inline bool overdrawn(const stream *s)
 {
     return s->missing > s->held;
 }
 
-// Up to 32 bits, the first the lowest.
-static inline uint32_t take(state *s, int count)
+static inline uint32_t drop(stream *s, uint32_t count)
 {
-    fill(s);
     uint32_t value = (uint32_t)(s->bits & (((uint64_t)1 << count) - 1));
     s->bits >>= count;
-    s->held -= count;
+    s->held -= (int)count;
     return value;
 }
 
-// Codes by their lengths, 0 for symbols that do not occur. False where there are more codes than
-// bits allow, or fewer, but for a single one.
-static bool build(code *c, const uint8_t *lengths, int symbol_count)
+// Up to 32 bits.
+static inline uint32_t take(stream *s, uint32_t count)
 {
-    memset(c, 0, sizeof *c);
-    for (int i = 0; i < symbol_count; i++)
-        c->count[lengths[i]]++;
-    int used = symbol_count - c->count[0];
-    c->count[0] = 0;
+    fill(s);
+    return drop(s, count);
+}
+
+// ------------------------------------------------------------------------------------------- codes
+
+// What a symbol means, as an entry without its length.
+typedef uint32_t meaning(int symbol);
+
+static uint32_t plain_meaning(int symbol)
+{
+    return ENTRY(KIND_LITERAL, symbol, 0);
+}
+
+static uint32_t literal_meaning(int symbol)
+{
+    static const uint16_t from[29] = {3,  4,  5,  6,   7,   8,   9,   10,  11, 13,
+                                      15, 17, 19, 23,  27,  31,  35,  43,  51, 59,
+                                      67, 83, 99, 115, 131, 163, 195, 227, 258};
+    if (symbol < 256)
+        return ENTRY(KIND_LITERAL, symbol, 0);
+    if (symbol == 256)
+        return ENTRY(KIND_END, 0, 0);
+    if (symbol > 285)
+        return ENTRY(KIND_BAD, 0, 0);
+    int code = symbol - 257;
+    return ENTRY(KIND_RANGE, from[code], code < 8 || code == 28 ? 0 : code / 4 - 1);
+}
+
+static uint32_t distance_meaning(int symbol)
+{
+    if (symbol > 29)
+        return ENTRY(KIND_BAD, 0, 0);
+    int extra = symbol < 4 ? 0 : symbol / 2 - 1;
+    int from = symbol < 4 ? symbol + 1 : ((2 + symbol % 2) << extra) + 1;
+    return ENTRY(KIND_RANGE, from, extra);
+}
+
+static uint32_t reverse(uint32_t code, int length)
+{
+    uint32_t reversed = 0;
+    for (int b = 0; b < length; b++)
+        reversed |= (code >> b & 1) << (length - 1 - b);
+    return reversed;
+}
+
+// A table being built: codes sorted by length, then by symbol, with how many have each length.
+typedef struct table {
+    uint32_t *entries;
+    size_t room, size;
+    int bits; // of the first table's index
+    uint16_t with[LONGEST + 1], sorted[LITERALS];
+} table;
+
+// False where there are more codes than bits allow, or fewer, but for a single one.
+static bool sort(table *t, const uint8_t *lengths, int count)
+{
     uint16_t place[LONGEST + 2] = {0};
-    int free_codes = 1;
+    for (int i = 0; i < count; i++)
+        t->with[lengths[i]]++;
+    int used = count - t->with[0], free_codes = 1;
     for (int length = 1; length <= LONGEST; length++) {
-        free_codes = 2 * free_codes - c->count[length];
+        free_codes = 2 * free_codes - t->with[length];
         if (free_codes < 0)
             return false;
-        place[length + 1] = (uint16_t)(place[length] + c->count[length]);
+        place[length + 1] = (uint16_t)(place[length] + t->with[length]);
     }
     if (free_codes > 0 && used > 1)
         return false;
-    for (int i = 0; i < symbol_count; i++)
+    for (int i = 0; i < count; i++)
         if (lengths[i])
-            c->symbol[place[lengths[i]]++] = (uint16_t)i;
-    uint32_t next = 0;
-    int at = 0;
-    for (int length = 1; length <= FAST; length++, next <<= 1)
-        for (int k = 0; k < c->count[length]; k++, next++, at++) {
-            uint32_t turned = 0; // codes come highest bit first
-            for (int b = 0; b < length; b++)
-                turned |= (next >> b & 1) << (length - 1 - b);
-            for (uint32_t i = turned; i < 1U << FAST; i += 1U << length)
-                c->fast[i] = (uint16_t)(c->symbol[at] << 4 | length);
+            t->sorted[place[lengths[i]]++] = (uint16_t)i;
+    return true;
+}
+
+// Adds a second table for the codes that begin with `prefix`, of which the k-th one of `length` bits is
+// the first: as large as the codes behind that one need, the longest last, until they fill it. Returns
+// the bits of its index; 0 where there is no room.
+static int add_second(table *t, uint32_t prefix, int length, int k)
+{
+    int bits = length - t->bits, left = (1 << bits) - (t->with[length] - k);
+    while (left > 0 && t->bits + bits < LONGEST) {
+        bits++;
+        left = 2 * left - t->with[t->bits + bits];
+    }
+    if (t->room - t->size < (size_t)1 << bits)
+        return 0;
+    t->entries[prefix] = ENTRY(KIND_TABLE, t->size, bits) | (uint32_t)t->bits;
+    memset(t->entries + t->size, 0, sizeof *t->entries << bits);
+    t->size += (size_t)1 << bits;
+    return bits;
+}
+
+// The table of `count` codes by their lengths, 0 for symbols that do not occur; false where those are
+// no code.
+static bool build(uint32_t *entries, size_t room, int bits, const uint8_t *lengths, int count,
+                  meaning *mean)
+{
+    table t = {.entries = entries, .room = room, .size = (size_t)1 << bits, .bits = bits};
+    if (!sort(&t, lengths, count))
+        return false;
+    memset(entries, 0, sizeof *entries << bits);
+    uint32_t next = 0, mask = (1U << bits) - 1, prefix = UINT32_MAX;
+    int second_bits = 0;
+    const uint16_t *symbol = t.sorted;
+    for (int length = 1; length <= LONGEST; length++, next <<= 1)
+        for (int k = 0; k < t.with[length]; k++, next++) {
+            uint32_t code = reverse(next, length), entry = mean(*symbol++);
+            if (length <= bits) {
+                for (uint32_t i = code; i <= mask; i += 1U << length)
+                    entries[i] = entry | (uint32_t)length;
+                continue;
+            }
+            if ((code & mask) != prefix) {
+                prefix = code & mask;
+                second_bits = add_second(&t, prefix, length, k);
+                if (!second_bits)
+                    return false;
+            }
+            uint32_t *second = entries + t.size - ((size_t)1 << second_bits);
+            for (uint32_t i = code >> bits; i < 1U << second_bits; i += 1U << (length - bits))
+                second[i] = entry | (uint32_t)(length - bits);
         }
     return true;
 }
 
-// The next symbol, or -1.
-static inline int decode(state *s, const code *c)
+// The next symbol's entry, its code dropped; 15 bits at least must be held.
+static inline uint32_t next_entry(stream *s, const uint32_t *entries, int bits)
 {
-    fill(s);
-    uint16_t found = c->fast[s->bits & ((1 << FAST) - 1)];
-    if (found) {
-        s->bits >>= found & 15;
-        s->held -= found & 15;
-        return found >> 4;
+    uint32_t entry = entries[s->bits & ((1U << bits) - 1)];
+    drop(s, entry & 15);
+    if (kind_of(entry) == KIND_TABLE) {
+        entry = entries[(entry >> 16) + (s->bits & ((1U << (entry >> 4 & 15)) - 1))];
+        drop(s, entry & 15);
     }
-    int value = 0, first = 0, index = 0;
-    for (int length = 1; length <= LONGEST; length++) {
-        value |= (int)(s->bits >> (length - 1) & 1);
-        int count = c->count[length];
-        if (value - first < count) {
-            s->bits >>= length;
-            s->held -= length;
-            return c->symbol[index + value - first];
-        }
-        index += count;
-        first = (first + count) << 1;
-        value <<= 1;
-    }
-    return -1;
+    return entry;
 }
 
-static bool stored(state *s)
+// The value of an entry and its extra bits.
+static inline size_t value_of(stream *s, uint32_t entry)
 {
-    take(s, s->held & 7); // to the next byte
-    uint32_t count = take(s, 16), inverse = take(s, 16);
-    if (count != (~inverse & 0xffff) || (size_t)(s->end - s->out) < count)
+    return (entry >> 16) + drop(s, entry >> 4 & 15);
+}
+
+// ------------------------------------------------------------------------------------------ blocks
+
+static bool stored(state *st)
+{
+    stream *s = &st->s;
+    drop(s, (uint32_t)s->held & 7); // to the next byte
+    size_t count = take(s, 16), inverse = take(s, 16), left = (size_t)(st->end - st->out);
+    if (count != (~inverse & 0xffff))
         return false;
-    for (; count && !overdrawn(s); count--)
-        *s->out++ = (uint8_t)take(s, 8);
-    return !overdrawn(s);
+    st->full = left < count;
+    if (st->full)
+        count = left;
+    for (; count && s->held; count--)
+        *st->out++ = (uint8_t)drop(s, 8);
+    if (overdrawn(s) || (size_t)(s->in_end - s->in) < count)
+        return false;
+    if (count) {
+        memcpy(st->out, s->in, count);
+        s->bits = 0;
+    }
+    s->in += count;
+    st->out += count;
+    return !st->full;
 }
 
-static bool compressed(state *s)
+// While this much is left, nothing needs to be checked: eight bytes are read at a time, and a match of
+// 258 bytes and two literals before it are written, with up to seven bytes behind.
+enum { SPARE_IN = 16, SPARE_OUT = 258 + 2 + 7 };
+
+// Up to seven bytes behind the match may be written.
+static inline void copy_match(uint8_t *out, size_t distance, size_t length)
 {
-    static const uint16_t length_from[29] = {3,  4,  5,  6,   7,   8,   9,   10,  11, 13,
-                                             15, 17, 19, 23,  27,  31,  35,  43,  51, 59,
-                                             67, 83, 99, 115, 131, 163, 195, 227, 258};
-    static const uint8_t length_bits[29] = {0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2,
-                                            2, 3, 3, 3, 3, 4, 4, 4, 4, 5, 5, 5, 5, 0};
-    static const uint16_t distance_from[DISTANCES] = {
-        1,   2,   3,   4,   5,   7,    9,    13,   17,   25,   33,   49,   65,    97,    129,
-        193, 257, 385, 513, 769, 1025, 1537, 2049, 3073, 4097, 6145, 8193, 12289, 16385, 24577};
-    for (;;) {
-        int symbol = decode(s, &s->literals);
-        if (symbol < 0 || overdrawn(s))
-            return false;
-        if (symbol < 256) {
-            if (s->out == s->end)
-                return false;
-            *s->out++ = (uint8_t)symbol;
-            continue;
-        }
-        if (symbol == 256)
-            return true;
-        if (symbol > 285)
-            return false;
-        size_t length = length_from[symbol - 257] + take(s, length_bits[symbol - 257]);
-        int far = decode(s, &s->distances);
-        if (far < 0 || far >= DISTANCES)
-            return false;
-        size_t distance = distance_from[far] + take(s, far < 4 ? 0 : far / 2 - 1);
-        if (distance > (size_t)(s->out - s->begin) || length > (size_t)(s->end - s->out))
-            return false;
-        for (const uint8_t *from = s->out - distance; length; length--)
-            *s->out++ = *from++;
+    const uint8_t *from = out - distance;
+    if (distance >= 8) {
+        for (size_t i = 0; i < length; i += 8)
+            memcpy(out + i, from + i, 8);
+    } else if (distance == 1) {
+        memset(out, *from, length);
+    } else {
+        for (size_t i = 0; i < length; i++)
+            out[i] = from[i];
     }
 }
 
-static bool fixed_codes(state *s)
+typedef enum step { GO_ON, BLOCK_ENDS, DAMAGED } step;
+
+static step fast_symbols(state *st)
 {
-    uint8_t lengths[LITERALS];
+    stream s = st->s;
+    uint8_t *out = st->out;
+    step result = GO_ON;
+    while (s.in_end - s.in >= SPARE_IN && st->end - out >= SPARE_OUT) {
+        fill_fast(&s);
+        uint32_t entry = next_entry(&s, st->literals, LITERAL_BITS);
+        if (kind_of(entry) == KIND_LITERAL) {
+            *out++ = (uint8_t)(entry >> 16);
+            entry = next_entry(&s, st->literals, LITERAL_BITS);
+            if (kind_of(entry) == KIND_LITERAL) {
+                *out++ = (uint8_t)(entry >> 16);
+                continue;
+            }
+            fill_fast(&s);
+        }
+        if (kind_of(entry) != KIND_RANGE) {
+            result = kind_of(entry) == KIND_END ? BLOCK_ENDS : DAMAGED;
+            break;
+        }
+        size_t length = value_of(&s, entry);
+        entry = next_entry(&s, st->distances, DISTANCE_BITS);
+        size_t distance = value_of(&s, entry);
+        if (kind_of(entry) != KIND_RANGE || distance > (size_t)(out - st->begin)) {
+            result = DAMAGED;
+            break;
+        }
+        copy_match(out, distance, length);
+        out += length;
+    }
+    st->s = s;
+    st->out = out;
+    return result;
+}
+
+// One symbol, and for a match its distance, near the end of the input or of the output.
+static step careful_symbol(state *st)
+{
+    stream *s = &st->s;
+    size_t left = (size_t)(st->end - st->out);
+    fill(s);
+    uint32_t entry = next_entry(s, st->literals, LITERAL_BITS);
+    if (overdrawn(s) || kind_of(entry) == KIND_BAD)
+        return DAMAGED;
+    if (kind_of(entry) == KIND_END)
+        return BLOCK_ENDS;
+    if (kind_of(entry) == KIND_LITERAL) {
+        st->full = !left;
+        if (left)
+            *st->out++ = (uint8_t)(entry >> 16);
+        return left ? GO_ON : DAMAGED;
+    }
+    size_t length = value_of(s, entry);
+    entry = next_entry(s, st->distances, DISTANCE_BITS);
+    size_t distance = value_of(s, entry);
+    if (overdrawn(s) || kind_of(entry) != KIND_RANGE || distance > (size_t)(st->out - st->begin))
+        return DAMAGED;
+    st->full = length > left;
+    for (size_t n = st->full ? left : length; n; n--, st->out++)
+        *st->out = *(st->out - distance);
+    return st->full ? DAMAGED : GO_ON;
+}
+
+static bool compressed(state *st)
+{
+    step result = fast_symbols(st);
+    while (result == GO_ON) {
+        result = careful_symbol(st);
+        // A block's end may leave enough for another one to be read fast.
+        if (result == GO_ON && st->end - st->out >= SPARE_OUT &&
+            st->s.in_end - st->s.in >= SPARE_IN)
+            result = fast_symbols(st);
+    }
+    return result == BLOCK_ENDS;
+}
+
+static bool build_both(state *st, const uint8_t *lengths, int literals, int distances)
+{
+    return build(st->literals, LITERAL_ROOM, LITERAL_BITS, lengths, literals, literal_meaning) &&
+           build(st->distances, DISTANCE_ROOM, DISTANCE_BITS, lengths + literals, distances,
+                 distance_meaning);
+}
+
+static bool fixed_codes(state *st)
+{
+    uint8_t lengths[LITERALS + DISTANCES];
     for (int i = 0; i < LITERALS; i++)
         lengths[i] = i < 144 ? 8 : i < 256 ? 9 : i < 280 ? 7 : 8;
-    bool good = build(&s->literals, lengths, LITERALS);
-    memset(lengths, 5, 32);
-    return build(&s->distances, lengths, 32) && good;
+    memset(lengths + LITERALS, 5, DISTANCES);
+    return build_both(st, lengths, LITERALS, DISTANCES);
 }
 
-static bool own_codes(state *s)
+// The code lengths of a block's symbols, themselves coded: lengths, and runs of the last one or of 0.
+static bool read_lengths(state *st, uint8_t *lengths, int total)
 {
-    static const uint8_t order[LENGTHS] = {16, 17, 18, 0, 8,  7, 9,  6, 10, 5,
-                                           11, 4,  12, 3, 13, 2, 14, 1, 15};
-    int literals = (int)take(s, 5) + 257, distances = (int)take(s, 5) + 1;
-    int count = (int)take(s, 4) + 4, total = literals + distances;
-    uint8_t lengths[LITERALS + 32] = {0};
-    if (literals > 286 || distances > DISTANCES)
-        return false;
-    for (int i = 0; i < count; i++)
-        lengths[order[i]] = (uint8_t)take(s, 3);
-    if (!build(&s->distances, lengths, LENGTHS))
-        return false;
-    memset(lengths, 0, sizeof lengths);
+    stream *s = &st->s;
     for (int i = 0; i < total;) {
-        int symbol = decode(s, &s->distances);
-        if (symbol < 0 || overdrawn(s))
+        fill(s);
+        uint32_t entry = next_entry(s, st->distances, LENGTH_BITS), symbol = entry >> 16;
+        if (kind_of(entry) != KIND_LITERAL || overdrawn(s))
             return false;
         if (symbol < 16) {
             lengths[i++] = (uint8_t)symbol;
@@ -195,49 +395,72 @@ static bool own_codes(state *s)
         memset(lengths + i, repeated, (size_t)times);
         i += times;
     }
-    return lengths[256] && build(&s->literals, lengths, literals) &&
-           build(&s->distances, lengths + literals, distances);
+    return true;
 }
 
-static uint32_t adler(const uint8_t *bytes, size_t size)
+static bool own_codes(state *st)
 {
-    uint32_t a = 1, b = 0;
-    while (size) {
-        size_t count = size < 5552 ? size : 5552; // sums that do not overflow
-        for (size_t i = 0; i < count; i++) {
-            a += bytes[i];
-            b += a;
-        }
-        a %= 65521;
-        b %= 65521;
-        bytes += count;
-        size -= count;
-    }
-    return b << 16 | a;
+    static const uint8_t order[LENGTH_CODES] = {16, 17, 18, 0, 8,  7, 9,  6, 10, 5,
+                                                11, 4,  12, 3, 13, 2, 14, 1, 15};
+    stream *s = &st->s;
+    int literals = (int)take(s, 5) + 257, distances = (int)take(s, 5) + 1;
+    int count = (int)take(s, 4) + 4;
+    uint8_t lengths[LITERALS + DISTANCES] = {0};
+    if (literals > 286 || distances > 30)
+        return false;
+    for (int i = 0; i < count; i++)
+        lengths[order[i]] = (uint8_t)take(s, 3);
+    if (!build(st->distances, DISTANCE_ROOM, LENGTH_BITS, lengths, LENGTH_CODES, plain_meaning))
+        return false;
+    memset(lengths, 0, sizeof lengths);
+    return read_lengths(st, lengths, literals + distances) && lengths[256] &&
+           build_both(st, lengths, literals, distances);
 }
 
-bool ki_inflate(const uint8_t *packed, size_t packed_size, uint8_t *raw, size_t size)
+// --------------------------------------------------------------------------------------------- all
+
+// All blocks. False where the data is damaged, is cut off, or has more than the output takes.
+static bool unpack(state *st)
+{
+    bool last = false, good = true;
+    while (good && !last) {
+        last = take(&st->s, 1);
+        uint32_t kind = take(&st->s, 2);
+        good = kind == 0   ? stored(st)
+               : kind == 1 ? fixed_codes(st) && compressed(st)
+               : kind == 2 ? own_codes(st) && compressed(st)
+                           : false;
+    }
+    return good;
+}
+
+// Whether the two bytes of zlib's header come first.
+static bool begin(state *st, const uint8_t *packed, size_t packed_size, uint8_t *plain, size_t size)
 {
     if (packed_size < 6 || (packed[0] & 15) != 8 || (packed[0] << 8 | packed[1]) % 31 ||
         packed[1] & 0x20)
         return false;
-    state s = {.in = packed + 2,
-               .in_end = packed + packed_size,
-               .out = raw,
-               .begin = raw,
-               .end = raw + size};
-    bool last = false, good = true;
-    while (good && !last) {
-        last = take(&s, 1);
-        uint32_t kind = take(&s, 2);
-        good = kind == 0   ? stored(&s)
-               : kind == 1 ? fixed_codes(&s) && compressed(&s)
-               : kind == 2 ? own_codes(&s) && compressed(&s)
-                           : false;
-    }
-    take(&s, s.held & 7);
+    st->s = (stream){.in = packed + 2, .in_end = packed + packed_size};
+    st->out = st->begin = plain;
+    st->end = plain + size;
+    st->full = false;
+    return true;
+}
+
+bool ki_inflate_own(const uint8_t *packed, size_t packed_size, uint8_t *plain, size_t size)
+{
+    state st;
+    if (!begin(&st, packed, packed_size, plain, size) || !unpack(&st) || st.out != st.end)
+        return false;
+    drop(&st.s, (uint32_t)st.s.held & 7);
     uint32_t sum = 0;
     for (int i = 0; i < 4; i++)
-        sum = sum << 8 | take(&s, 8);
-    return good && s.out == s.end && !overdrawn(&s) && sum == adler(raw, size);
+        sum = sum << 8 | take(&st.s, 8);
+    return !overdrawn(&st.s) && sum == ki_adler32(1, plain, size);
+}
+
+bool ki_inflate_beginning(const uint8_t *packed, size_t packed_size, uint8_t *plain, size_t size)
+{
+    state st;
+    return begin(&st, packed, packed_size, plain, size) && !unpack(&st) && st.full;
 }

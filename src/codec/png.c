@@ -1,192 +1,430 @@
-// PNG by libpng: 8 and 16 bits, every colour type, interlaced or not. Values are sRGB whatever the
-// chunks gAMA, cHRM, iCCP and cICP say; alpha is left out.
+// PNG files, read: bytes go in, a picture of three linear floats a pixel comes out. Every colour type,
+// depth and filter, interlaced or not, by the specification (W3C, "Portable Network Graphics", second
+// edition). Values are sRGB whatever the chunks gAMA, cHRM, iCCP and cICP say; alpha and tRNS are left
+// out.
+//
+// kiln reads and writes PNG by code of its own so that it builds where libpng is not, and so that its
+// files are the same bytes everywhere. The tests compare it with libpng, oiiotool and a browser.
+//
+// The chunks IDAT are joined and inflated at once, the rows' filters are undone in place, and every
+// sample looks up its linear value. Sizes are checked against the file's before memory is asked for.
+#include "codec/png.h"
 #include "codec/codec.h"
-#include "codec/components.h"
+#include "codec/deflate.h"
 #include "image/pack.h"
 
-#include <png.h>
-#include <setjmp.h>
 #include <stdio.h>
 #include <string.h>
 
-// Everything that must be released lives here, where longjmp cannot lose it.
-typedef struct png_state {
+// A picture, or one of the seven that an interlaced one is cut into: pixels from (x, y), every
+// x_step-th and y_step-th.
+typedef struct pass {
+    int x, y, x_step, y_step;
+    size_t width, height, row; // row: bytes, without the one that names the filter
+} pass;
+
+enum { PASSES = 7 };
+
+typedef struct png_file {
     kiln_context *context;
     const char *name;
     ki_reader reader;
-    ki_writer *writer;
-    png_structp png;
-    png_infop info;
-    uint8_t *rows;
-    float *table, *pixels;
-    bool out_of_memory, cancelled;
-    char message[128];
-} png_state;
+    ki_crc32_table crc;
+    int width, height, depth, color, channels;
+    bool interlaced, has_palette;
+    uint8_t palette[256][3];
+    pass passes[PASSES];
+    int pass_count;
+    const uint8_t *packed; // all IDAT, one after the other
+    uint8_t *joined;       // the same where there are several
+    size_t packed_size;
+    uint64_t raw_size; // what the data must inflate to
+    uint8_t *raw;
+    float *table, *pixels; // table: the linear value of every sample
+} png_file;
 
-static void fail(png_structp png, png_const_charp message)
+static kiln_result damaged(const png_file *f, kiln_error *error, const char *what)
 {
-    png_state *s = png_get_error_ptr(png);
-    snprintf(s->message, sizeof s->message, "%s", message);
-    png_longjmp(png, 1);
+    return ki_fail(error, KILN_ERROR_FORMAT, "%s: the PNG is damaged: %s", f->name, what);
 }
 
-static void ignore(png_structp png, png_const_charp message)
+// ------------------------------------------------------------------------------------------ chunks
+
+static uint32_t read_u32_high_first(ki_reader *r)
 {
-    (void)png;
-    (void)message;
+    return __builtin_bswap32(ki_read_u32(r));
 }
 
-static png_voidp allocate(png_structp png, png_alloc_size_t size)
+typedef struct chunk {
+    char type[5];
+    const uint8_t *bytes;
+    size_t size;
+    bool intact; // its sum is right
+} chunk;
+
+static bool next_chunk(png_file *f, chunk *c)
 {
-    png_state *s = png_get_mem_ptr(png);
-    void *memory = ki_alloc_raw(s->context, size, 1);
-    s->out_of_memory = s->out_of_memory || !memory;
-    return memory;
+    ki_reader *r = &f->reader;
+    *c = (chunk){.size = read_u32_high_first(r)};
+    const uint8_t *type = ki_read_bytes(r, 4);
+    c->bytes = ki_read_bytes(r, c->size);
+    uint32_t sum = read_u32_high_first(r);
+    if (r->failed)
+        return false;
+    memcpy(c->type, type, 4);
+    c->intact = ki_crc32(&f->crc, 0, type, c->size + 4) == sum;
+    return true;
 }
 
-static void release(png_structp png, png_voidp memory)
+static bool is(const chunk *c, const char *type)
 {
-    (void)png;
-    ki_free(memory);
+    return !memcmp(c->type, type, 4);
 }
 
-static void read_bytes(png_structp png, png_bytep to, size_t size)
+static bool good_depth(int color, int depth)
 {
-    png_state *s = png_get_io_ptr(png);
-    const uint8_t *bytes = ki_read_bytes(&s->reader, size);
-    if (!bytes)
-        png_error(png, "the file ends too early");
-    memcpy(to, bytes, size);
-}
-
-static void write_bytes(png_structp png, png_bytep from, size_t size)
-{
-    png_state *s = png_get_io_ptr(png);
-    ki_write(s->writer, from, size);
-    if (s->writer->failed) {
-        s->out_of_memory = true;
-        png_error(png, "out of memory");
+    bool whole = depth == 8 || depth == 16;
+    switch (color) {
+    case 0:
+        return whole || depth == 1 || depth == 2 || depth == 4;
+    case KI_PNG_COLOR | KI_PNG_PALETTE:
+        return depth == 1 || depth == 2 || depth == 4 || depth == 8;
+    case KI_PNG_COLOR:
+    case KI_PNG_ALPHA:
+    case KI_PNG_COLOR | KI_PNG_ALPHA:
+        return whole;
+    default:
+        return false;
     }
 }
 
-static void flush(png_structp png)
+static kiln_result read_head(png_file *f, kiln_error *error)
 {
-    (void)png;
-}
-
-// ----------------------------------------------------------------------------------------- reading
-
-typedef struct png_shape {
-    int width, height, depth, color, interlace;
-} png_shape;
-
-static kiln_result read_shape(png_state *s, png_shape *shape, kiln_error *error)
-{
-    png_set_read_fn(s->png, s, read_bytes);
-    png_set_user_limits(s->png, 0x7fffffff, 0x7fffffff);
-    png_set_chunk_cache_max(s->png, 64);
-    png_set_chunk_malloc_max(s->png, 1 << 20);
-    png_set_keep_unknown_chunks(s->png, PNG_HANDLE_CHUNK_NEVER, NULL, 0);
-    png_set_crc_action(s->png, PNG_CRC_ERROR_QUIT, PNG_CRC_QUIET_USE);
-    png_read_info(s->png, s->info);
-    png_uint_32 width = png_get_image_width(s->png, s->info);
-    png_uint_32 height = png_get_image_height(s->png, s->info);
+    chunk c;
+    if (!ki_read_bytes(&f->reader, 8) || !next_chunk(f, &c))
+        return damaged(f, error, "the file ends too early");
+    if (!is(&c, "IHDR") || c.size != 13 || !c.intact)
+        return damaged(f, error, "its first chunk is no IHDR of 13 bytes with the right sum");
+    ki_reader r = ki_reader_make(c.bytes, c.size);
+    uint32_t width = read_u32_high_first(&r), height = read_u32_high_first(&r);
+    f->depth = ki_read_u8(&r);
+    f->color = ki_read_u8(&r);
+    int compression = ki_read_u8(&r), filter = ki_read_u8(&r), interlace = ki_read_u8(&r);
+    if (!width || !height || !good_depth(f->color, f->depth) || compression || filter ||
+        interlace > 1)
+        return ki_fail(error, KILN_ERROR_FORMAT,
+                       "%s: the PNG is damaged: %u x %u pixels of %d bits, colour type %d, "
+                       "compression %d, filters %d, interlacing %d",
+                       f->name, width, height, f->depth, f->color, compression, filter, interlace);
     if (width > KILN_MAX_SIZE || height > KILN_MAX_SIZE)
         return ki_fail(error, KILN_ERROR_UNSUPPORTED, "%s: the picture is %u x %u, the limit is %d",
-                       s->name, width, height, KILN_MAX_SIZE);
-    *shape =
-        (png_shape){(int)width, (int)height, png_get_bit_depth(s->png, s->info),
-                    png_get_color_type(s->png, s->info), png_get_interlace_type(s->png, s->info)};
+                       f->name, width, height, KILN_MAX_SIZE);
+    f->width = (int)width;
+    f->height = (int)height;
+    f->interlaced = interlace;
+    bool three = f->color == KI_PNG_COLOR || f->color == (KI_PNG_COLOR | KI_PNG_ALPHA);
+    f->channels = (three ? 3 : 1) + (f->color & KI_PNG_ALPHA ? 1 : 0);
     return KILN_OK;
 }
 
-static void describe(const png_shape *shape, kiln_file_info *info)
+// Entries that the file does not have stay black.
+static bool read_palette(png_file *f, const chunk *c)
 {
-    bool color = shape->color & PNG_COLOR_MASK_COLOR;
-    snprintf(info->format, sizeof info->format, "png");
-    snprintf(info->encoding, sizeof info->encoding, "%d bits %s%s, srgb%s", shape->depth,
-             shape->color & PNG_COLOR_MASK_PALETTE ? "palette"
-             : color                               ? "rgb"
-                                                   : "grey",
-             shape->color & PNG_COLOR_MASK_ALPHA ? " with alpha" : "",
-             shape->interlace ? ", interlaced" : "");
-    info->width = shape->width;
-    info->height = shape->height;
-    info->channel_count = color ? 3 : 1;
-    info->level_count = 1;
+    if (!(f->color & KI_PNG_PALETTE))
+        return true;
+    size_t most = (size_t)3 << f->depth;
+    if (f->has_palette || !c->size || c->size % 3 || c->size > sizeof f->palette)
+        return false;
+    f->has_palette = true;
+    memcpy(f->palette, c->bytes, c->size < most ? c->size : most);
+    return true;
 }
+
+// The chunks IDAT from the first one on, which `c` is; they follow each other.
+static kiln_result join_data(png_file *f, chunk *c, kiln_error *error)
+{
+    ki_reader first = f->reader;
+    f->packed = c->bytes;
+    chunk next = *c;
+    int count = 0;
+    for (bool more = true; more && is(&next, "IDAT"); more = next_chunk(f, &next)) {
+        if (!next.intact)
+            return damaged(f, error, "the sum of a chunk is wrong");
+        f->packed_size += next.size;
+        count++;
+    }
+    if (count == 1)
+        return KILN_OK;
+    f->joined = ki_alloc_raw(f->context, f->packed_size + 1, 1);
+    if (!f->joined)
+        return ki_fail_memory(f->context, error, f->name, f->packed_size);
+    f->packed = f->joined;
+    size_t at = 0;
+    f->reader = first;
+    for (next = *c; count > 0; count--) {
+        memcpy(f->joined + at, next.bytes, next.size);
+        at += next.size;
+        if (count > 1)
+            next_chunk(f, &next);
+    }
+    return KILN_OK;
+}
+
+// Everything up to the last chunk IDAT.
+static kiln_result read_chunks(png_file *f, kiln_error *error)
+{
+    chunk c;
+    for (;;) {
+        if (!next_chunk(f, &c))
+            return damaged(f, error, "the file ends too early");
+        bool critical = !(c.type[0] & 32); // a capital letter
+        if (!critical)
+            continue;
+        if (!c.intact)
+            return damaged(f, error, "the sum of a chunk is wrong");
+        if (is(&c, "IDAT"))
+            break;
+        if (!is(&c, "PLTE") || !read_palette(f, &c))
+            return damaged(f, error,
+                           is(&c, "PLTE")   ? "its palette has a wrong size"
+                           : is(&c, "IEND") ? "it has no chunk IDAT"
+                                            : "it has a critical chunk of which nothing is known");
+    }
+    if (f->color & KI_PNG_PALETTE && !f->has_palette)
+        return damaged(f, error, "its palette is missing");
+    return join_data(f, &c, error);
+}
+
+// ------------------------------------------------------------------------------------------ passes
+
+static size_t steps(int size, int from, int step)
+{
+    return size > from ? (size_t)((size - from + step - 1) / step) : 0;
+}
+
+static void add_pass(png_file *f, int x, int y, int x_step, int y_step)
+{
+    pass p = {x, y, x_step, y_step, steps(f->width, x, x_step), steps(f->height, y, y_step), 0};
+    if (!p.width || !p.height)
+        return;
+    p.row = (p.width * (size_t)(f->channels * f->depth) + 7) / 8;
+    f->passes[f->pass_count++] = p;
+    f->raw_size += (uint64_t)p.height * (p.row + 1);
+}
+
+static void find_passes(png_file *f)
+{
+    if (!f->interlaced) {
+        add_pass(f, 0, 0, 1, 1);
+        return;
+    }
+    // Adam7: the pixels of squares of eight, a sixty-fourth of them first.
+    static const uint8_t from[PASSES][4] = {{0, 0, 8, 8}, {4, 0, 8, 8}, {0, 4, 4, 8}, {2, 0, 4, 4},
+                                            {0, 2, 2, 4}, {1, 0, 2, 2}, {0, 1, 1, 2}};
+    for (int i = 0; i < PASSES; i++)
+        add_pass(f, from[i][0], from[i][1], from[i][2], from[i][3]);
+}
+
+// ----------------------------------------------------------------------------------------- filters
+
+// The four filters that differ, of a row of `size` bytes whose pixels have `step` of them. With a
+// constant step the compiler keeps a pixel's bytes apart.
+static inline void undo_sub(uint8_t *row, size_t size, size_t step)
+{
+    for (size_t i = step; i < size; i++)
+        row[i] = (uint8_t)(row[i] + row[i - step]);
+}
+
+static void undo_up(uint8_t *restrict row, const uint8_t *restrict above, size_t size)
+{
+    for (size_t i = 0; i < size; i++)
+        row[i] = (uint8_t)(row[i] + above[i]);
+}
+
+static inline void undo_average(uint8_t *restrict row, const uint8_t *restrict above, size_t size,
+                                size_t step)
+{
+    for (size_t i = 0; i < step && i < size; i++)
+        row[i] = (uint8_t)(row[i] + above[i] / 2);
+    for (size_t i = step; i < size; i++)
+        row[i] = (uint8_t)(row[i] + (row[i - step] + above[i]) / 2);
+}
+
+static inline void undo_paeth(uint8_t *restrict row, const uint8_t *restrict above, size_t size,
+                              size_t step)
+{
+    for (size_t i = 0; i < step && i < size; i++)
+        row[i] = (uint8_t)(row[i] + above[i]);
+    for (size_t i = step; i < size; i++)
+        row[i] = (uint8_t)(row[i] + ki_png_paeth(row[i - step], above[i], above[i - step]));
+}
+
+static inline bool undo_filter(int filter, uint8_t *row, const uint8_t *above, size_t size,
+                               size_t step)
+{
+    if (filter == KI_PNG_SUB)
+        undo_sub(row, size, step);
+    else if (filter == KI_PNG_UP)
+        undo_up(row, above, size);
+    else if (filter == KI_PNG_AVERAGE)
+        undo_average(row, above, size, step);
+    else if (filter == KI_PNG_PAETH)
+        undo_paeth(row, above, size, step);
+    return filter < KI_PNG_FILTERS;
+}
+
+// A pass's rows, each behind the byte that names its filter. `zeros` is what lies above the first.
+static bool undo_filters(uint8_t *raw, const pass *p, size_t step, const uint8_t *zeros)
+{
+    const uint8_t *above = zeros;
+    bool good = true;
+    for (size_t y = 0; good && y < p->height; y++, raw += p->row + 1) {
+        if (step == 3)
+            good = undo_filter(raw[0], raw + 1, above, p->row, 3);
+        else if (step == 4)
+            good = undo_filter(raw[0], raw + 1, above, p->row, 4);
+        else
+            good = undo_filter(raw[0], raw + 1, above, p->row, step);
+        above = raw + 1;
+    }
+    return good;
+}
+
+// ------------------------------------------------------------------------------------------ pixels
 
 // Every value a sample can have, linear.
-static bool make_table(png_state *s, bool wide)
+static bool make_table(png_file *f)
 {
-    int count = wide ? 65536 : 256;
-    s->table = ki_alloc_raw(s->context, (size_t)count, sizeof(float));
-    for (int i = 0; s->table && i < count; i++)
-        s->table[i] = ki_linear_from_srgb((float)i / (float)(count - 1));
-    return s->table != NULL;
+    int count = f->color & KI_PNG_PALETTE ? 256 : 1 << f->depth;
+    f->table = ki_alloc_raw(f->context, (size_t)count, sizeof(float));
+    for (int i = 0; f->table && i < count; i++)
+        f->table[i] = ki_linear_from_srgb((float)i / (float)(count - 1));
+    return f->table != NULL;
 }
 
-static void put_row(const png_state *s, const uint8_t *row, int width, bool wide, float *rgb)
+// Sample i of a row, whose bits lie highest first.
+static inline unsigned sample(const uint8_t *row, size_t i, int depth)
 {
-    for (size_t i = 0; i < 3 * (size_t)width; i++)
-        rgb[i] = s->table[wide ? row[2 * i] << 8 | row[2 * i + 1] : row[i]];
+    if (depth == 8)
+        return row[i];
+    if (depth == 16)
+        return (unsigned)(row[2 * i] << 8 | row[2 * i + 1]);
+    size_t bit = i * (size_t)depth;
+    return (unsigned)(row[bit / 8] >> (8 - depth - (int)(bit % 8))) & ((1U << depth) - 1);
 }
 
-// The part that libpng may leave by a jump.
-static kiln_result read_all(png_state *s, kiln_image *image, kiln_file_info *info,
-                            kiln_error *error)
+// A row of a pass to its pixels, each `step` floats behind the one before.
+static inline void put_row(const png_file *f, const uint8_t *row, size_t width, int depth,
+                           float *rgb, size_t step)
 {
-    png_shape shape = {0};
-    kiln_result result = read_shape(s, &shape, error);
-    if (result != KILN_OK)
-        return result;
-    if (info)
-        describe(&shape, info);
-    if (!image)
-        return KILN_OK;
-
-    // Deflate makes a byte into 1032 at most: a short file cannot ask for a huge picture.
-    size_t texels = (size_t)shape.width * (size_t)shape.height;
-    if (texels / 8 / 1032 > ki_reader_left(&s->reader) + 1024)
-        png_error(s->png, "the file is too short for its size");
-    png_set_expand(s->png);
-    png_set_strip_alpha(s->png);
-    png_set_gray_to_rgb(s->png);
-    int passes = png_set_interlace_handling(s->png);
-    png_read_update_info(s->png, s->info);
-    bool wide = png_get_bit_depth(s->png, s->info) == 16;
-    size_t row_size = (size_t)shape.width * (wide ? 6 : 3);
-    if (png_get_rowbytes(s->png, s->info) != row_size)
-        png_error(s->png, "unexpected row size");
-
-    size_t rows = passes > 1 ? (size_t)shape.height : 1;
-    s->rows = ki_alloc(s->context, rows, row_size);
-    s->pixels = ki_alloc_raw(s->context, texels * 3, sizeof(float));
-    if (!s->rows || !s->pixels || !make_table(s, wide)) {
-        s->out_of_memory = true;
-        png_error(s->png, "out of memory");
-    }
-    for (int p = 0; p < passes; p++) {
-        for (size_t y = 0; y < (size_t)shape.height; y++) {
-            uint8_t *row = s->rows + (passes > 1 ? y * row_size : 0);
-            png_read_row(s->png, row, NULL);
-            if (p == passes - 1)
-                put_row(s, row, shape.width, wide, s->pixels + y * (size_t)shape.width * 3);
+    size_t channels = (size_t)f->channels;
+    bool grey = channels < 3;
+    for (size_t x = 0; x < width; x++, rgb += step) {
+        if (f->color & KI_PNG_PALETTE) {
+            const uint8_t *entry = f->palette[sample(row, x, depth)];
+            for (int c = 0; c < 3; c++)
+                rgb[c] = f->table[entry[c]];
+            continue;
         }
+        for (size_t c = 0; c < 3; c++)
+            rgb[c] = f->table[sample(row, x * channels + (grey ? 0 : c), depth)];
     }
-    *image = (kiln_image){shape.width, shape.height, 3, s->pixels, s->pixels};
-    s->pixels = NULL;
+}
+
+static void put_pass(const png_file *f, const pass *p, const uint8_t *raw, size_t begin, size_t end)
+{
+    size_t line = 3 * (size_t)f->width;
+    for (size_t y = begin; y < end; y++) {
+        const uint8_t *row = raw + y * (p->row + 1) + 1;
+        float *rgb = f->pixels + ((size_t)p->y + y * (size_t)p->y_step) * line + 3 * (size_t)p->x;
+        size_t step = 3 * (size_t)p->x_step;
+        if (f->depth == 8)
+            put_row(f, row, p->width, 8, rgb, step);
+        else
+            put_row(f, row, p->width, f->depth, rgb, step);
+    }
+}
+
+static kiln_result put_all(png_file *f, kiln_error *error)
+{
+    enum { ROUND = 1 << 22 }; // pixels after which the caller may stop
+    const uint8_t *raw = f->raw;
+    for (int i = 0; i < f->pass_count; i++) {
+        const pass *p = &f->passes[i];
+        size_t rows = 1 + ROUND / p->width;
+        for (size_t y = 0; y < p->height; y += rows) {
+            size_t done = (size_t)(raw - f->raw) + y * (p->row + 1);
+            if (!ki_progress(f->context, "reading", (double)done / (double)f->raw_size))
+                return ki_fail_cancelled(error, "reading");
+            put_pass(f, p, raw, y, p->height - y < rows ? p->height : y + rows);
+        }
+        raw += p->height * (p->row + 1);
+    }
     return KILN_OK;
 }
 
-static kiln_result say(const png_state *s, kiln_error *error)
+static kiln_result unpack(png_file *f, kiln_error *error)
 {
-    if (s->cancelled)
-        return ki_fail_cancelled(error, "writing");
-    if (s->out_of_memory)
-        return ki_fail(error, KILN_ERROR_MEMORY, "out of memory: %s: %s", s->name,
-                       s->message[0] ? s->message : "no room for a PNG");
-    return ki_fail(error, KILN_ERROR_FORMAT, "%s: the PNG is damaged: %s", s->name, s->message);
+    // Deflate makes a byte into 1032 at most: a short file cannot ask for a huge picture.
+    if (f->raw_size / 1032 > f->packed_size)
+        return damaged(f, error, "its data is too short for its size");
+    size_t size = (size_t)f->raw_size, step = (size_t)(f->channels * f->depth + 7) / 8;
+    f->raw = size == f->raw_size ? ki_alloc_raw(f->context, size, 1) : NULL;
+    uint8_t *zeros = ki_alloc(f->context, (size_t)f->width * step, 1);
+    kiln_result result = KILN_OK;
+    if (!f->raw || !zeros) {
+        result = ki_fail_memory(f->context, error, f->name, size);
+    } else if (!ki_inflate(f->packed, f->packed_size, f->raw, size) &&
+               !ki_inflate_beginning(f->packed, f->packed_size, f->raw, size)) {
+        result = damaged(f, error, "its data does not inflate to its size, or to another sum");
+    } else {
+        uint8_t *raw = f->raw;
+        bool good = true;
+        for (int i = 0; good && i < f->pass_count; i++) {
+            good = undo_filters(raw, &f->passes[i], step, zeros);
+            raw += f->passes[i].height * (f->passes[i].row + 1);
+        }
+        if (!good)
+            result = damaged(f, error, "a row has a filter of which nothing is known");
+    }
+    ki_free(zeros);
+    return result;
+}
+
+static kiln_result read_pixels(png_file *f, kiln_image *image, kiln_error *error)
+{
+    kiln_result result = read_chunks(f, error);
+    if (result != KILN_OK)
+        return result;
+    find_passes(f);
+    result = unpack(f, error);
+    if (result != KILN_OK)
+        return result;
+    size_t texels = (size_t)f->width * (size_t)f->height;
+    f->pixels = ki_alloc_raw(f->context, texels * 3, sizeof(float));
+    if (!f->pixels || !make_table(f))
+        return ki_fail_memory(f->context, error, f->name, texels * 3 * sizeof(float));
+    result = put_all(f, error);
+    if (result == KILN_OK) {
+        *image = (kiln_image){f->width, f->height, 3, f->pixels, f->pixels};
+        f->pixels = NULL;
+    }
+    return result;
+}
+
+static void describe(const png_file *f, kiln_file_info *info)
+{
+    bool color = f->color & KI_PNG_COLOR;
+    snprintf(info->format, sizeof info->format, "png");
+    snprintf(info->encoding, sizeof info->encoding, "%d bits %s%s, srgb%s", f->depth,
+             f->color & KI_PNG_PALETTE ? "palette"
+             : color                   ? "rgb"
+                                       : "grey",
+             f->color & KI_PNG_ALPHA ? " with alpha" : "", f->interlaced ? ", interlaced" : "");
+    info->width = f->width;
+    info->height = f->height;
+    info->channel_count = color ? 3 : 1;
+    info->level_count = 1;
 }
 
 kiln_result ki_png_decode(kiln_context *context, const uint8_t *bytes, size_t size,
@@ -195,132 +433,22 @@ kiln_result ki_png_decode(kiln_context *context, const uint8_t *bytes, size_t si
 {
     if (image)
         *image = (kiln_image){0};
-    kiln_result result;
-    png_state *s = ki_alloc(context, 1, sizeof *s);
-    if (!s)
-        return ki_fail_memory(context, error, name, sizeof *s);
-    s->context = context;
-    s->name = name;
-    s->reader = ki_reader_make(bytes, size);
-    s->png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, s, fail, ignore, s, allocate, release);
-    s->info = s->png ? png_create_info_struct(s->png) : NULL;
-    if (!s->info) {
-        s->out_of_memory = true;
-        result = say(s, error);
-    } else if (setjmp(png_jmpbuf(s->png))) {
-        result = say(s, error);
-    } else {
-        result = read_all(s, image, info, error);
-    }
-    png_destroy_read_struct(&s->png, &s->info, NULL);
-    ki_free(s->rows);
-    ki_free(s->table);
-    ki_free(s->pixels);
-    ki_free(s);
-    return result;
-}
-
-// ----------------------------------------------------------------------------------------- writing
-
-// The linear values from which on each 8-bit sRGB value is the nearest one.
-static void make_thresholds(float thresholds[255])
-{
-    for (int i = 0; i < 255; i++)
-        thresholds[i] = ki_linear_from_srgb(((float)i + 0.5f) / 255);
-}
-
-static uint8_t to_byte(float value, const float *thresholds)
-{
-    if (!(value > 0))
-        return 0;
-    if (value >= 1)
-        return 255;
-    if (!thresholds)
-        return (uint8_t)(value * 255 + 0.5f);
-    int low = 0, high = 255; // how many thresholds are reached
-    while (low < high) {
-        int middle = (low + high) / 2;
-        if (value >= thresholds[middle])
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return (uint8_t)low;
-}
-
-// One row of `count` values; 16 bits are stored with the high byte first.
-static void to_row(const float *values, size_t count, ki_png_coding coding, const float *thresholds,
-                   uint8_t *row)
-{
-    for (size_t i = 0; i < count; i++) {
-        if (coding != KI_PNG_PLAIN16) {
-            row[i] = to_byte(values[i], coding == KI_PNG_SRGB8 ? thresholds : NULL);
-            continue;
-        }
-        uint8_t low_first[2];
-        ki_components_pack(KILN_TABLE_FORMAT_U16, values + i, 1, 1, 1, low_first);
-        row[2 * i] = low_first[1];
-        row[2 * i + 1] = low_first[0];
-    }
-}
-
-static void write_all(png_state *s, const float *pixels, int width, int height, int channels,
-                      ki_png_coding coding)
-{
-    static const int colors[4] = {PNG_COLOR_TYPE_GRAY, PNG_COLOR_TYPE_GRAY_ALPHA,
-                                  PNG_COLOR_TYPE_RGB, PNG_COLOR_TYPE_RGB_ALPHA};
-    float thresholds[255];
-    make_thresholds(thresholds);
-    png_set_write_fn(s->png, s, write_bytes, flush);
-    png_set_user_limits(s->png, 0x7fffffff, 0x7fffffff);
-    int bits = coding == KI_PNG_PLAIN16 ? 16 : 8;
-    png_set_IHDR(s->png, s->info, (png_uint_32)width, (png_uint_32)height, bits,
-                 colors[channels - 1], PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
-                 PNG_FILTER_TYPE_DEFAULT);
-    if (coding == KI_PNG_SRGB8)
-        png_set_sRGB(s->png, s->info, PNG_sRGB_INTENT_RELATIVE);
-    png_write_info(s->png, s->info);
-    size_t row_size = (size_t)width * (size_t)channels;
-    s->rows = ki_alloc_raw(s->context, row_size, 2);
-    if (!s->rows) {
-        s->out_of_memory = true;
-        png_error(s->png, "out of memory");
-    }
-    for (int y = 0; y < height; y++) {
-        if (y % 16 == 0 && !ki_go_on(s->context)) {
-            s->cancelled = true;
-            png_error(s->png, "cancelled");
-        }
-        to_row(pixels + (size_t)y * row_size, row_size, coding, thresholds, s->rows);
-        png_write_row(s->png, s->rows);
-    }
-    png_write_end(s->png, s->info);
-}
-
-kiln_result ki_png_encode(const float *pixels, int width, int height, int channels,
-                          ki_png_coding coding, ki_writer *writer, kiln_error *error)
-{
-    kiln_result result;
-    png_state *s = ki_alloc(writer->context, 1, sizeof *s);
-    if (!s)
-        return ki_fail_memory(writer->context, error, "a PNG", sizeof *s);
-    s->context = writer->context;
-    s->name = "a PNG";
-    s->writer = writer;
-    s->png =
-        png_create_write_struct_2(PNG_LIBPNG_VER_STRING, s, fail, ignore, s, allocate, release);
-    s->info = s->png ? png_create_info_struct(s->png) : NULL;
-    if (!s->info) {
-        s->out_of_memory = true;
-        result = say(s, error);
-    } else if (setjmp(png_jmpbuf(s->png))) {
-        result = say(s, error);
-    } else {
-        write_all(s, pixels, width, height, channels, coding);
-        result = KILN_OK;
-    }
-    png_destroy_write_struct(&s->png, &s->info);
-    ki_free(s->rows);
-    ki_free(s);
+    png_file *f = ki_alloc(context, 1, sizeof *f);
+    if (!f)
+        return ki_fail_memory(context, error, name, sizeof *f);
+    f->context = context;
+    f->name = name;
+    f->reader = ki_reader_make(bytes, size);
+    ki_crc32_fill(&f->crc);
+    kiln_result result = read_head(f, error);
+    if (result == KILN_OK && info)
+        describe(f, info);
+    if (result == KILN_OK && image)
+        result = read_pixels(f, image, error);
+    ki_free(f->joined);
+    ki_free(f->raw);
+    ki_free(f->table);
+    ki_free(f->pixels);
+    ki_free(f);
     return result;
 }

@@ -37,6 +37,11 @@ cc $flags $(pkg-config --cflags kiln) "$consumer/main.c" -o "$work/static" \
     $(pkg-config --static --libs kiln)
 say "pkg-config, static: $("$work/static")"
 
+# Other packages are not asked for: pkg-config knows none here.
+only=$(PKG_CONFIG_LIBDIR="$libdir/pkgconfig" pkg-config --cflags --libs kiln)
+[ -n "$only" ]
+PKG_CONFIG_LIBDIR="$libdir/pkgconfig" pkg-config --static --libs kiln >/dev/null
+
 [ "$("$prefix/bin/kiln" --version)" = "kiln $(pkg-config --modversion kiln)" ]
 [ -s "$prefix/share/man/man1/kiln.1" ]
 

@@ -1,0 +1,112 @@
+// Huffman codes for deflate's blocks, from how often each symbol occurs, none longer than a limit.
+#include "codec/huffman.h"
+
+#include <string.h>
+
+// Symbols that occur, rarest first, then by number; returns how many.
+static int sort_symbols(const uint32_t *counts, int count, uint16_t *sorted)
+{
+    uint16_t by_low[KI_HUFFMAN_SYMBOLS];
+    int used = 0;
+    for (int pass = 0; pass < 2; pass++) { // by the low byte of the count, then by the high one
+        int place[257] = {0};
+        int n = pass ? used : count;
+        for (int i = 0; i < n; i++) {
+            int symbol = pass ? by_low[i] : i;
+            if (counts[symbol])
+                place[(counts[symbol] >> 8 * pass & 255) + 1]++;
+        }
+        for (int i = 0; i < 256; i++)
+            place[i + 1] += place[i];
+        used = place[256];
+        for (int i = 0; i < n; i++) {
+            int symbol = pass ? by_low[i] : i;
+            if (counts[symbol])
+                (pass ? sorted : by_low)[place[counts[symbol] >> 8 * pass & 255]++] =
+                    (uint16_t)symbol;
+        }
+    }
+    return used;
+}
+
+// Huffman's code: the number of codes of each length, from the counts of sorted symbols.
+static void count_lengths(const uint32_t *counts, const uint16_t *sorted, int used, int *with)
+{
+    uint32_t weight[2 * KI_HUFFMAN_SYMBOLS];
+    uint16_t parent[2 * KI_HUFFMAN_SYMBOLS];
+    uint8_t depth[2 * KI_HUFFMAN_SYMBOLS];
+    for (int i = 0; i < used; i++)
+        weight[i] = counts[sorted[i]];
+    // Leaves lie in order, and so do the nodes that are made: the lightest two are at their heads.
+    int leaf = 0, node = used, made = used;
+    for (; made < 2 * used - 1; made++) {
+        weight[made] = 0;
+        for (int k = 0; k < 2; k++) {
+            bool from_leaves = leaf < used && (node == made || weight[leaf] <= weight[node]);
+            int child = from_leaves ? leaf++ : node++;
+            weight[made] += weight[child];
+            parent[child] = (uint16_t)made;
+        }
+    }
+    depth[made - 1] = 0;
+    for (int i = made - 2; i >= 0; i--) {
+        depth[i] = (uint8_t)(depth[parent[i]] + 1);
+        if (i < used)
+            with[depth[i]]++;
+    }
+}
+
+// Makes codes no longer than `longest`: those that are become as long, and others longer in exchange.
+static void limit_lengths(int *with, int deepest, int longest)
+{
+    uint32_t used = 0; // of 2^longest
+    for (int length = deepest; length > longest; length--) {
+        with[longest] += with[length];
+        with[length] = 0;
+    }
+    for (int length = 1; length <= longest; length++)
+        used += (uint32_t)with[length] << (longest - length);
+    for (; used > 1U << longest; used--) {
+        int length = longest - 1;
+        while (!with[length])
+            length--;
+        with[length]--; // its code becomes two of one bit more, one of them for a longest code
+        with[length + 1] += 2;
+        with[longest]--;
+    }
+}
+
+void ki_huffman_assign(ki_huffman_code *c, int count, const int *with, int longest)
+{
+    uint32_t next[17] = {0}, first = 0;
+    for (int length = 1; length <= longest; length++) {
+        next[length] = first;
+        first = (first + (uint32_t)with[length]) << 1;
+    }
+    for (int i = 0; i < count; i++) {
+        int length = c->length[i];
+        uint32_t value = length ? next[length]++ : 0, reversed = 0;
+        for (int b = 0; b < length; b++)
+            reversed |= (value >> b & 1) << (length - 1 - b);
+        c->bits[i] = (uint16_t)reversed;
+    }
+}
+
+void ki_huffman_make(ki_huffman_code *c, const uint32_t *counts, int count, int longest)
+{
+    enum { DEEPEST = 32 }; // counts below 2^16 make no deeper tree
+    uint16_t sorted[KI_HUFFMAN_SYMBOLS];
+    int with[DEEPEST + 1] = {0};
+    int used = sort_symbols(counts, count, sorted);
+    memset(c, 0, sizeof *c);
+    if (used == 1)
+        with[1] = 1;
+    else if (used > 1)
+        count_lengths(counts, sorted, used, with);
+    limit_lengths(with, DEEPEST, longest);
+    int i = 0;
+    for (int length = longest; length > 0; length--)
+        for (int k = 0; k < with[length]; k++)
+            c->length[sorted[i++]] = (uint8_t)length;
+    ki_huffman_assign(c, count, with, longest);
+}

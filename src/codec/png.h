@@ -1,0 +1,33 @@
+// What the PNG reader and writer share.
+#ifndef KI_PNG_H
+#define KI_PNG_H
+
+#include <stdint.h>
+
+/// Colour types: bits of PALETTE, COLOR and ALPHA.
+enum { KI_PNG_PALETTE = 1, KI_PNG_COLOR = 2, KI_PNG_ALPHA = 4 };
+
+/// Filters of a row: its bytes are stored as differences from a prediction.
+typedef enum ki_png_filter {
+    KI_PNG_NONE,
+    KI_PNG_SUB,     ///< from the byte one pixel to the left
+    KI_PNG_UP,      ///< from the byte above
+    KI_PNG_AVERAGE, ///< from the mean of both, rounded down
+    KI_PNG_PAETH,   ///< from the left, upper or upper left byte, by ki_png_paeth
+    KI_PNG_FILTERS
+} ki_png_filter;
+
+/// The one of three bytes that is nearest to left + above - corner; the first of them in this order
+/// where several are.
+static inline uint8_t ki_png_paeth(int left, int above, int corner)
+{
+    int to_left = above - corner, to_above = left - corner, to_corner = to_left + to_above;
+    to_left = to_left < 0 ? -to_left : to_left;
+    to_above = to_above < 0 ? -to_above : to_above;
+    to_corner = to_corner < 0 ? -to_corner : to_corner;
+    int nearest = to_above < to_left ? above : left;
+    int distance = to_above < to_left ? to_above : to_left;
+    return (uint8_t)(to_corner < distance ? corner : nearest);
+}
+
+#endif
