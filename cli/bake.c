@@ -481,6 +481,7 @@ static int filter_by_textbook(bake *b)
     };
     if (make_panorama(b) != CLI_GO)
         return CLI_FAILED;
+    b->made.lobe = (kiln_lobe_kind)b->lobe;
     if (b->lobe == KILN_LOBE_LAMBERT
             ? kiln_textbook_irradiance(job->context, &b->source, &def, &b->made.levels, &job->error)
             : kiln_textbook_prefilter(job->context, &b->source, &def, &b->made.levels, &job->error))
@@ -496,85 +497,45 @@ static int filter_by_textbook(bake *b)
                : CLI_GO;
 }
 
-// The largest value that the output's format holds; 0 for no limit.
-static double format_limit(const bake *b, const char *path)
+static void warn_of_clamping(bake *b, const kiln_save_report *report, const char *path)
 {
-    if (b->engine && path == b->output && b->format != KILN_FORMAT_B10G11R11)
-        return b->engine->limit;
-    return kiln_map_save_limit(path, (kiln_format)b->format);
-}
-
-static void warn_of_clamping(bake *b, const kiln_map *map, const char *path)
-{
-    double limit = format_limit(b, path);
-    if (b->quiet || limit == 0)
+    if (b->quiet || !report->cut_count)
         return;
-    float most = 0;
-    size_t count = 0;
-    for (int k = 0; k < map->level_count; k++) {
-        size_t n = kiln_map_texels(map, k) * 3;
-        for (size_t i = 0; i < n; i++) {
-            count += (double)map->level[k][i] > limit;
-            most = map->level[k][i] > most ? map->level[k][i] : most;
-        }
-    }
-    if (!count)
-        return;
-    double stops = floor(log2(limit / (double)most));
-    const char *ending = cli_ending(path);
-    bool bytes = b->format >= KILN_FORMAT_RGBM;
-    if ((b->engine && path == b->output) || (bytes && !strcmp(ending, "png")))
-        cli_warn(&b->job,
-                 "%s: %zu values above %g (up to %.4g) were cut off; --exposure %.0f keeps them",
-                 path, count, limit, (double)most, b->exposure + stops);
-    else if (!strcmp(ending, "png"))
-        cli_warn(&b->job, "%s: %zu values above 1 (up to %.4g) were cut off, PNG holds no more",
-                 path, count, (double)most);
+    double stops = b->exposure + floor(log2(report->limit / report->largest));
+    bool png = !strcmp(cli_ending(path), "png"), bytes = b->format >= KILN_FORMAT_RGBM;
+    char way_out[96];
+    if (png && !bytes)
+        snprintf(way_out, sizeof way_out, ", PNG holds no more");
+    else if ((b->engine && path == b->output) || png)
+        snprintf(way_out, sizeof way_out, "; --exposure %.0f keeps them", stops);
     else
-        cli_warn(&b->job,
-                 "%s: %zu values above %g (up to %.4g) were cut off; --format rgba32f or "
-                 "--exposure %.0f keeps them",
-                 path, count, limit, (double)most, b->exposure + stops);
+        snprintf(way_out, sizeof way_out, "; --format rgba32f or --exposure %.0f keeps them",
+                 stops);
+    cli_warn(&b->job, "%s: %zu values above %g (up to %.4g), %.2g %% of all, were cut off%s", path,
+             report->cut_count, report->limit, report->largest, 100 * report->share, way_out);
 }
 
 static int save(bake *b)
 {
     cli_job *job = &b->job;
-    kiln_sh stored, sh;
-    kiln_save_def def = {
-        .format = (kiln_format)b->format,
-        .zstd = b->zstd,
-        .sh = b->stores_sh ? &stored : NULL,
-        .lobe = lobes[b->lobe],
-    };
-    if (kiln_sh_filter(&b->made.sh, b->engine ? 3 : b->sh_bands, false, 0, &stored, &job->error) ||
-        kiln_sh_filter(&b->made.sh, b->sh_bands, b->sh_irradiance, b->sh_window, &sh, &job->error))
-        return CLI_FAILED;
-    int count = 0;
+    kiln_sh sh;
+    kiln_environment_save_def def = {.engine = b->engine,
+                                     .format = (kiln_format)b->format,
+                                     .zstd = b->zstd,
+                                     .irradiance_path = b->irradiance_path,
+                                     .sh_path = b->sh_path,
+                                     .sh = &sh};
+    kiln_environment_report report;
     kiln_map_free(&b->source);
-    if (b->engine
-            ? kiln_engine_save(job->context, b->engine, &b->made.levels, &stored,
-                               (kiln_format)b->format, b->output, &count, &job->error)
-            : kiln_map_save(job->context, &b->made.levels, b->output, &def, &count, &job->error))
+    if (kiln_sh_filter(&b->made.sh, b->sh_bands, b->sh_irradiance, b->sh_window, &sh,
+                       &job->error) ||
+        kiln_environment_save(job->context, &b->made, b->output, &def, &report, &job->error))
         return CLI_FAILED;
-    b->file_count = b->main_count = count;
-    if (b->irradiance_path) {
-        def.lobe = "lambert";
-        def.sh = NULL;
-        def.zstd = !strcmp(cli_ending(b->irradiance_path), "ktx2") ? b->zstd : 0;
-        if (cli_interrupted() || kiln_map_save(job->context, &b->made.irradiance,
-                                               b->irradiance_path, &def, &count, &job->error))
-            return CLI_FAILED;
-        b->file_count += count;
-    }
-    if (b->sh_path) {
-        if (cli_interrupted() || kiln_sh_save(job->context, &sh, b->sh_path, &job->error))
-            return CLI_FAILED;
-        b->file_count++;
-    }
-    warn_of_clamping(b, &b->made.levels, b->output);
+    b->main_count = report.levels.file_count;
+    b->file_count = report.file_count;
+    warn_of_clamping(b, &report.levels, b->output);
     if (b->irradiance_path)
-        warn_of_clamping(b, &b->made.irradiance, b->irradiance_path);
+        warn_of_clamping(b, &report.irradiance, b->irradiance_path);
     return CLI_GO;
 }
 

@@ -500,14 +500,47 @@ KILN_API KILN_CHECKED kiln_result kiln_map_save_check(const char *path, kiln_sha
 /// The largest radiance that such a file holds in a format; more is cut off. 0 where floats hold all.
 KILN_API double kiln_map_save_limit(const char *path, kiln_format format);
 
+/// What saving a map did.
+typedef struct kiln_save_report {
+    int file_count;
+    double limit;       ///< the largest radiance that these files hold; 0 where floats hold all
+    size_t value_count; ///< three a texel, of all levels
+    size_t cut_count;   ///< how many of them were above the limit and are the limit in the files
+    double share;       ///< cut_count / value_count
+    double largest;     ///< of the map's values
+} kiln_save_report;
+
 /// Writes a map whole or not at all: a temporary file beside `path`, fsync, rename. By ending:
 ///   .ktx2 .dds   a cube with all levels in one file
 ///   .exr .hdr .png, or a folder (ends in /)   with %s or {face} for the face and %d or {level} for
 ///       the level in the name; a cube without them becomes six files NAME_px.exr ... a level
-/// `def` may be NULL. The number of files written goes to `file_count`, which may be NULL.
+/// `def` may be NULL. `report`, which may be NULL, tells of files and of values that were cut off.
 KILN_API KILN_CHECKED kiln_result kiln_map_save(kiln_context *context, const kiln_map *map,
                                                 const char *path, const kiln_save_def *def,
-                                                int *file_count, kiln_error *error);
+                                                kiln_save_report *report, kiln_error *error);
+
+/// A file in memory, under the name that it would have been saved as.
+typedef struct kiln_file {
+    const char *name;
+    const unsigned char *bytes;
+    size_t size;
+    void *owner; ///< kiln's own
+} kiln_file;
+
+typedef struct kiln_files {
+    int count;
+    kiln_file *file;
+} kiln_files;
+
+/// The files that kiln_map_save would write, in memory; kiln_files_free releases them. `name` is a path
+/// that need not exist.
+KILN_API KILN_CHECKED kiln_result kiln_map_encode(kiln_context *context, const kiln_map *map,
+                                                  const char *name, const kiln_save_def *def,
+                                                  kiln_files *files, kiln_save_report *report,
+                                                  kiln_error *error);
+/// May be NULL.
+KILN_API void kiln_files_free(kiln_files *files);
+
 /// A flat picture: .exr, .hdr (three channels) or .png (8 bits, values as they are, 0 to 1).
 KILN_API KILN_CHECKED kiln_result kiln_image_save(kiln_context *context, const kiln_image *image,
                                                   const char *path, kiln_error *error);
@@ -566,7 +599,43 @@ KILN_API KILN_CHECKED kiln_result kiln_engine_show(kiln_context *context, const 
 KILN_API KILN_CHECKED kiln_result kiln_engine_save(kiln_context *context, const kiln_engine *engine,
                                                    const kiln_map *map, const kiln_sh *sh,
                                                    kiln_format format, const char *path,
-                                                   int *file_count, kiln_error *error);
+                                                   kiln_save_report *report, kiln_error *error);
+/// The files that kiln_engine_save would write, in memory; kiln_files_free releases them.
+KILN_API KILN_CHECKED kiln_result kiln_engine_encode(kiln_context *context,
+                                                     const kiln_engine *engine, const kiln_map *map,
+                                                     const kiln_sh *sh, kiln_format format,
+                                                     const char *name, kiln_files *files,
+                                                     kiln_save_report *report, kiln_error *error);
+
+// ------------------------------------------------------------------------------ environments, writing
+
+/// {0} is a good default: the levels alone, with harmonics and lobe in the file's metadata where the
+/// file has any.
+typedef struct kiln_environment_save_def {
+    const kiln_engine *engine;   ///< whose files the levels become; NULL: those of kiln_map_save
+    kiln_format format;          ///< of levels and irradiance
+    int zstd;                    ///< of KTX2 files, not of an engine's
+    const char *irradiance_path; ///< NULL: the irradiance is not written
+    const char *sh_path;         ///< .json, .txt or .h; NULL: harmonics have no file of their own
+    const kiln_sh *sh;           ///< what goes to sh_path; NULL: the environment's
+} kiln_environment_save_def;
+
+typedef struct kiln_environment_report {
+    int file_count; ///< of all
+    kiln_save_report levels, irradiance;
+} kiln_environment_report;
+
+/// Writes an environment, the levels to `path`: all files together or none. `def` and `report` may be
+/// NULL.
+KILN_API KILN_CHECKED kiln_result kiln_environment_save(
+    kiln_context *context, const kiln_environment *environment, const char *path,
+    const kiln_environment_save_def *def, kiln_environment_report *report, kiln_error *error);
+/// The files that kiln_environment_save would write, in memory, the levels' first; kiln_files_free
+/// releases them.
+KILN_API KILN_CHECKED kiln_result
+kiln_environment_encode(kiln_context *context, const kiln_environment *environment,
+                        const char *name, const kiln_environment_save_def *def, kiln_files *files,
+                        kiln_environment_report *report, kiln_error *error);
 
 #ifdef __cplusplus
 }

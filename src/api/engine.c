@@ -2,6 +2,7 @@
 #include "engine/engine.h"
 
 #include "codec/pixel_format.h"
+#include "codec/save.h"
 #include "image/image.h"
 #include "math/math.h"
 
@@ -189,38 +190,80 @@ static kiln_result check_map(const ki_recipe *recipe, const kiln_map *map, const
     return check_levels(recipe, map->size, map->level_count, error);
 }
 
-kiln_result kiln_engine_save(kiln_context *context, const kiln_engine *engine, const kiln_map *map,
-                             const kiln_sh *sh, kiln_format format, const char *path,
-                             int *file_count, kiln_error *error)
+// A cube and harmonics in the engine's directions, and the files made of them.
+static kiln_result write_turned(ki_export *to, const ki_recipe *recipe, const kiln_map *map,
+                                const kiln_sh *sh, kiln_error *error)
 {
-    if (file_count)
-        *file_count = 0;
-    const ki_recipe *recipe;
-    kiln_result result = find_recipe(engine, &recipe, error);
-    if (result != KILN_OK || (result = check_path(recipe, path, error)) != KILN_OK ||
-        (result = check_map(recipe, map, sh, error)) != KILN_OK ||
-        (result = kiln_engine_format(engine, &format, error)) != KILN_OK)
-        return result;
     kiln_map turned = {.shape = KILN_SHAPE_CUBE,
                        .size = map->size,
                        .level_count = map->level_count,
                        .smallest = map->smallest};
     kiln_sh few = *sh, turned_sh;
     few.bands = 3;
-    if (!ki_progress(context, "writing", 0))
-        return ki_fail_cancelled(error, "writing");
-    if ((result = ki_map_allocate(context, &turned, error)) != KILN_OK)
+    kiln_result result = ki_map_allocate(to->context, &turned, error);
+    if (result != KILN_OK)
         return result;
     ki_turn_cube(map, &recipe->axes, &turned);
     ki_turn_sh(&few, &recipe->axes, &turned_sh);
-    ki_export to = {context, &turned, &turned_sh, format, path, ki_file_set_begin(context), 0};
-    result = to.set ? recipe->write(&to, error) : ki_fail_memory(context, error, path, 64);
-    if (result == KILN_OK)
-        result = ki_file_set_commit(to.set, error);
-    else
-        ki_file_set_abandon(to.set);
-    if (result == KILN_OK && file_count)
-        *file_count = to.file_count;
+    to->map = &turned;
+    to->sh = &turned_sh;
+    result = recipe->write(to, error);
     kiln_map_free(&turned);
     return result;
+}
+
+kiln_result ki_engine_write(ki_file_set *set, kiln_context *context, const kiln_engine *engine,
+                            const kiln_map *map, const kiln_sh *sh, kiln_format format,
+                            const char *path, kiln_save_report *report, kiln_error *error)
+{
+    const ki_recipe *recipe;
+    kiln_result result = find_recipe(engine, &recipe, error);
+    if (result != KILN_OK || (result = check_path(recipe, path, error)) != KILN_OK ||
+        (result = check_map(recipe, map, sh, error)) != KILN_OK ||
+        (result = kiln_engine_format(engine, &format, error)) != KILN_OK)
+        return result;
+    if (!ki_progress(context, "writing", 0))
+        return ki_fail_cancelled(error, "writing");
+    bool least = format == KILN_FORMAT_B10G11R11;
+    if (report)
+        ki_count_cut(map, least ? kiln_format_limit(format) : engine->limit, report);
+    ki_export to = {.context = context, .format = format, .path = path, .set = set};
+    result = write_turned(&to, recipe, map, sh, error);
+    if (report)
+        report->file_count = to.file_count;
+    return result;
+}
+
+// To files, or to memory where `files` is not NULL.
+static kiln_result write_engine(kiln_context *context, const kiln_engine *engine,
+                                const kiln_map *map, const kiln_sh *sh, kiln_format format,
+                                const char *path, kiln_files *files, kiln_save_report *report,
+                                kiln_error *error)
+{
+    kiln_result result = KILN_OK;
+    ki_file_set *set = files ? ki_file_set_begin_in_memory(context) : ki_file_set_begin(context);
+    if (report)
+        *report = (kiln_save_report){0};
+    if (set)
+        result = ki_engine_write(set, context, engine, map, sh, format, path, report, error);
+    result = ki_file_set_end(context, set, result, files, error);
+    if (report && result != KILN_OK)
+        *report = (kiln_save_report){0};
+    return result;
+}
+
+kiln_result kiln_engine_save(kiln_context *context, const kiln_engine *engine, const kiln_map *map,
+                             const kiln_sh *sh, kiln_format format, const char *path,
+                             kiln_save_report *report, kiln_error *error)
+{
+    return write_engine(context, engine, map, sh, format, path, NULL, report, error);
+}
+
+kiln_result kiln_engine_encode(kiln_context *context, const kiln_engine *engine,
+                               const kiln_map *map, const kiln_sh *sh, kiln_format format,
+                               const char *name, kiln_files *files, kiln_save_report *report,
+                               kiln_error *error)
+{
+    *files = (kiln_files){0};
+    return write_engine(context, engine, map, sh, format, name, files, report, error);
 }

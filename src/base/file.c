@@ -82,13 +82,18 @@ done:
     return result;
 }
 
+// A file under its temporary name, a folder that was made, or a file in memory.
 typedef struct set_entry {
     struct set_entry *next;
-    char *path, *temporary;
+    char *path, *temporary; // NULL where nothing is to be renamed
+    bool is_folder;
+    uint8_t *bytes;
+    size_t size;
 } set_entry;
 
 struct ki_file_set {
     kiln_context *context;
+    bool in_memory;
     set_entry *first, **last;
 };
 
@@ -100,6 +105,55 @@ ki_file_set *ki_file_set_begin(kiln_context *context)
         set->last = &set->first;
     }
     return set;
+}
+
+ki_file_set *ki_file_set_begin_in_memory(kiln_context *context)
+{
+    ki_file_set *set = ki_file_set_begin(context);
+    if (set)
+        set->in_memory = true;
+    return set;
+}
+
+// An entry with its path, and `room` bytes behind the path.
+static set_entry *create_entry(ki_file_set *set, const char *path, size_t room, kiln_error *error)
+{
+    size_t length = strlen(path) + 1;
+    set_entry *entry = NULL;
+    if (room <= SIZE_MAX / 2)
+        entry = ki_alloc(set->context, 1, sizeof *entry + length + room);
+    if (!entry) {
+        ki_describe_memory(set->context, error, path, room);
+        return NULL;
+    }
+    entry->path = (char *)(entry + 1);
+    memcpy(entry->path, path, length);
+    return entry;
+}
+
+static void append_entry(ki_file_set *set, set_entry *entry)
+{
+    *set->last = entry;
+    set->last = &entry->next;
+}
+
+kiln_result ki_file_set_make_folder(ki_file_set *set, const char *path, kiln_error *error)
+{
+    if (set->in_memory)
+        return KILN_OK;
+    set_entry *entry = create_entry(set, path, 0, error);
+    if (!entry)
+        return KILN_ERROR_MEMORY;
+    entry->is_folder = true;
+    if (ki_os_make_folder(path)) {
+        append_entry(set, entry);
+        return KILN_OK;
+    }
+    int reason = errno;
+    ki_free(entry);
+    return reason == EEXIST ? KILN_OK
+                            : ki_fail(error, KILN_ERROR_IO, "%s: the folder cannot be made: %s",
+                                      path, strerror(reason));
 }
 
 // Synced on the way, so that the last sync, which nothing interrupts, is short.
@@ -138,23 +192,38 @@ static int create_temporary(char *name, size_t room, const char *path)
     return -1;
 }
 
+static kiln_result add_in_memory(ki_file_set *set, const char *path, const void *bytes, size_t size,
+                                 kiln_error *error)
+{
+    set_entry *entry = create_entry(set, path, size, error);
+    if (!entry)
+        return KILN_ERROR_MEMORY;
+    entry->bytes = (uint8_t *)entry->path + strlen(path) + 1;
+    entry->size = size;
+    if (size)
+        memcpy(entry->bytes, bytes, size);
+    append_entry(set, entry);
+    return KILN_OK;
+}
+
 kiln_result ki_file_set_add(ki_file_set *set, const char *path, const void *bytes, size_t size,
                             kiln_error *error)
 {
-    size_t length = strlen(path), room = length + 64;
-    set_entry *entry = ki_alloc(set->context, 1, sizeof *entry + length + 1 + room);
+    enum { ROOM = 64 };
+    if (set->in_memory)
+        return add_in_memory(set, path, bytes, size, error);
+    size_t length = strlen(path) + 1;
+    set_entry *entry = create_entry(set, path, length + ROOM, error);
     if (!entry)
-        return ki_fail_memory(set->context, error, path, sizeof *entry + length + 1 + room);
-    entry->path = (char *)(entry + 1);
-    entry->temporary = entry->path + length + 1;
-    memcpy(entry->path, path, length + 1);
+        return KILN_ERROR_MEMORY;
+    entry->temporary = entry->path + length;
 
     ki_os_kind kind = ki_os_kind_of(path);
     if (kind != KI_OS_NOTHING && kind != KI_OS_FILE) {
         ki_free(entry);
         return ki_fail(error, KILN_ERROR_IO, "%s: exists and is not a file", path);
     }
-    int fd = create_temporary(entry->temporary, room, path);
+    int fd = create_temporary(entry->temporary, length + ROOM, path);
     if (fd < 0) {
         ki_free(entry);
         return ki_fail(error, KILN_ERROR_IO, "%s: cannot be created: %s", path, strerror(errno));
@@ -170,8 +239,7 @@ kiln_result ki_file_set_add(ki_file_set *set, const char *path, const void *byte
         return ki_fail(error, KILN_ERROR_IO, "%s: cannot write %zu bytes: %s", path, size,
                        strerror(reason));
     }
-    *set->last = entry;
-    set->last = &entry->next;
+    append_entry(set, entry);
     return KILN_OK;
 }
 
@@ -184,6 +252,13 @@ static void free_entries(ki_file_set *set)
     ki_free(set);
 }
 
+static void remove_folders(const ki_file_set *set)
+{
+    for (const set_entry *entry = set->first; entry; entry = entry->next)
+        if (entry->is_folder)
+            ki_os_remove_folder(entry->path);
+}
+
 kiln_result ki_file_set_commit(ki_file_set *set, kiln_error *error)
 {
     // The last moment at which nothing has happened yet.
@@ -191,12 +266,16 @@ kiln_result ki_file_set_commit(ki_file_set *set, kiln_error *error)
     if (!ki_progress(set->context, "writing", 1))
         result = ki_fail_cancelled(error, "writing");
     for (set_entry *entry = set->first; entry; entry = entry->next) {
+        if (!entry->temporary)
+            continue;
         if (result == KILN_OK && !ki_os_replace(entry->temporary, entry->path))
             result = ki_fail(error, KILN_ERROR_IO, "%s: cannot be put in place: %s", entry->path,
                              strerror(errno));
         if (result != KILN_OK)
             ki_os_remove(entry->temporary);
     }
+    if (result != KILN_OK)
+        remove_folders(set);
     free_entries(set);
     return result;
 }
@@ -206,8 +285,52 @@ void ki_file_set_abandon(ki_file_set *set)
     if (!set)
         return;
     for (set_entry *entry = set->first; entry; entry = entry->next)
-        ki_os_remove(entry->temporary);
+        if (entry->temporary)
+            ki_os_remove(entry->temporary);
+    remove_folders(set);
     free_entries(set);
+}
+
+// Every file keeps the entry that it was; the list is a block of its own.
+kiln_result ki_file_set_take(ki_file_set *set, kiln_files *files, kiln_error *error)
+{
+    size_t count = 0, at = 0;
+    *files = (kiln_files){0};
+    for (const set_entry *entry = set->first; entry; entry = entry->next)
+        count++;
+    kiln_file *list = ki_alloc(set->context, count, sizeof *list);
+    if (!list) {
+        ki_describe_memory(set->context, error, "a list of files", count * sizeof *list);
+        free_entries(set);
+        return KILN_ERROR_MEMORY;
+    }
+    for (set_entry *entry = set->first; entry; entry = entry->next)
+        list[at++] = (kiln_file){entry->path, entry->bytes, entry->size, entry};
+    *files = (kiln_files){(int)count, list};
+    ki_free(set);
+    return KILN_OK;
+}
+
+kiln_result ki_file_set_end(kiln_context *context, ki_file_set *set, kiln_result result,
+                            kiln_files *files, kiln_error *error)
+{
+    if (!set)
+        return ki_fail_memory(context, error, "a set of files", sizeof *set);
+    if (result != KILN_OK) {
+        ki_file_set_abandon(set);
+        return result;
+    }
+    return files ? ki_file_set_take(set, files, error) : ki_file_set_commit(set, error);
+}
+
+void kiln_files_free(kiln_files *files)
+{
+    if (!files)
+        return;
+    for (int i = 0; i < files->count; i++)
+        ki_free(files->file[i].owner);
+    ki_free(files->file);
+    *files = (kiln_files){0};
 }
 
 kiln_result ki_file_write(kiln_context *context, const char *path, const void *bytes, size_t size,

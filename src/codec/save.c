@@ -1,13 +1,12 @@
 // Saving maps and pictures by path: what an ending may hold, the names of a set of files, and the set
 // written whole or not at all. The writers are those of the table of formats.
+#include "codec/save.h"
 #include "base/file.h"
-#include "base/os.h"
 #include "codec/formats.h"
 #include "codec/pixel_format.h"
 #include "codec/sh_text.h"
 #include "image/image.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -151,15 +150,14 @@ static kiln_result add_picture(ki_file_set *set, const ki_file_format *file, con
                              : result;
 }
 
-static kiln_result write_set(kiln_context *context, const kiln_map *map, const char *template,
-                             const kiln_save_def *def, int *file_count, kiln_error *error)
+// All faces and levels; `template` names them.
+static kiln_result add_pictures(ki_file_set *set, kiln_context *context, const kiln_map *map,
+                                const char *template, const kiln_save_def *def, int *file_count,
+                                kiln_error *error)
 {
     ki_writer path = {.context = context};
     ki_writer bytes = {.context = context};
     kiln_result result = KILN_OK;
-    ki_file_set *set = ki_file_set_begin(context);
-    if (!set)
-        return ki_fail_memory(context, error, template, 64);
     bool cube = map->shape == KILN_SHAPE_CUBE;
     int faces = cube ? 6 : 1, count = 0;
     for (int i = 0; i < faces * map->level_count && result == KILN_OK; i++) {
@@ -176,67 +174,111 @@ static kiln_result write_set(kiln_context *context, const kiln_map *map, const c
                              (const char *)path.bytes, &bytes, error);
         count++;
     }
-    if (result == KILN_OK)
-        result = ki_file_set_commit(set, error);
-    else
-        ki_file_set_abandon(set);
-    if (result == KILN_OK && file_count)
-        *file_count = count;
+    *file_count = count;
     ki_writer_free(&path);
     ki_writer_free(&bytes);
     return result;
 }
 
-static kiln_result save_pictures(kiln_context *context, const kiln_map *map, const char *path,
-                                 const kiln_save_def *def, int *file_count, kiln_error *error)
+static kiln_result write_pictures(ki_file_set *set, kiln_context *context, const kiln_map *map,
+                                  const char *path, const kiln_save_def *def, int *file_count,
+                                  kiln_error *error)
 {
     ki_writer template = {.context = context};
     kiln_result result = make_template(path, map, &template, error);
-    bool made = false;
-    if (result == KILN_OK && ki_ends_with(path, "/")) {
-        made = ki_os_make_folder(path);
-        if (!made && errno != EEXIST)
-            result = ki_fail(error, KILN_ERROR_IO, "%s: the folder cannot be made: %s", path,
-                             strerror(errno));
-    }
+    if (result == KILN_OK && ki_ends_with(path, "/"))
+        result = ki_file_set_make_folder(set, path, error);
     if (result == KILN_OK && template.bytes)
-        result = write_set(context, map, (const char *)template.bytes, def, file_count, error);
-    if (result != KILN_OK && made)
-        ki_os_remove_folder(path);
+        result =
+            add_pictures(set, context, map, (const char *)template.bytes, def, file_count, error);
     ki_writer_free(&template);
     return result;
 }
 
-static kiln_result save_cube(kiln_context *context, const kiln_map *map, const char *path,
-                             const kiln_save_def *def, int *file_count, kiln_error *error)
+static kiln_result write_cube(ki_file_set *set, kiln_context *context, const kiln_map *map,
+                              const char *path, const kiln_save_def *def, int *file_count,
+                              kiln_error *error)
 {
     ki_writer bytes = {.context = context};
     if (!ki_progress(context, "writing", 0))
         return ki_fail_cancelled(error, "writing");
     kiln_result result = format_of(path)->write_cube(map, def, &bytes, error);
     if (result == KILN_OK)
-        result = ki_file_write(context, path, bytes.bytes, bytes.size, error);
-    if (result == KILN_OK && file_count)
-        *file_count = 1;
+        result = ki_file_set_add(set, path, bytes.bytes, bytes.size, error);
+    *file_count = 1;
     ki_writer_free(&bytes);
     return result;
 }
 
-kiln_result kiln_map_save(kiln_context *context, const kiln_map *map, const char *path,
-                          const kiln_save_def *def, int *file_count, kiln_error *error)
+void ki_count_cut(const kiln_map *map, double limit, kiln_save_report *report)
+{
+    float most = 0;
+    size_t values = 0, cut = 0;
+    for (int k = 0; k < map->level_count; k++) {
+        size_t count = 3 * kiln_map_texels(map, k);
+        const float *value = map->level[k];
+        for (size_t i = 0; i < count; i++) {
+            cut += limit > 0 && (double)value[i] > limit;
+            most = value[i] > most ? value[i] : most;
+        }
+        values += count;
+    }
+    report->limit = limit;
+    report->value_count = values;
+    report->cut_count = cut;
+    report->share = values ? (double)cut / (double)values : 0;
+    report->largest = (double)most;
+}
+
+kiln_result ki_map_write(ki_file_set *set, kiln_context *context, const kiln_map *map,
+                         const char *path, const kiln_save_def *def, kiln_save_report *report,
+                         kiln_error *error)
 {
     static const kiln_save_def defaults = {0};
-    if (file_count)
-        *file_count = 0;
+    kiln_save_report unused;
     def = def ? def : &defaults;
     kiln_result result = ki_map_check(map, error);
     if (result == KILN_OK)
         result = kiln_map_save_check(path, map->shape, def, error);
     if (result != KILN_OK)
         return result;
+    if (report)
+        ki_count_cut(map, kiln_map_save_limit(path, def->format), report);
+    report = report ? report : &unused;
     return ki_file_holds(format_of(path), KI_HOLDS_CUBE)
-               ? save_cube(context, map, path, def, file_count, error)
-               : save_pictures(context, map, path, def, file_count, error);
+               ? write_cube(set, context, map, path, def, &report->file_count, error)
+               : write_pictures(set, context, map, path, def, &report->file_count, error);
+}
+
+// To files, or to memory where `files` is not NULL.
+static kiln_result write_map(kiln_context *context, const kiln_map *map, const char *path,
+                             const kiln_save_def *def, kiln_files *files, kiln_save_report *report,
+                             kiln_error *error)
+{
+    kiln_result result = KILN_OK;
+    ki_file_set *set = files ? ki_file_set_begin_in_memory(context) : ki_file_set_begin(context);
+    if (report)
+        *report = (kiln_save_report){0};
+    if (set)
+        result = ki_map_write(set, context, map, path, def, report, error);
+    result = ki_file_set_end(context, set, result, files, error);
+    if (report && result != KILN_OK)
+        *report = (kiln_save_report){0};
+    return result;
+}
+
+kiln_result kiln_map_save(kiln_context *context, const kiln_map *map, const char *path,
+                          const kiln_save_def *def, kiln_save_report *report, kiln_error *error)
+{
+    return write_map(context, map, path, def, NULL, report, error);
+}
+
+kiln_result kiln_map_encode(kiln_context *context, const kiln_map *map, const char *name,
+                            const kiln_save_def *def, kiln_files *files, kiln_save_report *report,
+                            kiln_error *error)
+{
+    *files = (kiln_files){0};
+    return write_map(context, map, name, def, files, report, error);
 }
 
 kiln_result kiln_image_save(kiln_context *context, const kiln_image *image, const char *path,

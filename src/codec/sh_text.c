@@ -73,8 +73,8 @@ static void write_array(ki_writer *w, const kiln_sh *sh)
     ki_write_text(w, "};\n");
 }
 
-kiln_result kiln_sh_save(kiln_context *context, const kiln_sh *sh, const char *path,
-                         kiln_error *error)
+kiln_result ki_sh_write(ki_file_set *set, kiln_context *context, const kiln_sh *sh,
+                        const char *path, kiln_error *error)
 {
     const char *ending = kiln_path_ending(path);
     char list[KI_ENDINGS_TEXT];
@@ -94,7 +94,17 @@ kiln_result kiln_sh_save(kiln_context *context, const kiln_sh *sh, const char *p
     if (bytes.failed)
         result = ki_fail_memory(context, error, path, bytes.size);
     else
-        result = ki_file_write(context, path, bytes.bytes, bytes.size, error);
+        result = ki_file_set_add(set, path, bytes.bytes, bytes.size, error);
     ki_writer_free(&bytes);
     return result;
+}
+
+kiln_result kiln_sh_save(kiln_context *context, const kiln_sh *sh, const char *path,
+                         kiln_error *error)
+{
+    kiln_result result = KILN_OK;
+    ki_file_set *set = ki_file_set_begin(context);
+    if (set)
+        result = ki_sh_write(set, context, sh, path, error);
+    return ki_file_set_end(context, set, result, NULL, error);
 }

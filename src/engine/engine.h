@@ -68,4 +68,9 @@ kiln_result ki_export_add(ki_export *to, const char *path, const ki_writer *byte
 /// The whole export of an engine that takes one .dds in `to`'s format.
 kiln_result ki_export_dds(ki_export *to, kiln_error *error);
 
+/// Adds to a set the files that kiln_engine_save writes. `report` may be NULL.
+kiln_result ki_engine_write(ki_file_set *set, kiln_context *context, const kiln_engine *engine,
+                            const kiln_map *map, const kiln_sh *sh, kiln_format format,
+                            const char *path, kiln_save_report *report, kiln_error *error);
+
 #endif

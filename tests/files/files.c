@@ -249,9 +249,9 @@ static void check_names(const char *path, int levels, const char *const *names, 
 {
     kiln_map cube;
     make_cube(levels, &cube);
-    int written = -1;
+    kiln_save_report written = {.file_count = -1};
     CHECK_OK(kiln_map_save(context, &cube, in_folder(path), NULL, &written, &error));
-    assert_int_equal(written, count);
+    assert_int_equal(written.file_count, count);
     for (int i = 0; names && names[i]; i++)
         if (access(in_folder(names[i]), R_OK) != 0)
             fail_msg("%s was not written", names[i]);

@@ -1,0 +1,94 @@
+// An environment to files or to memory: its levels as kiln or an engine has them, its irradiance and its
+// harmonics, all together or none.
+#include "codec/save.h"
+#include "codec/sh_text.h"
+#include "engine/engine.h"
+
+#include <string.h>
+
+static const char *const lobe_names[] = {"ggx", "lambert", "charlie", "phong", "custom"};
+
+static kiln_result write_levels(ki_file_set *set, kiln_context *context,
+                                const kiln_environment *environment, const char *path,
+                                const kiln_environment_save_def *def, kiln_save_report *report,
+                                kiln_error *error)
+{
+    if ((unsigned)environment->lobe > KILN_LOBE_CUSTOM)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "lobe is %d, it must be 0 to %d",
+                       (int)environment->lobe, (int)KILN_LOBE_CUSTOM);
+    if (def->engine && def->zstd)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: zstd is for no engine's files", path);
+    if (def->engine)
+        return ki_engine_write(set, context, def->engine, &environment->levels, &environment->sh,
+                               def->format, path, report, error);
+    const kiln_save_def save = {.format = def->format,
+                                .zstd = def->zstd,
+                                .sh = environment->sh.bands ? &environment->sh : NULL,
+                                .lobe = lobe_names[environment->lobe]};
+    return ki_map_write(set, context, &environment->levels, path, &save, report, error);
+}
+
+static kiln_result write_irradiance(ki_file_set *set, kiln_context *context,
+                                    const kiln_environment *environment,
+                                    const kiln_environment_save_def *def, kiln_save_report *report,
+                                    kiln_error *error)
+{
+    bool ktx2 = !strcmp(kiln_path_ending(def->irradiance_path), ".ktx2");
+    const kiln_save_def save = {
+        .format = def->format, .zstd = ktx2 ? def->zstd : 0, .lobe = lobe_names[KILN_LOBE_LAMBERT]};
+    if (!environment->irradiance.size)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: the environment has no irradiance",
+                       def->irradiance_path);
+    return ki_map_write(set, context, &environment->irradiance, def->irradiance_path, &save, report,
+                        error);
+}
+
+static kiln_result write_all(ki_file_set *set, kiln_context *context,
+                             const kiln_environment *environment, const char *path,
+                             const kiln_environment_save_def *def, kiln_environment_report *report,
+                             kiln_error *error)
+{
+    kiln_result result = write_levels(set, context, environment, path, def, &report->levels, error);
+    if (result == KILN_OK && def->irradiance_path)
+        result = write_irradiance(set, context, environment, def, &report->irradiance, error);
+    if (result == KILN_OK && def->sh_path)
+        result =
+            ki_sh_write(set, context, def->sh ? def->sh : &environment->sh, def->sh_path, error);
+    report->file_count =
+        report->levels.file_count + report->irradiance.file_count + (def->sh_path ? 1 : 0);
+    return result;
+}
+
+// To files, or to memory where `files` is not NULL.
+static kiln_result write_environment(kiln_context *context, const kiln_environment *environment,
+                                     const char *path, const kiln_environment_save_def *def,
+                                     kiln_files *files, kiln_environment_report *report,
+                                     kiln_error *error)
+{
+    static const kiln_environment_save_def defaults = {0};
+    kiln_environment_report made = {0};
+    kiln_result result = KILN_OK;
+    ki_file_set *set = files ? ki_file_set_begin_in_memory(context) : ki_file_set_begin(context);
+    if (set)
+        result = write_all(set, context, environment, path, def ? def : &defaults, &made, error);
+    result = ki_file_set_end(context, set, result, files, error);
+    if (report)
+        *report = result == KILN_OK ? made : (kiln_environment_report){0};
+    return result;
+}
+
+kiln_result kiln_environment_save(kiln_context *context, const kiln_environment *environment,
+                                  const char *path, const kiln_environment_save_def *def,
+                                  kiln_environment_report *report, kiln_error *error)
+{
+    return write_environment(context, environment, path, def, NULL, report, error);
+}
+
+kiln_result kiln_environment_encode(kiln_context *context, const kiln_environment *environment,
+                                    const char *name, const kiln_environment_save_def *def,
+                                    kiln_files *files, kiln_environment_report *report,
+                                    kiln_error *error)
+{
+    *files = (kiln_files){0};
+    return write_environment(context, environment, name, def, files, report, error);
+}

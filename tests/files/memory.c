@@ -1,0 +1,250 @@
+// Files in memory are the files that saving writes, an environment's files appear together, and what a
+// format cannot hold is counted.
+#include "context.h"
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+static kiln_error error;
+static char folder[64];
+
+static const char *in_folder(const char *name)
+{
+    static char paths[4][128];
+    static int next;
+    char *path = paths[next++ % 4];
+    snprintf(path, sizeof paths[0], "%s/%s", folder, name);
+    return path;
+}
+
+static int set_up_folder(void **state)
+{
+    strcpy(folder, "/tmp/kiln-memory-XXXXXX");
+    return !mkdtemp(folder) || set_up(state);
+}
+
+static int tear_down_folder(void **state)
+{
+    return rmdir(folder) != 0 || tear_down(state);
+}
+
+static size_t read_file(const char *path, unsigned char **bytes)
+{
+    FILE *file = fopen(path, "rb");
+    if (!file)
+        fail_msg("%s is not there", path);
+    fseek(file, 0, SEEK_END);
+    size_t size = (size_t)ftell(file);
+    rewind(file);
+    *bytes = malloc(size);
+    assert_int_equal(fread(*bytes, 1, size, file), size);
+    fclose(file);
+    return size;
+}
+
+// Every file of the list is on the disk, with the same bytes; they are removed.
+static void check_same_files(const kiln_files *files)
+{
+    for (int i = 0; i < files->count; i++) {
+        unsigned char *bytes;
+        size_t size = read_file(files->file[i].name, &bytes);
+        assert_int_equal(size, files->file[i].size);
+        assert_memory_equal(bytes, files->file[i].bytes, size);
+        free(bytes);
+        unlink(files->file[i].name);
+    }
+}
+
+static kiln_environment make_environment(void)
+{
+    kiln_map sky;
+    kiln_environment made;
+    kiln_bake_def def = {.levels = {.size = 16}, .irradiance_size = 4};
+    CHECK_OK(kiln_sky(context, &(kiln_sky_def){.size = 32}, &sky, &error));
+    CHECK_OK(kiln_bake(context, &sky, &def, &made, &error));
+    kiln_map_free(&sky);
+    return made;
+}
+
+static void encoded_maps_are_the_files(void **state)
+{
+    (void)state;
+    kiln_environment made = make_environment();
+    static const struct {
+        const char *name;
+        int count;
+        kiln_format format;
+    } ways[] = {{"a.ktx2", 1, KILN_FORMAT_RGB9E5}, {"a.dds", 1, KILN_FORMAT_BC6H},
+                {"a.exr", 30, KILN_FORMAT_AUTO},   {"a_%s_%d.hdr", 30, KILN_FORMAT_AUTO},
+                {"a.png", 30, KILN_FORMAT_RGBM},   {"sub/", 30, KILN_FORMAT_AUTO}};
+    for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
+        kiln_save_def def = {.format = ways[i].format, .sh = &made.sh, .lobe = "ggx"};
+        kiln_save_report saved, encoded;
+        kiln_files files;
+        CHECK_OK(kiln_map_encode(context, &made.levels, in_folder(ways[i].name), &def, &files,
+                                 &encoded, &error));
+        assert_int_equal(files.count, ways[i].count);
+        assert_int_equal(access(files.file[0].name, F_OK), -1); // nothing is written
+        assert_int_equal(access(in_folder("sub"), F_OK), -1);
+        CHECK_OK(
+            kiln_map_save(context, &made.levels, in_folder(ways[i].name), &def, &saved, &error));
+        assert_int_equal(saved.file_count, ways[i].count);
+        assert_memory_equal(&saved, &encoded, sizeof saved);
+        check_same_files(&files);
+        kiln_files_free(&files);
+        assert_int_equal(files.count, 0);
+    }
+    rmdir(in_folder("sub"));
+    // And what is encoded is read again.
+    kiln_files files;
+    kiln_map again;
+    kiln_save_def floats = {.format = KILN_FORMAT_RGBA32F};
+    CHECK_OK(kiln_map_encode(context, &made.levels, "x.ktx2", &floats, &files, NULL, &error));
+    CHECK_OK(kiln_map_decode(context, files.file[0].bytes, files.file[0].size, NULL, NULL, &again,
+                             &error));
+    for (int k = 0; k < again.level_count; k++)
+        assert_memory_equal(again.level[k], made.levels.level[k],
+                            3 * kiln_map_texels(&again, k) * sizeof(float));
+    kiln_map_free(&again);
+    kiln_files_free(&files);
+    kiln_environment_free(&made);
+}
+
+static void engines_files_are_encoded_alike(void **state)
+{
+    (void)state;
+    kiln_map white;
+    CHECK_OK(kiln_map_create(context, KILN_SHAPE_PANORAMA, 8, 1, &white, &error));
+    for (int i = 0; kiln_engine_at(i); i++) {
+        const kiln_engine *engine = kiln_engine_at(i);
+        kiln_bake_def def = {.engine = engine,
+                             .levels = {.size = engine->size < 64 ? engine->size : 64},
+                             .tune = KILN_TUNE_NONE,
+                             .irradiance_size = 4};
+        kiln_environment made;
+        kiln_environment_save_def save = {.engine = engine};
+        kiln_environment_report report;
+        kiln_files files;
+        char name[64];
+        if (kiln_bake(context, &white, &def, &made, &error) != KILN_OK) {
+            def.levels.size = 0; // one size only
+            CHECK_OK(kiln_bake(context, &white, &def, &made, &error));
+        }
+        snprintf(name, sizeof name, "e%s%s", engine->ending[0] ? "." : "", engine->ending);
+        CHECK_OK(
+            kiln_environment_encode(context, &made, in_folder(name), &save, &files, NULL, &error));
+        assert_true(files.count >= 1);
+        CHECK_OK(kiln_environment_save(context, &made, in_folder(name), &save, &report, &error));
+        assert_int_equal(report.file_count, files.count);
+        check_same_files(&files);
+        kiln_files_free(&files);
+        CHECK_OK(kiln_engine_encode(context, engine, &made.levels, &made.sh, KILN_FORMAT_AUTO,
+                                    in_folder(name), &files, &report.levels, &error));
+        assert_int_equal(report.levels.file_count, files.count);
+        kiln_files_free(&files);
+        kiln_environment_free(&made);
+    }
+    kiln_map_free(&white);
+}
+
+static void an_environments_files_appear_together(void **state)
+{
+    (void)state;
+    kiln_environment made = make_environment();
+    char irradiance[128], sh[128];
+    strcpy(irradiance, in_folder("i.dds"));
+    strcpy(sh, in_folder("s.json"));
+    kiln_environment_save_def def = {.irradiance_path = irradiance, .sh_path = sh};
+    kiln_environment_report report;
+    kiln_files files;
+    CHECK_OK(kiln_environment_encode(context, &made, in_folder("a.ktx2"), &def, &files, &report,
+                                     &error));
+    assert_int_equal(files.count, 3);
+    assert_int_equal(report.file_count, 3);
+    CHECK_OK(kiln_environment_save(context, &made, in_folder("a.ktx2"), &def, &report, &error));
+    check_same_files(&files);
+    kiln_files_free(&files);
+    // The last of them fails: none is there.
+    def.sh_path = in_folder("s.yaml");
+    assert_int_equal(
+        kiln_environment_save(context, &made, in_folder("a.ktx2"), &def, &report, &error),
+        KILN_ERROR_ARGUMENT);
+    assert_non_null(strstr(error.message, "s.yaml"));
+    assert_int_equal(report.file_count, 0);
+    assert_int_equal(access(in_folder("a.ktx2"), F_OK), -1);
+    assert_int_equal(access(irradiance, F_OK), -1);
+    def = (kiln_environment_save_def){.irradiance_path = irradiance};
+    kiln_map_free(&made.irradiance);
+    assert_int_equal(
+        kiln_environment_save(context, &made, in_folder("sub/"), &def, &report, &error),
+        KILN_ERROR_ARGUMENT);
+    assert_int_equal(access(in_folder("sub"), F_OK), -1); // the folder is gone too
+    kiln_environment_free(&made);
+}
+
+static void what_is_cut_off_is_counted(void **state)
+{
+    (void)state;
+    kiln_map map;
+    kiln_files files;
+    kiln_save_report report;
+    CHECK_OK(kiln_map_create(context, KILN_SHAPE_CUBE, 4, 1, &map, &error));
+    map.level[0][5] = 65505;
+    map.level[0][17] = 1e6f;
+    map.level[0][18] = 65504;
+    static const struct {
+        const char *name;
+        kiln_format format;
+        size_t cut;
+        double limit;
+    } ways[] = {{"a.ktx2", KILN_FORMAT_AUTO, 2, 65504},  {"a.ktx2", KILN_FORMAT_RGBA32F, 0, 0},
+                {"a.dds", KILN_FORMAT_RGB9E5, 3, 65408}, {"a.dds", KILN_FORMAT_B10G11R11, 3, 64512},
+                {"a.ktx2", KILN_FORMAT_BC6H, 2, 65504},  {"a.exr", KILN_FORMAT_AUTO, 2, 65504},
+                {"a.hdr", KILN_FORMAT_AUTO, 0, 0},       {"a.png", KILN_FORMAT_AUTO, 3, 1}};
+    for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
+        kiln_save_def def = {.format = ways[i].format};
+        CHECK_OK(kiln_map_encode(context, &map, ways[i].name, &def, &files, &report, &error));
+        assert_int_equal(report.cut_count, ways[i].cut);
+        assert_int_equal(report.value_count, 3 * 96);
+        CHECK_NEAR(report.share, (double)ways[i].cut / 288, 1e-15);
+        CHECK_NEAR(report.limit, ways[i].limit, 0);
+        CHECK_NEAR(report.largest, 1e6, 0);
+        kiln_files_free(&files);
+    }
+    kiln_map_free(&map);
+}
+
+static void memory_that_is_refused_leaves_nothing(void **state)
+{
+    (void)state;
+    kiln_context_def def = {.memory_limit = 200000, .thread_count = 1};
+    kiln_context *small;
+    kiln_map map;
+    kiln_files files;
+    kiln_save_report report;
+    size_t before, after;
+    CHECK_OK(kiln_context_create(&def, &small, &error));
+    CHECK_OK(kiln_map_create(small, KILN_SHAPE_CUBE, 48, 1, &map, &error));
+    kiln_context_memory(small, &before, NULL);
+    assert_int_equal(kiln_map_encode(small, &map, "a.ktx2", NULL, &files, &report, &error),
+                     KILN_ERROR_MEMORY);
+    assert_int_equal(files.count, 0);
+    assert_null(files.file);
+    assert_int_equal(report.value_count, 0);
+    kiln_context_memory(small, &after, NULL);
+    assert_int_equal(after, before);
+    kiln_map_free(&map);
+    kiln_context_destroy(small);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(encoded_maps_are_the_files),
+        cmocka_unit_test(engines_files_are_encoded_alike),
+        cmocka_unit_test(an_environments_files_appear_together),
+        cmocka_unit_test(what_is_cut_off_is_counted),
+        cmocka_unit_test(memory_that_is_refused_leaves_nothing),
+    };
+    return cmocka_run_group_tests_name("memory", tests, set_up_folder, tear_down_folder);
+}
