@@ -21,7 +21,7 @@ static const bench_case cases[] = {
     {"peer", "whole processes: kiln beside cmgen", bench_peer, false},
     {"memory", "peak memory of baking 8192 x 4096", bench_memory, false},
     {"tables", "tables of E beside 1024 importance samples, one thread", bench_tables, false},
-    {"display", "what engines show of a bake, against brute force", bench_display, false},
+    {"tune", "what engines show of tuned and exact levels, against brute force", bench_tune, false},
     {"fixed", "one small bake with AVX2, for counting instructions", bench_fixed, true},
 };
 enum { CASE_COUNT = sizeof cases / sizeof *cases };

@@ -34,7 +34,7 @@ bool bench_fixed(bench *b);
 bool bench_peer(bench *b);
 bool bench_memory(bench *b);
 bool bench_tables(bench *b);
-bool bench_display(bench *b);
+bool bench_tune(bench *b);
 
 /// Seconds of CPU time of all threads, and of a clock on the wall.
 double bench_cpu(void);

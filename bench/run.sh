@@ -19,7 +19,7 @@ if [ "${1:-}" = --update ]; then
     update=yes
     shift
 fi
-[ $# -gt 0 ] || set -- accuracy probe threads instructions files scaling peer memory tables display count web engines blocks
+[ $# -gt 0 ] || set -- accuracy probe threads instructions files scaling peer memory tables tune count web engines blocks
 for part in bench bench_reference kiln; do
     [ -x $bin/$part ] || fail "there is no $bin/$part: run ./do bench"
 done

@@ -82,8 +82,9 @@ static kiln_result compute_energies(assignment *a)
     for (size_t i = 0; i < sizeof methods / sizeof *methods && !result; i++) {
         kiln_assignment_def def = {.size = a->def->size,
                                    .sample_count = a->def->samples,
-                                   .g = a->def->g,
-                                   .has_g = true,
+                                   .g = a->def->g == KILN_G_SCHLICK_TEXT
+                                            ? KILN_ASSIGNMENT_G_TEXT
+                                            : KILN_ASSIGNMENT_G_FIGURES,
                                    .unclamped = methods[i].unclamped};
         result = kiln_assignment_energy(a->job->context, methods[i].method, &def,
                                         &a->table[methods[i].table], &a->job->error);

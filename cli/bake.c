@@ -117,7 +117,7 @@ static const struct poptOption options[] = {
 };
 
 static const char *const lobes[] = {"ggx", "lambert", "charlie", "phong", NULL};
-static const char *const shapes[] = {"panorama", "cube", "octahedron", NULL};
+static const char *const shapes[] = {"auto", "panorama", "cube", "octahedron", NULL};
 static const char *const methods[] = {"exact", "textbook", NULL};
 static const char *const fits[] = {"none", "sharp", "soft", NULL};
 static const char *const layouts[] = {"auto", "panorama", "cross", "strip", "octahedron", NULL};
@@ -201,6 +201,14 @@ static int largest_level_count(int size)
     return count < KILN_MAX_LEVELS ? count : KILN_MAX_LEVELS;
 }
 
+static int read_shape(const cli_arguments *a, int *shape)
+{
+    int choice = *shape - KILN_SHAPE_PANORAMA;
+    int code = cli_choice(a, SHAPE, "--shape", shapes + KILN_SHAPE_PANORAMA, &choice);
+    *shape = choice + KILN_SHAPE_PANORAMA;
+    return code;
+}
+
 static int read_numbers(bake *b)
 {
     const cli_arguments *a = &b->arguments;
@@ -222,7 +230,7 @@ static int read_numbers(bake *b)
         (code = cli_number(a, ROTATE, "--rotate", -3600, 3600, &b->rotation)) != CLI_GO ||
         (code = cli_number(a, EXPOSURE, "--exposure", -64, 64, &b->exposure)) != CLI_GO ||
         (code = cli_choice(a, LOBE, "--lobe", lobes, &b->lobe)) != CLI_GO ||
-        (code = cli_choice(a, SHAPE, "--shape", shapes, &b->shape)) != CLI_GO ||
+        (code = read_shape(a, &b->shape)) != CLI_GO ||
         (code = cli_choice(a, METHOD, "--method", methods, &b->textbook)) != CLI_GO ||
         (code = cli_choice(a, FIT, "--fit", fits, &b->fit)) != CLI_GO ||
         (code = cli_choice(a, LAYOUT, "--layout", layouts, &b->layout)) != CLI_GO ||
@@ -323,7 +331,7 @@ static int take_engine(bake *b)
     b->has_roughness = true;
     b->stores_sh = true;
     if (!a->value[FIT])
-        b->fit = b->engine->fit;
+        b->fit = b->engine->tune;
     return CLI_GO;
 }
 
@@ -434,15 +442,14 @@ static int filter_exactly(bake *b)
     cli_job *job = &b->job;
     kiln_bake_def def = {
         .levels = {.shape = (kiln_shape)b->shape,
-                   .has_shape = true,
                    .size = b->size,
                    .level_count = b->level_count,
                    .smallest = b->smallest,
                    .roughness = b->has_roughness ? b->roughness : NULL,
                    .lobe = (enum kiln_lobe_kind)b->lobe,
                    .rotation = b->rotation,
-                   .shown_by = b->fit ? b->engine : NULL,
-                   .soft = b->fit == 2},
+                   .tune_for = b->fit ? b->engine : NULL,
+                   .tune_soft = b->fit == 2},
         .irradiance_size = b->irradiance_path ? b->irradiance_size : KILN_NO_IRRADIANCE,
         .sh_bands = most_bands(b),
     };

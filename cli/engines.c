@@ -29,7 +29,7 @@ static int list_json(void)
         for (int k = 0; formats && k < 4 && engine->formats[k]; k++)
             cJSON_AddItemToArray(formats,
                                  cJSON_CreateString(kiln_format_names()[engine->formats[k]]));
-        cJSON_AddStringToObject(row, "fit", engine->fit ? "sharp" : "none");
+        cJSON_AddStringToObject(row, "fit", engine->tune ? "sharp" : "none");
         cJSON_AddStringToObject(row, "proof", engine->proof);
         cJSON_AddItemToArray(json, row);
     }
@@ -40,7 +40,7 @@ static void print(const kiln_engine *engine)
 {
     printf("%-14s %s\n  writes       %s, by default %d level%s of %d%s\n", engine->name,
            engine->title, engine->files, engine->level_count, engine->level_count > 1 ? "s" : "",
-           engine->size, engine->fit ? ", fitted" : "");
+           engine->size, engine->tune ? ", fitted" : "");
     if (engine->formats[0]) {
         printf("  format       ");
         for (int k = 0; k < 4 && engine->formats[k]; k++)

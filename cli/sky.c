@@ -37,8 +37,10 @@ static int read_def(const cli_arguments *a, kiln_sky_def *def)
         (code = cli_number(a, ALBEDO, "--albedo", 0, 1, &def->albedo)) != CLI_GO ||
         (code = cli_integer(a, SIZE, "--size", 16, 8192, &def->size)) != CLI_GO)
         return code;
-    def->has_elevation = a->value[ELEVATION];
-    def->has_albedo = a->value[ALBEDO];
+    if (a->value[ELEVATION] && def->elevation == 0)
+        def->elevation = KILN_ZERO;
+    if (a->value[ALBEDO] && def->albedo == 0)
+        def->albedo = KILN_ZERO;
     return cli_check_folder(a->value[OUTPUT]);
 }
 

@@ -536,8 +536,7 @@ static void release(demo *d)
 
 static kiln_result make_sky(demo *d)
 {
-    kiln_sky_def def = {
-        .elevation = 12, .has_elevation = true, .azimuth = 60, .albedo = 0.3, .has_albedo = true};
+    kiln_sky_def def = {.elevation = 12, .azimuth = 60, .albedo = 0.3};
     demo_time start = now();
     kiln_result result = kiln_sky(d->context, &def, &d->source, &d->error);
     d->load = since(start);

@@ -72,8 +72,7 @@ bool baker_open(baker *b, const void *bytes, size_t size, const char *name)
 bool baker_sky(baker *b, int size, double elevation, double azimuth, double turbidity)
 {
     kiln_sky_def def = {.size = size,
-                        .elevation = elevation,
-                        .has_elevation = true,
+                        .elevation = elevation != 0 ? elevation : KILN_ZERO,
                         .azimuth = azimuth,
                         .turbidity = turbidity};
     kiln_map map;

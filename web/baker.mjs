@@ -2,7 +2,7 @@
 //   const baker = await Baker.make({ progress(stage, fraction) {} })
 export const FORMATS = { rgba16f: 1, rgba32f: 2, rgb9e5: 3, b10g11r11: 4 };
 export const TABLES = ['e', 'eavg', 'dfg'];
-export const SHAPES = ['panorama', 'cube', 'octahedron'];
+export const SHAPES = ['auto', 'panorama', 'cube', 'octahedron'];
 
 export class Baker {
     static async make(makeModule, options = {}) {

@@ -16,7 +16,7 @@ extern "C" {
 /// The methods that courses teach, with their defaults and their errors, to learn from and to
 /// compare with. See docs/theory/textbook.md.
 typedef struct kiln_textbook_def {
-    kiln_shape shape; ///< of the result; KILN_SHAPE_PANORAMA as in the textbook
+    kiln_shape shape; ///< of the result; KILN_SHAPE_AUTO for a panorama, as in the textbook
     int size;         ///< rows or edge; 0 for 64
     int level_count;  ///< prefilter only; 0 for all
     int phi_count;    ///< irradiance: steps of phi, to 65536; 0 for 100
@@ -55,12 +55,22 @@ typedef enum kiln_assignment_method {
     KILN_ASSIGNMENT_SPLIT_SUM    ///< the sums A and B on the same points, added: its bonus 2
 } kiln_assignment_method;
 
+/// The masking of the assignment's E, with GGX's D.
+typedef enum kiln_assignment_g {
+    KILN_ASSIGNMENT_G_FIGURES = 0, ///< Schlick's with k = roughness^2 / 2, as in its figures
+    KILN_ASSIGNMENT_G_TEXT,        ///< Schlick's with k = (roughness + 1)^2 / 8, as in its text
+    KILN_ASSIGNMENT_G_SMITH,       ///< the height-correlated one, KILN_G_SMITH
+    KILN_ASSIGNMENT_G_UNCORRELATED ///< KILN_G_SMITH_UNCORRELATED
+} kiln_assignment_g;
+
+/// The same masking as the exact functions and tables name it.
+KILN_API kiln_g kiln_assignment_masking(kiln_assignment_g g);
+
 /// {0} is the assignment's own: 128 x 128 texels, 1024 samples each, k = roughness^2 / 2.
 typedef struct kiln_assignment_def {
     int size;         ///< 2 to 1024; 0 for 128
     int sample_count; ///< to 1048576; 0 for 1024. Monte Carlo takes the largest square up to it
-    kiln_g g;         ///< see has_g. D is GGX
-    bool has_g;     ///< false: KILN_G_SCHLICK_K2, which its figures have; its text has the other k
+    kiln_assignment_g g;
     bool unclamped; ///< Monte Carlo: D's denominator as it is; false: at least 1e-4
     bool unflipped; ///< row 0 holds roughness 0, as in figure 3; else the top row is roughness 1
     uint64_t seed;  ///< of Monte Carlo's numbers

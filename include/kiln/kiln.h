@@ -121,6 +121,7 @@ KILN_API void kiln_context_memory(const kiln_context *context, size_t *current, 
 enum { KILN_MAX_LEVELS = 16, KILN_MAX_SIZE = 32768, KILN_MAX_BANDS = 5 };
 
 typedef enum kiln_shape {
+    KILN_SHAPE_AUTO = 0,   ///< in options only, which say what it stands for; no map has it
     KILN_SHAPE_PANORAMA,   ///< equirectangular, size rows of 2 * size texels
     KILN_SHAPE_CUBE,       ///< six faces of size * size texels, +X -X +Y -Y +Z -Z
     KILN_SHAPE_OCTAHEDRON, ///< size * size texels, +Y in the centre, -Y in the corners
@@ -232,15 +233,18 @@ KILN_API KILN_CHECKED kiln_result kiln_file_describe(kiln_context *context, cons
 
 // --------------------------------------------------------------------------------------------- sky
 
-/// {0} stands for each default.
+/// Says zero where an option's 0 stands for a default, as in kiln_sky_def. A computed value x is passed
+/// as `x != 0 ? x : KILN_ZERO`.
+#define KILN_ZERO 1e-300
+
+/// {0} is a good default.
 typedef struct kiln_sky_def {
-    int size;           ///< rows of the panorama, 16 to 8192; 0 for 512
-    double elevation;   ///< of the sun above the horizon in degrees, -5 to 90; see has_elevation
-    bool has_elevation; ///< false: 30 degrees
-    double azimuth;     ///< degrees from -Z toward +X
-    double turbidity;   ///< 1.7 (clear) to 10 (hazy); 0 for 3
-    double albedo;      ///< of the ground below, 0 to 1; see has_albedo
-    bool has_albedo;    ///< false: 0.2
+    int size; ///< rows of the panorama, 16 to 8192; 0 for 512
+    double
+        elevation;  ///< of the sun, degrees above the horizon, -5 to 90; 0 for 30, KILN_ZERO for 0
+    double azimuth; ///< of the sun, degrees from -Z toward +X
+    double turbidity; ///< 1.7 (clear) to 10 (hazy); 0 for 3
+    double albedo;    ///< of the ground, 0 to 1; 0 for 0.2, KILN_ZERO for 0
 } kiln_sky_def;
 
 /// An analytic daylight sky with a sun disc of 0.533 degrees whose irradiance is right whatever
@@ -329,8 +333,7 @@ typedef struct kiln_engine kiln_engine; // below, among the files
 
 /// {0} is a good default: a cube of 256, full chain, GGX, roughness from 0 to 1 in equal steps.
 typedef struct kiln_prefilter_def {
-    kiln_shape shape;       ///< KILN_SHAPE_PANORAMA is 0; see has_shape
-    bool has_shape;         ///< false: a cube
+    kiln_shape shape;       ///< KILN_SHAPE_AUTO for a cube
     int size;               ///< 1 to KILN_MAX_SIZE; 0 for 256
     int level_count;        ///< 1 to KILN_MAX_LEVELS; 0 for all down to 1
     int smallest;           ///< of the map: only with it may there be more levels than down to 1
@@ -342,14 +345,14 @@ typedef struct kiln_prefilter_def {
     /// Where the spectrum is cut: the relative L2 error that a lone bright point would have, were it
     /// not summed exactly. 1e-6 to 0.01; 0 for 1.5e-4. Real environments err by a hundredth of it.
     double tolerance;
-    /// Levels for what this engine shows, instead of the exact ones: see kiln_engine_levels. It mixes two
-    /// levels linearly and reads texels bilinearly; these show the least error over roughness .05 to 1 in
-    /// this environment, relative to what is right at each, near suns and away from them. Level 0 is the
-    /// mirror all the same, white stays white, nothing is negative. NULL: exact levels. Source:
-    /// docs/theory/display.md.
-    const kiln_engine *shown_by;
-    /// With shown_by: level 0 may be softer than the mirror, where that shows less error.
-    bool soft;
+    /// Tunes levels for what this engine shows of them (kiln_engine_levels has its sizes). An engine mixes
+    /// two levels linearly and reads texels bilinearly; tuned levels show the least relative error over
+    /// roughness .05 to 1 in this environment, near suns and away from them. Level 0 stays the mirror,
+    /// white stays white, nothing is negative. NULL: exact levels. Source:
+    /// docs/theory/tuning.md.
+    const kiln_engine *tune_for;
+    /// With tune_for: level 0 may be softer than the mirror, where that shows less error.
+    bool tune_soft;
 } kiln_prefilter_def;
 
 /// Every level from one analysis. Roughness 0 with GGX is the mirror: true area weights. `def` may
@@ -565,8 +568,9 @@ struct kiln_engine {
     /// To choose from, the first by default; KILN_FORMAT_AUTO behind the last.
     kiln_format formats[4];
     const char *proof; ///< "pixels of VERSION", where seen; else "source of" or "manual of"
-    /// kiln_prefilter_def.shown_by shows less error, as measured: `kiln bake --for` uses it.
-    bool fit;
+    /// Tuned levels (kiln_prefilter_def.tune_for) show less error than exact ones in this engine, as
+    /// measured: `kiln bake --for` tunes by default.
+    bool tune;
 };
 
 /// The engines in the order of their table; NULL where the index is none.

@@ -11,8 +11,6 @@ static kiln_result complete(kiln_assignment_method method, const kiln_assignment
     *def = given ? *given : (kiln_assignment_def){0};
     def->size = def->size ? def->size : 128;
     def->sample_count = def->sample_count ? def->sample_count : 1024;
-    if (!def->has_g)
-        def->g = KILN_G_SCHLICK_K2;
     if ((unsigned)method > KILN_ASSIGNMENT_SPLIT_SUM)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "the method is %d, there are 0 to %d",
                        (int)method, KILN_ASSIGNMENT_SPLIT_SUM);
@@ -22,10 +20,17 @@ static kiln_result complete(kiln_assignment_method method, const kiln_assignment
     if (def->sample_count < 1 || def->sample_count > MAX_SAMPLES)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "sample_count is %d, it must be 1 to %d, or 0",
                        def->sample_count, MAX_SAMPLES);
-    if ((unsigned)def->g > KILN_G_SCHLICK_TEXT)
+    if ((unsigned)def->g > KILN_ASSIGNMENT_G_UNCORRELATED)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "g is %d, there are 0 to %d", (int)def->g,
-                       KILN_G_SCHLICK_TEXT);
+                       KILN_ASSIGNMENT_G_UNCORRELATED);
     return KILN_OK;
+}
+
+kiln_g kiln_assignment_masking(kiln_assignment_g g)
+{
+    static const kiln_g masking[] = {KILN_G_SCHLICK_K2, KILN_G_SCHLICK_TEXT, KILN_G_SMITH,
+                                     KILN_G_SMITH_UNCORRELATED};
+    return masking[(unsigned)g <= KILN_ASSIGNMENT_G_UNCORRELATED ? g : 0];
 }
 
 kiln_result kiln_assignment_energy(kiln_context *context, kiln_assignment_method method,

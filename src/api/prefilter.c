@@ -4,29 +4,29 @@
 #include "engine/engine.h"
 #include "image/image.h"
 
-// How the engine that levels are tuned for reads them; `shown` is NULL for exact levels.
-static kiln_result find_shown(const kiln_prefilter_def *def, ki_shown *room, const ki_shown **shown,
-                              kiln_error *error)
+// How the engine that levels are tuned for reads them; `reading` is NULL for exact levels.
+static kiln_result find_reading(const kiln_prefilter_def *def, ki_reading *room,
+                                const ki_reading **reading, kiln_error *error)
 {
-    *shown = NULL;
-    if (!def || !def->shown_by)
+    *reading = NULL;
+    if (!def || !def->tune_for)
         return KILN_OK;
-    const ki_recipe *recipe = ki_recipe_of(def->shown_by);
+    const ki_recipe *recipe = ki_recipe_of(def->tune_for);
     if (!recipe || !recipe->level)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
-                       "shown_by is no engine of kiln's that reads levels");
-    *room = (ki_shown){.level = recipe->level,
-                       .keep_last = recipe->keeps_last,
-                       .flat = recipe->flat,
-                       .soft = def->soft};
-    *shown = room;
+                       "tune_for is no engine of kiln's that reads levels");
+    *room = (ki_reading){.level = recipe->level,
+                         .keep_last = recipe->keeps_last,
+                         .flat = recipe->flat,
+                         .soft = def->tune_soft};
+    *reading = room;
     return KILN_OK;
 }
 
 static bool decides_itself(const kiln_prefilter_def *levels)
 {
     return levels->roughness || levels->smallest || levels->lobe != KILN_LOBE_GGX ||
-           levels->shown_by || levels->soft;
+           levels->tune_for || levels->tune_soft;
 }
 
 // The levels that a definition asks for: its own, or the engine's of the size that it names.
@@ -53,9 +53,9 @@ static kiln_result find_levels(const kiln_bake_def *def, float roughness[KILN_MA
     levels->level_count = wanted.level_count;
     levels->smallest = wanted.smallest;
     levels->roughness = wanted.roughness;
-    bool tuned = def->tune == KILN_TUNE_AUTO ? def->engine->fit : def->tune != KILN_TUNE_NONE;
-    levels->shown_by = tuned ? def->engine : NULL;
-    levels->soft = def->tune == KILN_TUNE_SOFT;
+    bool tuned = def->tune == KILN_TUNE_AUTO ? def->engine->tune : def->tune != KILN_TUNE_NONE;
+    levels->tune_for = tuned ? def->engine : NULL;
+    levels->tune_soft = def->tune == KILN_TUNE_SOFT;
     return KILN_OK;
 }
 
@@ -65,13 +65,13 @@ kiln_result kiln_plan_create(kiln_context *context, kiln_shape source_shape, int
     static const kiln_bake_def defaults = {0};
     float roughness[KILN_MAX_LEVELS];
     kiln_prefilter_def levels;
-    ki_shown room;
-    const ki_shown *shown;
+    ki_reading room;
+    const ki_reading *reading;
     def = def ? def : &defaults;
     *plan = NULL;
     kiln_result result = find_levels(def, roughness, &levels, error);
     if (result == KILN_OK)
-        result = find_shown(&levels, &room, &shown, error);
+        result = find_reading(&levels, &room, &reading, error);
     if (result == KILN_OK && def->irradiance_size < KILN_NO_IRRADIANCE)
         result = ki_fail(error, KILN_ERROR_ARGUMENT, "irradiance_size is %d, it must be %d to %d",
                          def->irradiance_size, KILN_NO_IRRADIANCE, KILN_MAX_SIZE);
@@ -80,7 +80,7 @@ kiln_result kiln_plan_create(kiln_context *context, kiln_shape source_shape, int
     ki_plan_def full = {.source_shape = source_shape,
                         .source_size = source_size,
                         .levels = &levels,
-                        .shown = shown,
+                        .reading = reading,
                         .mirror = def->mirror,
                         .exposure = def->exposure,
                         .irradiance_size = def->irradiance_size ? def->irradiance_size : 64,
@@ -122,11 +122,11 @@ kiln_result kiln_prefilter(kiln_context *context, const kiln_map *source,
     kiln_plan *plan = NULL;
     kiln_environment environment = {0};
     ki_plan_def full = {.levels = def};
-    ki_shown room;
+    ki_reading room;
     *map = (kiln_map){0};
     kiln_result result = ki_map_check(source, error);
     if (result == KILN_OK)
-        result = find_shown(def, &room, &full.shown, error);
+        result = find_reading(def, &room, &full.reading, error);
     full.source_shape = source->shape;
     full.source_size = source->size;
     if (result == KILN_OK)

@@ -12,15 +12,23 @@ static kiln_result check_range(const char *name, double value, double low, doubl
     return KILN_OK;
 }
 
+// An option whose 0 stands for a default and whose KILN_ZERO for 0.
+static double or_default(double value, double standard)
+{
+    if (value == KILN_ZERO)
+        return 0;
+    return value != 0 ? value : standard;
+}
+
 kiln_result kiln_sky(kiln_context *context, const kiln_sky_def *def, kiln_map *map,
                      kiln_error *error)
 {
     kiln_sky_def d = def ? *def : (kiln_sky_def){0};
     *map = (kiln_map){0};
     d.size = d.size ? d.size : 512;
-    d.elevation = d.has_elevation ? d.elevation : 30;
+    d.elevation = or_default(d.elevation, 30);
     d.turbidity = d.turbidity != 0 ? d.turbidity : 3;
-    d.albedo = d.has_albedo ? d.albedo : 0.2;
+    d.albedo = or_default(d.albedo, 0.2);
     kiln_result result = check_range("size", d.size, 16, 8192, error);
     if (!result)
         result = check_range("elevation", d.elevation, -5, 90, error);

@@ -46,6 +46,8 @@ static kiln_result start(kiln_context *context, const kiln_map *panorama,
         result = check_count("sample_count", def->sample_count, MAX_SAMPLES, error);
     if (result)
         return result;
+    if (def->shape == KILN_SHAPE_AUTO)
+        def->shape = KILN_SHAPE_PANORAMA;
     def->size = def->size ? def->size : 64;
     def->phi_count = def->phi_count ? def->phi_count : 100;
     def->theta_count = def->theta_count ? def->theta_count : 100;

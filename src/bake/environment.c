@@ -174,7 +174,7 @@ kiln_result ki_plan_create(kiln_context *context, const ki_plan_def *def, kiln_p
     result = plan_source(p, error);
     if (result == KILN_OK)
         result = ki_prefilter_create(context, rows, p->to_panorama ? &source : NULL, def->levels,
-                                     def->shown, &p->prefilter, error);
+                                     def->reading, &p->prefilter, error);
     if (result == KILN_OK)
         p->rotation = p->prefilter->def.rotation;
     if (result == KILN_OK && p->sh_bands && p->to_panorama)

@@ -9,7 +9,7 @@ typedef struct ki_plan_def {
     kiln_shape source_shape;
     int source_size;
     const kiln_prefilter_def *levels; ///< may be NULL for the defaults
-    const ki_shown *shown;            ///< how an engine reads tuned levels; NULL for exact ones
+    const ki_reading *reading;        ///< how an engine reads tuned levels; NULL for exact ones
     bool mirror;
     double exposure;     ///< stops
     int irradiance_size; ///< 0 for none

@@ -34,9 +34,8 @@ kiln_result ki_prefilter_resolve(const kiln_prefilter_def *def, kiln_prefilter_d
                                  kiln_error *error)
 {
     kiln_prefilter_def d = def ? *def : (kiln_prefilter_def){0};
-    if (!d.has_shape)
+    if (d.shape == KILN_SHAPE_AUTO)
         d.shape = KILN_SHAPE_CUBE;
-    d.has_shape = true;
     d.size = d.size ? d.size : 256;
     if (d.size < 1 || d.size > KILN_MAX_SIZE)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "size is %d, it must be 1 to %d", d.size,
@@ -133,25 +132,24 @@ static kiln_result plan_mirror(ki_prefilter *p, int level, const kiln_map *sourc
                                    &p->mirrors[level], error);
 }
 
-static bool is_fitted(const ki_prefilter *p, int level)
+static bool is_tuned(const ki_prefilter *p, int level)
 {
-    return p->display && ki_display_fits(p->display, level);
+    return p->tune && ki_tune_makes(p->tune, level);
 }
 
-static kiln_result plan_display(ki_prefilter *p, const ki_shown *shown, const kiln_lobe *first,
-                                kiln_error *error)
+static kiln_result plan_tuning(ki_prefilter *p, const ki_reading *reading, const kiln_lobe *first,
+                               kiln_error *error)
 {
     if (!ki_is_mirror(first))
-        return ki_fail(error, KILN_ERROR_ARGUMENT,
-                       "levels for display are of GGX, the first a mirror");
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "tuned levels are of GGX, the first a mirror");
     if (p->def.size & (p->def.size - 1))
         return ki_fail(error, KILN_ERROR_ARGUMENT,
-                       "size is %d, for display it must be a power of two", p->def.size);
-    return ki_display_create(p->context, &p->def, p->roughness, shown, &p->display, error);
+                       "size is %d, for tuned levels it must be a power of two", p->def.size);
+    return ki_tune_create(p->context, &p->def, p->roughness, reading, &p->tune, error);
 }
 
 kiln_result ki_prefilter_create(kiln_context *context, int panorama_size, const kiln_map *source,
-                                const kiln_prefilter_def *def, const ki_shown *shown,
+                                const kiln_prefilter_def *def, const ki_reading *reading,
                                 ki_prefilter **plan, kiln_error *error)
 {
     static const char stage[] = "planning";
@@ -171,14 +169,14 @@ kiln_result ki_prefilter_create(kiln_context *context, int panorama_size, const 
 
     // Short spectra cost little, and with more rings a constant is kept to the last float.
     int degree = p->def.tolerance < 1e-3 ? 192 : 64;
-    if (shown) {
-        result = plan_display(p, shown, &lobes[0], error);
+    if (reading) {
+        result = plan_tuning(p, reading, &lobes[0], error);
         if (result != KILN_OK)
             goto done;
-        degree = ki_max(degree, ki_display_degree(p->display));
+        degree = ki_max(degree, ki_tune_degree(p->tune));
     }
     for (int i = 0; i < p->def.level_count; i++) {
-        if (ki_is_mirror(&lobes[i]) || is_fitted(p, i))
+        if (ki_is_mirror(&lobes[i]) || is_tuned(p, i))
             continue;
         result = ki_lobe_spectrum(context, &lobes[i], p->def.tolerance, true, &zonals[i],
                                   &spectra[i], error);
@@ -203,7 +201,7 @@ kiln_result ki_prefilter_create(kiln_context *context, int panorama_size, const 
             result = ki_fail_cancelled(error, stage);
         else if (ki_is_mirror(&lobes[i]))
             result = plan_mirror(p, i, source, error);
-        else if (!is_fitted(p, i))
+        else if (!is_tuned(p, i))
             result = ki_level_create(context, &p->analysis->legendre, &zonals[i], &spectra[i],
                                      p->def.shape, size, &p->levels[i], error);
     }
@@ -232,7 +230,7 @@ kiln_result ki_prefilter_execute(ki_prefilter *p, const kiln_map *panorama, cons
         if (!ki_progress(p->context, stage, done))
             return ki_fail_cancelled(error, stage);
         ki_stage part = {stage, done, done + (1 - done) / 2};
-        // A level for display is neither; it follows when all others are there.
+        // A tuned level has neither: it is made when all others are there.
         if (p->levels[i])
             result = ki_level_execute(p->levels[i], p->spectrum, panorama, p->def.rotation, map, i,
                                       &part, error);
@@ -244,9 +242,9 @@ kiln_result ki_prefilter_execute(ki_prefilter *p, const kiln_map *panorama, cons
         map->roughness[i] = p->roughness[i];
         done = part.to;
     }
-    if (result == KILN_OK && p->display)
-        result = ki_display_execute(p->display, &p->analysis->legendre, p->spectrum,
-                                    p->def.rotation, map, NULL, error);
+    if (result == KILN_OK && p->tune)
+        result = ki_tune_execute(p->tune, &p->analysis->legendre, p->spectrum, p->def.rotation, map,
+                                 NULL, error);
     if (result == KILN_OK && !ki_progress(p->context, stage, 1))
         return ki_fail_cancelled(error, stage);
     return result;
@@ -260,7 +258,7 @@ void ki_prefilter_destroy(ki_prefilter *plan)
         ki_resample_plan_destroy(plan->mirrors[i]);
         ki_level_destroy(plan->levels[i]);
     }
-    ki_display_destroy(plan->display);
+    ki_tune_destroy(plan->tune);
     kiln_spectrum_destroy(plan->spectrum);
     ki_intake_destroy(plan->intake);
     ki_analysis_destroy(plan->analysis);

@@ -40,13 +40,13 @@ typedef struct ki_prefilter {
     ki_resample_plan *mirrors[KILN_MAX_LEVELS];
     bool direct[KILN_MAX_LEVELS];
     ki_level *levels[KILN_MAX_LEVELS];
-    ki_display *display; // of the tuned levels, or NULL
+    ki_tune *tune; // of the tuned levels, or NULL
 } ki_prefilter;
 
 /// `source` (its shape and size are used) is what `panorama_size` rows of panorama will be made from,
-/// or NULL where the panorama itself is the source. `shown`, for tuned levels, or NULL.
+/// or NULL where the panorama itself is the source. `reading`, for tuned levels, or NULL.
 kiln_result ki_prefilter_create(kiln_context *context, int panorama_size, const kiln_map *source,
-                                const kiln_prefilter_def *def, const ki_shown *shown,
+                                const kiln_prefilter_def *def, const ki_reading *reading,
                                 ki_prefilter **prefilter, kiln_error *error);
 /// `panorama` has the prefilter's size; `source` is as it was created with. The spectrum stays in the
 /// prefilter.

@@ -12,13 +12,15 @@
 
 // ------------------------------------------------------------------------------------------- checks
 
-static const char *const shape_names[] = {"a panorama", "a cube", "an octahedron"};
+static const char *const shape_names[] = {[KILN_SHAPE_PANORAMA] = "a panorama",
+                                          [KILN_SHAPE_CUBE] = "a cube",
+                                          [KILN_SHAPE_OCTAHEDRON] = "an octahedron"};
 
 static kiln_result check_def(kiln_shape shape, const kiln_save_def *def, kiln_error *error)
 {
-    if ((unsigned)shape > KILN_SHAPE_OCTAHEDRON)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "shape is %d, it must be 0 to %d", (int)shape,
-                       (int)KILN_SHAPE_OCTAHEDRON);
+    if ((int)shape < KILN_SHAPE_PANORAMA || shape > KILN_SHAPE_OCTAHEDRON)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "shape is %d, it must be %d to %d", (int)shape,
+                       KILN_SHAPE_PANORAMA, KILN_SHAPE_OCTAHEDRON);
     if (!ki_pixel_format_of(def->format))
         return ki_fail(error, KILN_ERROR_ARGUMENT, "format is %d, it must be 0 to %d",
                        (int)def->format, (int)KILN_FORMAT_RGBP);
@@ -92,7 +94,9 @@ static kiln_result make_template(const char *path, const kiln_map *map, ki_write
     bool level = strstr(path, "{level}") || strstr(path, "%d");
     size_t length = strlen(path);
     if (ki_ends_with(path, "/")) {
-        static const char *const names[] = {"panorama", "{face}", "octahedron"};
+        static const char *const names[] = {[KILN_SHAPE_PANORAMA] = "panorama",
+                                            [KILN_SHAPE_CUBE] = "{face}",
+                                            [KILN_SHAPE_OCTAHEDRON] = "octahedron"};
         ki_write(w, path, length);
         ki_write_text(w, "%s%s.exr", names[map->shape],
                       map->level_count > 1 && !level ? "_{level}" : "");

@@ -124,7 +124,10 @@ kiln_result ki_assignment_energy(kiln_context *context, kiln_assignment_method m
                                  kiln_error *error)
 {
     static const char *const names[] = {"Monte Carlo", "importance sampling", "split sum"};
-    assignment r = {.method = method, .def = def, .model = {.g = def->g}, .table = table};
+    assignment r = {.method = method,
+                    .def = def,
+                    .model = {.g = kiln_assignment_masking(def->g)},
+                    .table = table};
     size_t count = (size_t)def->sample_count;
     while ((r.side + 1) * (r.side + 1) <= def->sample_count)
         r.side++;

@@ -97,7 +97,7 @@ const ki_recipe ki_filament = {
               .files = "NAME_ibl.ktx, NAME_skybox.ktx and sh.txt",
               .ending = "",
               .mapping = "r = 1 - sqrt(1 - k / (n - 1))",
-              .fit = true,
+              .tune = true,
               .size = 256,
               .level_count = 5,
               .limit = KI_HALF_MAX,

@@ -25,7 +25,7 @@ const ki_recipe ki_three = {
               .files = "NAME.ktx2",
               .ending = "ktx2",
               .mapping = "r = 1 - sqrt(1 - k / (n - 1))",
-              .fit = true,
+              .tune = true,
               .size = 256,
               .level_count = 6,
               .limit = KI_HALF_MAX,

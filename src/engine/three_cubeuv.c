@@ -136,7 +136,7 @@ const ki_recipe ki_three_cubeuv = {
               .files = "NAME.exr",
               .ending = "exr",
               .mapping = "r = 2^(-m / 2) / 1.16, .21 .305 .4 .53 .67 .8 1",
-              .fit = true,
+              .tune = true,
               .size = 512,
               .level_count = 11,
               .limit = KI_HALF_MAX,

@@ -129,13 +129,17 @@ void ki_turn(const double direction[3], double degrees, double turned[3])
 
 // ------------------------------------------------------------------------------------------ memory
 
-static const char *const shape_names[] = {"panorama", "cube", "octahedron"};
+static const char *const shape_names[] = {
+    [KILN_SHAPE_PANORAMA] = "panorama",
+    [KILN_SHAPE_CUBE] = "cube",
+    [KILN_SHAPE_OCTAHEDRON] = "octahedron",
+};
 
 static kiln_result check_numbers(const kiln_map *map, kiln_error *error)
 {
-    if ((int)map->shape < 0 || map->shape > KILN_SHAPE_OCTAHEDRON)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "shape is %d, it must be 0 to %d",
-                       (int)map->shape, (int)KILN_SHAPE_OCTAHEDRON);
+    if ((int)map->shape < KILN_SHAPE_PANORAMA || map->shape > KILN_SHAPE_OCTAHEDRON)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "shape is %d, it must be %d to %d",
+                       (int)map->shape, KILN_SHAPE_PANORAMA, KILN_SHAPE_OCTAHEDRON);
     if (map->size < 1 || map->size > KILN_MAX_SIZE)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "%s size is %d, it must be 1 to %d",
                        shape_names[map->shape], map->size, KILN_MAX_SIZE);

@@ -730,9 +730,9 @@ static kiln_result plan_fine(ki_resample_plan *plan, kiln_error *error)
 
 static kiln_result check_numbers(kiln_shape shape, int size, const char *which, kiln_error *error)
 {
-    if ((int)shape < 0 || shape > KILN_SHAPE_OCTAHEDRON)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s shape is %d, it must be 0 to %d", which,
-                       (int)shape, (int)KILN_SHAPE_OCTAHEDRON);
+    if ((int)shape < KILN_SHAPE_PANORAMA || shape > KILN_SHAPE_OCTAHEDRON)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s shape is %d, it must be %d to %d", which,
+                       (int)shape, KILN_SHAPE_PANORAMA, KILN_SHAPE_OCTAHEDRON);
     if (size < 1 || size > KILN_MAX_SIZE)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "%s size is %d, it must be 1 to %d", which, size,
                        KILN_MAX_SIZE);

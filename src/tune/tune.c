@@ -15,22 +15,22 @@ static const double rounding = 1e-14;
 // Faces up to this size are made for bilinear reads; the coarse ones at 4 x 4 points a texel, else 2 x 2.
 enum { MOST_READS = 256, COARSE = 32 };
 
-struct ki_display {
+struct ki_tune {
     kiln_context *context;
-    ki_shown shown;
+    ki_reading reading;
     kiln_shape shape;
     int size, smallest, level_count;
     double tolerance;
     bool pinned[KILN_MAX_LEVELS];
-    ki_palette palette;
+    ki_nodes nodes;
     // Of an execution.
     ki_mixtures mixtures;
     double (*power)[3]; // by degree, without the suns, and then with them
 };
 
-static int size_at(const ki_display *d, int level)
+static int size_at(const ki_tune *t, int level)
 {
-    return ki_max(d->smallest, d->size >> level);
+    return ki_max(t->smallest, t->size >> level);
 }
 
 // Texels of a cube's face show degrees up to twice its size; twice that do for points between them.
@@ -39,138 +39,138 @@ static int most_degree(int size)
     return ki_min(ki_max(4 * size, KI_LEAST_DEGREE), KILN_MAX_DEGREE);
 }
 
-static kiln_result analyze_lobes(ki_display *d, kiln_error *error)
+static kiln_result analyze_lobes(ki_tune *t, kiln_error *error)
 {
     kiln_result result = KILN_OK;
-    ki_palette *p = &d->palette;
-    for (int n = 0; n <= p->count && result == KILN_OK; n++) {
-        ki_zonal zonal = {.lobe = kiln_lobe_ggx(p->roughness[n] * p->roughness[n])};
-        result = ki_zonal_analyze(d->context, &zonal, d->tolerance, most_degree(d->size),
-                                  &p->spectra[n], error);
+    ki_nodes *nodes = &t->nodes;
+    for (int n = 0; n <= nodes->count && result == KILN_OK; n++) {
+        ki_zonal zonal = {.lobe = kiln_lobe_ggx(nodes->roughness[n] * nodes->roughness[n])};
+        result = ki_zonal_analyze(t->context, &zonal, t->tolerance, most_degree(t->size),
+                                  &nodes->spectra[n], error);
     }
     return result;
 }
 
-kiln_result ki_display_create(kiln_context *context, const kiln_prefilter_def *def,
-                              const float roughness[KILN_MAX_LEVELS], const ki_shown *shown,
-                              ki_display **display, kiln_error *error)
+kiln_result ki_tune_create(kiln_context *context, const kiln_prefilter_def *def,
+                           const float roughness[KILN_MAX_LEVELS], const ki_reading *reading,
+                           ki_tune **tune, kiln_error *error)
 {
-    ki_display *d = *display = ki_alloc(context, 1, sizeof *d);
-    if (!d)
-        return ki_fail_memory(context, error, "a display", sizeof *d);
-    d->context = context;
-    d->shown = *shown;
-    d->shape = def->shape;
-    d->size = def->size;
-    d->smallest = ki_max(1, def->smallest);
-    d->level_count = def->level_count;
-    d->tolerance = def->tolerance;
-    ki_palette *p = &d->palette;
-    ki_palette_lay(p, shown->level, d->level_count, d->size);
-    int last = d->level_count - 1;
-    p->roughness[p->count] = (double)roughness[last];
-    for (int n = 0; n < p->count; n++) {
-        int i = (int)p->level[n];
-        p->fitted[i] = true;
-        if (p->level[n] > i)
-            p->fitted[i + 1] = true;
+    ki_tune *t = *tune = ki_alloc(context, 1, sizeof *t);
+    if (!t)
+        return ki_fail_memory(context, error, "a tuning", sizeof *t);
+    t->context = context;
+    t->reading = *reading;
+    t->shape = def->shape;
+    t->size = def->size;
+    t->smallest = ki_max(1, def->smallest);
+    t->level_count = def->level_count;
+    t->tolerance = def->tolerance;
+    ki_nodes *nodes = &t->nodes;
+    ki_nodes_place(nodes, reading->level, t->level_count, t->size);
+    int last = t->level_count - 1;
+    nodes->roughness[nodes->count] = (double)roughness[last];
+    for (int n = 0; n < nodes->count; n++) {
+        int i = (int)nodes->level[n];
+        nodes->tuned[i] = true;
+        if (nodes->level[n] > i)
+            nodes->tuned[i + 1] = true;
     }
-    d->pinned[0] = !shown->soft;
-    d->pinned[last] = d->pinned[last] || shown->keep_last;
+    t->pinned[0] = !reading->soft;
+    t->pinned[last] = t->pinned[last] || reading->keep_last;
     for (int i = 0; i <= last; i++) {
-        p->fitted[i] = p->fitted[i] && !d->pinned[i];
-        for (int n = 0; n < p->count; n++)
-            if (fabs(p->roughness[n] - (double)roughness[i]) <
-                fabs(p->roughness[p->nearest[i]] - (double)roughness[i]))
-                p->nearest[i] = n;
+        nodes->tuned[i] = nodes->tuned[i] && !t->pinned[i];
+        for (int n = 0; n < nodes->count; n++)
+            if (fabs(nodes->roughness[n] - (double)roughness[i]) <
+                fabs(nodes->roughness[nodes->nearest[i]] - (double)roughness[i]))
+                nodes->nearest[i] = n;
     }
-    kiln_result result = analyze_lobes(d, error);
+    kiln_result result = analyze_lobes(t, error);
     if (result != KILN_OK) {
-        ki_display_destroy(d);
-        *display = NULL;
+        ki_tune_destroy(t);
+        *tune = NULL;
     }
     return result;
 }
 
-void ki_display_destroy(ki_display *d)
+void ki_tune_destroy(ki_tune *t)
 {
-    if (!d)
+    if (!t)
         return;
-    for (int n = 0; n <= d->palette.count; n++)
-        ki_zonal_free(&d->palette.spectra[n]);
-    ki_free(d->power);
-    ki_free(d);
+    for (int n = 0; n <= t->nodes.count; n++)
+        ki_zonal_free(&t->nodes.spectra[n]);
+    ki_free(t->power);
+    ki_free(t);
 }
 
-int ki_display_degree(const ki_display *d)
+int ki_tune_degree(const ki_tune *t)
 {
     int degree = 0;
-    for (int n = 0; n <= d->palette.count; n++)
-        degree = ki_max(degree, d->palette.spectra[n].degree);
+    for (int n = 0; n <= t->nodes.count; n++)
+        degree = ki_max(degree, t->nodes.spectra[n].degree);
     return degree;
 }
 
-bool ki_display_fits(const ki_display *d, int level)
+bool ki_tune_makes(const ki_tune *t, int level)
 {
-    return d->palette.fitted[level];
+    return t->nodes.tuned[level];
 }
 
-static kiln_result choose_mixtures(ki_display *d, const kiln_spectrum *spectrum, kiln_error *error)
+static kiln_result choose_mixtures(ki_tune *t, const kiln_spectrum *spectrum, kiln_error *error)
 {
     size_t count = (size_t)spectrum->degree + 1;
-    ki_free(d->power);
-    d->power = ki_alloc(d->context, 2 * count, sizeof *d->power);
-    if (!d->power)
-        return ki_fail_memory(d->context, error, "a spectrum's power",
-                              2 * count * sizeof *d->power);
-    kiln_result result = ki_spectrum_power(spectrum, false, d->power, error);
+    ki_free(t->power);
+    t->power = ki_alloc(t->context, 2 * count, sizeof *t->power);
+    if (!t->power)
+        return ki_fail_memory(t->context, error, "a spectrum's power",
+                              2 * count * sizeof *t->power);
+    kiln_result result = ki_spectrum_power(spectrum, false, t->power, error);
     if (result == KILN_OK)
-        result = ki_spectrum_power(spectrum, true, d->power + count, error);
+        result = ki_spectrum_power(spectrum, true, t->power + count, error);
     if (result == KILN_OK)
-        result = ki_palette_mix(d->context, &d->palette, spectrum, (const double(*)[3])d->power,
-                                &d->mixtures, error);
+        result = ki_mixtures_find(t->context, &t->nodes, spectrum, (const double(*)[3])t->power,
+                                  &t->mixtures, error);
     return result;
 }
 
 // ----------------------------------------------------------------------------------------- levels
 
-static double power_at(const ki_display *d, int l)
+static double power_at(const ki_tune *t, int l)
 {
-    return d->power[l][0] + d->power[l][1] + d->power[l][2];
+    return t->power[l][0] + t->power[l][1] + t->power[l][2];
 }
 
 // A level's kernel: its spectrum, cut where the tolerance allows, and its shape.
-static kiln_result make_kernel(const ki_display *d, int level, ki_zonal *zonal, ki_mixture *mixture,
+static kiln_result make_kernel(const ki_tune *t, int level, ki_zonal *zonal, ki_mixture *mixture,
                                ki_zonal_spectrum *spectrum, kiln_error *error)
 {
     double alphas[KI_MOST_LOBES], weights[KI_MOST_LOBES], integrals[KI_MOST_LOBES];
-    int count = 0, degree = ki_display_degree(d);
+    int count = 0, degree = ki_tune_degree(t);
     *spectrum = (ki_zonal_spectrum){.integral = 1};
-    spectrum->k = ki_alloc(d->context, (size_t)degree + 1, sizeof *spectrum->k);
+    spectrum->k = ki_alloc(t->context, (size_t)degree + 1, sizeof *spectrum->k);
     if (!spectrum->k)
-        return ki_fail_memory(d->context, error, "a level's kernel",
+        return ki_fail_memory(t->context, error, "a level's kernel",
                               (size_t)degree * sizeof *spectrum->k);
-    for (int n = 0; n <= d->palette.count; n++) {
-        double weight = d->mixtures.weights[level][n];
+    for (int n = 0; n <= t->nodes.count; n++) {
+        double weight = t->mixtures.weights[level][n];
         if (weight == 0)
             continue;
-        alphas[count] = d->palette.roughness[n] * d->palette.roughness[n];
+        alphas[count] = t->nodes.roughness[n] * t->nodes.roughness[n];
         weights[count] = weight;
-        integrals[count++] = d->palette.spectra[n].integral;
-        for (int l = 0; l <= d->palette.spectra[n].degree; l++)
-            spectrum->k[l] += weight * d->palette.spectra[n].k[l];
+        integrals[count++] = t->nodes.spectra[n].integral;
+        for (int l = 0; l <= t->nodes.spectra[n].degree; l++)
+            spectrum->k[l] += weight * t->nodes.spectra[n].k[l];
     }
     double all = 0, left = 0;
     for (int l = 0; l <= degree; l++)
-        all += spectrum->k[l] * spectrum->k[l] * power_at(d, l);
-    int l = ki_min(degree, most_degree(size_at(d, level)));
+        all += spectrum->k[l] * spectrum->k[l] * power_at(t, l);
+    int l = ki_min(degree, most_degree(size_at(t, level)));
     for (; l > ki_min(degree, KI_LEAST_DEGREE); l--) {
-        left += spectrum->k[l] * spectrum->k[l] * power_at(d, l);
-        if (left > d->tolerance * d->tolerance * all)
+        left += spectrum->k[l] * spectrum->k[l] * power_at(t, l);
+        if (left > t->tolerance * t->tolerance * all)
             break;
     }
     for (int i = 1; i <= degree; i++)
-        if (i > l || power_at(d, i) < rounding * power_at(d, 0))
+        if (i > l || power_at(t, i) < rounding * power_at(t, 0))
             spectrum->k[i] = 0;
     spectrum->degree = l;
     ki_mixture_create(mixture, alphas, weights, integrals, count);
@@ -184,7 +184,7 @@ static kiln_result make_kernel(const ki_display *d, int level, ki_zonal *zonal, 
 }
 
 // What a level should show, at the texels of level `index` of a map of any size.
-static kiln_result make_target(ki_display *d, const ki_legendre *legendre,
+static kiln_result make_target(ki_tune *t, const ki_legendre *legendre,
                                const kiln_spectrum *spectrum, double rotation, int level,
                                const kiln_map *mirror, kiln_map *map, int index,
                                const ki_stage *stage, kiln_error *error)
@@ -192,17 +192,17 @@ static kiln_result make_target(ki_display *d, const ki_legendre *legendre,
     ki_zonal zonal;
     ki_zonal_spectrum kernel;
     ki_level *plan = NULL;
-    ki_mixture *mixture = ki_alloc(d->context, 1, sizeof *mixture);
+    ki_mixture *mixture = ki_alloc(t->context, 1, sizeof *mixture);
     if (!mixture)
-        return ki_fail_memory(d->context, error, "a level's kernel", sizeof *mixture);
-    kiln_result result = make_kernel(d, level, &zonal, mixture, &kernel, error);
+        return ki_fail_memory(t->context, error, "a level's kernel", sizeof *mixture);
+    kiln_result result = make_kernel(t, level, &zonal, mixture, &kernel, error);
     if (result == KILN_OK)
-        result = ki_level_create(d->context, legendre, &zonal, &kernel, d->shape,
+        result = ki_level_create(t->context, legendre, &zonal, &kernel, t->shape,
                                  kiln_map_level_size(map, index), &plan, error);
     if (result == KILN_OK)
         result = ki_level_execute(plan, spectrum, NULL, rotation, map, index, stage, error);
     if (result == KILN_OK)
-        ki_add_mirror(d->context, mirror, d->mixtures.weights[level][d->palette.count + 1], map,
+        ki_add_mirror(t->context, mirror, t->mixtures.weights[level][t->nodes.count + 1], map,
                       index);
     ki_level_destroy(plan);
     ki_free(mixture);
@@ -210,13 +210,14 @@ static kiln_result make_target(ki_display *d, const ki_legendre *legendre,
 }
 
 // One beyond the last level is none.
-static bool is_read(const ki_display *d, int level)
+static bool is_read(const ki_tune *t, int level)
 {
-    if (level >= d->level_count || level >= KILN_MAX_LEVELS)
+    if (level >= t->level_count || level >= KILN_MAX_LEVELS)
         return false;
-    int size = size_at(d, level);
-    bool made = d->palette.fitted[level] || (level != 0 && d->pinned[level]);
-    return made && d->shape == KILN_SHAPE_CUBE && !d->shown.flat && size <= MOST_READS && size > 1;
+    int size = size_at(t, level);
+    bool made = t->nodes.tuned[level] || (level != 0 && t->pinned[level]);
+    return made && t->shape == KILN_SHAPE_CUBE && !t->reading.flat && size <= MOST_READS &&
+           size > 1;
 }
 
 typedef struct correction {
@@ -243,62 +244,61 @@ static void correct_row(void *data, int row)
 
 // A level for bilinear reads: its target at points between its texels, where it also makes up for the
 // error of the next level, whose target is in `targets`.
-static kiln_result make_read(ki_display *d, const ki_legendre *legendre,
-                             const kiln_spectrum *spectrum, double rotation, int level,
-                             const kiln_map *mirror, kiln_map *map, kiln_map *targets,
-                             const ki_stage *stage, kiln_error *error)
+static kiln_result make_read(ki_tune *t, const ki_legendre *legendre, const kiln_spectrum *spectrum,
+                             double rotation, int level, const kiln_map *mirror, kiln_map *map,
+                             kiln_map *targets, const ki_stage *stage, kiln_error *error)
 {
-    int size = size_at(d, level);
+    int size = size_at(t, level);
     kiln_map *target = &targets[level], goal;
     *target = (kiln_map){
         .shape = KILN_SHAPE_CUBE, .size = size * (size > COARSE ? 2 : 4), .level_count = 1};
     goal = *target;
-    kiln_result result = ki_map_allocate(d->context, target, error);
+    kiln_result result = ki_map_allocate(t->context, target, error);
     if (result == KILN_OK)
         result =
-            make_target(d, legendre, spectrum, rotation, level, mirror, target, 0, stage, error);
+            make_target(t, legendre, spectrum, rotation, level, mirror, target, 0, stage, error);
     if (result == KILN_OK)
-        result = ki_map_allocate(d->context, &goal, error);
+        result = ki_map_allocate(t->context, &goal, error);
     if (result != KILN_OK)
         return result;
     memcpy(goal.level[0], target->level[0], 3 * kiln_map_texels(target, 0) * sizeof(float));
-    if (d->palette.fitted[level] && is_read(d, level + 1)) {
-        correction a = {&goal, map, &targets[level + 1], level + 1, d->mixtures.coupling[level]};
-        ki_parallel_for(d->context, 6 * goal.size, correct_row, &a);
+    if (t->nodes.tuned[level] && is_read(t, level + 1)) {
+        correction a = {&goal, map, &targets[level + 1], level + 1, t->mixtures.coupling[level]};
+        ki_parallel_for(t->context, 6 * goal.size, correct_row, &a);
     }
-    result = ki_fit_reads(d->context, &goal, map, level, error);
+    result = ki_solve_texels(t->context, &goal, map, level, error);
     kiln_map_free(&goal);
     return result;
 }
 
-kiln_result ki_display_execute(ki_display *d, const ki_legendre *legendre,
-                               const kiln_spectrum *spectrum, double rotation, kiln_map *map,
-                               const ki_stage *stage, kiln_error *error)
+kiln_result ki_tune_execute(ki_tune *t, const ki_legendre *legendre, const kiln_spectrum *spectrum,
+                            double rotation, kiln_map *map, const ki_stage *stage,
+                            kiln_error *error)
 {
-    kiln_map mirror = {.shape = d->shape, .size = d->size, .level_count = 1};
-    while (d->size >> mirror.level_count >= d->smallest && mirror.level_count < d->level_count)
+    kiln_map mirror = {.shape = t->shape, .size = t->size, .level_count = 1};
+    while (t->size >> mirror.level_count >= t->smallest && mirror.level_count < t->level_count)
         mirror.level_count++;
     kiln_map targets[KILN_MAX_LEVELS] = {{0}};
-    kiln_result result = choose_mixtures(d, spectrum, error);
+    kiln_result result = choose_mixtures(t, spectrum, error);
     if (result == KILN_OK)
-        result = ki_map_allocate(d->context, &mirror, error);
+        result = ki_map_allocate(t->context, &mirror, error);
     if (result != KILN_OK)
         return result;
-    ki_make_mirrors(d->context, map, &mirror);
+    ki_make_mirrors(t->context, map, &mirror);
     // From coarse to fine: a fine level can make up for what a coarse one cannot show.
-    for (int i = d->level_count - 1; i >= 0 && result == KILN_OK; i--) {
-        if (is_read(d, i)) {
+    for (int i = t->level_count - 1; i >= 0 && result == KILN_OK; i--) {
+        if (is_read(t, i)) {
             result =
-                make_read(d, legendre, spectrum, rotation, i, &mirror, map, targets, stage, error);
-            if (i + 1 < d->level_count)
+                make_read(t, legendre, spectrum, rotation, i, &mirror, map, targets, stage, error);
+            if (i + 1 < t->level_count)
                 kiln_map_free(&targets[i + 1]);
-        } else if (d->palette.fitted[i]) {
-            result = make_target(d, legendre, spectrum, rotation, i, &mirror, map, i, stage, error);
+        } else if (t->nodes.tuned[i]) {
+            result = make_target(t, legendre, spectrum, rotation, i, &mirror, map, i, stage, error);
             if (result == KILN_OK)
-                result = ki_clear_negative(d->context, map, i, error);
+                result = ki_clear_negative(t->context, map, i, error);
         }
     }
-    for (int i = 0; i < d->level_count; i++)
+    for (int i = 0; i < t->level_count; i++)
         kiln_map_free(&targets[i]);
     kiln_map_free(&mirror);
     return result;

@@ -1,4 +1,4 @@
-// The texels of levels that are made for display.
+// The texels of tuned levels: the mirror's part of them, and no negative ones.
 #ifndef KI_TUNE_LEVEL_H
 #define KI_TUNE_LEVEL_H
 

@@ -7,27 +7,30 @@
 
 // The least roughness that counts.
 static const double least_roughness = 0.05;
-// What a level costs where no roughness shows it: it should be what it is in the exact chain.
+// Regularizer: the weight of "a level is its exact value", relative to the weight of the roughnesses that
+// read the level. Without it a level that hardly any roughness in [.05, 1] reads would be undetermined.
 static const double prior = 1e-3;
-// Level 0 free: the share of the mirror in it, as if so much roughness showed it alone.
-static const double mirror_share = 1e-3;
-// Weights below this are left out.
+// The same for level 0 where it is free: the weight of "level 0 is the mirror", as an interval of
+// roughness of this length.
+static const double mirror_weight = 1e-3;
+// Weights of lobes below this are set to 0.
 static const double least_weight = 1e-5;
-// What the second norm counts beside the first.
-static const double far_share = 30;
-// And the light it is relative to where there is next to none, a tenth of the mean, squared.
+// The weight of the second norm (away from suns), relative to the first (whole sphere).
+static const double far_weight = 30;
+// Added to the squared norm away from suns that errors there are divided by, in units of the squared mean
+// radiance: a tenth of the mean. Otherwise a black sky around a lamp would outweigh everything.
 static const double dark = 0.01;
 
-void ki_palette_lay(ki_palette *p, double (*level)(double, int, int), int level_count, int size)
+void ki_nodes_place(ki_nodes *nodes, double (*level)(double, int, int), int level_count, int size)
 {
     static const double x[KI_LOBES] = {-0.86113631159405257522, -0.33998104358485626480,
                                        0.33998104358485626480, 0.86113631159405257522};
     static const double w[KI_LOBES] = {0.34785484513745385737, 0.65214515486254614263,
                                        0.65214515486254614263, 0.34785484513745385737};
     double from = least_roughness;
-    p->level_count = level_count;
-    while (from < 1 && p->count + KI_LOBES <= KI_MOST_LOBES - 2) {
-        // The largest roughness that is shown by the same two levels, by halving.
+    nodes->level_count = level_count;
+    while (from < 1 && nodes->count + KI_LOBES <= KI_MOST_LOBES - 2) {
+        // Bisection for the largest roughness that reads the same two levels.
         double next = floor(level(from + 1e-9, level_count, size)) + 1, low = from, high = 1;
         if (level(1, level_count, size) <= next)
             low = 1;
@@ -36,10 +39,11 @@ void ki_palette_lay(ki_palette *p, double (*level)(double, int, int), int level_
             *(level(middle, level_count, size) <= next ? &low : &high) = middle;
         }
         for (int i = 0; i < KI_LOBES && low > from; i++) {
-            int n = p->count++;
-            p->roughness[n] = from + 0.5 * (1 + x[i]) * (low - from);
-            p->width[n] = 0.5 * w[i] * (low - from);
-            p->level[n] = ki_clamp(level(p->roughness[n], level_count, size), 0, level_count - 1);
+            int n = nodes->count++;
+            nodes->roughness[n] = from + 0.5 * (1 + x[i]) * (low - from);
+            nodes->width[n] = 0.5 * w[i] * (low - from);
+            nodes->level[n] =
+                ki_clamp(level(nodes->roughness[n], level_count, size), 0, level_count - 1);
         }
         from = low > from ? low : from + 1e-6;
     }
@@ -53,14 +57,15 @@ typedef struct equations {
     double weights[KILN_MAX_LEVELS][KI_MOST_LOBES]; // their solution
 } equations;
 
-// `w`: what a unit of roughness counts at each node, and last for the mirror.
-static void lay_equations(const ki_palette *p, const double *w, double *coupling, equations *e)
+// Fills the normal equations: tridiagonal, since a roughness reads two neighbouring levels, with one
+// right-hand side per lobe. `w` is the weight of a unit of roughness at each node, and last of the mirror.
+static void set_up_equations(const ki_nodes *nodes, const double *w, double *coupling, equations *e)
 {
-    int last = p->level_count - 1, mirror = p->count + 1;
+    int last = nodes->level_count - 1, mirror = nodes->count + 1;
     memset(e, 0, sizeof *e);
-    for (int n = 0; n < p->count; n++) {
-        int i = ki_min((int)p->level[n], last);
-        double t = p->level[n] - i, weight = w[n] * p->width[n];
+    for (int n = 0; n < nodes->count; n++) {
+        int i = ki_min((int)nodes->level[n], last);
+        double t = nodes->level[n] - i, weight = w[n] * nodes->width[n];
         e->diagonal[i] += weight * (1 - t) * (1 - t);
         e->right[i][n] += weight * (1 - t);
         if (i < last) {
@@ -71,22 +76,22 @@ static void lay_equations(const ki_palette *p, const double *w, double *coupling
     }
     for (int i = 0; i <= last; i++) {
         double own =
-            i ? prior * (e->diagonal[i] + e->next[i] + e->next[i - 1]) : mirror_share * w[mirror];
+            i ? prior * (e->diagonal[i] + e->next[i] + e->next[i - 1]) : mirror_weight * w[mirror];
         e->diagonal[i] += own;
-        e->right[i][i ? p->nearest[i] : mirror] += own;
+        e->right[i][i ? nodes->nearest[i] : mirror] += own;
     }
     for (int i = 0; i <= last && coupling; i++)
         coupling[i] = e->diagonal[i] > 0 ? e->next[i] / e->diagonal[i] : 0;
-    // What stays as it is goes to the right.
+    // Levels that are not tuned are known: their terms go to the right-hand sides.
     for (int i = 0; i <= last; i++) {
-        if (p->fitted[i])
+        if (nodes->tuned[i])
             continue;
-        int as = i == 0 ? mirror : i == last ? p->count : p->nearest[i];
+        int as = i == 0 ? mirror : i == last ? nodes->count : nodes->nearest[i];
         memset(e->right[i], 0, sizeof e->right[i]);
         e->right[i][as] = e->diagonal[i] = 1;
         if (i > 0)
             e->right[i - 1][as] -= e->next[i - 1];
-        if (i < last && p->fitted[i + 1])
+        if (i < last && nodes->tuned[i + 1])
             e->right[i + 1][as] -= e->next[i];
         if (i > 0)
             e->next[i - 1] = 0;
@@ -94,9 +99,9 @@ static void lay_equations(const ki_palette *p, const double *w, double *coupling
     }
 }
 
-static void solve_equations(const ki_palette *p, equations *e)
+static void solve_equations(const ki_nodes *nodes, equations *e)
 {
-    int last = p->level_count - 1, count = p->count + 2;
+    int last = nodes->level_count - 1, count = nodes->count + 2;
     for (int i = 0; i < last; i++) {
         double factor = e->next[i] / e->diagonal[i];
         e->diagonal[i + 1] -= factor * e->next[i];
@@ -110,7 +115,7 @@ static void solve_equations(const ki_palette *p, equations *e)
         }
 }
 
-// Adds what of a solution lies on an axis.
+// Adds the component of a solution along one axis.
 static void add_part(const ki_norms *n, size_t axis, const equations *e, int level_count,
                      ki_mixtures *to)
 {
@@ -125,11 +130,11 @@ static void add_part(const ki_norms *n, size_t axis, const equations *e, int lev
     }
 }
 
-// Weights of next to nothing are left out; white stays white.
-static void finish(const ki_palette *p, ki_mixtures *mixtures)
+// Drops tiny weights, each of which would cost a lobe, and makes the others sum to 1: white stays white.
+static void finish(const ki_nodes *nodes, ki_mixtures *mixtures)
 {
-    int count = p->count + 2;
-    for (int i = 0; i < p->level_count; i++) {
+    int count = nodes->count + 2;
+    for (int i = 0; i < nodes->level_count; i++) {
         double sum = 0, *weights = mixtures->weights[i];
         for (int n = 0; n < count; n++) {
             if (fabs(weights[n]) < least_weight)
@@ -141,30 +146,30 @@ static void finish(const ki_palette *p, ki_mixtures *mixtures)
     }
 }
 
-kiln_result ki_palette_mix(kiln_context *context, const ki_palette *p,
-                           const kiln_spectrum *spectrum, const double (*power)[3],
-                           ki_mixtures *mixtures, kiln_error *error)
+kiln_result ki_mixtures_find(kiln_context *context, const ki_nodes *nodes,
+                             const kiln_spectrum *spectrum, const double (*power)[3],
+                             ki_mixtures *mixtures, kiln_error *error)
 {
     ki_norms n;
-    kiln_result result = ki_norms_create(context, p, spectrum, power, &n, error);
+    kiln_result result = ki_norms_create(context, nodes, spectrum, power, &n, error);
     if (result != KILN_OK)
         return result;
     memset(mixtures, 0, sizeof *mixtures);
     for (int k = 0; k < n.count; k++) {
-        // A roughness counts by the inverse of its own light, in each norm.
+        // Errors are relative: the weight at a roughness is 1 / |T_r|^2, in each norm.
         double w[KI_MOST_LOBES] = {0};
         equations e;
         for (int i = 0; i < n.count; i++)
             w[i] = 1 / n.whole[i];
         if (k == 0)
-            lay_equations(p, w, mixtures->coupling, &e);
+            set_up_equations(nodes, w, mixtures->coupling, &e);
         for (int i = 0; i < n.count; i++)
-            w[i] += far_share * n.ratio[k] / (n.away[i] + dark);
-        lay_equations(p, w, NULL, &e);
-        solve_equations(p, &e);
-        add_part(&n, (size_t)k, &e, p->level_count, mixtures);
+            w[i] += far_weight * n.ratio[k] / (n.away[i] + dark);
+        set_up_equations(nodes, w, NULL, &e);
+        solve_equations(nodes, &e);
+        add_part(&n, (size_t)k, &e, nodes->level_count, mixtures);
     }
-    finish(p, mixtures);
+    finish(nodes, mixtures);
     ki_norms_destroy(&n);
     return KILN_OK;
 }

@@ -12,21 +12,21 @@ static const double ridge = 1e-8;
 static const double aside = 0.1415;
 
 // Adds sum over degrees of power k_i k_j; the last lobe is a mirror. `power` NULL: uniform light.
-static void add_power(const ki_palette *p, const double (*power)[3], int degree, double mean,
+static void add_power(const ki_nodes *nodes, const double (*power)[3], int degree, double mean,
                       double *products)
 {
-    int count = p->count + 2, mirror = p->count + 1;
+    int count = nodes->count + 2, mirror = nodes->count + 1;
     for (int i = 0; i < count; i++)
         for (int j = 0; j < count; j++) {
             int last = degree;
             if (i < mirror)
-                last = ki_min(last, p->spectra[i].degree);
+                last = ki_min(last, nodes->spectra[i].degree);
             if (j < mirror)
-                last = ki_min(last, p->spectra[j].degree);
+                last = ki_min(last, nodes->spectra[j].degree);
             double sum = power ? 0 : mean;
             for (int l = 0; power && l <= last; l++) {
-                double k = i < mirror ? p->spectra[i].k[l] : 1;
-                k *= j < mirror ? p->spectra[j].k[l] : 1;
+                double k = i < mirror ? nodes->spectra[i].k[l] : 1;
+                k *= j < mirror ? nodes->spectra[j].k[l] : 1;
                 sum += k * (power[l][0] + power[l][1] + power[l][2]);
             }
             products[i * count + j] += sum / mean;
@@ -73,18 +73,18 @@ static kiln_result square_suns(kiln_context *context, const kiln_spectrum *spect
 
 // Adds the light of suns seen from afar: the integral of the tails' products over the sphere without what
 // is near, by a midpoint rule over the angle's logarithm. A mirror has no tail.
-static void add_tails(const ki_palette *p, double light, double *products)
+static void add_tails(const ki_nodes *nodes, double light, double *products)
 {
     enum { STEPS = 128 };
     double reach = ki_log(0.5 * KI_PI / aside), tails[KI_MOST_LOBES] = {0};
-    int count = p->count + 2;
+    int count = nodes->count + 2;
     for (int s = 0; s < STEPS; s++) {
         double angle = aside * ki_exp(reach * (s + 0.5) / STEPS), sine, cosine;
         ki_sincos(angle, &sine, &cosine);
         double area = 2 * KI_PI * sine * angle * reach / STEPS;
-        for (int i = 0; i <= p->count; i++) {
-            ki_zonal zonal = {.lobe = kiln_lobe_ggx(p->roughness[i] * p->roughness[i])};
-            tails[i] = ki_zonal_weight(&zonal, 1 - cosine) / p->spectra[i].integral;
+        for (int i = 0; i <= nodes->count; i++) {
+            ki_zonal zonal = {.lobe = kiln_lobe_ggx(nodes->roughness[i] * nodes->roughness[i])};
+            tails[i] = ki_zonal_weight(&zonal, 1 - cosine) / nodes->spectra[i].integral;
         }
         for (int i = 0; i < count; i++)
             for (int j = 0; j < count; j++)
@@ -143,13 +143,13 @@ static void turn_axes(ki_norms *n, const double *lower, const double *axes)
     }
 }
 
-kiln_result ki_norms_create(kiln_context *context, const ki_palette *p,
+kiln_result ki_norms_create(kiln_context *context, const ki_nodes *nodes,
                             const kiln_spectrum *spectrum, const double (*power)[3], ki_norms *n,
                             kiln_error *error)
 {
     const double(*all)[3] = power + spectrum->degree + 1;
     double light, mean = all[0][0] + all[0][1] + all[0][2];
-    *n = (ki_norms){.count = p->count + 2};
+    *n = (ki_norms){.count = nodes->count + 2};
     size_t count = (size_t)n->count, size = count * count;
     kiln_result result = square_suns(context, spectrum, &light, error);
     if (result != KILN_OK)
@@ -159,16 +159,16 @@ kiln_result ki_norms_create(kiln_context *context, const ki_palette *p,
     if (!lower || !n->along) {
         ki_free(lower);
         ki_norms_destroy(n);
-        return ki_fail_memory(context, error, "a display's norms", 5 * size * sizeof *lower);
+        return ki_fail_memory(context, error, "a tuning's norms", 5 * size * sizeof *lower);
     }
     double *away = lower + size, *axes = away + size;
     n->across = n->along + size;
     // Relative to the mean radiance, so that no unit overflows; black is as good as white.
     bool dark = !(mean > 0);
-    add_power(p, dark ? NULL : all, spectrum->degree, dark ? 1 : mean, lower);
-    add_power(p, dark ? NULL : power, spectrum->degree, dark ? 1 : mean, away);
+    add_power(nodes, dark ? NULL : all, spectrum->degree, dark ? 1 : mean, lower);
+    add_power(nodes, dark ? NULL : power, spectrum->degree, dark ? 1 : mean, away);
     if (!dark)
-        add_tails(p, light / mean, away);
+        add_tails(nodes, light / mean, away);
     for (size_t i = 0; i < count; i++) {
         n->whole[i] = lower[i * count + i] *= 1 + ridge;
         n->away[i] = away[i * count + i] *= 1 + ridge;

@@ -4,19 +4,20 @@
 
 #include "tune/tune_mix.h"
 
-/// The environment seen through a palette's lobes has scalar products in both norms. They have common
-/// axes: in the first norm each is 1 long, in the second the root of its ratio, and all are at right
-/// angles in both.
+/// The scalar products of the environment seen through each pair of lobes form a symmetric matrix in each
+/// norm, G and H. Their generalised eigenbasis, H u = ratio G u, is orthonormal in the first norm and
+/// orthogonal in the second, where axis u has the squared length `ratio`.
 typedef struct ki_norms {
-    int count;                                        // lobes, and axes
-    double whole[KI_MOST_LOBES], away[KI_MOST_LOBES]; // of each lobe, squared; the mean's is 1
-    double ratio[KI_MOST_LOBES];                      // of each axis
-    double *along;                                    // [axis][lobe]: the axis as a mixture
+    int count; // of lobes, and of axes
+    double whole[KI_MOST_LOBES],
+        away[KI_MOST_LOBES];     // squared norms of each lobe's result, / mean^2
+    double ratio[KI_MOST_LOBES]; // eigenvalue of each axis
+    double *along;               // [axis][lobe]: the axis as a mixture
     double *across; // [axis][lobe]: its scalar product with each lobe, in the first norm
 } ki_norms;
 
-/// `power` as for ki_palette_mix.
-kiln_result ki_norms_create(kiln_context *context, const ki_palette *palette,
+/// `power` as for ki_mixtures_find.
+kiln_result ki_norms_create(kiln_context *context, const ki_nodes *nodes,
                             const kiln_spectrum *spectrum, const double (*power)[3],
                             ki_norms *norms, kiln_error *error);
 void ki_norms_destroy(ki_norms *norms);

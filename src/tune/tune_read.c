@@ -21,8 +21,8 @@ typedef struct reads {
     const kiln_map *goal;
     size_t texel_count, point_count;
     tap (*taps)[4];     // by point
-    uint32_t *start;    // [texels + 1], into shares
-    tap *shares;        // by texel
+    uint32_t *start;    // [texels + 1], offsets into `reverse`
+    tap *reverse;       // taps by texel: the transpose of B
     float *solid;       // of the points of a face
     double (*shown)[3]; // W B x by point
     // By texel.
@@ -55,7 +55,7 @@ static void add_up(const reads *r, size_t count, int which, double sum[3])
 // ------------------------------------------------------------------------------------------- set up
 
 // Task: a chunk of points' taps.
-static void lay_taps(void *data, int index)
+static void make_taps(void *data, int index)
 {
     reads *r = data;
     size_t face = r->point_count / 6;
@@ -75,7 +75,7 @@ static void lay_taps(void *data, int index)
 }
 
 // The transpose: each texel's points in their order.
-static void lay_shares(reads *r)
+static void transpose_taps(reads *r)
 {
     for (size_t p = 0; p < r->point_count; p++)
         for (int i = 0; i < 4; i++)
@@ -85,7 +85,7 @@ static void lay_shares(reads *r)
     for (size_t p = 0; p < r->point_count; p++)
         for (int i = 0; i < 4; i++) {
             const tap *to = &r->taps[p][i];
-            r->shares[r->start[to->at]++] = (tap){(uint32_t)p, to->weight};
+            r->reverse[r->start[to->at]++] = (tap){(uint32_t)p, to->weight};
         }
     for (size_t t = r->texel_count; t > 0; t--)
         r->start[t] = r->start[t - 1];
@@ -98,7 +98,7 @@ static bool allocate(reads *r)
     size_t texels = r->texel_count, points = r->point_count;
     r->taps = ki_alloc(k, points, sizeof *r->taps);
     r->start = ki_alloc(k, texels + 1, sizeof *r->start);
-    r->shares = ki_alloc(k, 4 * points, sizeof *r->shares);
+    r->reverse = ki_alloc(k, 4 * points, sizeof *r->reverse);
     r->solid = ki_alloc(k, points / 6, sizeof *r->solid);
     r->shown = ki_alloc(k, points, sizeof *r->shown);
     r->x = ki_alloc(k, texels, sizeof *r->x);
@@ -108,7 +108,7 @@ static bool allocate(reads *r)
     r->diagonal = ki_alloc(k, texels, sizeof *r->diagonal);
     r->held = ki_alloc(k, texels, sizeof *r->held);
     r->sums = ki_alloc(k, (size_t)chunks(points), sizeof *r->sums);
-    return r->taps && r->start && r->shares && r->solid && r->shown && r->x && r->rest && r->way &&
+    return r->taps && r->start && r->reverse && r->solid && r->shown && r->x && r->rest && r->way &&
            r->product && r->diagonal && r->held && r->sums;
 }
 
@@ -116,7 +116,7 @@ static void release(reads *r)
 {
     ki_free(r->taps);
     ki_free(r->start);
-    ki_free(r->shares);
+    ki_free(r->reverse);
     ki_free(r->solid);
     ki_free(r->shown);
     ki_free(r->x);
@@ -136,8 +136,9 @@ static void begin(void *data, int index)
     for (size_t t = (size_t)index * CHUNK; t < chunk_end(index, r->texel_count); t++) {
         double weights = 0, sum[3] = {0};
         for (uint32_t i = r->start[t]; i < r->start[t + 1]; i++) {
-            size_t p = r->shares[i].at;
-            double share = (double)r->shares[i].weight, weight = share * (double)r->solid[p % face];
+            size_t p = r->reverse[i].at;
+            double share = (double)r->reverse[i].weight,
+                   weight = share * (double)r->solid[p % face];
             r->diagonal[t] += share * weight;
             weights += weight;
             for (size_t c = 0; c < 3; c++)
@@ -190,7 +191,7 @@ static void gather(void *data, int index)
         double sum[3] = {0};
         for (uint32_t i = r->start[t]; i < r->start[t + 1]; i++)
             for (int c = 0; c < 3; c++)
-                sum[c] += (double)r->shares[i].weight * r->shown[r->shares[i].at][c];
+                sum[c] += (double)r->reverse[i].weight * r->shown[r->reverse[i].at][c];
         for (int c = 0; c < 3; c++) {
             a->to[t][c] = r->held[t][c] ? 0 : sum[c];
             sums[0][c] += a->to[t][c] * a->from[t][c];
@@ -276,8 +277,8 @@ static void hold(void *data, int index)
         }
 }
 
-kiln_result ki_fit_reads(kiln_context *context, const kiln_map *goal, kiln_map *map, int index,
-                         kiln_error *error)
+kiln_result ki_solve_texels(kiln_context *context, const kiln_map *goal, kiln_map *map, int index,
+                            kiln_error *error)
 {
     reads r = {.context = context,
                .goal = goal,
@@ -287,8 +288,8 @@ kiln_result ki_fit_reads(kiln_context *context, const kiln_map *goal, kiln_map *
         release(&r);
         return ki_fail_memory(context, error, "a level's reads", r.point_count * sizeof *r.taps);
     }
-    ki_parallel_for(context, chunks(r.point_count), lay_taps, &r);
-    lay_shares(&r);
+    ki_parallel_for(context, chunks(r.point_count), make_taps, &r);
+    transpose_taps(&r);
     ki_parallel_for(context, chunks(r.texel_count), begin, &r);
     double held[3] = {1};
     for (int i = 0; i < ROUNDS && held[0] > 0; i++) {

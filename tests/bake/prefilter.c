@@ -20,8 +20,7 @@ static kiln_map random_map(kiln_shape shape, int size)
 static kiln_map mirror(const kiln_map *source, kiln_shape shape, int size, double rotation)
 {
     kiln_map map;
-    kiln_prefilter_def def = {
-        .shape = shape, .has_shape = true, .size = size, .level_count = 1, .rotation = rotation};
+    kiln_prefilter_def def = {.shape = shape, .size = size, .level_count = 1, .rotation = rotation};
     CHECK_OK(kiln_prefilter(context, source, &def, &map, &error));
     return map;
 }
@@ -153,7 +152,7 @@ static int stop_everywhere(const kiln_map *source, kiln_shape shape, const char 
     for (int stop = 0; result != KILN_OK; stop += 1 + stop / 8) {
         c = (countdown){.left = stop};
         kiln_map map;
-        kiln_prefilter_def what = {.shape = shape, .has_shape = true, .size = 64, .level_count = 2};
+        kiln_prefilter_def what = {.shape = shape, .size = 64, .level_count = 2};
         kiln_save_def how = {.zstd = !strcmp(ending, ".ktx2")};
         size_t before, after;
         kiln_context_memory(own, &before, NULL);

@@ -17,8 +17,7 @@ static kiln_map sky_of(int size, double elevation, double azimuth, double turbid
     kiln_error error = {0};
     kiln_map map;
     kiln_sky_def def = {.size = size,
-                        .elevation = elevation,
-                        .has_elevation = true,
+                        .elevation = elevation != 0 ? elevation : KILN_ZERO,
                         .azimuth = azimuth,
                         .turbidity = turbidity};
     CHECK_OK(kiln_sky(context, &def, &map, &error));
@@ -218,7 +217,7 @@ static void ground_reflects_what_arrives(void **state)
     }
     kiln_error error = {0};
     kiln_map black;
-    CHECK_OK(kiln_sky(context, &(kiln_sky_def){.size = 16, .has_albedo = true}, &black, &error));
+    CHECK_OK(kiln_sky(context, &(kiln_sky_def){.size = 16, .albedo = KILN_ZERO}, &black, &error));
     CHECK_NEAR((double)texel_at(&black, 0, 15)[0], 0, 0);
     kiln_map_free(&black);
 }
@@ -296,10 +295,10 @@ static void wrong_arguments_are_named(void **state)
     } cases[] = {
         {{.size = 8}, "size of the sky is 8"},
         {{.size = 9000}, "9000"},
-        {{.has_elevation = true, .elevation = -6}, "elevation of the sky is -6"},
-        {{.has_elevation = true, .elevation = NAN}, "elevation"},
+        {{.elevation = -6}, "elevation of the sky is -6"},
+        {{.elevation = NAN}, "elevation"},
         {{.turbidity = 1}, "turbidity of the sky is 1, it must be 1.7 to 10"},
-        {{.has_albedo = true, .albedo = 1.5}, "albedo"},
+        {{.albedo = 1.5}, "albedo"},
         {{.azimuth = INFINITY}, "azimuth"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {

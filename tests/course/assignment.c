@@ -17,11 +17,12 @@ static kiln_image make(kiln_assignment_method method, const kiln_assignment_def 
     return table;
 }
 
-static kiln_image make_exact(int size, kiln_g g)
+static kiln_image make_exact(int size, kiln_assignment_g g)
 {
     kiln_error error = {0};
     kiln_table table;
-    kiln_table_def def = {.model = {.g = g}, .width = size, .height = size, .flip = true};
+    kiln_table_def def = {
+        .model = {.g = kiln_assignment_masking(g)}, .width = size, .height = size, .flip = true};
     CHECK_OK(kiln_table_create(context, &def, &table, &error));
     return table.image;
 }
@@ -81,12 +82,12 @@ static void importance_converges(void **state)
 {
     (void)state;
     enum { SIZE = 16, STEPS = 3 };
-    for (int g = KILN_G_SMITH; g <= KILN_G_SCHLICK_TEXT; g++) {
-        kiln_image exact = make_exact(SIZE, (kiln_g)g);
+    for (int g = 0; g <= KILN_ASSIGNMENT_G_UNCORRELATED; g++) {
+        kiln_image exact = make_exact(SIZE, (kiln_assignment_g)g);
         double rms[STEPS], max[STEPS];
         for (int k = 0; k < STEPS; k++) {
             kiln_assignment_def def = {
-                .size = SIZE, .sample_count = 64 << (4 * k), .g = (kiln_g)g, .has_g = true};
+                .size = SIZE, .sample_count = 64 << (4 * k), .g = (kiln_assignment_g)g};
             kiln_image table = make(KILN_ASSIGNMENT_IMPORTANCE, &def);
             kiln_difference difference = compare(&table, &exact);
             rms[k] = difference.rms;
@@ -108,8 +109,8 @@ static void default_errs_as_documented(void **state)
     (void)state;
     static const double bounds[2][2] = {{0.011, 0.0015}, {0.0031, 0.00073}};
     for (int i = 0; i < 2; i++) {
-        kiln_g g = i ? KILN_G_SCHLICK_TEXT : KILN_G_SCHLICK_K2;
-        kiln_assignment_def def = {.g = g, .has_g = i};
+        kiln_assignment_g g = i ? KILN_ASSIGNMENT_G_TEXT : KILN_ASSIGNMENT_G_FIGURES;
+        kiln_assignment_def def = {.g = g};
         kiln_image exact = make_exact(128, g), table = make(KILN_ASSIGNMENT_IMPORTANCE, &def);
         assert_int_equal(table.width, 128);
         assert_int_equal(table.height, 128);
@@ -125,8 +126,8 @@ static void default_errs_as_documented(void **state)
 static void split_sum_adds_up(void **state)
 {
     (void)state;
-    for (int g = KILN_G_SMITH; g <= KILN_G_SCHLICK_TEXT; g++) {
-        kiln_assignment_def def = {.size = 32, .g = (kiln_g)g, .has_g = true};
+    for (int g = 0; g <= KILN_ASSIGNMENT_G_UNCORRELATED; g++) {
+        kiln_assignment_def def = {.size = 32, .g = (kiln_assignment_g)g};
         kiln_image e = make(KILN_ASSIGNMENT_IMPORTANCE, &def);
         kiln_image ab = make(KILN_ASSIGNMENT_SPLIT_SUM, &def);
         CHECK_BELOW(compare(&ab, &e).max, 1e-6);
@@ -141,14 +142,13 @@ static void monte_carlo_is_unbiased(void **state)
 {
     (void)state;
     enum { SIZE = 10, RUNS = 100, ROWS = 7 };
-    for (int g = KILN_G_SCHLICK_K2; g <= KILN_G_SCHLICK_TEXT; g++) {
-        kiln_image exact = make_exact(SIZE, (kiln_g)g);
+    for (int g = KILN_ASSIGNMENT_G_FIGURES; g <= KILN_ASSIGNMENT_G_TEXT; g++) {
+        kiln_image exact = make_exact(SIZE, (kiln_assignment_g)g);
         double sum[SIZE * SIZE] = {0}, square[SIZE * SIZE] = {0}, z2 = 0;
         for (int run = 0; run < RUNS; run++) {
             kiln_assignment_def def = {.size = SIZE,
                                        .sample_count = 256,
-                                       .g = (kiln_g)g,
-                                       .has_g = true,
+                                       .g = (kiln_assignment_g)g,
                                        .unclamped = true,
                                        .seed = (uint64_t)run << 32};
             kiln_image table = make(KILN_ASSIGNMENT_MONTE_CARLO, &def);
@@ -224,7 +224,7 @@ static void band_is_no_noise(void **state)
     (void)state;
     enum { SIZE = 16, ROW = SIZE - 3 }; // roughness 0.156
     kiln_assignment_def def = {.size = SIZE, .sample_count = 32768};
-    kiln_image exact = make_exact(SIZE, KILN_G_SCHLICK_K2);
+    kiln_image exact = make_exact(SIZE, KILN_ASSIGNMENT_G_FIGURES);
     kiln_image clamped = make(KILN_ASSIGNMENT_MONTE_CARLO, &def);
     def.unclamped = true;
     kiln_image free_ = make(KILN_ASSIGNMENT_MONTE_CARLO, &def);
@@ -422,8 +422,7 @@ static void wrong_arguments_are_sentences(void **state)
     refuse(KILN_ASSIGNMENT_IMPORTANCE, &(kiln_assignment_def){.size = 1025}, "is 1025");
     refuse(KILN_ASSIGNMENT_IMPORTANCE, &(kiln_assignment_def){.sample_count = -1}, "is -1");
     refuse(KILN_ASSIGNMENT_IMPORTANCE, &(kiln_assignment_def){.sample_count = 1 << 21}, "1048576");
-    refuse(KILN_ASSIGNMENT_IMPORTANCE, &(kiln_assignment_def){.g = (kiln_g)4, .has_g = true},
-           "is 4");
+    refuse(KILN_ASSIGNMENT_IMPORTANCE, &(kiln_assignment_def){.g = (kiln_assignment_g)4}, "is 4");
     refuse((kiln_assignment_method)3, NULL, "method is 3");
 
     kiln_error error = {0};

@@ -44,7 +44,7 @@ static kiln_result save_default(kiln_context *context, const kiln_engine *engine
     if (!result)
         result = kiln_map_load(context, panorama, NULL, &source, error);
     if (!result) {
-        def.shown_by = engine->fit ? engine : NULL;
+        def.tune_for = engine->tune ? engine : NULL;
         result = kiln_prefilter(context, &source, &def, &map, error);
     }
     if (!result)

@@ -307,7 +307,7 @@ static void a_sky_errs_little(void **state)
     (void)state;
     kiln_context *context;
     CHECK_OK(kiln_context_create(NULL, &context, &error));
-    kiln_sky_def sky = {.size = 256, .elevation = 20, .has_elevation = true};
+    kiln_sky_def sky = {.size = 256, .elevation = 20};
     kiln_prefilter_def def = {.size = 64, .level_count = 4};
     kiln_map panorama, cube;
     CHECK_OK(kiln_sky(context, &sky, &panorama, &error));

@@ -42,7 +42,7 @@ static void directions_and_texels_invert(void **state)
     (void)state;
     kiln_context *context = make_context();
     static const int sizes[] = {1, 2, 3, 7, 16, 33};
-    for (int shape = 0; shape < 3; shape++)
+    for (int shape = KILN_SHAPE_PANORAMA; shape <= KILN_SHAPE_OCTAHEDRON; shape++)
         for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++) {
             kiln_map map = make_map(context, (kiln_shape)shape, sizes[k], 1);
             for (size_t i = 0; i < kiln_map_texels(&map, 0); i++) {
@@ -169,7 +169,7 @@ static void maps_have_levels_aligned_and_zero(void **state)
 {
     (void)state;
     kiln_context *context = make_context();
-    for (int shape = 0; shape < 3; shape++) {
+    for (int shape = KILN_SHAPE_PANORAMA; shape <= KILN_SHAPE_OCTAHEDRON; shape++) {
         kiln_map map = make_map(context, (kiln_shape)shape, 13, 0);
         assert_int_equal(map.level_count, 4);
         static const int sizes[4] = {13, 6, 3, 1};
@@ -177,7 +177,7 @@ static void maps_have_levels_aligned_and_zero(void **state)
         for (int k = 0; k < 4; k++) {
             size_t n = (size_t)sizes[k];
             assert_int_equal(kiln_map_level_size(&map, k), sizes[k]);
-            assert_int_equal(kiln_map_texels(&map, k), n * n * factor[shape]);
+            assert_int_equal(kiln_map_texels(&map, k), n * n * factor[shape - KILN_SHAPE_PANORAMA]);
             assert_int_equal((uintptr_t)map.level[k] % 64, 0);
             for (size_t i = 0; i < 3 * kiln_map_texels(&map, k); i++)
                 assert_true(map.level[k][i] == 0);
@@ -211,6 +211,10 @@ static void numbers_out_of_range_are_refused_with_the_limit(void **state)
     assert_string_equal(error.message, "level_count is 17, it must be 1 to 16");
     assert_int_equal(kiln_map_create(context, (kiln_shape)7, 8, 1, &map, &error),
                      KILN_ERROR_ARGUMENT);
+    assert_string_equal(error.message, "shape is 7, it must be 1 to 3");
+    assert_int_equal(kiln_map_create(context, KILN_SHAPE_AUTO, 8, 1, &map, &error),
+                     KILN_ERROR_ARGUMENT);
+    assert_string_equal(error.message, "shape is 0, it must be 1 to 3");
     assert_int_equal(kiln_image_create(context, 4, 0, 3, &image, &error), KILN_ERROR_ARGUMENT);
     assert_non_null(strstr(error.message, "4 x 0"));
     assert_int_equal(kiln_image_create(context, 4, 4, 5, &image, &error), KILN_ERROR_ARGUMENT);
@@ -246,7 +250,7 @@ static void mirroring_swaps_left_and_right(void **state)
 {
     (void)state;
     kiln_context *context = make_context();
-    for (int shape = 0; shape < 3; shape++)
+    for (int shape = KILN_SHAPE_PANORAMA; shape <= KILN_SHAPE_OCTAHEDRON; shape++)
         for (int size = 1; size < 6; size++) {
             kiln_map map = make_map(context, (kiln_shape)shape, size, 1);
             size_t count = kiln_map_texels(&map, 0);

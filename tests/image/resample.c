@@ -102,7 +102,7 @@ static void solid_angles_fill_the_sphere(void **state)
 {
     (void)state;
     kiln_context *context = make_context(1);
-    for (int shape = 0; shape < 3; shape++)
+    for (int shape = KILN_SHAPE_PANORAMA; shape <= KILN_SHAPE_OCTAHEDRON; shape++)
         for (int size = 2; size < 40; size += 2) {
             kiln_map map = make_map(context, (kiln_shape)shape, size);
             fill_constant(&map, 1);
@@ -126,10 +126,12 @@ static void constants_stay_constant(void **state)
                 for (size_t k = 0; k < 4; k++) {
                     if (shapes / 3 && shapes % 3 && sources[i] * targets[j] > 30)
                         continue; // slow, and no different
-                    kiln_map source = make_map(context, (kiln_shape)(shapes / 3), sources[i]);
+                    kiln_map source = make_map(
+                        context, (kiln_shape)(KILN_SHAPE_PANORAMA + shapes / 3), sources[i]);
                     fill_constant(&source, 0.7f);
-                    kiln_map map = convert(context, &source, (kiln_shape)(shapes % 3), targets[j],
-                                           rotations[k]);
+                    kiln_map map =
+                        convert(context, &source, (kiln_shape)(KILN_SHAPE_PANORAMA + shapes % 3),
+                                targets[j], rotations[k]);
                     for (size_t t = 0; t < 3 * kiln_map_texels(&map, 0); t++)
                         CHECK_NEAR((double)map.level[0][t], (double)0.7f, 0.7e-6);
                     kiln_map_free(&map);
@@ -306,7 +308,7 @@ static void coarse_texels_are_means_of_fine_ones(void **state)
 {
     (void)state;
     kiln_context *context = make_context(1);
-    for (int to = 1; to < 3; to++)
+    for (int to = KILN_SHAPE_CUBE; to <= KILN_SHAPE_OCTAHEDRON; to++)
         for (int factor = 2; factor < 6; factor++)
             for (int k = 0; k < 4; k++) {
                 kiln_map source = make_map(context, KILN_SHAPE_PANORAMA, 61 + k);
@@ -339,7 +341,7 @@ static void turned_columns_are_turned_maps(void **state)
 {
     (void)state;
     kiln_context *context = make_context(1);
-    for (int shape = 0; shape < 3; shape++)
+    for (int shape = KILN_SHAPE_PANORAMA; shape <= KILN_SHAPE_OCTAHEDRON; shape++)
         for (int size = 31; size < 33; size++) {
             int width = 2 * size;
             kiln_map source = make_map(context, KILN_SHAPE_PANORAMA, size);
@@ -370,7 +372,7 @@ static void quarter_turns_permute(void **state)
 {
     (void)state;
     kiln_context *context = make_context(1);
-    for (int shape = 0; shape < 3; shape++)
+    for (int shape = KILN_SHAPE_PANORAMA; shape <= KILN_SHAPE_OCTAHEDRON; shape++)
         for (int size = 1; size < 9; size++)
             for (int turn = -1; turn < 4; turn++) {
                 if (shape == KILN_SHAPE_PANORAMA && size % 2)
@@ -401,11 +403,12 @@ static void threads_do_not_change_bits(void **state)
     (void)state;
     kiln_context *contexts[3] = {make_context(1), make_context(2), make_context(5)};
     for (int shapes = 0; shapes < 9; shapes++) {
-        kiln_map source = make_map(contexts[0], (kiln_shape)(shapes / 3), 50);
+        kiln_map source = make_map(contexts[0], (kiln_shape)(KILN_SHAPE_PANORAMA + shapes / 3), 50);
         fill_random(&source, 1);
         kiln_map map[3];
         for (int k = 0; k < 3; k++)
-            map[k] = convert(contexts[k], &source, (kiln_shape)(shapes % 3), 37, 11);
+            map[k] = convert(contexts[k], &source, (kiln_shape)(KILN_SHAPE_PANORAMA + shapes % 3),
+                             37, 11);
         for (int k = 1; k < 3; k++)
             assert_memory_equal(map[0].level[0], map[k].level[0],
                                 kiln_map_texels(&map[0], 0) * 3 * sizeof(float));
@@ -439,7 +442,7 @@ static void any_allocation_may_fail(void **state)
     (void)state;
     for (int shapes = 0; shapes < 9; shapes++) {
         kiln_context *steady = make_context(1);
-        kiln_map source = make_map(steady, (kiln_shape)(shapes / 3), 19);
+        kiln_map source = make_map(steady, (kiln_shape)(KILN_SHAPE_PANORAMA + shapes / 3), 19);
         fill_random(&source, 2);
         for (int n = 0;; n++) {
             assert_true(n < 1000);
@@ -452,7 +455,8 @@ static void any_allocation_may_fail(void **state)
                                          &context, &error));
             kiln_map map;
             kiln_result result =
-                kiln_map_convert(context, &source, (kiln_shape)(shapes % 3), 21, 7, &map, &error);
+                kiln_map_convert(context, &source, (kiln_shape)(KILN_SHAPE_PANORAMA + shapes % 3),
+                                 21, 7, &map, &error);
             assert_true(result == KILN_OK || result == KILN_ERROR_MEMORY);
             assert_true(result == KILN_OK || !map.owner);
             kiln_map_free(&map);

@@ -50,7 +50,7 @@ static outcome bake(int threads, enum kiln_cpu cpu)
     return result;
 }
 
-// What every machine and compiler gives. Changes when the engine's arithmetic does; then CHANGELOG.md says
+// What every machine and compiler gives. Changes when the engine's arithmetic does; then .md says
 // so under Output, and the test prints the new numbers.
 static const outcome golden = {0x89a28734b1907813, 0x2c9b053f18e0013e};
 

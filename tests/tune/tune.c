@@ -26,15 +26,15 @@ static kiln_map make_environment(kiln_context *context, int size, bool sun)
 }
 
 static kiln_map bake(kiln_context *context, const kiln_map *source, const char *engine, int size,
-                     int level_count, bool fit, bool soft)
+                     int level_count, bool tuned, bool soft)
 {
     float roughness[KILN_MAX_LEVELS];
     kiln_prefilter_def def;
     kiln_map map;
     CHECK_OK(
         kiln_engine_levels(kiln_engine_find(engine), size, level_count, roughness, &def, &error));
-    def.shown_by = fit ? kiln_engine_find(engine) : NULL;
-    def.soft = soft;
+    def.tune_for = tuned ? kiln_engine_find(engine) : NULL;
+    def.tune_soft = soft;
     CHECK_OK(kiln_prefilter(context, source, &def, &map, &error));
     return map;
 }
@@ -168,7 +168,7 @@ static void displayed_error(kiln_context *context, const kiln_map *source, const
         error_of[i] = sqrt(error_of[i]);
 }
 
-static void fitted_levels_show_less_error(void **state)
+static void tuned_levels_show_less_error(void **state)
 {
     (void)state;
     static const char *const engines[] = {"three", "babylon"};
@@ -184,7 +184,7 @@ static void fitted_levels_show_less_error(void **state)
             displayed_error(context, &source, engines[e], &plain, from[e], before);
             displayed_error(context, &source, engines[e], &sharp, from[e], after);
             for (int i = 0; i < 2; i++) {
-                print_message("%s, %s%s: %.4f, fitted %.4f\n", engines[e], sun ? "sunny" : "calm",
+                print_message("%s, %s%s: %.4f, tuned %.4f\n", engines[e], sun ? "sunny" : "calm",
                               i ? ", away from it" : "", before[i], after[i]);
                 assert_true(after[i] < 0.9 * before[i]);
             }
@@ -209,7 +209,7 @@ static kiln_map make_checks(kiln_context *context)
     return map;
 }
 
-// What every machine, compiler and number of threads gives. It changes when the fit's arithmetic does; then
+// What every machine, compiler and number of threads gives. It changes when the arithmetic of tuning does; then
 // CHANGELOG.md says so under Output.
 static const uint64_t golden = 0x15a85190e455dc09;
 
@@ -269,15 +269,15 @@ static void a_plan_may_be_executed_again(void **state)
     kiln_context_destroy(context);
 }
 
-static void what_cannot_be_fitted_is_said(void **state)
+static void what_cannot_be_tuned_is_said(void **state)
 {
     (void)state;
     kiln_context *context = make_context(1);
     kiln_map source = make_environment(context, 16, false), map;
     kiln_engine stranger = {.name = "stranger"};
-    kiln_prefilter_def def = {.size = 16, .shown_by = &stranger};
+    kiln_prefilter_def def = {.size = 16, .tune_for = &stranger};
     assert_int_equal(kiln_prefilter(context, &source, &def, &map, &error), KILN_ERROR_ARGUMENT);
-    def.shown_by = kiln_engine_find("three");
+    def.tune_for = kiln_engine_find("three");
     def.size = 24;
     assert_int_equal(kiln_prefilter(context, &source, &def, &map, &error), KILN_ERROR_ARGUMENT);
     def.size = 16;
@@ -296,8 +296,8 @@ static void a_failing_allocation_leaks_nothing(void **state)
     float roughness[KILN_MAX_LEVELS];
     kiln_prefilter_def def;
     CHECK_OK(kiln_engine_levels(kiln_engine_find("three"), 16, 3, roughness, &def, &error));
-    def.shown_by = kiln_engine_find("three");
-    def.soft = true;
+    def.tune_for = kiln_engine_find("three");
+    def.tune_soft = true;
     def.tolerance = 0.01;
     long held = f.held, n = 0;
     kiln_result result;
@@ -323,10 +323,10 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(white_stays_white),
         cmocka_unit_test(nothing_is_negative_under_a_sun),
-        cmocka_unit_test(fitted_levels_show_less_error),
+        cmocka_unit_test(tuned_levels_show_less_error),
         cmocka_unit_test(one_hash_for_every_machine),
         cmocka_unit_test(a_plan_may_be_executed_again),
-        cmocka_unit_test(what_cannot_be_fitted_is_said),
+        cmocka_unit_test(what_cannot_be_tuned_is_said),
         cmocka_unit_test(a_failing_allocation_leaks_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

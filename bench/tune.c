@@ -24,38 +24,38 @@ static const layout layouts[] = {
 enum { LAYOUT_COUNT = sizeof layouts / sizeof *layouts };
 
 // Exact levels, and those for what the engine shows.
-enum { NONE, SHARP, SOFT, FITS };
-static const char *const fits[] = {"none", "sharp", "soft"};
+enum { NONE, SHARP, SOFT, TUNINGS };
+static const char *const tunings[] = {"none", "sharp", "soft"};
 static const double bar = 0.6, aim = 0.5, soft_aim = 0.25;
 
 // Roughness .05 to 1 in equal steps.
 enum { ROUGHNESS_COUNT = 39 };
 
-typedef struct display {
+typedef struct tuning {
     kiln_context *context;
     kiln_map source;
     kiln_spectrum *spectrum;
-    kiln_map maps[LAYOUT_COUNT][FITS];
-    double seconds[LAYOUT_COUNT][FITS];
-    bench_figures figures[LAYOUT_COUNT][FITS]; // rms as a mean square until the end
-    double far[LAYOUT_COUNT][FITS];            // the same without the brightest directions
-    double seen[LAYOUT_COUNT][FITS];           // and of x / (x + mean)
-    double mean;                               // radiance
+    kiln_map maps[LAYOUT_COUNT][TUNINGS];
+    double seconds[LAYOUT_COUNT][TUNINGS];
+    bench_figures figures[LAYOUT_COUNT][TUNINGS]; // rms as a mean square until the end
+    double far[LAYOUT_COUNT][TUNINGS];            // the same without the brightest directions
+    double seen[LAYOUT_COUNT][TUNINGS];           // and of x / (x + mean)
+    double mean;                                  // radiance
     double (*directions)[3], (*values)[3];
-} display;
+} tuning;
 
-static bool bake(bench *b, display *d)
+static bool bake(bench *b, tuning *d)
 {
     for (int i = 0; i < LAYOUT_COUNT; i++)
-        for (int v = 0; v < FITS; v++) {
+        for (int v = 0; v < TUNINGS; v++) {
             const layout *l = &layouts[i];
             const kiln_engine *engine = kiln_engine_find(l->engine);
             float roughness[KILN_MAX_LEVELS];
             kiln_prefilter_def def;
             if (kiln_engine_levels(engine, l->size, l->level_count, roughness, &def, &b->error))
                 return false;
-            def.shown_by = v == NONE ? NULL : engine;
-            def.soft = v == SOFT;
+            def.tune_for = v == NONE ? NULL : engine;
+            def.tune_soft = v == SOFT;
             double start = bench_cpu();
             if (kiln_prefilter(d->context, &d->source, &def, &d->maps[i][v], &b->error))
                 return false;
@@ -90,15 +90,14 @@ static double find_bright(const kiln_map *truth)
 }
 
 // The relative error at one roughness of each map, over directions as dense as the lobe is narrow.
-static bool compare(bench *b, display *d, double roughness)
+static bool compare(bench *b, tuning *d, double roughness)
 {
     int size = roughness < 0.08 ? 1024 : roughness < 0.15 ? 512 : roughness < 0.4 ? 256 : 128;
     int count = size * size;
     kiln_map truth = {0};
     kiln_lobe lobe = kiln_lobe_ggx(roughness * roughness);
     float one[1] = {(float)roughness};
-    kiln_prefilter_def def = {
-        .shape = KILN_SHAPE_OCTAHEDRON, .has_shape = true, .size = size, .level_count = 1};
+    kiln_prefilter_def def = {.shape = KILN_SHAPE_OCTAHEDRON, .size = size, .level_count = 1};
     def.roughness = one;
     // The narrowest lobe's spectrum ends at the degree limit with a little more left than usual.
     def.tolerance = 5e-4;
@@ -110,8 +109,8 @@ static bool compare(bench *b, display *d, double roughness)
     for (int k = 0; k < count && done; k++)
         kiln_map_direction(&truth, 0, (size_t)k, d->directions[k]);
     double bright = done ? find_bright(&truth) : 0;
-    for (int m = 0; m < LAYOUT_COUNT * FITS && done; m++) {
-        int i = m / FITS, v = m % FITS;
+    for (int m = 0; m < LAYOUT_COUNT * TUNINGS && done; m++) {
+        int i = m / TUNINGS, v = m % TUNINGS;
         double off = 0, whole = 0, far_off = 0, far_whole = 0, seen_off = 0, sphere = 0;
         done = !kiln_engine_show(d->context, kiln_engine_find(layouts[i].engine), &d->maps[i][v],
                                  roughness, (const double(*)[3])d->directions, count, d->values,
@@ -144,11 +143,11 @@ static bool compare(bench *b, display *d, double roughness)
     return done;
 }
 
-static void report(bench *b, display *d, const char *name)
+static void report(bench *b, tuning *d, const char *name)
 {
     for (int i = 0; i < LAYOUT_COUNT; i++) {
         printf("  %-10s %-24s", i ? "" : name, layouts[i].title);
-        for (int v = 0; v < FITS; v++) {
+        for (int v = 0; v < TUNINGS; v++) {
             char row[96];
             bench_figures *f = &d->figures[i][v];
             f->rms = sqrt(f->rms);
@@ -156,13 +155,13 @@ static void report(bench *b, display *d, const char *name)
             d->seen[i][v] = sqrt(d->seen[i][v]);
             printf("%6.2f /%5.1f,%6.2f,%5.2f (%4.1f s)", 100 * f->rms, 100 * f->largest,
                    100 * d->far[i][v], 100 * d->seen[i][v], d->seconds[i][v]);
-            snprintf(row, sizeof row, "%s: %s: %s rms", name, layouts[i].title, fits[v]);
+            snprintf(row, sizeof row, "%s: %s: %s rms", name, layouts[i].title, tunings[v]);
             bench_value(b, row, "relative", f->rms);
-            snprintf(row, sizeof row, "%s: %s: %s largest", name, layouts[i].title, fits[v]);
+            snprintf(row, sizeof row, "%s: %s: %s largest", name, layouts[i].title, tunings[v]);
             bench_value(b, row, "relative", f->largest);
-            snprintf(row, sizeof row, "%s: %s: %s far rms", name, layouts[i].title, fits[v]);
+            snprintf(row, sizeof row, "%s: %s: %s far rms", name, layouts[i].title, tunings[v]);
             bench_value(b, row, "relative", d->far[i][v]);
-            snprintf(row, sizeof row, "%s: %s: %s seen rms", name, layouts[i].title, fits[v]);
+            snprintf(row, sizeof row, "%s: %s: %s seen rms", name, layouts[i].title, tunings[v]);
             bench_value(b, row, "of white", d->seen[i][v]);
         }
         puts("");
@@ -180,7 +179,7 @@ static void report(bench *b, display *d, const char *name)
         bench_aim("rms of soft over none, babylon", f[SOFT].rms / f[NONE].rms, "", soft_aim);
 }
 
-static bool check_environment(bench *b, display *d, const char *name)
+static bool check_environment(bench *b, tuning *d, const char *name)
 {
     char path[1024];
     snprintf(path, sizeof path, "%s/%s.exr", b->data, name);
@@ -201,14 +200,14 @@ static bool check_environment(bench *b, display *d, const char *name)
     if (done)
         report(b, d, name);
     for (int i = 0; i < LAYOUT_COUNT; i++)
-        for (int v = 0; v < FITS; v++)
+        for (int v = 0; v < TUNINGS; v++)
             kiln_map_free(&d->maps[i][v]);
     kiln_spectrum_destroy(d->spectrum);
     kiln_map_free(&d->source);
     return done;
 }
 
-bool bench_display(bench *b)
+bool bench_tune(bench *b)
 {
     enum { MOST = 1024 * 1024 };
     kiln_context *context = NULL;
@@ -220,13 +219,13 @@ bool bench_display(bench *b)
         "bake)\n"
         "  %-35s",
         "");
-    for (int v = 0; v < FITS; v++)
-        printf("%18s%17s", fits[v], "");
+    for (int v = 0; v < TUNINGS; v++)
+        printf("%18s%17s", tunings[v], "");
     puts("");
     double(*directions)[3] = malloc((size_t)2 * MOST * sizeof *directions);
     bool done = directions != NULL || bench_fail(b, "no memory");
     for (int i = 0; i < NAME_COUNT && done; i++) {
-        display d = {.context = context, .directions = directions, .values = directions + MOST};
+        tuning d = {.context = context, .directions = directions, .values = directions + MOST};
         done = check_environment(b, &d, names[i]);
     }
     free(directions);
