@@ -12,6 +12,15 @@ static const struct poptOption options[] = {
     POPT_TABLEEND,
 };
 
+static void print_engine(const char *name)
+{
+    const kiln_engine *engine = kiln_engine_find(name);
+    if (engine)
+        printf("  engine       %s: %s\n  mapping      %s\n", name, engine->title, engine->mapping);
+    else if (name[0])
+        printf("  engine       %s\n", name);
+}
+
 static void print_text(const char *path, const kiln_file_info *info)
 {
     char bytes[32];
@@ -32,13 +41,14 @@ static void print_text(const char *path, const kiln_file_info *info)
             printf(" %.4g", (double)info->roughness[k]);
         putchar('\n');
     }
+    print_engine(info->engine);
     if (info->table[0])
         printf("  table        %s\n", info->table);
     if (info->orientation[0])
         printf("  orientation  %s\n", info->orientation);
     if (info->sh_bands) {
-        printf("  harmonics    %d band%s, radiance\n", info->sh_bands,
-               info->sh_bands == 1 ? "" : "s");
+        printf("  harmonics    %d band%s, %s\n", info->sh_bands, info->sh_bands == 1 ? "" : "s",
+               info->sh_irradiance ? "irradiance" : "radiance");
         for (int i = 0; i < info->sh_bands * info->sh_bands; i++)
             printf("    %12.6g %12.6g %12.6g\n", (double)info->sh[i][0], (double)info->sh[i][1],
                    (double)info->sh[i][2]);
@@ -78,6 +88,11 @@ static cJSON *to_json(const char *path, const kiln_file_info *info)
         for (int k = 0; k < info->level_count && k < KILN_MAX_LEVELS; k++)
             cJSON_AddItemToArray(roughness, number(info->roughness[k]));
     }
+    const kiln_engine *engine = kiln_engine_find(info->engine);
+    if (info->engine[0])
+        cJSON_AddStringToObject(json, "engine", info->engine);
+    if (engine)
+        cJSON_AddStringToObject(json, "mapping", engine->mapping);
     if (info->table[0])
         cJSON_AddStringToObject(json, "table", info->table);
     if (info->orientation[0])
@@ -85,7 +100,8 @@ static cJSON *to_json(const char *path, const kiln_file_info *info)
     if (info->writer[0])
         cJSON_AddStringToObject(json, "writer", info->writer);
     if (info->sh_bands) {
-        cJSON *sh = cJSON_AddArrayToObject(json, "sh_radiance");
+        cJSON *sh =
+            cJSON_AddArrayToObject(json, info->sh_irradiance ? "sh_irradiance" : "sh_radiance");
         for (int i = 0; i < info->sh_bands * info->sh_bands; i++) {
             cJSON *row = cJSON_CreateArray();
             for (int c = 0; c < 3; c++)

@@ -17,7 +17,10 @@ static size_t magic(uint8_t *bytes)
                  {"hdr", "#?", 2},
                  {"png", "\x89PNG\r\n\x1a\n", 8},
                  {"ktx2", "\xabKTX 20\xbb\r\n\x1a\n", 12},
-                 {"dds", "DDS ", 4}};
+                 {"dds", "DDS ", 4},
+                 {"ktx1", "\xabKTX 11\xbb\r\n\x1a\n", 12},
+                 {"env", "\x86\x16\x87\x96\xf6\xd6\x96\x36", 8},
+                 {"glb", "glTF", 4}};
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
         if (!strcmp(known[i].format, KILN_FUZZ_FORMAT)) {
             memcpy(bytes, known[i].bytes, known[i].size);
@@ -42,6 +45,31 @@ static void check_finite(const float *values, size_t count)
             abort();
 }
 
+static void check_text(const char *text, size_t room)
+{
+    if (!memchr(text, 0, room))
+        abort();
+}
+
+// What is said of a file ends, and its numbers are in range.
+static void check_info(const kiln_file_info *info)
+{
+    check_text(info->format, sizeof info->format);
+    check_text(info->encoding, sizeof info->encoding);
+    check_text(info->layout, sizeof info->layout);
+    check_text(info->engine, sizeof info->engine);
+    check_text(info->writer, sizeof info->writer);
+    check_text(info->orientation, sizeof info->orientation);
+    check_text(info->table, sizeof info->table);
+    if (info->level_count < 0 || info->level_count > KILN_MAX_LEVELS || info->sh_bands < 0 ||
+        info->sh_bands > KILN_MAX_BANDS || !info->format[0] || !info->layout[0])
+        abort();
+    for (int k = 0; k < KILN_MAX_LEVELS; k++)
+        if (info->roughness[k] != -1 && !(info->roughness[k] >= 0 && info->roughness[k] <= 1))
+            abort();
+    check_finite(info->sh[0], sizeof info->sh / sizeof(float));
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     uint8_t start[16];
@@ -64,6 +92,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     kiln_file_info info;
     ki_decoded decoded;
     kiln_result described = ki_decode(context, bytes, size, "fuzz", NULL, &info, &error);
+    if (described == KILN_OK)
+        check_info(&info);
     kiln_result result = ki_decode(context, bytes, size, "fuzz", &decoded, &info, &error);
     if (result == KILN_OK) {
         if (described != KILN_OK)

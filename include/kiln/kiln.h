@@ -212,21 +212,29 @@ KILN_API KILN_CHECKED kiln_result kiln_image_load(kiln_context *context, const c
 
 /// What a file is, without reading all of its texels. Strings end in NUL.
 typedef struct kiln_file_info {
-    char format[16];   ///< "exr", "hdr", "png", "ktx2", "dds"
+    char format[16];   ///< "exr", "hdr", "png", "ktx2", "dds", "ktx1", "env", "glb", ...
     char encoding[48]; ///< texel type and compression, "half rgb, piz"
-    char layout[24];   ///< "panorama", "cross", "strip", "cube", "octahedron", "image", "table"
+    /// "panorama", "cross", "strip", "cube", "octahedron", "image", "table", "harmonics", or an atlas
+    /// whose levels lie side by side: "cubeuv" (three.js) or "atlas" (PlayCanvas)
+    char layout[24];
     int width, height; ///< of one face, of the picture or of a table's slice
     int depth;         ///< slices of a table, else 1
     int face_count, level_count;
     int channel_count;
     uint64_t byte_count;
     float roughness[KILN_MAX_LEVELS]; ///< of each level, where the file says; else -1
+    char engine[24];                  ///< kiln_engine_find's name of whom the file is for, or empty
     char writer[64];                  ///< "kiln 0.2.0", or empty
     char orientation[16];             ///< as the file states it, or empty
     char table[160];                  ///< what a table that kiln wrote is: "kind=e d=ggx ..."
     int sh_bands;                     ///< 0 where the file holds no spherical harmonics
+    bool sh_irradiance;               ///< what they are of: irradiance, or radiance
+    /// As kiln_sh, in the file's own axes, whatever factors and signs the file keeps them with.
     float sh[KILN_MAX_BANDS * KILN_MAX_BANDS][3];
 } kiln_file_info;
+
+/// Describes every file that kiln reads, and those that it only writes: KTX 1 (Filament), .env
+/// (Babylon.js), .glb with EXT_lights_image_based, atlases, spherical harmonics, and tables as code.
 
 KILN_API KILN_CHECKED kiln_result kiln_file_describe(kiln_context *context, const char *path,
                                                      kiln_file_info *info, kiln_error *error);

@@ -32,7 +32,8 @@ kiln_result ki_hdr_decode(kiln_context *context, const uint8_t *bytes, size_t si
 kiln_result ki_png_decode(kiln_context *context, const uint8_t *bytes, size_t size,
                           const char *name, kiln_image *image, kiln_file_info *info,
                           kiln_error *error);
-/// KTX2 is a cube or a table, DDS a cube. `decoded` may be NULL, `info` not.
+/// KTX2 is a cube or a table, DDS a cube; an atlas in DDS is described alone. `decoded` may be NULL, `info`
+/// not.
 kiln_result ki_ktx2_decode(kiln_context *context, const uint8_t *bytes, size_t size,
                            const char *name, ki_decoded *decoded, kiln_file_info *info,
                            kiln_error *error);
@@ -45,17 +46,21 @@ kiln_result ki_ktx2_encode(const kiln_map *map, const kiln_save_def *def, ki_wri
                            kiln_error *error);
 kiln_result ki_dds_encode(const kiln_map *map, const kiln_save_def *def, ki_writer *writer,
                           kiln_error *error);
+/// A square picture of four channels as halves, with the name of an engine.
+kiln_result ki_dds_encode_atlas(const kiln_image *image, const char *engine, ki_writer *writer,
+                                kiln_error *error);
 /// A table of `depth` slices one below the other, 3-D where there are several. `text` says what it is.
 kiln_result ki_ktx2_encode_table(const kiln_image *image, int depth, const char *text,
                                  kiln_table_format format, int zstd, ki_writer *writer,
                                  kiln_error *error);
 /// `width` * `height` texels of `channels` (1 to 4) floats, ZIP.
 typedef struct ki_exr_options {
-    bool half;         ///< false: 32-bit floats
-    bool panorama;     ///< says so in the attribute "envmap"
-    bool octahedron;   ///< says so in the attribute "kilnShape"
-    float roughness;   ///< the attribute "kilnRoughness"; negative for none
-    const char *table; ///< the attribute "kilnTable"; may be NULL
+    bool half;          ///< false: 32-bit floats
+    bool panorama;      ///< says so in the attribute "envmap"
+    bool octahedron;    ///< says so in the attribute "kilnShape"
+    float roughness;    ///< the attribute "kilnRoughness"; negative for none
+    const char *table;  ///< the attribute "kilnTable"; may be NULL
+    const char *engine; ///< the attribute "kilnEngine", by ki_engine_text_write; may be NULL
 } ki_exr_options;
 kiln_result ki_exr_encode(const float *pixels, int width, int height, int channels,
                           const ki_exr_options *options, ki_writer *writer, kiln_error *error);

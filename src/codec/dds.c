@@ -1,7 +1,9 @@
-// DDS cubes: written with the DX10 header, read with it or with the two older codes of float
+// DDS cubes, and the atlas of an engine. Cubes are written with the DX10 header, read with it or with the two older codes of float
 // formats. The file has no place for metadata. Each face is followed by its smaller levels.
 #include "codec/codec.h"
+#include "codec/file_info.h"
 #include "codec/pixel_format.h"
+#include "image/pack.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -20,6 +22,8 @@ enum {
     MISC_CUBE = 0x4,
     LEGACY_RGBA16F = 113,
     LEGACY_RGBA32F = 116,
+    RESERVED_AT = 32, // eleven words that mean nothing
+    RESERVED = 11,
 };
 
 static uint32_t fourcc(const char code[4])
@@ -85,8 +89,36 @@ kiln_result ki_dds_encode(const kiln_map *map, const kiln_save_def *def, ki_writ
     return KILN_OK;
 }
 
+// The older header, whose code 113 says four halves. Among its reserved words, which readers pass over,
+// stand the writer and the engine: "kiln 0.2.0 playcanvas-dds".
+kiln_result ki_dds_encode_atlas(const kiln_image *image, const char *engine, ki_writer *w,
+                                kiln_error *error)
+{
+    uint32_t size = (uint32_t)image->width;
+    size_t start = w->size, count = 4 * (size_t)size * size;
+    const uint32_t header[31] = {HEADER_SIZE,   0x100f,         size,
+                                 size,          8 * size,       [18] = FORMAT_SIZE,
+                                 FORMAT_FOURCC, LEGACY_RGBA16F, [26] = 0x1000};
+    char said[4 * RESERVED + 1];
+    snprintf(said, sizeof said, "kiln %s %s", kiln_version(), engine);
+    ki_write(w, "DDS ", 4);
+    for (int i = 0; i < 31; i++)
+        ki_write_u32(w, header[i]);
+    uint8_t *room = ki_write_room(w, 2 * count);
+    if (!room)
+        return ki_fail_memory(w->context, error, "a DDS file", w->size);
+    memcpy(w->bytes + start + RESERVED_AT, said, strlen(said));
+    ki_halfs_from_floats(image->pixels, count, (uint16_t *)(void *)room);
+    return KILN_OK;
+}
+
+// ------------------------------------------------------------------------------------------ reading
+
 typedef struct dds_header {
     uint32_t width, height, levels;
+    bool describing; // a single picture is let through, which is not read
+    bool flat;
+    char said[4 * RESERVED + 1];
     const ki_pixel_format *pixel;
 } dds_header;
 
@@ -100,7 +132,9 @@ static kiln_result read_header(ki_reader *r, const char *name, dds_header *h, ki
     ki_read_u32(r); // pitch
     ki_read_u32(r); // depth
     h->levels = ki_read_u32(r);
-    ki_read_bytes(r, 44);
+    const uint8_t *said = ki_read_bytes(r, sizeof h->said - 1);
+    if (said)
+        memcpy(h->said, said, sizeof h->said - 1);
     ki_read_u32(r);
     uint32_t format_flags = ki_read_u32(r), code = ki_read_u32(r);
     ki_read_bytes(r, 20);
@@ -128,7 +162,8 @@ static kiln_result read_header(ki_reader *r, const char *name, dds_header *h, ki
     } else {
         h->pixel = NULL;
     }
-    if (!cube || cubes != 1)
+    h->flat = h->describing && !cube && !caps2;
+    if ((!cube && !h->flat) || cubes != 1)
         return ki_fail(error, KILN_ERROR_UNSUPPORTED,
                        "%s: is no single cube of six faces, others are not read", name);
     if (!h->pixel)
@@ -148,28 +183,46 @@ static kiln_result read_header(ki_reader *r, const char *name, dds_header *h, ki
     return KILN_OK;
 }
 
+// "kiln VERSION ENGINE", where kiln wrote an atlas.
+static void describe_atlas(const dds_header *h, kiln_file_info *info)
+{
+    const char *engine = strrchr(h->said, ' ');
+    if (strncmp(h->said, "kiln ", 5) != 0 || engine < h->said + 5)
+        return;
+    snprintf(info->writer, sizeof info->writer, "%.*s", (int)(engine - h->said), h->said);
+    ki_copy_printable(info->engine, sizeof info->engine, engine + 1);
+    snprintf(info->layout, sizeof info->layout, "atlas");
+}
+
+static void describe(const dds_header *h, kiln_file_info *info)
+{
+    snprintf(info->format, sizeof info->format, "dds");
+    snprintf(info->encoding, sizeof info->encoding, "%s", ki_format_names[h->pixel->format]);
+    info->width = info->height = (int)h->width;
+    info->face_count = h->flat ? 1 : 6;
+    info->level_count = (int)h->levels;
+    info->channel_count = h->pixel->channels;
+    if (h->flat)
+        describe_atlas(h, info);
+}
+
 kiln_result ki_dds_decode(kiln_context *context, const uint8_t *bytes, size_t size,
                           const char *name, ki_decoded *decoded, kiln_file_info *info,
                           kiln_error *error)
 {
-    dds_header h = {0};
+    dds_header h = {.describing = !decoded};
     ki_reader r = ki_reader_make(bytes, size);
     kiln_result result = read_header(&r, name, &h, error);
     if (result != KILN_OK || !h.pixel)
         return result;
-    uint64_t wanted = 0;
+    uint64_t wanted = 0, faces = h.flat ? 1 : 6;
     for (uint32_t k = 0; k < h.levels; k++)
-        wanted += 6 * ki_pixels_size(h.pixel, (int)h.width >> k, (int)h.width >> k);
+        wanted += faces * ki_pixels_size(h.pixel, (int)h.width >> k, (int)h.width >> k);
     if (wanted > ki_reader_left(&r))
         return ki_fail(error, KILN_ERROR_FORMAT,
                        "%s: its levels need %llu bytes, %zu are left behind the header", name,
                        (unsigned long long)wanted, ki_reader_left(&r));
-    snprintf(info->format, sizeof info->format, "dds");
-    snprintf(info->encoding, sizeof info->encoding, "%s", ki_format_names[h.pixel->format]);
-    info->width = info->height = (int)h.width;
-    info->face_count = 6;
-    info->level_count = (int)h.levels;
-    info->channel_count = h.pixel->channels;
+    describe(&h, info);
     if (!decoded)
         return KILN_OK;
 

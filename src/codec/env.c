@@ -1,18 +1,83 @@
 // Babylon.js' environments: eight bytes, a JSON manifest that ends in NUL, and the images of a cube one
 // after the other, level by level, face by face. Images are PNG in RGBD, their rows from the bottom up.
+// A cube and harmonics go in; of a file, the manifest comes out and is checked against the file's size.
 #include "codec/env.h"
 
 #include "codec/decimal.h"
+#include "codec/file_info.h"
+#include "codec/json.h"
 #include "codec/rgbx_png.h"
-#include "image/image.h"
+#include "math/math.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
 
 static const uint8_t magic[8] = {0x86, 0x16, 0x87, 0x96, 0xf6, 0xd6, 0x96, 0x36};
 
+double ki_env_roughness(int level, double lod_scale, int size)
+{
+    double slope = ki_exp(level / lod_scale * ki_log(2)) / size;
+    return level == 0 ? 0 : slope >= 1 ? 1 : sqrt(fmax(slope - 0.0005, 0));
+}
+
+// --------------------------------------------------------------------------------------- harmonics
+
+// Irradiance / pi in harmonics is that of radiance times 1, 2/3 or 1/4 by band. As a polynomial Babylon
+// multiplies by these and by the constant of the basis function once more, which the shader's harmonics
+// take back: SphericalPolynomial.updateFromHarmonics and SphericalHarmonics.FromPolynomial. 1 is written
+// as x^2 + y^2 + z^2.
+static void find_factors(double *k0, double *k1, double *k2, double *k3)
+{
+    *k0 = sqrt(1 / (4 * KI_PI));
+    *k1 = sqrt(3 / (4 * KI_PI)) * 4 / 9;
+    *k2 = sqrt(15 / (4 * KI_PI)) / 16;
+    *k3 = sqrt(5 / (16 * KI_PI)) / 16;
+}
+
+static void make_polynomial(const kiln_sh *sh, double polynomial[9][3])
+{
+    double k0, k1, k2, k3;
+    find_factors(&k0, &k1, &k2, &k3);
+    for (int c = 0; c < 3; c++) {
+        double one = k0 * sh->c[0][c], z2 = k3 * sh->c[6][c], x2_y2 = k2 / 2 * sh->c[8][c];
+        polynomial[0][c] = k1 * sh->c[3][c];
+        polynomial[1][c] = k1 * sh->c[1][c];
+        polynomial[2][c] = k1 * sh->c[2][c];
+        polynomial[3][c] = one - z2 + x2_y2;
+        polynomial[4][c] = one - z2 - x2_y2;
+        polynomial[5][c] = one + 2 * z2;
+        polynomial[6][c] = k2 * sh->c[5][c];
+        polynomial[7][c] = k2 * sh->c[7][c];
+        polynomial[8][c] = k2 * sh->c[4][c];
+    }
+}
+
+// The inverse: x^2, y^2 and z^2 are one - z2 + x2_y2, one - z2 - x2_y2 and one + 2 z2.
+static void make_harmonics(double polynomial[9][3], kiln_file_info *info)
+{
+    double k0, k1, k2, k3;
+    find_factors(&k0, &k1, &k2, &k3);
+    for (int c = 0; c < 3; c++) {
+        double xx = polynomial[3][c], yy = polynomial[4][c], zz = polynomial[5][c];
+        const double sh[9] = {
+            (xx + yy + zz) / (3 * k0),     polynomial[1][c] / k1, polynomial[2][c] / k1,
+            polynomial[0][c] / k1,         polynomial[8][c] / k2, polynomial[6][c] / k2,
+            (2 * zz - xx - yy) / (6 * k3), polynomial[7][c] / k2, (xx - yy) / k2};
+        for (int i = 0; i < 9; i++)
+            info->sh[i][c] = ki_info_number(sh[i]);
+    }
+    info->sh_bands = 3;
+}
+
+static const char *const polynomial_names[9] = {"x", "y", "z", "xx", "yy", "zz", "yz", "zx", "xy"};
+
+// ----------------------------------------------------------------------------------------- writing
+
 static void write_polynomial(ki_writer *w, double polynomial[9][3])
 {
-    static const char *const names[9] = {"x", "y", "z", "xx", "yy", "zz", "yz", "zx", "xy"};
     for (int i = 0; i < 9; i++) {
-        ki_write_text(w, "%s\"%s\":[", i ? "," : "", names[i]);
+        ki_write_text(w, "%s\"%s\":[", i ? "," : "", polynomial_names[i]);
         for (int c = 0; c < 3; c++) {
             ki_write_text(w, c ? "," : "");
             ki_write_number(w, polynomial[i][c]);
@@ -21,9 +86,11 @@ static void write_polynomial(ki_writer *w, double polynomial[9][3])
     }
 }
 
-kiln_result ki_env_encode(const kiln_map *map, double lod_scale, double polynomial[9][3],
-                          ki_writer *w, kiln_error *error)
+kiln_result ki_env_encode(const kiln_map *map, double lod_scale, const kiln_sh *sh, ki_writer *w,
+                          kiln_error *error)
 {
+    double polynomial[9][3];
+    make_polynomial(sh, polynomial);
     ki_writer images = {.context = w->context};
     kiln_result result = KILN_OK;
     ki_write(w, magic, sizeof magic);
@@ -48,5 +115,147 @@ kiln_result ki_env_encode(const kiln_map *map, double lod_scale, double polynomi
     if (result == KILN_OK && (w->failed || images.failed))
         result = ki_fail_memory(w->context, error, "an .env file", images.size);
     ki_writer_free(&images);
+    return result;
+}
+
+// ------------------------------------------------------------------------------------------ reading
+
+// What the manifest says. Images lie `images` bytes and more behind it.
+typedef struct manifest {
+    int version, width, image_count;
+    uint64_t image_bytes; // up to the end of the last image
+    double lod_scale;
+    char type[32];
+    bool has_polynomial;
+    double polynomial[9][3];
+} manifest;
+
+static void read_polynomial(ki_json *j, manifest *m)
+{
+    char key[8];
+    int found = 0;
+    ki_json_enter_object(j);
+    while (ki_json_member(j, key, sizeof key)) {
+        int i = 0;
+        while (i < 9 && strcmp(key, polynomial_names[i]) != 0)
+            i++;
+        if (i < 9)
+            ki_json_triple(j, m->polynomial[i]);
+        else
+            ki_json_skip(j);
+        found |= 1 << i;
+    }
+    m->has_polynomial = !j->failed && (found & 0x1ff) == 0x1ff;
+}
+
+static void read_images(ki_json *j, manifest *m)
+{
+    char key[16];
+    ki_json_enter_array(j);
+    while (ki_json_item(j)) {
+        uint64_t length = 0, position = 0;
+        ki_json_enter_object(j);
+        while (ki_json_member(j, key, sizeof key)) {
+            if (!strcmp(key, "length"))
+                length = ki_json_count(j, UINT32_MAX);
+            else if (!strcmp(key, "position"))
+                position = ki_json_count(j, UINT32_MAX);
+            else
+                ki_json_skip(j);
+        }
+        m->image_count += m->image_count < INT32_MAX;
+        if (position + length > m->image_bytes)
+            m->image_bytes = position + length;
+    }
+}
+
+static void read_specular(ki_json *j, manifest *m)
+{
+    char key[24];
+    ki_json_enter_object(j);
+    while (ki_json_member(j, key, sizeof key)) {
+        if (!strcmp(key, "lodGenerationScale"))
+            m->lod_scale = ki_json_number(j);
+        else if (!strcmp(key, "mipmaps"))
+            read_images(j, m);
+        else
+            ki_json_skip(j);
+    }
+}
+
+static void read_manifest(ki_json *j, manifest *m)
+{
+    char key[16];
+    ki_json_enter_object(j);
+    while (ki_json_member(j, key, sizeof key)) {
+        if (!strcmp(key, "version"))
+            m->version = (int)ki_json_count(j, INT32_MAX);
+        else if (!strcmp(key, "width"))
+            m->width = (int)ki_json_count(j, INT32_MAX);
+        else if (!strcmp(key, "imageType"))
+            ki_json_string(j, m->type, sizeof m->type);
+        else if (!strcmp(key, "irradiance"))
+            read_polynomial(j, m);
+        else if (!strcmp(key, "specular"))
+            read_specular(j, m);
+        else
+            ki_json_skip(j);
+    }
+}
+
+static kiln_result check(const manifest *m, size_t left, const char *name, kiln_error *error)
+{
+    if (m->version < 1 || m->version > 2)
+        return ki_fail(error, KILN_ERROR_UNSUPPORTED, "%s: is .env of version %d; 1 and 2 are read",
+                       name, m->version);
+    if (m->width < 1 || m->width > KILN_MAX_SIZE)
+        return ki_fail(error, KILN_ERROR_FORMAT, "%s: faces are %d wide, they must be 1 to %d",
+                       name, m->width, KILN_MAX_SIZE);
+    int levels = m->image_count / 6;
+    if (levels < 1 || m->image_count % 6 || levels > KILN_MAX_LEVELS ||
+        m->width >> (levels - 1) == 0)
+        return ki_fail(error, KILN_ERROR_FORMAT,
+                       "%s: has %d images for a size of %d, they must be six a level", name,
+                       m->image_count, m->width);
+    if (m->image_bytes > left)
+        return ki_fail(error, KILN_ERROR_FORMAT,
+                       "%s: its images end at byte %llu behind the manifest, where %zu are left",
+                       name, (unsigned long long)m->image_bytes, left);
+    return KILN_OK;
+}
+
+static void describe(manifest *m, kiln_file_info *info)
+{
+    const char *slash = strchr(m->type, '/');
+    snprintf(info->format, sizeof info->format, "env");
+    snprintf(info->encoding, sizeof info->encoding, "rgbd, %s", slash ? slash + 1 : "png");
+    snprintf(info->engine, sizeof info->engine, "babylon");
+    info->width = info->height = m->width;
+    info->face_count = 6;
+    info->level_count = m->image_count / 6;
+    info->channel_count = 3;
+    for (int k = 0; k < info->level_count && m->lod_scale >= 0.1 && m->lod_scale <= 10; k++)
+        info->roughness[k] = (float)ki_env_roughness(k, m->lod_scale, m->width);
+    if (m->has_polynomial)
+        make_harmonics(m->polynomial, info);
+}
+
+kiln_result ki_env_describe(const uint8_t *bytes, size_t size, const char *name,
+                            kiln_file_info *info, kiln_error *error)
+{
+    const uint8_t *from = bytes + sizeof magic;
+    const uint8_t *end = size > sizeof magic ? memchr(from, 0, size - sizeof magic) : NULL;
+    if (!end)
+        return ki_fail(error, KILN_ERROR_FORMAT, "%s: the manifest has no end in %zu bytes", name,
+                       size);
+    manifest m = {.lod_scale = 0.8}; // as Babylon.js takes it where a file says none
+    ki_json json = ki_json_make(from, (size_t)(end - from));
+    read_manifest(&json, &m);
+    if (json.failed)
+        return ki_fail(error, KILN_ERROR_FORMAT, "%s: the manifest is damaged at byte %zu", name,
+                       (size_t)(json.at - (const char *)bytes));
+    kiln_result result = check(&m, size - (size_t)(end + 1 - bytes), name, error);
+    if (result == KILN_OK)
+        describe(&m, info);
     return result;
 }

@@ -4,9 +4,12 @@
 
 #include "codec/codec.h"
 
-/// A cube with all levels down to 1. `polynomial` is in the order x y z xx yy zz yz zx
-/// xy.
-kiln_result ki_env_encode(const kiln_map *map, double lod_scale, double polynomial[9][3],
+/// The roughness of a level: Babylon.js reads level log2(size (r^2 + 0.0005)) lod_scale.
+double ki_env_roughness(int level, double lod_scale, int size);
+/// A cube with all levels down to 1, and the first three bands of radiance.
+kiln_result ki_env_encode(const kiln_map *map, double lod_scale, const kiln_sh *sh,
                           ki_writer *writer, kiln_error *error);
+kiln_result ki_env_describe(const uint8_t *bytes, size_t size, const char *name,
+                            kiln_file_info *info, kiln_error *error);
 
 #endif

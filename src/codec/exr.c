@@ -7,6 +7,7 @@
 // name before those with one), or Y as grey. The attribute "chromaticities" is not applied.
 #include "codec/exr.h"
 #include "codec/codec.h"
+#include "codec/engine_text.h"
 #include "codec/file_info.h"
 
 #include <stdio.h>
@@ -196,6 +197,9 @@ static void describe_attributes(const exr_file *f, kiln_file_info *info)
         snprintf(info->layout, sizeof info->layout, "octahedron");
     read_string(f->part, "kilnTable", text, sizeof text);
     ki_copy_printable(info->table, sizeof info->table, text);
+    char engine[512];
+    read_string(f->part, "kilnEngine", engine, sizeof engine);
+    ki_engine_text_read(engine, info);
     size_t size = 0;
     const uint8_t *bytes = ki_exr_attribute(f->part, "kilnRoughness", "float", &size);
     float roughness = -1;

@@ -63,6 +63,10 @@ static void header(ki_writer *w, int width, int height, int channels, const ki_e
         attribute(w, "envmap", "envmap", 1);
         ki_write_u8(w, 0);
     }
+    if (options->engine) {
+        attribute(w, "kilnEngine", "string", (uint32_t)strlen(options->engine));
+        ki_write_text(w, "%s", options->engine);
+    }
     if (options->roughness >= 0) {
         attribute(w, "kilnRoughness", "float", 4);
         write_float(w, options->roughness);

@@ -1,5 +1,6 @@
 #include "codec/file_info.h"
 
+#include <float.h>
 #include <string.h>
 
 void ki_file_info_clear(kiln_file_info *info, size_t byte_count)
@@ -17,4 +18,10 @@ void ki_copy_printable(char *to, size_t room, const char *text)
     for (; i + 1 < room && text[i] >= ' ' && text[i] <= '~'; i++)
         to[i] = text[i];
     to[i] = 0;
+}
+
+float ki_info_number(double value)
+{
+    const double most = (double)FLT_MAX;
+    return (float)(value > most ? most : value < -most ? -most : value == value ? value : 0);
 }

@@ -3,9 +3,13 @@
 #include "codec/formats.h"
 
 #include "base/file.h"
+#include "codec/env.h"
 #include "codec/file_info.h"
+#include "codec/gltf.h"
+#include "codec/ktx1.h"
 #include "codec/layout.h"
 #include "codec/pixel_format.h"
+#include "codec/png_text.h"
 #include "codec/rgbx_png.h"
 #include "image/pack.h"
 
@@ -30,6 +34,16 @@ static kiln_result write_hdr(const kiln_image *image, const ki_picture_about *ab
 {
     (void)about;
     return ki_hdr_encode(image->pixels, image->width, image->height, w, error);
+}
+
+static kiln_result read_png(kiln_context *context, const uint8_t *bytes, size_t size,
+                            const char *name, kiln_image *image, kiln_file_info *info,
+                            kiln_error *error)
+{
+    kiln_result result = ki_png_decode(context, bytes, size, name, image, info, error);
+    if (result == KILN_OK)
+        ki_png_read_texts(bytes, size, info);
+    return result;
 }
 
 static kiln_result write_png(const kiln_image *image, const ki_picture_about *about, ki_writer *w,
@@ -104,11 +118,23 @@ static const ki_file_format formats[] = {
      .table_formats = TABLES(U16) | TABLES(U8) | TABLES(RGBD),
      .table_format = KILN_TABLE_FORMAT_U16,
      .limit = 1,
-     .read_picture = ki_png_decode,
+     .read_picture = read_png,
      .write_picture = write_png},
-    {.name = "ktx1", .endings = {".ktx"}},
-    {.name = "env", .endings = {".env"}},
-    {.name = "glb", .endings = {".glb"}},
+    {.name = "ktx1",
+     .endings = {".ktx"},
+     .first = "\xabKTX 11\xbb\r\n\x1a\n",
+     .first_count = 12,
+     .describe = ki_ktx1_describe},
+    {.name = "env",
+     .endings = {".env"},
+     .first = "\x86\x16\x87\x96\xf6\xd6\x96\x36",
+     .first_count = 8,
+     .describe = ki_env_describe},
+    {.name = "glb",
+     .endings = {".glb"},
+     .first = "glTF",
+     .first_count = 4,
+     .describe = ki_gltf_describe},
     {.name = "json", .endings = {".json"}, .holds = KI_HOLDS_SH},
     {.name = "text", .endings = {".txt"}, .holds = KI_HOLDS_SH},
     {.name = "raw",
@@ -217,6 +243,12 @@ static kiln_result read_bytes(kiln_context *context, const uint8_t *bytes, size_
         return ki_fail(error, KILN_ERROR_FORMAT,
                        "%s: its %zu bytes do not begin as EXR, HDR, PNG, KTX2 or DDS do", name,
                        size);
+    if (format->describe && decoded)
+        return ki_fail(error, KILN_ERROR_UNSUPPORTED,
+                       "%s: is a %s file, which kiln writes and describes but does not read", name,
+                       format->endings[0]);
+    if (format->describe)
+        return format->describe(bytes, size, name, info, error);
     if (format->read)
         return format->read(context, bytes, size, name, decoded, info, error);
     return format->read_picture(context, bytes, size, name, decoded ? &decoded->image : NULL, info,

@@ -28,6 +28,8 @@ typedef kiln_result ki_read_picture(kiln_context *context, const uint8_t *bytes,
 typedef kiln_result ki_read_file(kiln_context *context, const uint8_t *bytes, size_t size,
                                  const char *name, ki_decoded *decoded, kiln_file_info *info,
                                  kiln_error *error);
+typedef kiln_result ki_describe_file(const uint8_t *bytes, size_t size, const char *name,
+                                     kiln_file_info *info, kiln_error *error);
 typedef kiln_result ki_write_picture(const kiln_image *image, const ki_picture_about *about,
                                      ki_writer *writer, kiln_error *error);
 typedef kiln_result ki_write_cube(const kiln_map *map, const kiln_save_def *def, ki_writer *writer,
@@ -36,7 +38,7 @@ typedef kiln_result ki_write_cube(const kiln_map *map, const kiln_save_def *def,
 typedef struct ki_file_format {
     const char *name;       ///< as in kiln_file_info, "ktx2"
     const char *endings[3]; ///< of paths, in small letters with the dot; NULL behind the last
-    const char *first;      ///< the bytes that files begin with; NULL where kiln does not read them
+    const char *first; ///< the bytes that files begin with; NULL where no bytes tell the format
     int first_count;
     unsigned holds;                 ///< KI_HOLDS_...
     unsigned pixel_formats;         ///< of maps: bits 1 << kiln_format besides KILN_FORMAT_AUTO
@@ -44,8 +46,9 @@ typedef struct ki_file_format {
     kiln_table_format table_format; ///< what KILN_TABLE_FORMAT_AUTO means
     bool zstd;
     double limit;                  ///< the largest radiance by KILN_FORMAT_AUTO; 0 for none
-    ki_read_picture *read_picture; ///< one of the two, where `first` is not NULL
+    ki_read_picture *read_picture; ///< one of the three, where `first` is not NULL
     ki_read_file *read;
+    ki_describe_file *describe; ///< of files that are not read, but described
     ki_write_picture *write_picture;
     ki_write_cube *write_cube;
 } ki_file_format;

@@ -4,8 +4,13 @@
 #include "codec/gltf.h"
 
 #include "codec/decimal.h"
+#include "codec/file_info.h"
+#include "codec/json.h"
 #include "codec/rgbx_png.h"
-#include "image/image.h"
+#include "math/math.h"
+
+#include <stdio.h>
+#include <string.h>
 
 enum {
     MAGIC = 0x46546c67,
@@ -14,6 +19,15 @@ enum {
     CHUNK_JSON = 0x4e4f534a,
     CHUNK_BIN = 0x4e4942
 };
+
+// The extension says "spherical harmonics coefficients for irradiance": radiance times pi, 2 pi / 3 and
+// pi / 4 by band. It leaves their signs open; these are Sloan's (Stupid Spherical Harmonics Tricks 2008,
+// appendix A2), which Babylon.js, the first to load it, reads.
+static const double irradiance_factor[9] = {
+    KI_PI,         KI_PI *(-2.0 / 3), KI_PI *(2.0 / 3), KI_PI *(-2.0 / 3), KI_PI * 0.25,
+    KI_PI * -0.25, KI_PI * 0.25,      KI_PI * -0.25,    KI_PI * 0.25};
+
+// ----------------------------------------------------------------------------------------- writing
 
 static kiln_result write_images(const kiln_map *map, ki_writer *json, ki_writer *images,
                                 kiln_error *error)
@@ -37,13 +51,13 @@ static kiln_result write_images(const kiln_map *map, ki_writer *json, ki_writer 
     return result;
 }
 
-static void write_light(const kiln_map *map, double irradiance[9][3], ki_writer *json)
+static void write_light(const kiln_map *map, const kiln_sh *sh, ki_writer *json)
 {
     ki_write_text(json, "{\"intensity\":1,\"rotation\":[0,0,0,1],\"irradianceCoefficients\":[");
     for (int i = 0; i < 9; i++)
         for (int c = 0; c < 3; c++) {
             ki_write_text(json, "%s", c ? "," : i ? ",[" : "[");
-            ki_write_number(json, irradiance[i][c]);
+            ki_write_number(json, irradiance_factor[i] * sh->c[i][c]);
             ki_write_text(json, c == 2 ? "]" : "");
         }
     ki_write_text(json, "],\"specularImageSize\":%d,\"specularImages\":[", map->size);
@@ -52,8 +66,7 @@ static void write_light(const kiln_map *map, double irradiance[9][3], ki_writer 
     ki_write_text(json, "]}");
 }
 
-kiln_result ki_gltf_encode(const kiln_map *map, double irradiance[9][3], ki_writer *w,
-                           kiln_error *error)
+kiln_result ki_gltf_encode(const kiln_map *map, const kiln_sh *sh, ki_writer *w, kiln_error *error)
 {
     ki_writer json = {.context = w->context}, images = json;
     ki_write_text(&json, "{\"asset\":{\"version\":\"2.0\",\"generator\":\"kiln %s\"},",
@@ -61,7 +74,7 @@ kiln_result ki_gltf_encode(const kiln_map *map, double irradiance[9][3], ki_writ
     kiln_result result = write_images(map, &json, &images, error);
     ki_write_text(&json, ",\"extensionsUsed\":[\"EXT_lights_image_based\"],"
                          "\"extensions\":{\"EXT_lights_image_based\":{\"lights\":[");
-    write_light(map, irradiance, &json);
+    write_light(map, sh, &json);
     ki_write_text(&json, "]}},\"scene\":0,\"scenes\":[{\"extensions\":{\"EXT_lights_image_based\":"
                          "{\"light\":0}}}]}");
     while (json.size % 4 && !json.failed)
@@ -80,5 +93,192 @@ kiln_result ki_gltf_encode(const kiln_map *map, double irradiance[9][3], ki_writ
         result = ki_fail_memory(w->context, error, "a glTF file", size);
     ki_writer_free(&json);
     ki_writer_free(&images);
+    return result;
+}
+
+// ------------------------------------------------------------------------------------------ reading
+
+// What the JSON says of the first light.
+typedef struct light {
+    char generator[64];
+    int width, level_count;
+    bool found, uneven; // uneven: a level of other than six images
+    int sh_count;
+    double sh[9][3];
+    uint64_t image_bytes; // up to the end of the last view of the buffer
+} light;
+
+static void read_asset(ki_json *j, light *l)
+{
+    char key[16];
+    ki_json_enter_object(j);
+    while (ki_json_member(j, key, sizeof key)) {
+        if (!strcmp(key, "generator"))
+            ki_json_string(j, l->generator, sizeof l->generator);
+        else
+            ki_json_skip(j);
+    }
+}
+
+static void read_views(ki_json *j, light *l)
+{
+    char key[16];
+    ki_json_enter_array(j);
+    while (ki_json_item(j)) {
+        uint64_t offset = 0, length = 0;
+        ki_json_enter_object(j);
+        while (ki_json_member(j, key, sizeof key)) {
+            if (!strcmp(key, "byteOffset"))
+                offset = ki_json_count(j, UINT32_MAX);
+            else if (!strcmp(key, "byteLength"))
+                length = ki_json_count(j, UINT32_MAX);
+            else
+                ki_json_skip(j);
+        }
+        if (offset + length > l->image_bytes)
+            l->image_bytes = offset + length;
+    }
+}
+
+static void read_specular(ki_json *j, light *l)
+{
+    ki_json_enter_array(j);
+    while (ki_json_item(j)) {
+        int faces = 0;
+        ki_json_enter_array(j);
+        for (; ki_json_item(j); faces += faces < 7)
+            ki_json_skip(j);
+        l->uneven |= faces != 6;
+        l->level_count += l->level_count < INT32_MAX;
+    }
+}
+
+static void read_light(ki_json *j, light *l)
+{
+    char key[32];
+    double unused[3];
+    l->found = true;
+    ki_json_enter_object(j);
+    while (ki_json_member(j, key, sizeof key)) {
+        if (!strcmp(key, "specularImageSize")) {
+            l->width = (int)ki_json_count(j, INT32_MAX);
+        } else if (!strcmp(key, "specularImages")) {
+            read_specular(j, l);
+        } else if (!strcmp(key, "irradianceCoefficients")) {
+            ki_json_enter_array(j);
+            for (; ki_json_item(j); l->sh_count += l->sh_count < 10)
+                ki_json_triple(j, l->sh_count < 9 ? l->sh[l->sh_count] : unused);
+        } else {
+            ki_json_skip(j);
+        }
+    }
+}
+
+// { "EXT_lights_image_based": { "lights": [ ... ] } }
+static void read_extensions(ki_json *j, light *l, bool inside)
+{
+    char key[32];
+    ki_json_enter_object(j);
+    while (ki_json_member(j, key, sizeof key)) {
+        if (!inside && !strcmp(key, "EXT_lights_image_based")) {
+            read_extensions(j, l, true);
+        } else if (inside && !strcmp(key, "lights")) {
+            ki_json_enter_array(j);
+            while (ki_json_item(j))
+                if (l->found)
+                    ki_json_skip(j);
+                else
+                    read_light(j, l);
+        } else {
+            ki_json_skip(j);
+        }
+    }
+}
+
+static void read_json(ki_json *j, light *l)
+{
+    char key[16];
+    ki_json_enter_object(j);
+    while (ki_json_member(j, key, sizeof key)) {
+        if (!strcmp(key, "asset"))
+            read_asset(j, l);
+        else if (!strcmp(key, "bufferViews"))
+            read_views(j, l);
+        else if (!strcmp(key, "extensions"))
+            read_extensions(j, l, false);
+        else
+            ki_json_skip(j);
+    }
+}
+
+static kiln_result check(const light *l, size_t binary, const char *name, kiln_error *error)
+{
+    if (!l->found)
+        return ki_fail(error, KILN_ERROR_UNSUPPORTED,
+                       "%s: holds no light of EXT_lights_image_based, other glTF is not described",
+                       name);
+    if (l->width < 1 || l->width > KILN_MAX_SIZE || l->level_count < 1 || l->uneven ||
+        l->level_count > KILN_MAX_LEVELS || l->width >> (l->level_count - 1) == 0)
+        return ki_fail(error, KILN_ERROR_FORMAT,
+                       "%s: its light has %d levels for a size of %d, six images each", name,
+                       l->level_count, l->width);
+    if (l->image_bytes > binary)
+        return ki_fail(error, KILN_ERROR_FORMAT,
+                       "%s: its images end at byte %llu of the buffer, which has %zu", name,
+                       (unsigned long long)l->image_bytes, binary);
+    return KILN_OK;
+}
+
+static void describe(const light *l, kiln_file_info *info)
+{
+    snprintf(info->format, sizeof info->format, "glb");
+    snprintf(info->encoding, sizeof info->encoding, "rgbd, png");
+    snprintf(info->engine, sizeof info->engine, "gltf");
+    ki_copy_printable(info->writer, sizeof info->writer,
+                      strncmp(l->generator, "kiln ", 5) ? "" : l->generator);
+    info->width = info->height = l->width;
+    info->face_count = 6;
+    info->level_count = l->level_count;
+    info->channel_count = 3;
+    for (int k = 0; k < l->level_count; k++)
+        info->roughness[k] = l->level_count > 1 ? (float)k / (float)(l->level_count - 1) : 0;
+    info->sh_bands = l->sh_count == 9 ? 3 : 0;
+    for (int i = 0; i < 9 && info->sh_bands; i++)
+        for (int c = 0; c < 3; c++)
+            info->sh[i][c] = ki_info_number(l->sh[i][c] / irradiance_factor[i]);
+}
+
+// The next chunk of this type, which must be there.
+static const uint8_t *read_chunk(ki_reader *r, uint32_t type, uint32_t *size)
+{
+    *size = ki_read_u32(r);
+    bool good = ki_read_u32(r) == type;
+    const uint8_t *bytes = ki_read_bytes(r, *size);
+    return good ? bytes : NULL;
+}
+
+kiln_result ki_gltf_describe(const uint8_t *bytes, size_t size, const char *name,
+                             kiln_file_info *info, kiln_error *error)
+{
+    ki_reader r = ki_reader_make(bytes, size);
+    ki_read_u32(&r);
+    uint32_t version = ki_read_u32(&r), stated = ki_read_u32(&r), json_size, binary_size = 0;
+    const uint8_t *text = read_chunk(&r, CHUNK_JSON, &json_size);
+    if (!text || version != VERSION || stated > size)
+        return ki_fail(error, KILN_ERROR_FORMAT,
+                       "%s: glTF of version %u, stated to have %u bytes, in %zu, is cut off or "
+                       "damaged",
+                       name, version, stated, size);
+    light l = {0};
+    ki_json json = ki_json_make(text, json_size);
+    read_json(&json, &l);
+    if (json.failed)
+        return ki_fail(error, KILN_ERROR_FORMAT, "%s: its JSON is damaged at byte %zu", name,
+                       (size_t)(json.at - (const char *)text));
+    if (!read_chunk(&r, CHUNK_BIN, &binary_size))
+        binary_size = 0;
+    kiln_result result = check(&l, binary_size, name, error);
+    if (result == KILN_OK)
+        describe(&l, info);
     return result;
 }

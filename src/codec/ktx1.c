@@ -1,8 +1,14 @@
-// KTX version 1 cubes of halves, or of 11, 11 and 10 bits.
+// KTX version 1 cubes of halves, or of 11, 11 and 10 bits: a header of 64 bytes, pairs of text, the levels,
+// largest first. What the pairs say of engine, roughness and harmonics comes out of a file again; its
+// texels are not read.
 #include "codec/ktx1.h"
 
+#include "codec/engine_text.h"
+#include "codec/filament_sh.h"
+#include "codec/file_info.h"
 #include "codec/pixel_format.h"
 
+#include <stdio.h>
 #include <string.h>
 
 enum {
@@ -36,29 +42,52 @@ static void write_header(ki_writer *w, const uint32_t types[5], int size, int le
     ki_write_u32(w, (uint32_t)level_count);
 }
 
-// Key and value each end in NUL; the pair's size comes before it, zeros up to 4 bytes behind it.
-static void write_pair(ki_writer *w, const char *key, const char *value)
+// ----------------------------------------------------------------------------------------- writing
+
+// A pair is its size, key and value, each of which ends in NUL, and zeros up to 4 bytes. The value is
+// what is written in between.
+static size_t begin_pair(ki_writer *w, const char *key)
 {
-    size_t size = strlen(key) + strlen(value) + 2;
-    ki_write_u32(w, (uint32_t)(4 + (size + 3) / 4 * 4));
-    ki_write_u32(w, (uint32_t)size);
+    size_t pair = w->size;
+    ki_write_u32(w, 0);
     ki_write(w, key, strlen(key) + 1);
-    ki_write(w, value, strlen(value) + 1);
+    return pair;
+}
+
+static void end_pair(ki_writer *w, size_t pair)
+{
+    ki_patch_u32(w, pair, (uint32_t)(w->size - pair - 4));
     ki_write_align(w, 4);
 }
 
-kiln_result ki_ktx1_encode(const kiln_map *map, int first, int count, kiln_format format,
-                           const char *key, const char *value, ki_writer *writer, kiln_error *error)
+static void write_pairs(ki_writer *w, const kiln_map *map, const kiln_sh *sh, const char *engine)
+{
+    size_t start = w->size;
+    ki_write_u32(w, 0);
+    if (sh) {
+        size_t pair = begin_pair(w, "sh");
+        ki_filament_sh_write(w, sh, false);
+        ki_write_u8(w, 0);
+        end_pair(w, pair);
+    }
+    size_t pair = begin_pair(w, "KTXwriter");
+    ki_write_text(w, "kiln %s", kiln_version());
+    ki_write_u8(w, 0);
+    end_pair(w, pair);
+    pair = begin_pair(w, "kiln:engine");
+    ki_engine_text_write(w, engine, "", map);
+    end_pair(w, pair);
+    ki_patch_u32(w, start, (uint32_t)(w->size - start - 4));
+}
+
+kiln_result ki_ktx1_encode(const kiln_map *map, const kiln_sh *sh, const char *engine,
+                           kiln_format format, ki_writer *writer, kiln_error *error)
 {
     const ki_pixel_format *pixel = ki_pixel_format_of(format);
     bool packed = format == KILN_FORMAT_B10G11R11;
-    write_header(writer, packed ? packed_types : half_types, kiln_map_level_size(map, first),
-                 count);
-    if (key && value)
-        write_pair(writer, key, value);
-    else
-        ki_write_u32(writer, 0);
-    for (int k = first; k < first + count; k++) {
+    write_header(writer, packed ? packed_types : half_types, map->size, map->level_count);
+    write_pairs(writer, map, sh, engine);
+    for (int k = 0; k < map->level_count; k++) {
         // The size of a level of a cube is that of one face. Faces of 4 and 8 bytes a texel need no padding.
         int n = kiln_map_level_size(map, k);
         size_t size = (size_t)ki_pixels_size(pixel, n, n);
@@ -69,5 +98,108 @@ kiln_result ki_ktx1_encode(const kiln_map *map, int first, int count, kiln_forma
         if (!ki_pixels_pack(writer->context, pixel, map->level[k], n, n, 6, room))
             return ki_fail_cancelled(error, "writing");
     }
+    return KILN_OK;
+}
+
+// ------------------------------------------------------------------------------------------ reading
+
+typedef struct header {
+    const ki_pixel_format *pixel;
+    uint32_t width, height, level_count, pair_bytes;
+} header;
+
+static kiln_result read_header(ki_reader *r, const char *name, header *h, kiln_error *error)
+{
+    uint32_t types[5], rest[4];
+    ki_read_bytes(r, sizeof magic);
+    uint32_t order = ki_read_u32(r);
+    for (int i = 0; i < 5; i++)
+        types[i] = ki_read_u32(r);
+    h->width = ki_read_u32(r);
+    h->height = ki_read_u32(r);
+    for (int i = 0; i < 3; i++) // depth, array, faces
+        rest[i] = ki_read_u32(r);
+    h->level_count = ki_read_u32(r);
+    h->pair_bytes = ki_read_u32(r);
+    if (r->failed || order != ORDER)
+        return ki_fail(error, KILN_ERROR_FORMAT, "%s: the KTX header is cut off or damaged", name);
+    h->pixel = !memcmp(types, half_types, sizeof types) ? ki_pixel_format_of(KILN_FORMAT_RGBA16F)
+               : !memcmp(types, packed_types, sizeof types)
+                   ? ki_pixel_format_of(KILN_FORMAT_B10G11R11)
+                   : NULL;
+    if (!h->pixel || rest[0] || rest[1] || rest[2] != 6)
+        return ki_fail(error, KILN_ERROR_UNSUPPORTED,
+                       "%s: is KTX 1 of type 0x%x, internal format 0x%x, %u faces; cubes of halves "
+                       "and of 11, 11 and 10 bits are described",
+                       name, types[0], types[3], rest[2]);
+    h->level_count = h->level_count ? h->level_count : 1;
+    if (h->width < 1 || h->width != h->height || h->width > KILN_MAX_SIZE ||
+        h->level_count > KILN_MAX_LEVELS || h->width >> (h->level_count - 1) == 0)
+        return ki_fail(error, KILN_ERROR_FORMAT, "%s: has %u levels for faces of %u x %u", name,
+                       h->level_count, h->width, h->height);
+    return KILN_OK;
+}
+
+static void read_pair(const char *key, const char *value, kiln_file_info *info)
+{
+    if (!strcmp(key, "sh"))
+        ki_filament_sh_read(value, info);
+    else if (!strcmp(key, "KTXwriter"))
+        ki_copy_printable(info->writer, sizeof info->writer, value);
+    else if (!strcmp(key, "KTXorientation"))
+        ki_copy_printable(info->orientation, sizeof info->orientation, value);
+    else if (!strcmp(key, "kiln:engine"))
+        ki_engine_text_read(value, info);
+}
+
+// False where the pairs do not fill their bytes. One whose value is no text is passed over.
+static bool read_pairs(const uint8_t *bytes, size_t size, kiln_file_info *info)
+{
+    ki_reader r = ki_reader_make(bytes, size);
+    while (ki_reader_left(&r) >= 4) {
+        uint32_t length = ki_read_u32(&r);
+        const uint8_t *pair = ki_read_bytes(&r, length);
+        if (!pair)
+            return false;
+        const uint8_t *end = memchr(pair, 0, length);
+        if (end && end + 1 < pair + length && pair[length - 1] == 0)
+            read_pair((const char *)pair, (const char *)end + 1, info);
+        ki_read_bytes(&r, (4 - length % 4) % 4);
+    }
+    return !r.failed;
+}
+
+static bool has_levels(ki_reader *r, const header *h)
+{
+    for (uint32_t k = 0; k < h->level_count; k++) {
+        uint64_t size = ki_pixels_size(h->pixel, (int)h->width >> k, (int)h->width >> k);
+        if (ki_read_u32(r) != size || !ki_read_bytes(r, (size_t)(6 * size)))
+            return false;
+    }
+    return true;
+}
+
+kiln_result ki_ktx1_describe(const uint8_t *bytes, size_t size, const char *name,
+                             kiln_file_info *info, kiln_error *error)
+{
+    ki_reader r = ki_reader_make(bytes, size);
+    header h = {0};
+    kiln_result result = read_header(&r, name, &h, error);
+    if (result != KILN_OK || !h.pixel)
+        return result;
+    const uint8_t *pairs = ki_read_bytes(&r, h.pair_bytes);
+    if (!pairs || !read_pairs(pairs, h.pair_bytes, info))
+        return ki_fail(error, KILN_ERROR_FORMAT, "%s: its %u bytes of pairs are damaged", name,
+                       h.pair_bytes);
+    if (!has_levels(&r, &h))
+        return ki_fail(error, KILN_ERROR_FORMAT, "%s: its %u levels are cut off or damaged", name,
+                       h.level_count);
+    snprintf(info->format, sizeof info->format, "ktx1");
+    snprintf(info->encoding, sizeof info->encoding, "%s", ki_format_names[h.pixel->format]);
+    snprintf(info->layout, sizeof info->layout, "cube");
+    info->width = info->height = (int)h.width;
+    info->face_count = 6;
+    info->level_count = (int)h.level_count;
+    info->channel_count = h.pixel->channels;
     return KILN_OK;
 }

@@ -4,10 +4,11 @@
 
 #include "codec/codec.h"
 
-/// Levels `first` to `first + count - 1` of a cube as RGBA16F or B10G11R11, with one pair of metadata
-/// where `key` is not NULL.
-kiln_result ki_ktx1_encode(const kiln_map *map, int first, int count, kiln_format format,
-                           const char *key, const char *value, ki_writer *writer,
-                           kiln_error *error);
+/// A cube as RGBA16F or B10G11R11 for an engine, whose name is stored. `sh`, of radiance, may be NULL; it
+/// is stored as Filament has it.
+kiln_result ki_ktx1_encode(const kiln_map *map, const kiln_sh *sh, const char *engine,
+                           kiln_format format, ki_writer *writer, kiln_error *error);
+kiln_result ki_ktx1_describe(const uint8_t *bytes, size_t size, const char *name,
+                             kiln_file_info *info, kiln_error *error);
 
 #endif

@@ -230,6 +230,7 @@ static void read_sh(const char *text, kiln_file_info *info)
     if (strncmp(text, "bands ", 6) != 0 || !ki_parse_number(text + 6, &bands) || bands < 1 ||
         bands > KILN_MAX_BANDS)
         return;
+    info->sh_irradiance = strstr(text, "\nirradiance 1\n") != NULL;
     for (int line = 0; line < 3 && text; line++) { // past the line of the window
         text = strchr(text, '\n');
         text = text ? text + 1 : NULL;
@@ -238,7 +239,7 @@ static void read_sh(const char *text, kiln_file_info *info)
     for (int i = 0; i < 3 * count; i++) {
         double value = 0;
         text = text ? ki_parse_number(text + (*text == '\n'), &value) : NULL;
-        info->sh[i / 3][i % 3] = (float)value;
+        info->sh[i / 3][i % 3] = ki_info_number(value);
     }
     if (text) // all were there
         info->sh_bands = (int)bands;

@@ -1,6 +1,7 @@
 // Loading: what a file or a set of files holds, laid out on the sphere.
 #include "base/file.h"
 #include "base/os.h"
+#include "codec/engine_text.h"
 #include "codec/formats.h"
 #include "codec/layout.h"
 #include "image/image.h"
@@ -39,6 +40,12 @@ kiln_result kiln_map_decode(kiln_context *context, const void *bytes, size_t siz
         ki_decoded_free(&decoded);
         return ki_fail(error, KILN_ERROR_UNSUPPORTED, "%s: holds a table, not an environment",
                        name ? name : "memory");
+    }
+    if (ki_is_atlas(&info)) {
+        ki_decoded_free(&decoded);
+        return ki_fail(error, KILN_ERROR_UNSUPPORTED,
+                       "%s: is the atlas of %s, which kiln describes but does not read",
+                       name ? name : "memory", info.engine[0] ? info.engine : "an engine");
     }
     enum kiln_layout layout = def ? def->layout : KILN_LAYOUT_AUTO;
     if (layout == KILN_LAYOUT_AUTO && !strcmp(info.layout, "octahedron"))

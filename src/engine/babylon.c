@@ -18,8 +18,7 @@ static const double lod_scale = 0.8;
 static double roughness(int level, int level_count, int size)
 {
     (void)level_count;
-    double slope = ki_exp(level / lod_scale * ki_log(2)) / size;
-    return level == 0 ? 0 : slope >= 1 ? 1 : sqrt(slope - 0.0005);
+    return ki_env_roughness(level, lod_scale, size);
 }
 
 static double level(double roughness, int level_count, int size)
@@ -28,34 +27,10 @@ static double level(double roughness, int level_count, int size)
     return ki_clamp(ki_log(size * slope) / ki_log(2) * lod_scale, 0, level_count - 1);
 }
 
-// Irradiance / pi in harmonics is that of radiance times 1, 2/3 or 1/4 by band. As a polynomial Babylon
-// multiplies by these and by the constant of the basis function once more, which the shader's harmonics
-// take back: SphericalPolynomial.updateFromHarmonics and SphericalHarmonics.FromPolynomial. 1 is written
-// as x^2 + y^2 + z^2.
-static void make_polynomial(const kiln_sh *sh, double polynomial[9][3])
-{
-    const double k0 = sqrt(1 / (4 * KI_PI)), k1 = sqrt(3 / (4 * KI_PI)) * 4 / 9;
-    const double k2 = sqrt(15 / (4 * KI_PI)) / 16, k3 = sqrt(5 / (16 * KI_PI)) / 16;
-    for (int c = 0; c < 3; c++) {
-        double one = k0 * sh->c[0][c], z2 = k3 * sh->c[6][c], x2_y2 = k2 / 2 * sh->c[8][c];
-        polynomial[0][c] = k1 * sh->c[3][c];
-        polynomial[1][c] = k1 * sh->c[1][c];
-        polynomial[2][c] = k1 * sh->c[2][c];
-        polynomial[3][c] = one - z2 + x2_y2;
-        polynomial[4][c] = one - z2 - x2_y2;
-        polynomial[5][c] = one + 2 * z2;
-        polynomial[6][c] = k2 * sh->c[5][c];
-        polynomial[7][c] = k2 * sh->c[7][c];
-        polynomial[8][c] = k2 * sh->c[4][c];
-    }
-}
-
 static kiln_result write_env(ki_export *to, kiln_error *error)
 {
     ki_writer bytes = {.context = to->context};
-    double polynomial[9][3];
-    make_polynomial(to->sh, polynomial);
-    kiln_result result = ki_env_encode(to->map, lod_scale, polynomial, &bytes, error);
+    kiln_result result = ki_env_encode(to->map, lod_scale, to->sh, &bytes, error);
     if (result == KILN_OK)
         result = ki_export_add(to, to->path, &bytes, error);
     ki_writer_free(&bytes);

@@ -1,43 +1,16 @@
 // Filament, as cmgen --deploy writes: NAME_ibl.ktx, NAME_skybox.ktx and sh.txt. Level l of 0 to M holds
-// r = 1 - sqrt(1 - l / M), 256 texels down to 16, as halves or, as cmgen has it, in 11, 11 and 10 bits. Diffuse light comes from the harmonics, which also stand
-// in the .ktx, or where an application leaves them out from the last level.
+// r = 1 - sqrt(1 - l / M), 256 texels down to 16, as halves or, as cmgen has it, in 11, 11 and 10 bits.
+// Diffuse light comes from the harmonics, which also stand in the .ktx, or where an application leaves
+// them out from the last level.
 //
 // Its panoramas have +Z in the centre and -X to the right of it.
 #include "engine/engine.h"
 
-#include "codec/decimal.h"
+#include "codec/filament_sh.h"
 #include "codec/ktx1.h"
 #include "image/pack.h"
-#include "math/math.h"
 
-#include <math.h>
 #include <string.h>
-
-// Irradiance / pi: factors to 1, y, z, x, xy, yz, 3z^2 - 1, zx, x^2 - y^2.
-static void make_factors(const kiln_sh *sh, double factors[9][3])
-{
-    static const double cosine[9] = {1, 2.0 / 3, 2.0 / 3, 2.0 / 3, 0.25, 0.25, 0.25, 0.25, 0.25};
-    static const double basis[9] = {1, 3, 3, 3, 15, 15, 1.25, 15, 3.75};
-    for (int i = 0; i < 9; i++)
-        for (int c = 0; c < 3; c++)
-            factors[i][c] = sh->c[i][c] * cosine[i] * sqrt(basis[i] / (4 * KI_PI));
-}
-
-static void write_sh(ki_writer *w, double factors[9][3], bool lines)
-{
-    static const char *const names[9] = {"L00",  "L1-1", "L10", "L11", "L2-2",
-                                         "L2-1", "L20",  "L21", "L22"};
-    for (int i = 0; i < 9; i++) {
-        ki_write_text(w, lines ? "(" : "");
-        for (int c = 0; c < 3; c++) {
-            ki_write_text(w, "%s", !c ? "" : lines ? ", " : " ");
-            ki_write_number(w, factors[i][c]);
-        }
-        if (lines)
-            ki_write_text(w, "); // %s, irradiance, pre-scaled base", names[i]);
-        ki_write_text(w, "\n");
-    }
-}
 
 // PATH_ibl.ktx, PATH_skybox.ktx and sh.txt in the same folder.
 static void write_name(ki_writer *w, const char *path, const char *ending)
@@ -64,29 +37,21 @@ static kiln_result add(ki_export *to, const char *ending, ki_writer *bytes, ki_w
 
 static kiln_result write_files(ki_export *to, kiln_error *error)
 {
-    ki_writer bytes = {.context = to->context}, text = bytes, name = bytes;
-    double factors[9][3];
-    make_factors(to->sh, factors);
-    write_sh(&text, factors, false);
-    ki_write_u8(&text, 0);
-    kiln_result result = KILN_OK;
-    if (text.failed)
-        result = ki_fail_memory(to->context, error, "harmonics", text.size);
-    if (result == KILN_OK)
-        result = ki_ktx1_encode(to->map, 0, to->map->level_count, to->format, "sh",
-                                (const char *)text.bytes, &bytes, error);
+    ki_writer bytes = {.context = to->context}, name = bytes;
+    kiln_map sky = *to->map;
+    sky.level_count = 1;
+    kiln_result result = ki_ktx1_encode(to->map, to->sh, "filament", to->format, &bytes, error);
     if (result == KILN_OK)
         result = add(to, "_ibl.ktx", &bytes, &name, error);
     if (result == KILN_OK)
-        result = ki_ktx1_encode(to->map, 0, 1, to->format, NULL, NULL, &bytes, error);
+        result = ki_ktx1_encode(&sky, NULL, "filament", to->format, &bytes, error);
     if (result == KILN_OK)
         result = add(to, "_skybox.ktx", &bytes, &name, error);
     if (result == KILN_OK) {
-        write_sh(&bytes, factors, true);
+        ki_filament_sh_write(&bytes, to->sh, true);
         result = add(to, NULL, &bytes, &name, error);
     }
     ki_writer_free(&bytes);
-    ki_writer_free(&text);
     ki_writer_free(&name);
     return result;
 }

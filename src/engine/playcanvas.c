@@ -8,6 +8,8 @@
 #include "engine/engine.h"
 
 #include "codec/codec.h"
+#include "codec/engine_text.h"
+#include "codec/png_text.h"
 #include "codec/rgbx.h"
 #include "engine/picture.h"
 #include "image/image.h"
@@ -107,16 +109,23 @@ static bool draw_all(const atlas *a)
     return good && draw(a, map, LEVELS - 1, 128 * unit, 384 * unit, 64 * unit, false);
 }
 
-// DDS as PlayCanvas reads it: the older header, whose code 113 says four halves.
-static void write_dds(const float *pixels, int size, ki_writer *w)
+static kiln_result encode_png(const atlas *a, ki_writer *bytes, kiln_error *error)
 {
-    const uint32_t header[32] = {
-        0x20534444, 124, 0x100f, (uint32_t)size, (uint32_t)size, 8 * (uint32_t)size,
-        [19] = 32,  4,   113,    [27] = 0x1000};
-    for (int i = 0; i < 32; i++)
-        ki_write_u32(w, header[i]);
-    for (ptrdiff_t i = 0; i < 4 * (ptrdiff_t)size * size; i++)
-        ki_write_u16(w, ki_half_from_float(pixels[i]));
+    int size = a->to->map->size;
+    ki_writer text = {.context = a->to->context}, program = text;
+    kiln_result result = ki_png_encode(a->pixels, size, size, 4, KI_PNG_PLAIN8, bytes, error);
+    ki_engine_text_write(&text, ki_playcanvas.about.name, " layout=atlas format=rgbp", a->to->map);
+    ki_write_text(&program, "kiln %s", kiln_version());
+    ki_write_u8(&program, 0);
+    if (result == KILN_OK && (text.failed || program.failed))
+        result = ki_fail_memory(a->to->context, error, "an atlas", text.size);
+    if (result == KILN_OK) {
+        ki_png_add_text(bytes, 0, "kiln:engine", (const char *)text.bytes);
+        ki_png_add_text(bytes, 0, "Software", (const char *)program.bytes);
+    }
+    ki_writer_free(&text);
+    ki_writer_free(&program);
+    return result;
 }
 
 static kiln_result write_atlas(ki_export *to, bool roots, kiln_error *error)
@@ -139,9 +148,10 @@ static kiln_result write_atlas(ki_export *to, bool roots, kiln_error *error)
     else if (!draw_all(&a))
         result = ki_fail_cancelled(error, "writing");
     else if (roots)
-        result = ki_png_encode(a.pixels, (int)size, (int)size, 4, KI_PNG_PLAIN8, &bytes, error);
+        result = encode_png(&a, &bytes, error);
     else
-        write_dds(a.pixels, (int)size, &bytes);
+        result = ki_dds_encode_atlas(&(kiln_image){(int)size, (int)size, 4, a.pixels, NULL},
+                                     ki_playcanvas_dds.about.name, &bytes, error);
     if (result == KILN_OK)
         result = ki_export_add(to, to->path, &bytes, error);
     ki_writer_free(&bytes);

@@ -8,6 +8,7 @@
 #include "engine/engine.h"
 
 #include "codec/codec.h"
+#include "codec/engine_text.h"
 #include "engine/picture.h"
 #include "image/image.h"
 #include "image/pack.h"
@@ -118,11 +119,17 @@ static kiln_result write_files(ki_export *to, kiln_error *error)
     for (int i = 0; i < 6 * to->map->level_count && result == KILN_OK; i++)
         if (!draw(to->context, &s, i / 6, i % 6))
             result = ki_fail_cancelled(error, "writing");
-    const ki_exr_options options = {.half = true, .roughness = -1};
+    ki_writer text = {.context = to->context};
+    ki_engine_text_write(&text, ki_three_cubeuv.about.name, " layout=cubeuv", to->map);
+    if (result == KILN_OK && text.failed)
+        result = ki_fail_memory(to->context, error, "a picture", text.size);
+    const ki_exr_options options = {
+        .half = true, .roughness = -1, .engine = (const char *)text.bytes};
     if (result == KILN_OK)
         result = ki_exr_encode(s.pixels, s.width, s.height, 3, &options, &bytes, error);
     if (result == KILN_OK)
         result = ki_export_add(to, to->path, &bytes, error);
+    ki_writer_free(&text);
     ki_writer_free(&bytes);
     ki_free(s.room);
     ki_free(s.texels);

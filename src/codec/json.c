@@ -1,0 +1,169 @@
+#include "codec/json.h"
+
+#include "codec/decimal.h"
+
+#include <math.h>
+#include <string.h>
+
+ki_json ki_json_make(const void *bytes, size_t size)
+{
+    return (ki_json){bytes, (const char *)bytes + size, false};
+}
+
+// The next byte that is no space, 0 at the end.
+static char peek(ki_json *j)
+{
+    while (j->at < j->end && (*j->at == ' ' || *j->at == '\t' || *j->at == '\n' || *j->at == '\r'))
+        j->at++;
+    return j->at < j->end && !j->failed ? *j->at : 0;
+}
+
+static bool take(ki_json *j, char wanted)
+{
+    if (peek(j) != wanted || !wanted)
+        return false;
+    j->at++;
+    return true;
+}
+
+static void expect(ki_json *j, char wanted)
+{
+    if (!take(j, wanted))
+        j->failed = true;
+}
+
+void ki_json_enter_object(ki_json *j)
+{
+    expect(j, '{');
+}
+
+void ki_json_enter_array(ki_json *j)
+{
+    expect(j, '[');
+}
+
+bool ki_json_item(ki_json *j)
+{
+    if (take(j, ']'))
+        return false;
+    take(j, ',');
+    if (!peek(j))
+        j->failed = true;
+    return !j->failed;
+}
+
+bool ki_json_member(ki_json *j, char *key, size_t room)
+{
+    key[0] = 0;
+    if (take(j, '}'))
+        return false;
+    take(j, ',');
+    ki_json_string(j, key, room);
+    expect(j, ':');
+    return !j->failed;
+}
+
+void ki_json_string(ki_json *j, char *text, size_t room)
+{
+    size_t length = 0;
+    text[0] = 0;
+    expect(j, '"');
+    while (!j->failed && j->at < j->end && *j->at != '"') {
+        if (*j->at == '\\' && j->at + 1 < j->end && length + 1 < room)
+            text[length++] = *j->at++;
+        else if (*j->at == '\\' && j->at + 1 < j->end)
+            j->at++;
+        if (length + 1 < room)
+            text[length++] = *j->at;
+        j->at++;
+    }
+    text[length] = 0;
+    if (j->at == j->end)
+        j->failed = true;
+    else
+        expect(j, '"');
+}
+
+// The parser wants a NUL behind the number, which the bytes need not have.
+double ki_json_number(ki_json *j)
+{
+    char text[64];
+    size_t length = 0;
+    double value = 0;
+    peek(j);
+    while (j->at + length < j->end && length + 1 < sizeof text &&
+           strchr("+-.0123456789eE", j->at[length]) && j->at[length])
+        length++;
+    memcpy(text, j->at, length);
+    text[length] = 0;
+    const char *end = j->failed ? NULL : ki_parse_number(text, &value);
+    if (!end || *end || !isfinite(value)) {
+        j->failed = true;
+        return 0;
+    }
+    j->at += length;
+    return value;
+}
+
+uint32_t ki_json_count(ki_json *j, uint32_t most)
+{
+    double value = ki_json_number(j);
+    if (!(value >= 0) || value > most || value != floor(value)) {
+        j->failed = true;
+        return 0;
+    }
+    return (uint32_t)value;
+}
+
+bool ki_json_flag(ki_json *j)
+{
+    peek(j);
+    size_t left = (size_t)(j->end - j->at);
+    bool yes = left >= 4 && !memcmp(j->at, "true", 4);
+    if (j->failed || (!yes && (left < 5 || memcmp(j->at, "false", 5) != 0))) {
+        j->failed = true;
+        return false;
+    }
+    j->at += yes ? 4 : 5;
+    return yes;
+}
+
+void ki_json_triple(ki_json *j, double triple[3])
+{
+    ki_json_enter_array(j);
+    for (int c = 0; c < 3; c++) {
+        if (!j->failed && !ki_json_item(j))
+            j->failed = true; // too few
+        triple[c] = ki_json_number(j);
+    }
+    if (!j->failed && ki_json_item(j))
+        j->failed = true; // too many
+}
+
+// A number, or a word such as null.
+static void skip_word(ki_json *j)
+{
+    const char *from = j->at;
+    while (j->at < j->end && *j->at && !strchr("{}[]\",: \t\r\n", *j->at))
+        j->at++;
+    if (j->at == from)
+        j->failed = true;
+}
+
+void ki_json_skip(ki_json *j)
+{
+    char unused[1];
+    size_t depth = 0;
+    do {
+        char c = peek(j);
+        if (c == '"')
+            ki_json_string(j, unused, sizeof unused);
+        else if (c == '{' || c == '[' || ((c == '}' || c == ']') && depth > 0) ||
+                 ((c == ',' || c == ':') && depth > 0))
+            j->at++;
+        else
+            skip_word(j);
+        depth += c == '{' || c == '[';
+        depth -= (c == '}' || c == ']') && depth > 0;
+    } while (depth > 0 && !j->failed);
+}
