@@ -36,7 +36,8 @@
 
 typedef enum part { REFLECTED, TRANSMITTED } part;
 
-// What depends on the model, the roughness, the ior and the view only.
+// The quantities that depend on the model, the roughness, the ior and the view, but not on the half
+// vector.
 typedef struct boundary {
     kiln_model model;
     double roughness, alpha, ior, eta; // eta = 1 / ior
@@ -46,7 +47,7 @@ typedef struct boundary {
     double root_v;   // n.v (1 + 2 Lambda(v)) for GGX with KILN_G_SMITH, 0 for other models
     double pole;     // the pole of G nearest to 0 is at about n.l = -pole
     double most;     // upper bound of G(v, l) / (n.v)
-    double light;    // bound on a ring's share of the result below which 8 nodes per panel suffice
+    double coarse;   // bound on a ring's share of the result below which 8 nodes per panel suffice
 } boundary;
 
 // Smith's Lambda of a direction with this cosine to n, at most 1e9 for ki_beta.
@@ -113,9 +114,9 @@ static double arc_end(double y)
     return y >= 1 ? 0 : y <= -1 ? KI_PI : ki_acos(y);
 }
 
-// The distance in phi from `reach`, the end of the arc, to a singularity of the integrand beyond
-// it, where cos phi is y - more. y is cos phi at the end, or below -1 where the arc is the half
-// circle.
+// The distance in phi from `reach`, the end of the arc of azimuths, to a singularity of the
+// integrand beyond that end, where cos phi is y - more. y is cos phi at the end, or below -1 where
+// the arc is the half circle.
 static double arc_margin(double y, double reach, double more)
 {
     double sine = ki_sin(reach);
@@ -144,19 +145,19 @@ static double arc_cosine(double x)
 
 // Integrates facet() over the arc 0 <= phi < reach of the half vectors whose sine and cosine to n
 // are h[0] and h[1]. The integrand has a singularity `margin` beyond the arc's end, so that nodes
-// are to be closer towards the end: margin + reach - phi = margin (1 + slope x)^16 with x even in
-// [0, 1], a power that is nearly an exponential and costs four products. With `root` the integrand
-// is a square root at the end itself, and x = y^2 with y even removes it. `light` takes 8 nodes per
-// panel instead of 16.
+// are to be closer towards the end: margin + reach - phi = margin (1 + slope x)^16 with x evenly
+// spaced in [0, 1], a power that is nearly an exponential and costs four products. With `root` the
+// integrand behaves as a square root at the end itself, which the substitution x = y^2 with y
+// evenly spaced removes. `coarse` takes 8 nodes per panel instead of 16.
 static double integrate_arc(const boundary *s, part what, const double h[2], double reach,
-                            double margin, bool root, bool light)
+                            double margin, bool root, bool coarse)
 {
     if (!(reach > 0))
         return 0;
     double slope = sqrt(sqrt(sqrt(sqrt(1 + reach / margin)))) - 1, sum = 0;
-    const double *nodes = light ? ki_gauss8_nodes : ki_gauss16_nodes;
-    const double *weights = light ? ki_gauss8_weights : ki_gauss16_weights;
-    int panels = 1 + (int)(slope / 0.17), count = light ? NODES / 2 : NODES;
+    const double *nodes = coarse ? ki_gauss8_nodes : ki_gauss16_nodes;
+    const double *weights = coarse ? ki_gauss8_weights : ki_gauss16_weights;
+    int panels = 1 + (int)(slope / 0.17), count = coarse ? NODES / 2 : NODES;
     for (int i = 0; i < count * panels; i++) {
         int panel = i / count;
         double x = (panel + (1 + nodes[i % count]) / 2) / panels;
@@ -174,9 +175,9 @@ static double integrate_arc(const boundary *s, part what, const double h[2], dou
 }
 
 // The inner integral: over the azimuth of half vectors with sine and cosine h[0] and h[1] to n.
-// Finds the arc's end and the singularity nearest to it. `light` marks a ring of little influence
+// Finds the arc's end and the singularity nearest to it. `coarse` marks a ring of little influence
 // on the result.
-static double ring(const boundary *s, part what, const double h[2], bool light)
+static double ring(const boundary *s, part what, const double h[2], bool coarse)
 {
     double k = s->sin_v * h[0], least = h[1] * s->mu; // v.h = least + k cos phi at azimuth phi
     double critical = (s->critical - least) / k, y, pole;
@@ -194,17 +195,17 @@ static double ring(const boundary *s, part what, const double h[2], bool light)
     }
     if (!(s->critical > 0)) {
         double reach = arc_end(y);
-        return integrate_arc(s, what, h, reach, arc_margin(y, reach, pole), false, light);
+        return integrate_arc(s, what, h, reach, arc_margin(y, reach, pole), false, coarse);
     }
     // From the denser side, 1 - F is a square root near the critical angle, which is the arc's end
     // if the condition n.l > 0 allows, and lies beyond the end otherwise.
     if (y <= critical) {
         double reach = arc_end(critical);
         double margin = fmax(arc_margin(critical, reach, 0), reach / 20);
-        return integrate_arc(s, what, h, reach, margin, true, light);
+        return integrate_arc(s, what, h, reach, margin, true, coarse);
     }
     double reach = arc_end(y), margin = fmax(reach / 20, arc_margin(y, reach, y - critical));
-    return integrate_arc(s, what, h, reach, fmin(margin, arc_margin(y, reach, pole)), true, light);
+    return integrate_arc(s, what, h, reach, fmin(margin, arc_margin(y, reach, pole)), true, coarse);
 }
 
 // D(h) sin theta, where h[0] and h[1] are the sine and cosine of theta.
@@ -239,7 +240,7 @@ static double integrate_rings(const boundary *s, part what, double from, double 
         weight *= (e + 1 / e) * density(s, h);
         double most = weight * 2 * KI_PI * (h[1] * s->mu + h[0] * s->sin_v) * s->most;
         if (most > 1e-10)
-            sum += weight * ring(s, what, h, most < s->light);
+            sum += weight * ring(s, what, h, most < s->coarse);
     }
     return sum;
 }
@@ -316,7 +317,7 @@ static bool prepare(const kiln_model *model, double roughness, double ior, doubl
     if (model->d == KILN_D_GGX && model->g == KILN_G_SMITH)
         s->root_v = s->mu * (1 + 2 * s->lambda_v);
     s->most = 1 / fmax(s->mu, s->alpha / 8);
-    s->light = model->d == KILN_D_BECKMANN ? 0 : 2e-3;
+    s->coarse = model->d == KILN_D_BECKMANN ? 0 : 2e-3;
     s->pole = s->alpha;
     if (model->g == KILN_G_SMITH)
         s->pole = fmin(s->alpha, s->mu);

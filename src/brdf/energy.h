@@ -10,8 +10,9 @@
 #include <kiln/brdf.h>
 
 /// The albedo E at the cosine nov for F = 1. Roughness and nov are in [0, 1]. The error is below
-/// 1e-11 for GGX and below 1e-8 for Beckmann's D. Roughness 0 means the limit at this nov; nov = 0
-/// at roughness 0 means the limit of those limits.
+/// 1e-11 for GGX and below 1e-8 for Beckmann's D. At roughness 0, E is the limit as roughness tends
+/// to 0 while nov is fixed. At roughness 0 and nov = 0, E is the limit of those values as nov tends
+/// to 0.
 double ki_energy(const kiln_model *model, double roughness, double nov);
 /// The average E_avg = 2 int_0^1 E(mu) mu dmu. Roughness is in [0, 1]. The error is below 1e-10.
 double ki_energy_average(const kiln_model *model, double roughness);

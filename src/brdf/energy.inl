@@ -48,7 +48,7 @@ typedef struct view {
     double root;             // sqrt(alpha^2 + s mu^2)
     double front;            // factor of G / mu that depends on the view only
     double split;            // mu_i at which the second interval begins
-    double pole;             // c of the first interval: the pole nearest to 0 is at mu_i = -c
+    double pole;             // c: the integrand's pole nearest to mu_i = 0 is at mu_i = -c
 } view;
 
 // The nodes of a panel: mu_i, rest = 1 - mu_i, delta = mu_i - mu, q = Q and the weight w. The two
@@ -92,8 +92,8 @@ static void view_set(view *v, const kiln_model *model, double roughness, double 
 
 // ------------------------------------------------------------------------------------------- nodes
 
-// sinh and cosh of h times the positive nodes, |h| <= 1.25, by Taylor polynomials to degree 21 and
-// 20. The first omitted term of each is below 1e-19.
+// sinh and cosh of h times the positive quadrature nodes, |h| <= 1.25, by Taylor polynomials to
+// degree 21 and 20. The first omitted term of each is below 1e-19.
 static void hyperbolic(double h, double sinh_y[HALF], double cosh_y[HALF])
 {
     for (int j = 0; j < HALF; j++) {
@@ -133,8 +133,9 @@ static void finish_nodes(const view *v, panel *p)
     }
 }
 
-// The nodes of a panel of the first interval, mu_i = c (e^u - 1) with c = v->pole. The panel is u0
-// - h to u0 + h, and `centre` is e^u0. sinh_y and cosh_y are those of h times the positive nodes.
+// The nodes of a panel of the first interval, mu_i = c (e^u - 1) with c = v->pole. The panel goes
+// from u0 - h to u0 + h, and `centre` is e^u0. sinh_y and cosh_y are those of h times the positive
+// quadrature nodes.
 static void log_nodes(const view *v, double h, double centre, const double *sinh_y,
                       const double *cosh_y, panel *p)
 {
@@ -174,7 +175,7 @@ typedef struct stretch {
 } stretch;
 
 // The nodes of a panel of the second interval, mu_i = m + d sinh t. The panel is t0 - h to t0 + h,
-// and `centre` is e^t0. sinh_y and cosh_y are those of h times the positive nodes.
+// and `centre` is e^t0. sinh_y and cosh_y are those of h times the positive quadrature nodes.
 static void sinh_nodes(const view *v, const stretch *x, double h, double centre,
                        const double *sinh_y, const double *cosh_y, panel *p)
 {

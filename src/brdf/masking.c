@@ -33,8 +33,9 @@ static double beckmann_slope(double alpha, double x)
     return x > 1e-100 ? x * (1 + ki_beckmann_lambda(alpha, x)) : alpha / (2 * sqrt(KI_PI));
 }
 
-// G / (n.v n.l) by Smith. With correlated heights G = 1 / (1 + Lambda(v) + Lambda(l));
-// uncorrelated, G is the product of 1 / (1 + Lambda(v)) and 1 / (1 + Lambda(l)).
+// G / (n.v n.l) of Smith's masking for Beckmann's D. With correlated heights, G = 1 / (1 +
+// Lambda(v) + Lambda(l)). Uncorrelated, G is the product of 1 / (1 + Lambda(v)) and 1 / (1 +
+// Lambda(l)).
 static double beckmann_visibility(kiln_g g, double alpha, double nov, double nol)
 {
     double v = beckmann_slope(alpha, nov), l = beckmann_slope(alpha, nol);

@@ -10,8 +10,8 @@
 
 #include <math.h>
 
-// The range of D: half vectors more than FALL sqrt(alpha) radians above the horizon have less than
-// 1e-14 of D's value at the horizon.
+// Width of the distribution D in units of sqrt(alpha) radians: half vectors that are more than FALL
+// sqrt(alpha) above the horizon have less than 1e-14 of D's value at the horizon.
 #define FALL 8.0
 
 double ki_sheen_d(double alpha, double noh)
@@ -175,7 +175,8 @@ static double estevez_albedo(double alpha, double mu)
     lambda_coefficients(alpha, c);
     double lambda_v = lambda(c, mu), sin_v = sqrt((1 - mu) * (1 + mu)), sum = 0;
     double cuts[4] = {0, fmin(mu, 0.5), fmax(mu, 0.5), 1}, cot2 = 0;
-    // The range ends where every half vector is more than FALL sqrt(alpha) above the horizon.
+    // The range of n.l ends where every half vector is more than FALL sqrt(alpha) above the
+    // horizon, so that D is negligible.
     double fall = FALL * sqrt(alpha);
     if (fall < KI_PI / 2) {
         double sine, cosine, highest = 2 * fall - ki_asin(mu);

@@ -155,7 +155,7 @@ static void walk_path(double alpha, double nov, const lattice *l, uint32_t index
     }
 }
 
-// Sums of a set of paths with one Fresnel term.
+// Running sums over a set of paths for one Fresnel term.
 typedef struct series {
     const kiln_walk_def *def;
     double throughput;                // product of F over the path's bounces
@@ -212,7 +212,7 @@ void ki_walk_albedo(const kiln_walk_def *def, double roughness, double nov, kiln
     walk->path_count = REPLICATES << bits;
 }
 
-// Sums of a set of paths with Schlick's Fresnel terms of `count` values of f0.
+// Running sums over a set of paths for Schlick's Fresnel terms of `count` values of f0.
 typedef struct column {
     const double *f0;
     int count;

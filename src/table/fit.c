@@ -178,9 +178,10 @@ typedef struct search {
     candidate list[MAX_CANDIDATES];
 } search;
 
-// Fits one shape. A cheap fit by least squares comes first, and only a shape whose error is then
-// below `hopeful` times the wanted error gets the rounds that lower its greatest error. Sets
-// *reached to the error at the points of measurement. Returns true if that is at most `wanted`.
+// Fits polynomials of one shape. A cheap fit by least squares comes first, and only a shape whose
+// error is then below `hopeful` times the wanted error gets the rounds that lower its greatest
+// error. Sets *reached to the error at the points of measurement. Returns true if that is at most
+// `wanted`.
 static bool try_candidate(search *s, const kiln_fit *fit, const candidate *c, double wanted,
                           kiln_fit_part *part, double *reached)
 {

@@ -44,7 +44,7 @@ typedef struct ki_fit_points {
     double *value;
 } ki_fit_points;
 
-/// Nodes of a fit along each axis.
+/// Number of nodes along each side of the grid to which a form is fitted.
 enum { KI_FIT_GRID = 40 };
 
 /// Allocates the nodes for fits on one axis, a Chebyshev grid, and computes the target's exact
@@ -59,8 +59,8 @@ void ki_fit_points_free(ki_fit_points *points);
 /// Returns the greatest absolute difference between a part and the exact values at `points`.
 double ki_fit_measure_part(const kiln_fit_def *def, const kiln_fit_part *part,
                            const ki_fit_points *points);
-/// Sets the greatest and the RMS error of the form. points[k] has the exact values of the target of
-/// part k.
+/// Sets the greatest and the RMS error of the form. points[k] has the exact values of the function
+/// that part k approximates.
 void ki_fit_measure(kiln_fit *fit, const ki_fit_points points[2]);
 
 /// Computes the coefficients of a part, whose axis, form and counts are set, so that the part

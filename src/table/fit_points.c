@@ -1,7 +1,7 @@
 // The points at which closed forms are fitted and measured, with exact values of the fitted
 // function, and the errors of forms there. The nodes of a fit are a Chebyshev grid in the part's
 // own arguments. The points of measurement are regular grids and random points in (n.v, roughness)
-// and (sqrt t, roughness).
+// and (sqrt t, roughness), t being the argument that docs/theory/fits.md introduces.
 #include "brdf/brdf.h"
 #include "brdf/energy.h"
 #include "brdf/sheen.h"

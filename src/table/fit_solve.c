@@ -56,10 +56,10 @@ static void round_powers(const kiln_fit_part *part, double *c, float *rounded, d
 // The linear least-squares problem of one round.
 typedef struct equations {
     const ki_fit_points *nodes;
-    int terms;           // coefficients of P, and of Q with its constant 1
-    int columns;         // unknowns
-    int rows;            // equations: one for each node and one for each unknown coefficient of Q
-    double *matrix;      // column after column
+    int terms;           // number of coefficients of P, and of Q with its constant 1
+    int columns;         // number of unknown coefficients of P and Q
+    int rows;            // number of equations: one for each node, one for each unknown of Q
+    double *matrix;      // coefficients of the equations, column after column
     double *right;       // right-hand side, and after a round the error at each node
     double *weight;      // weight of each node's squared error, with sum 1
     double *denominator; // Q of the previous round at each node
@@ -129,7 +129,7 @@ static void reweight(const equations *s)
         s->weight[i] /= all;
 }
 
-enum { PATIENCE = 12 }; // rounds after which a shape far from the wanted error is given up
+enum { PATIENCE = 12 }; // reweighted rounds after which a shape with too large an error is given up
 
 double ki_fit_solve(const ki_fit_points *nodes, int rounds, double wanted, double *scratch,
                     kiln_fit_part *part)
@@ -155,7 +155,7 @@ double ki_fit_solve(const ki_fit_points *nodes, int rounds, double wanted, doubl
         s.denominator[i] = 1;
     }
     double x[2 * KILN_MAX_FIT] = {0}, best[2 * KILN_MAX_FIT] = {0}, least = HUGE_VAL, floor = 0;
-    int first = part->rational ? 6 : 1; // rounds with equal weights, until Q changes little
+    int first = part->rational ? 6 : 1; // number of rounds with equal node weights
     for (int round = 0; round < first + rounds; round++) {
         if (round == first + PATIENCE && least > 1.7 * wanted)
             break;
