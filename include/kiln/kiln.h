@@ -107,7 +107,8 @@ typedef struct kiln_context_def {
 /// `def` may be NULL for the defaults.
 KILN_API KILN_CHECKED kiln_result kiln_context_create(const kiln_context_def *def,
                                                       kiln_context **context, kiln_error *error);
-/// `context` may be NULL.
+/// `context` may be NULL. What was made with it may be freed or destroyed later, which calls `release`
+/// then; nothing else may be done with plans, spectra and streams of a context that is gone.
 KILN_API void kiln_context_destroy(kiln_context *context);
 
 /// The instruction set in use: "scalar", "sse2", "avx2", "avx512", "neon" or "simd128".
@@ -130,6 +131,10 @@ typedef enum kiln_shape {
 /// Radiance by direction: RGB floats, row-major, face after face, level after level. Level k has
 /// the size max(1, smallest, size >> k). Made by kiln_map_create or a function that says so, released by
 /// kiln_map_free; the numbers may be read and written freely.
+///
+/// The levels may also lie in the caller's own memory: set shape, size, level_count and level[], leave
+/// the rest 0, and every function takes such a map, to read from and to write to. kiln_map_free then
+/// frees nothing. Values must be radiance, finite and not negative: kiln_map_from_pixels sees to it.
 typedef struct kiln_map {
     kiln_shape shape;
     int size;                         ///< of level 0: 1 to KILN_MAX_SIZE
@@ -205,6 +210,27 @@ KILN_API KILN_CHECKED kiln_result kiln_map_decode(kiln_context *context, const v
                                                   size_t size, const char *name,
                                                   const kiln_load_def *def, kiln_map *map,
                                                   kiln_error *error);
+typedef enum kiln_pixel_type {
+    KILN_PIXEL_FLOAT = 0, ///< 32 bits
+    KILN_PIXEL_HALF       ///< 16 bits
+} kiln_pixel_type;
+
+/// Radiance in the caller's memory: of a renderer, or read back from a graphics processor. Six faces one
+/// behind the other are a strip `size` wide and 6 * size high.
+typedef struct kiln_pixels {
+    const void *data; ///< the first pixel of the top row, at any address
+    int width, height;
+    int channels;         ///< 3, or 4 of which the last is not read
+    kiln_pixel_type type; ///< of a channel
+    ptrdiff_t row_stride; ///< bytes from a row to the next below, negative too; 0 without gaps
+    kiln_layout layout;   ///< KILN_LAYOUT_AUTO tells it by the sides' ratio, as for files
+} kiln_pixels;
+
+/// A map of pixels that are copied. Values that are no radiance become what they become when files are
+/// loaded: see kiln_map_load.
+KILN_API KILN_CHECKED kiln_result kiln_map_from_pixels(kiln_context *context,
+                                                       const kiln_pixels *pixels, kiln_map *map,
+                                                       kiln_error *error);
 /// A flat picture as it is, without a shape, of three channels; a table (KTX2) of 1, 2 or 4, its
 /// slices one below the other.
 KILN_API KILN_CHECKED kiln_result kiln_image_load(kiln_context *context, const char *path,
@@ -510,6 +536,17 @@ KILN_API KILN_CHECKED kiln_result kiln_map_save_check(const char *path, kiln_sha
                                                       const kiln_save_def *def, kiln_error *error);
 /// The largest radiance that such a file holds in a format; more is cut off. 0 where floats hold all.
 KILN_API double kiln_map_save_limit(const char *path, kiln_format format);
+
+/// Bytes of a level in a format without gaps, faces one behind the other; 0 where kiln_map_pack fails.
+KILN_API size_t kiln_map_packed_size(const kiln_map *map, int level, kiln_format format);
+/// Packs a level as a graphics processor reads it: rgba16f (also for KILN_FORMAT_AUTO), rgba32f, rgb9e5,
+/// b10g11r11, or blocks of bc6h; faces one behind the other, every row (of blocks) `row_stride` bytes
+/// behind the last, 0 for no gaps. What is above kiln_format_limit is cut off to it. Fails where
+/// `destination_size` does not suffice.
+KILN_API KILN_CHECKED kiln_result kiln_map_pack(kiln_context *context, const kiln_map *map,
+                                                int level, kiln_format format, void *destination,
+                                                size_t row_stride, size_t destination_size,
+                                                kiln_error *error);
 
 /// What saving a map did.
 typedef struct kiln_save_report {

@@ -25,9 +25,9 @@ void ki_describe(kiln_error *error, kiln_result result, const char *format, ...)
     }
 }
 
-// Every block is preceded by 64 bytes that name its owner and size.
+// Every block is preceded by 64 bytes that name its heap and size.
 typedef struct block_head {
-    alignas(64) kiln_context *context;
+    alignas(64) ki_heap *heap;
     size_t size; // with the head
 } block_head;
 
@@ -49,27 +49,48 @@ static void system_release(void *user, void *memory, size_t size)
     ki_os_release(memory);
 }
 
+static ki_heap *heap_create(const kiln_context_def *def)
+{
+    ki_heap *heap = def->allocate(def->allocator_user, sizeof *heap);
+    if (!heap)
+        return NULL;
+    memset(heap, 0, sizeof *heap);
+    heap->allocate = def->allocate;
+    heap->release = def->release;
+    heap->user = def->allocator_user;
+    heap->limit = def->memory_limit;
+    atomic_store(&heap->owners, 1);
+    return heap;
+}
+
+// The last owner takes the heap along.
+static void heap_leave(ki_heap *heap)
+{
+    if (atomic_fetch_sub(&heap->owners, 1) == 1)
+        heap->release(heap->user, heap, sizeof *heap);
+}
+
 void *ki_alloc_raw(kiln_context *context, size_t count, size_t size)
 {
+    ki_heap *heap = context->heap;
     size_t bytes;
     if (!ki_mul_size(count, size, &bytes) || bytes > SIZE_MAX - 2 * sizeof(block_head))
         return NULL;
     bytes = (bytes + sizeof(block_head) + 63) & ~(size_t)63;
 
-    size_t held = atomic_fetch_add(&context->memory_held, bytes) + bytes;
-    if (context->def.memory_limit && (held > context->def.memory_limit || held < bytes)) {
-        atomic_fetch_sub(&context->memory_held, bytes);
-        return NULL;
-    }
-    block_head *head = context->def.allocate(context->def.allocator_user, bytes);
+    size_t held = atomic_fetch_add(&heap->held, bytes) + bytes;
+    block_head *head = NULL;
+    if (!heap->limit || (held <= heap->limit && held >= bytes))
+        head = heap->allocate(heap->user, bytes);
     if (!head) {
-        atomic_fetch_sub(&context->memory_held, bytes);
+        atomic_fetch_sub(&heap->held, bytes);
         return NULL;
     }
-    size_t peak = atomic_load(&context->memory_peak);
-    while (held > peak && !atomic_compare_exchange_weak(&context->memory_peak, &peak, held)) {
+    atomic_fetch_add(&heap->owners, 1);
+    size_t peak = atomic_load(&heap->peak);
+    while (held > peak && !atomic_compare_exchange_weak(&heap->peak, &peak, held)) {
     }
-    head->context = context;
+    head->heap = heap;
     head->size = bytes;
     return head + 1;
 }
@@ -87,19 +108,20 @@ void ki_free(void *memory)
     if (!memory)
         return;
     block_head *head = (block_head *)memory - 1;
-    kiln_context *context = head->context;
+    ki_heap *heap = head->heap;
     size_t size = head->size;
-    atomic_fetch_sub(&context->memory_held, size);
-    context->def.release(context->def.allocator_user, head, size);
+    atomic_fetch_sub(&heap->held, size);
+    heap->release(heap->user, head, size);
+    heap_leave(heap);
 }
 
 void ki_describe_memory(kiln_context *context, kiln_error *error, const char *what,
                         size_t byte_count)
 {
-    if (context->def.memory_limit)
+    if (context->heap->limit)
         ki_describe(error, KILN_ERROR_MEMORY,
                     "out of memory: %s needs %zu bytes, %zu are held, the limit is %zu", what,
-                    byte_count, atomic_load(&context->memory_held), context->def.memory_limit);
+                    byte_count, atomic_load(&context->heap->held), context->heap->limit);
     else
         ki_describe(error, KILN_ERROR_MEMORY, "out of memory: %s needs %zu bytes", what,
                     byte_count);
@@ -129,13 +151,19 @@ kiln_result kiln_context_create(const kiln_context_def *def, kiln_context **cont
         d.thread_count = ki_min(ki_os_core_count(), KI_MAX_THREADS);
 
     kiln_context *c = d.allocate(d.allocator_user, sizeof *c);
-    if (!c)
+    ki_heap *heap = c ? heap_create(&d) : NULL;
+    if (!heap) {
+        if (c)
+            d.release(d.allocator_user, c, sizeof *c);
         return ki_fail(error, KILN_ERROR_MEMORY, "out of memory: a context needs %zu bytes",
-                       sizeof *c);
+                       sizeof *c + sizeof *heap);
+    }
     memset(c, 0, sizeof *c);
     c->def = d;
+    c->heap = heap;
     if (!d.parallel_for && !ki_threads_start(c)) {
         d.release(d.allocator_user, c, sizeof *c);
+        heap_leave(heap);
         return ki_fail(error, KILN_ERROR_MEMORY, "cannot start %d threads", d.thread_count);
     }
     *context = c;
@@ -148,16 +176,17 @@ void kiln_context_destroy(kiln_context *context)
         return;
     if (!context->def.parallel_for)
         ki_threads_stop(context);
-    kiln_context_def d = context->def;
-    d.release(d.allocator_user, context, sizeof *context);
+    ki_heap *heap = context->heap;
+    context->def.release(context->def.allocator_user, context, sizeof *context);
+    heap_leave(heap);
 }
 
 void kiln_context_memory(const kiln_context *context, size_t *current, size_t *peak)
 {
     if (current)
-        *current = atomic_load(&context->memory_held);
+        *current = atomic_load(&context->heap->held);
     if (peak)
-        *peak = atomic_load(&context->memory_peak);
+        *peak = atomic_load(&context->heap->peak);
 }
 
 const char *kiln_context_cpu(const kiln_context *context)

@@ -24,9 +24,20 @@ typedef struct ki_pool {
     bool stop;
 } ki_pool;
 
+/// Where blocks come from and go back to. It lives as long as the context or any block, so that an object
+/// may be freed after its context.
+typedef struct ki_heap {
+    void *(*allocate)(void *user, size_t size);
+    void (*release)(void *user, void *memory, size_t size);
+    void *user;
+    size_t limit; // 0 for none
+    atomic_size_t held, peak;
+    atomic_size_t owners; // the context, and every block
+} ki_heap;
+
 struct kiln_context {
     kiln_context_def def;
-    atomic_size_t memory_held, memory_peak;
+    ki_heap *heap;
     ki_stage said; // the last report of progress
     ki_pool pool;
 };

@@ -9,31 +9,12 @@
 
 enum { STRETCH = 256 }; // samples that are converted at a time
 
-static void floats_from_halfs(const uint8_t *restrict samples, int count, float *restrict values)
-{
-    uint16_t halfs[STRETCH];
-    for (int i = 0; i < count; i++) {
-        uint16_t half;
-        memcpy(&half, samples + 2 * (size_t)i, 2);
-        int32_t h = half > 0x7c00 ? 0 : half;
-        halfs[i] = (uint16_t)(h < 0x7bff ? h : 0x7bff);
-    }
-    ki_floats_from_halfs(halfs, (size_t)count, values);
-}
-
 static void to_floats(const uint8_t *restrict samples, int type, int count, float *restrict values)
 {
     if (type == KI_EXR_HALF) {
-        floats_from_halfs(samples, count, values);
+        ki_radiance_from_halfs(samples, (size_t)count, values);
     } else if (type == KI_EXR_FLOAT) {
-        for (int i = 0; i < count; i++) {
-            int32_t bits;
-            memcpy(&bits, samples + 4 * (size_t)i, 4);
-            bits = bits > 0x7f800000 ? 0 : bits;
-            bits = bits > 0 ? bits : 0;
-            bits = bits < 0x7f7fffff ? bits : 0x7f7fffff;
-            memcpy(&values[i], &bits, 4);
-        }
+        ki_radiance_from_floats(samples, (size_t)count, values);
     } else {
         for (int i = 0; i < count; i++) {
             uint32_t integer;

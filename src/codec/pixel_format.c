@@ -1,9 +1,9 @@
 #include "codec/pixel_format.h"
 
 #include "codec/bc6h.h"
+#include "image/image.h"
 #include "image/pack.h"
 
-#include <float.h>
 #include <string.h>
 
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "files are written as memory is");
@@ -127,44 +127,39 @@ bool ki_pixels_pack(kiln_context *context, const ki_pixel_format *pixel, const f
                              &job);
 }
 
-static float sane(float value, float largest)
+// Infinities, which these 11 and 10 bits may be, become the largest finite value.
+static void unpack_b10g11r11(uint32_t word, float rgb[3])
 {
-    value = value > 0 ? value : 0;
-    return value < largest ? value : largest;
+    static const float largest[3] = {65024, 65024, KI_B10G11R11_MAX};
+    ki_float_from_b10g11r11(word, rgb);
+    for (int c = 0; c < 3; c++) {
+        rgb[c] = rgb[c] > 0 ? rgb[c] : 0;
+        rgb[c] = rgb[c] < largest[c] ? rgb[c] : largest[c];
+    }
 }
 
 static void unpack(const ki_pixel_format *pixel, const uint8_t *bytes, size_t count, float *rgb)
 {
     for (size_t i = 0; i < count; i++) {
         const uint8_t *from = bytes + (size_t)pixel->bytes * i;
-        float value[4] = {0}, largest[3] = {0};
         uint32_t word;
-        uint16_t halfs[4];
         switch (pixel->format) {
         case KILN_FORMAT_RGBA32F:
-            memcpy(value, from, sizeof value);
-            largest[0] = largest[1] = largest[2] = FLT_MAX;
+            ki_radiance_from_floats(from, 3, rgb + 3 * i);
             break;
         case KILN_FORMAT_RGB9E5:
             memcpy(&word, from, sizeof word);
-            ki_float_from_rgb9e5(word, value);
-            largest[0] = largest[1] = largest[2] = KI_RGB9E5_MAX;
+            ki_float_from_rgb9e5(word, rgb + 3 * i);
             break;
         case KILN_FORMAT_B10G11R11:
             memcpy(&word, from, sizeof word);
-            ki_float_from_b10g11r11(word, value);
-            largest[0] = largest[1] = 65024;
-            largest[2] = KI_B10G11R11_MAX;
+            unpack_b10g11r11(word, rgb + 3 * i);
             break;
         case KILN_FORMAT_RGBA16F:
         default:
-            memcpy(halfs, from, sizeof halfs);
-            ki_floats_from_halfs(halfs, 4, value);
-            largest[0] = largest[1] = largest[2] = KI_HALF_MAX;
+            ki_radiance_from_halfs(from, 3, rgb + 3 * i);
             break;
         }
-        for (int c = 0; c < 3; c++)
-            rgb[3 * i + (size_t)c] = sane(value[c], largest[c]);
     }
 }
 
@@ -175,4 +170,86 @@ void ki_pixels_unpack(const ki_pixel_format *pixel, const uint8_t *bytes, int wi
         ki_bc6h_decode(bytes, width, height, rgb);
     else
         unpack(pixel, bytes, (size_t)width * (size_t)height, rgb);
+}
+
+// ------------------------------------------------------------------------------------- packed levels
+
+// Rows of texels or blocks of a level, faces one below the other, and the bytes of one row.
+static bool packed_rows(const kiln_map *map, int level, kiln_format format, size_t *rows,
+                        size_t *row_bytes)
+{
+    const ki_pixel_format *pixel = ki_pixel_format_of(format);
+    int width, height, faces = map->shape == KILN_SHAPE_CUBE ? 6 : 1;
+    *rows = *row_bytes = 0;
+    if (!pixel || pixel->rgbx || level < 0 || level >= map->level_count)
+        return false;
+    ki_level_extent(map, level, &width, &height);
+    *row_bytes = (size_t)ki_pixels_size(pixel, width, 1);
+    *rows = (size_t)faces * (size_t)((height / faces + pixel->block - 1) / pixel->block);
+    return true;
+}
+
+size_t kiln_map_packed_size(const kiln_map *map, int level, kiln_format format)
+{
+    size_t rows, row_bytes;
+    packed_rows(map, level, format, &rows, &row_bytes);
+    return rows * row_bytes;
+}
+
+static kiln_result check_pack(const kiln_map *map, int level, kiln_format format, size_t stride,
+                              size_t size, size_t *rows, size_t *row_bytes, kiln_error *error)
+{
+    kiln_result result = ki_map_check(map, error);
+    if (result != KILN_OK)
+        return result;
+    if (level < 0 || level >= map->level_count)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "level is %d, the map has %d", level,
+                       map->level_count);
+    if (!packed_rows(map, level, format, rows, row_bytes))
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "format is %d, levels are packed as rgba16f, rgba32f, rgb9e5, b10g11r11 "
+                       "and bc6h",
+                       (int)format);
+    stride = stride ? stride : *row_bytes;
+    if (stride < *row_bytes)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "row_stride is %zu bytes, a row has %zu", stride,
+                       *row_bytes);
+    size_t before;
+    if (!ki_mul_size(*rows - 1, stride, &before) || size < before || size - before < *row_bytes)
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "the destination has %zu bytes, %zu rows of %zu bytes, %zu apart, need more",
+                       size, *rows, *row_bytes, stride);
+    return KILN_OK;
+}
+
+static kiln_result pack_level(kiln_context *context, const kiln_map *map, int level,
+                              kiln_format format, uint8_t *bytes, kiln_error *error)
+{
+    int width, height, faces = map->shape == KILN_SHAPE_CUBE ? 6 : 1;
+    ki_level_extent(map, level, &width, &height);
+    return ki_pixels_pack(context, ki_pixel_format_of(format), map->level[level], width,
+                          height / faces, faces, bytes)
+               ? KILN_OK
+               : ki_fail_cancelled(error, "packing");
+}
+
+kiln_result kiln_map_pack(kiln_context *context, const kiln_map *map, int level, kiln_format format,
+                          void *destination, size_t row_stride, size_t destination_size,
+                          kiln_error *error)
+{
+    size_t rows, row_bytes;
+    kiln_result result =
+        check_pack(map, level, format, row_stride, destination_size, &rows, &row_bytes, error);
+    if (result != KILN_OK)
+        return result;
+    if (!row_stride || row_stride == row_bytes)
+        return pack_level(context, map, level, format, destination, error);
+    uint8_t *packed = ki_alloc_raw(context, rows, row_bytes);
+    if (!packed)
+        return ki_fail_memory(context, error, "a packed level", rows * row_bytes);
+    result = pack_level(context, map, level, format, packed, error);
+    for (size_t i = 0; i < rows && result == KILN_OK; i++)
+        memcpy((uint8_t *)destination + i * row_stride, packed + i * row_bytes, row_bytes);
+    ki_free(packed);
+    return result;
 }

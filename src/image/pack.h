@@ -14,6 +14,10 @@ float ki_float_from_half(uint16_t half);
 /// Many at once, fast.
 void ki_halfs_from_floats(const float *values, size_t count, uint16_t *halfs);
 void ki_floats_from_halfs(const uint16_t *halfs, size_t count, float *values);
+/// Radiance as files and callers hand it in, at any address, to radiance that kiln computes with: not-a-number
+/// and negative values become 0, infinities the largest finite value of the type.
+void ki_radiance_from_halfs(const void *samples, size_t count, float *values);
+void ki_radiance_from_floats(const void *samples, size_t count, float *values);
 /// Shared exponent, 9 bits each (VK_FORMAT_E5B9G9R9_UFLOAT_PACK32, EXT_texture_shared_exponent).
 uint32_t ki_rgb9e5_from_float(const float rgb[3]);
 void ki_float_from_rgb9e5(uint32_t packed, float rgb[3]);

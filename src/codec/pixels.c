@@ -1,0 +1,82 @@
+// Pixels in the caller's memory to a map: converted to floats as the readers of files convert theirs,
+// then laid out on the sphere as pictures from files are.
+#include "codec/layout.h"
+#include "image/image.h"
+#include "image/pack.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static kiln_result check_pixels(const kiln_pixels *p, size_t *row_bytes, kiln_error *error)
+{
+    if (!p->data)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "the pixels' data is NULL");
+    if (p->channels != 3 && p->channels != 4)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "pixels have %d channels, it must be 3 or 4",
+                       p->channels);
+    if ((unsigned)p->type > KILN_PIXEL_HALF)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "the pixels' type is %d, it must be 0 or %d",
+                       (int)p->type, (int)KILN_PIXEL_HALF);
+    if ((unsigned)p->layout > KILN_LAYOUT_OCTAHEDRON)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "layout is %d, it must be 0 to %d",
+                       (int)p->layout, (int)KILN_LAYOUT_OCTAHEDRON);
+    size_t sample = p->type == KILN_PIXEL_HALF ? 2 : 4;
+    if (p->width < 0 || !ki_mul_size((size_t)p->width, sample * (size_t)p->channels, row_bytes))
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "pixels are %d wide", p->width);
+    ptrdiff_t stride = p->row_stride < 0 ? -p->row_stride : p->row_stride;
+    if (stride && (size_t)stride < *row_bytes)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "row_stride is %td bytes, a row has %zu",
+                       p->row_stride, *row_bytes);
+    return KILN_OK;
+}
+
+typedef struct convert_job {
+    const kiln_pixels *pixels;
+    ptrdiff_t stride;
+    float *rgb;
+} convert_job;
+
+// Task: one row.
+static void convert_row(void *data, int row)
+{
+    enum { STRETCH = 64 };
+    const convert_job *job = data;
+    const kiln_pixels *p = job->pixels;
+    int channels = p->channels;
+    size_t sample = p->type == KILN_PIXEL_HALF ? 2 : 4;
+    const uint8_t *from = (const uint8_t *)p->data + (ptrdiff_t)row * job->stride;
+    float *to = job->rgb + 3 * (size_t)row * (size_t)p->width;
+    for (int x = 0; x < p->width; x += STRETCH) {
+        float values[4 * STRETCH];
+        int n = ki_min(STRETCH, p->width - x);
+        const uint8_t *here = from + (size_t)x * (size_t)channels * sample;
+        size_t count = (size_t)(n * channels);
+        if (p->type == KILN_PIXEL_HALF)
+            ki_radiance_from_halfs(here, count, values);
+        else
+            ki_radiance_from_floats(here, count, values);
+        for (int i = 0; i < n; i++)
+            memcpy(to + 3 * (size_t)(x + i), values + (size_t)(channels * i), 3 * sizeof *to);
+    }
+}
+
+kiln_result kiln_map_from_pixels(kiln_context *context, const kiln_pixels *pixels, kiln_map *map,
+                                 kiln_error *error)
+{
+    size_t row_bytes;
+    kiln_image image = {.width = pixels->width, .height = pixels->height, .channels = 3};
+    *map = (kiln_map){0};
+    kiln_result result = check_pixels(pixels, &row_bytes, error);
+    if (result == KILN_OK)
+        result = ki_image_allocate(context, &image, error);
+    if (result != KILN_OK)
+        return result;
+    convert_job job = {pixels, pixels->row_stride ? pixels->row_stride : (ptrdiff_t)row_bytes,
+                       image.pixels};
+    ki_parallel_for(context, pixels->height, convert_row, &job);
+    result = ki_lay_out(context, &image, "pixels", pixels->layout, map, error);
+    if (result == KILN_ERROR_FORMAT && error)
+        error->result = result = KILN_ERROR_ARGUMENT;
+    kiln_image_free(&image);
+    return result == KILN_ERROR_FORMAT ? KILN_ERROR_ARGUMENT : result;
+}
