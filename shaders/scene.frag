@@ -231,8 +231,8 @@ vec3 direction_at(vec2 at)
 // The mean over the rays of the pixel whose lower left corner is `corner`.
 vec3 balls_at(vec2 corner, int slot)
 {
-    // Lists the balls that a ray of the pixel can meet: a cone about the pixel's centre, somewhat
-    // wider than the pixel, touches them.
+    // Lists the balls that a ray of the pixel can meet: those that touch a cone about the pixel's
+    // centre which is somewhat wider than the pixel.
     vec3 middle = direction_at(corner + 0.5);
     float spread = 2.0 * max(up.w / screen.y, right.w / screen.x);
     int list[CANDIDATES], count = 0;

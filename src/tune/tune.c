@@ -1,3 +1,7 @@
+// Makes the tuned levels of tune.h. tune_mix.c finds the mixture of lobes of each level. A large
+// level is evaluated from its mixture at its texels. A level of a cube of at most MOST_READS texels
+// is solved for instead: its mixture is evaluated on a finer grid, and tune_read.c finds the texels
+// whose bilinear interpolation comes nearest to that. docs/theory/tuning.md.
 #include "tune/tune.h"
 
 #include "image/image.h"
@@ -10,9 +14,12 @@
 #include <math.h>
 #include <string.h>
 
-// A degree whose power is less than this of the mean's is the rounding of a float: it is not sharpened.
+// Degrees of harmonics with less than this share of the power of degree 0 are dropped. They are the
+// rounding of floats, which a mixture with negative weights would amplify.
 static const double rounding = 1e-14;
-// Faces up to this size are made for bilinear reads; the coarse ones at 4 x 4 points a texel, else 2 x 2.
+// MOST_READS: greatest size of faces that are solved for bilinear reads. COARSE: greatest size of
+// faces that are compared with their target at 4 x 4 points per texel; larger faces are compared at
+// 2 x 2.
 enum { MOST_READS = 256, COARSE = 32 };
 
 struct ki_tune {
@@ -23,9 +30,9 @@ struct ki_tune {
     double tolerance;
     bool pinned[KILN_MAX_LEVELS];
     ki_nodes nodes;
-    // Of an execution.
+    // Results for the environment of the last ki_tune_execute.
     ki_mixtures mixtures;
-    double (*power)[3]; // by degree, without the suns, and then with them
+    double (*power)[3]; // power of each degree: [degree + 1] without the suns, then with the suns
 };
 
 static int size_at(const ki_tune *t, int level)
@@ -33,7 +40,8 @@ static int size_at(const ki_tune *t, int level)
     return ki_max(t->smallest, t->size >> level);
 }
 
-// Texels of a cube's face show degrees up to twice its size; twice that do for points between them.
+// The degree to which a level of this size is computed. The texels of a cube's face show degrees up
+// to twice its size; points between texels are computed to twice that degree.
 static int most_degree(int size)
 {
     return ki_min(ki_max(4 * size, KI_LEAST_DEGREE), KILN_MAX_DEGREE);
@@ -132,14 +140,15 @@ static kiln_result choose_mixtures(ki_tune *t, const kiln_spectrum *spectrum, ki
     return result;
 }
 
-// ----------------------------------------------------------------------------------------- levels
+// ------------------------------------------------------------------------------------------ levels
 
 static double power_at(const ki_tune *t, int l)
 {
     return t->power[l][0] + t->power[l][1] + t->power[l][2];
 }
 
-// A level's kernel: its spectrum, cut where the tolerance allows, and its shape.
+// Makes the kernel of a level from its mixture: the mixture as a function of the angle, and its
+// spectrum, cut at the degree beyond which the error is below the tolerance.
 static kiln_result make_kernel(const ki_tune *t, int level, ki_zonal *zonal, ki_mixture *mixture,
                                ki_zonal_spectrum *spectrum, kiln_error *error)
 {
@@ -174,7 +183,7 @@ static kiln_result make_kernel(const ki_tune *t, int level, ki_zonal *zonal, ki_
             spectrum->k[i] = 0;
     spectrum->degree = l;
     ki_mixture_create(mixture, alphas, weights, integrals, count);
-    // As narrow as the narrowest lobe that tells.
+    // The kernel's width is that of its narrowest lobe with a considerable weight.
     double narrowest = 1;
     for (int n = 0; n < count; n++)
         if (fabs(weights[n]) > 0.01)
@@ -183,7 +192,8 @@ static kiln_result make_kernel(const ki_tune *t, int level, ki_zonal *zonal, ki_
     return KILN_OK;
 }
 
-// What a level should show, at the texels of level `index` of a map of any size.
+// Evaluates the environment filtered by the mixture of `level`, at the texels of level `index` of
+// `map`, whose size may be another.
 static kiln_result make_target(ki_tune *t, const ki_legendre *legendre,
                                const kiln_spectrum *spectrum, double rotation, int level,
                                const kiln_map *mirror, kiln_map *map, int index,
@@ -209,7 +219,8 @@ static kiln_result make_target(ki_tune *t, const ki_legendre *legendre,
     return result;
 }
 
-// One beyond the last level is none.
+// Returns true for a level that is solved for bilinear reads. `level` may be one beyond the last,
+// which is not.
 static bool is_read(const ki_tune *t, int level)
 {
     if (level >= t->level_count || level >= KILN_MAX_LEVELS)
@@ -222,12 +233,12 @@ static bool is_read(const ki_tune *t, int level)
 
 typedef struct correction {
     kiln_map *goal;
-    const kiln_map *map, *target; // of the next level: what it shows, and what it should
+    const kiln_map *map, *target; // the next level's texels, and what they should show
     int level;
     double factor;
 } correction;
 
-// Task: a row of the goal, less what the next level errs by.
+// Task: subtracts from a row of the goal the error of the next level, times the factor.
 static void correct_row(void *data, int row)
 {
     const correction *a = data;
@@ -242,8 +253,9 @@ static void correct_row(void *data, int row)
     }
 }
 
-// A level for bilinear reads: its target at points between its texels, where it also makes up for the
-// error of the next level, whose target is in `targets`.
+// Makes a level by solving for bilinear reads. The goal is the level's mixture on a finer grid,
+// corrected to make up for the error that the next, coarser level has already. targets[level] keeps
+// the uncorrected goal for the next finer level, and is freed by the caller.
 static kiln_result make_read(ki_tune *t, const ki_legendre *legendre, const kiln_spectrum *spectrum,
                              double rotation, int level, const kiln_map *mirror, kiln_map *map,
                              kiln_map *targets, const ki_stage *stage, kiln_error *error)
@@ -285,7 +297,8 @@ kiln_result ki_tune_execute(ki_tune *t, const ki_legendre *legendre, const kiln_
     if (result != KILN_OK)
         return result;
     ki_make_mirrors(t->context, map, &mirror);
-    // From coarse to fine: a fine level can make up for what a coarse one cannot show.
+    // The order is from coarse to fine, because a fine level can make up for an error of a coarse
+    // level.
     for (int i = t->level_count - 1; i >= 0 && result == KILN_OK; i--) {
         if (is_read(t, i)) {
             result =

@@ -1,15 +1,23 @@
-// Tunes levels for what an engine shows of them: an environment's spectrum goes in, the texels of levels
-// come out. An engine mixes two levels linearly, so exact levels show an exact result only at their own
-// roughness; tuned ones show the least error over all roughnesses, for this environment.
+// Tunes the levels of a prefiltered environment to how an engine interpolates between them. In: the
+// spectrum of the environment in spherical harmonics, and how the engine maps roughness to levels.
+// Out: the texels of the tuned levels. Between two levels an engine interpolates linearly, though
+// lobes do not change linearly with roughness. Exact levels therefore show an exact result only at
+// their own roughness. Tuned levels minimise the error over all roughnesses, for the given
+// environment.
 //
-// At roughness r the engine shows (1 - t) c_i + t c_i+1, where the environment seen through GGX of
-// alpha = r^2, T_r, is wanted. The c that make the sum over r of |shown - T_r|^2 / |T_r|^2 least are
-// sums of T_r: with w = 1 / |T_r|^2 and the hat functions h_i(r), which are 1 - t and t,
-//     sum_j A_ij c_j = sum_r w h_i T_r,    A_ij = sum_r w h_i h_j.
-// A does not depend on the degree of a harmonic, so each level is the environment through one kernel, a
-// mixture of GGX lobes and of the mirror whose weights, some negative, add up to 1. The environment
-// enters by its power per degree, which gives |T_r|. In two norms at once (tune_mix.h) there is such
-// a system for each axis of their common eigenbasis. Source: docs/theory/tuning.md.
+// At roughness r the engine shows (1 - t) c_i + t c_i+1, where c_i is level i and t the fraction of
+// the level. The exact result T_r is the environment filtered by GGX of alpha = r^2. The levels
+// that minimise the sum over r of |shown - T_r|^2 / |T_r|^2 solve, with the weights w_r = 1 /
+// |T_r|^2 and the hat functions h_i(r), which are 1 - t and t in the two intervals next to level i
+// and 0 elsewhere,
+//
+//     sum_j A_ij c_j = sum_r w_r h_i(r) T_r,    A_ij = sum_r w_r h_i(r) h_j(r).
+//
+// A is the same for all harmonics. Therefore each level is the environment filtered by one kernel,
+// a mixture of GGX lobes and of a mirror, whose weights (some negative) sum to 1. The environment
+// enters through |T_r| only, which follows from its power per degree. tune_mix.h uses two norms at
+// once, which gives one such system for each axis of their common eigenbasis. docs/theory/tuning.md
+// derives the method and lists its errors.
 #ifndef KI_TUNE_H
 #define KI_TUNE_H
 
@@ -17,26 +25,31 @@
 
 /// How an engine reads the levels.
 typedef struct ki_reading {
-    double (*level)(double roughness, int level_count, int size); ///< a fraction
-    bool keep_last; ///< the last level is diffuse light too: it stays exact
-    bool flat;      ///< it reads other pictures than this cube
-    bool soft;      ///< level 0 may differ from the mirror
+    double (*level)(double roughness, int level_count, int size); ///< fractional level that the
+                                                                  ///< engine reads
+    bool keep_last; ///< the engine reads diffuse light from the last level, which stays exact
+    bool flat;      ///< the engine reads a picture made from the cube, not the cube's own texels
+    bool soft;      ///< level 0 may differ from the unfiltered environment
 } ki_reading;
 
-/// What depends on the sizes and roughnesses of levels only, not on the environment.
+/// The part of tuning that depends on the sizes and roughnesses of levels, but not on the
+/// environment.
 typedef struct ki_tune ki_tune;
 
-/// `def` is resolved: GGX, level 0 a mirror, the size a power of two.
+/// Prepares tuning for a layout of levels. No field of `def` is 0 for a default: its lobe is GGX,
+/// its level 0 the unfiltered environment (a mirror), its size a power of two. roughness[] is that
+/// of the exact levels.
 kiln_result ki_tune_create(kiln_context *context, const kiln_prefilter_def *def,
                            const float roughness[KILN_MAX_LEVELS], const ki_reading *reading,
                            ki_tune **tune, kiln_error *error);
 void ki_tune_destroy(ki_tune *tune);
-/// The degree that the spectrum should have.
+/// The degree of spherical harmonics that ki_tune_execute needs of the spectrum.
 int ki_tune_degree(const ki_tune *tune);
-/// Whether a level is tuned. Levels that are not, and level 0 in any case, must be in the map already when
-/// ki_tune_execute is called.
+/// Returns true if `level` is tuned. Before ki_tune_execute is called, the map must hold the exact
+/// content of all other levels and, even if it is tuned, of level 0.
 bool ki_tune_makes(const ki_tune *tune, int level);
-/// Writes the tuned levels. `legendre` has been made for ki_tune_degree or more.
+/// Writes the tuned levels to `map`. `legendre` has been made for the degree ki_tune_degree or
+/// more. The environment is turned by `rotation` degrees about +Y.
 kiln_result ki_tune_execute(ki_tune *tune, const ki_legendre *legendre,
                             const kiln_spectrum *spectrum, double rotation, kiln_map *map,
                             const ki_stage *stage, kiln_error *error);

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-// --------------------------------------------------------------------------------------- the mirror
+// -------------------------------------------------------------------------------------- the mirror
 
 typedef struct halving {
     const float *from;
@@ -14,7 +14,7 @@ typedef struct halving {
     int width;
 } halving;
 
-// Task: a row of means of 2 x 2.
+// Task: computes a row of means of 2 x 2 texels.
 static void halve_row(void *data, int row)
 {
     const halving *h = data;
@@ -41,11 +41,11 @@ void ki_make_mirrors(kiln_context *context, const kiln_map *map, kiln_map *mirro
 typedef struct adding {
     const float *from;
     float *to;
-    int width, ratio; // texels of `to` across one of `from`
+    int width, ratio; // `ratio` texels of `to` cover the width of one texel of `from`
     float weight;
 } adding;
 
-// Task: a row.
+// Task: adds the weighted mirror to a row of a level.
 static void add_row(void *data, int row)
 {
     const adding *a = data;
@@ -77,11 +77,11 @@ typedef struct clearing {
     float *level;
     int width, size;
     kiln_shape shape;
-    double (*sums)[2][3]; // by row: before and after
+    double (*sums)[2][3]; // sum of each row before and after negative texels become 0
     float scale[3];
 } clearing;
 
-// A texel's solid angle, up to a factor.
+// A texel's solid angle up to a factor.
 static double solid_angle(const clearing *c, int row, int x)
 {
     double n = c->size, s = (2 * x + 1) / n - 1, t = (2 * (row % c->size) + 1) / n - 1;
@@ -89,13 +89,14 @@ static double solid_angle(const clearing *c, int row, int x)
         double square = 1 + s * s + t * t;
         return 1 / (square * sqrt(square));
     }
-    // Rows of a panorama have sin theta. An octahedron's texels differ little.
+    // The solid angle in a row of a panorama is proportional to sin theta. The solid angles of an
+    // octahedron's texels are taken as equal.
     if (c->shape == KILN_SHAPE_PANORAMA)
         return ki_sin((row + 0.5) * KI_PI / n);
     return 1;
 }
 
-// Task: a row without what is negative.
+// Task: sets the negative texels of a row to 0 and sums the row before and after.
 static void clear_row(void *data, int row)
 {
     clearing *c = data;
@@ -110,7 +111,7 @@ static void clear_row(void *data, int row)
     }
 }
 
-// Task: a row times the scale.
+// Task: multiplies a row by the scale of each channel.
 static void scale_row(void *data, int row)
 {
     const clearing *c = data;

@@ -1,3 +1,8 @@
+// Finds the mixtures of lobes of tuned levels. In: the nodes of roughness and the environment's
+// spectrum. Out: the weight of each lobe in each level. The normal equations of the least-squares
+// problem in tune.h are tridiagonal in the levels. They are solved once for each axis of the two
+// norms (tune_norms.h), and the components of the solutions along their axes are added.
+// docs/theory/tuning.md derives the method.
 #include "tune/tune_norms.h"
 
 #include "math/math.h"
@@ -5,20 +10,22 @@
 #include <math.h>
 #include <string.h>
 
-// The least roughness that counts.
+// Errors at roughnesses below this are not counted.
 static const double least_roughness = 0.05;
-// Regularizer: the weight of "a level is its exact value", relative to the weight of the roughnesses that
-// read the level. Without it a level that hardly any roughness in [.05, 1] reads would be undetermined.
+// Regularisation: the weight of the equation that a level equals its exact content, relative to the
+// weight of the roughnesses that read the level. Without that equation, a level that hardly any
+// roughness in [0.05, 1] reads would be undetermined.
 static const double prior = 1e-3;
-// The same for level 0 where it is free: the weight of "level 0 is the mirror", as an interval of
-// roughness of this length.
+// The weight of the equation that level 0, where it may differ, equals the mirror: that of an
+// interval of roughness of this length.
 static const double mirror_weight = 1e-3;
-// Weights of lobes below this are set to 0.
+// Weights of lobes smaller than this in absolute value are set to 0.
 static const double least_weight = 1e-5;
-// The weight of the second norm (away from suns), relative to the first (whole sphere).
+// The weight of the second norm (away from suns) relative to the first norm (whole sphere).
 static const double far_weight = 30;
-// Added to the squared norm away from suns that errors there are divided by, in units of the squared mean
-// radiance: a tenth of the mean. Otherwise a black sky around a lamp would outweigh everything.
+// Errors away from suns are relative to the light there. This constant is added to the square of
+// that light, in units of the squared mean radiance. Without it, the errors of a black sky around a
+// lamp would outweigh all others.
 static const double dark = 0.01;
 
 void ki_nodes_place(ki_nodes *nodes, double (*level)(double, int, int), int level_count, int size)
@@ -30,7 +37,7 @@ void ki_nodes_place(ki_nodes *nodes, double (*level)(double, int, int), int leve
     double from = least_roughness;
     nodes->level_count = level_count;
     while (from < 1 && nodes->count + KI_LOBES <= KI_MOST_LOBES - 2) {
-        // Bisection for the largest roughness that reads the same two levels.
+        // Finds by bisection the largest roughness at which the engine reads the same two levels.
         double next = floor(level(from + 1e-9, level_count, size)) + 1, low = from, high = 1;
         if (level(1, level_count, size) <= next)
             low = 1;
@@ -52,13 +59,16 @@ void ki_nodes_place(ki_nodes *nodes, double (*level)(double, int, int), int leve
 // --------------------------------------------------------------------------------------- equations
 
 typedef struct equations {
-    double diagonal[KILN_MAX_LEVELS], next[KILN_MAX_LEVELS];
-    double right[KILN_MAX_LEVELS][KI_MOST_LOBES];
-    double weights[KILN_MAX_LEVELS][KI_MOST_LOBES]; // their solution
+    double diagonal[KILN_MAX_LEVELS];               // A_ii of the normal equations
+    double next[KILN_MAX_LEVELS];                   // A_i,i+1 of the normal equations
+    double right[KILN_MAX_LEVELS][KI_MOST_LOBES];   // right-hand side of each level, as a mixture
+    double weights[KILN_MAX_LEVELS][KI_MOST_LOBES]; // the solution: each level as a mixture
 } equations;
 
-// Fills the normal equations: tridiagonal, since a roughness reads two neighbouring levels, with one
-// right-hand side per lobe. `w` is the weight of a unit of roughness at each node, and last of the mirror.
+// Fills the normal equations. They are tridiagonal, because a roughness reads two neighbouring
+// levels, and have one right-hand side for each lobe. w[] is the weight of a unit of roughness at
+// each node, and its last element that of the mirror. If `coupling` is not NULL, sets coupling[i]
+// to A_i,i+1 / A_ii.
 static void set_up_equations(const ki_nodes *nodes, const double *w, double *coupling, equations *e)
 {
     int last = nodes->level_count - 1, mirror = nodes->count + 1;
@@ -82,7 +92,7 @@ static void set_up_equations(const ki_nodes *nodes, const double *w, double *cou
     }
     for (int i = 0; i <= last && coupling; i++)
         coupling[i] = e->diagonal[i] > 0 ? e->next[i] / e->diagonal[i] : 0;
-    // Levels that are not tuned are known: their terms go to the right-hand sides.
+    // Levels that are not tuned are known, and their terms are moved to the right-hand sides.
     for (int i = 0; i <= last; i++) {
         if (nodes->tuned[i])
             continue;
@@ -115,7 +125,7 @@ static void solve_equations(const ki_nodes *nodes, equations *e)
         }
 }
 
-// Adds the component of a solution along one axis.
+// Adds the component of a solution along one axis to `to`.
 static void add_part(const ki_norms *n, size_t axis, const equations *e, int level_count,
                      ki_mixtures *to)
 {
@@ -130,7 +140,8 @@ static void add_part(const ki_norms *n, size_t axis, const equations *e, int lev
     }
 }
 
-// Drops tiny weights, each of which would cost a lobe, and makes the others sum to 1: white stays white.
+// Sets tiny weights to 0, because each weight costs the evaluation of a lobe. Scales the others to
+// sum to 1, so that a white environment stays white.
 static void finish(const ki_nodes *nodes, ki_mixtures *mixtures)
 {
     int count = nodes->count + 2;
@@ -156,7 +167,7 @@ kiln_result ki_mixtures_find(kiln_context *context, const ki_nodes *nodes,
         return result;
     memset(mixtures, 0, sizeof *mixtures);
     for (int k = 0; k < n.count; k++) {
-        // Errors are relative: the weight at a roughness is 1 / |T_r|^2, in each norm.
+        // The weight of a roughness is 1 / |T_r|^2 in each norm, which makes errors relative.
         double w[KI_MOST_LOBES] = {0};
         equations e;
         for (int i = 0; i < n.count; i++)

@@ -1,3 +1,8 @@
+// Computes the two norms of tune_norms.h. In: the spectra of lobes and of the environment. Out: the
+// matrices of scalar products of lobes, and their common eigenvectors. The products over the sphere
+// come from the power per degree. Away from suns, the light of suns is integrated over the tails of
+// lobes. The generalised eigenproblem becomes an ordinary one by a Cholesky decomposition.
+// docs/theory/tuning.md.
 #include "tune/tune_norms.h"
 
 #include "math/math.h"
@@ -6,12 +11,16 @@
 #include <math.h>
 #include <string.h>
 
-// Added to the lobes' squares, relatively: they are nearly dependent.
+// The relative amount that is added to the diagonals of both matrices. The lobes are nearly
+// linearly dependent, and rounding could make the matrices indefinite.
 static const double ridge = 1e-8;
-// Radians around a sun that the second norm leaves out, a 200th of the sphere.
+// The angle around each sun that the second norm leaves out, in radians (8 degrees, a 200th of the
+// sphere).
 static const double aside = 0.1415;
 
-// Adds sum over degrees of power k_i k_j; the last lobe is a mirror. `power` NULL: uniform light.
+// Adds to products[i][j] the sum over degrees l of power_l k_i,l k_j,l, over `mean`, for all pairs
+// of lobes. k_i,l is the spectrum of lobe i; the last lobe is a mirror, with k = 1. `power` is NULL
+// for a black environment, for which the products are those of uniform light.
 static void add_power(const ki_nodes *nodes, const double (*power)[3], int degree, double mean,
                       double *products)
 {
@@ -33,7 +42,8 @@ static void add_power(const ki_nodes *nodes, const double (*power)[3], int degre
         }
 }
 
-// The squares of the suns' light, of neighbours together.
+// Sets *sum to the sum of the squared light of suns. Suns nearer to each other than `aside` count
+// as one sun.
 static kiln_result square_suns(kiln_context *context, const kiln_spectrum *spectrum, double *sum,
                                kiln_error *error)
 {
@@ -45,7 +55,8 @@ static kiln_result square_suns(kiln_context *context, const kiln_spectrum *spect
     kiln_result result = ki_points_create(spectrum, &any, 1, 0, &points, error);
     if (result != KILN_OK)
         return result;
-    // Each goes to the first that is near enough, whose direction stays.
+    // Each sun is added to the first group that is near enough. A group keeps the direction of its
+    // first sun.
     double(*suns)[6] = ki_alloc(context, (size_t)spectrum->sun_count, sizeof *suns);
     int count = 0;
     for (int i = 0; i < spectrum->sun_count && suns; i++) {
@@ -71,8 +82,9 @@ static kiln_result square_suns(kiln_context *context, const kiln_spectrum *spect
     return result;
 }
 
-// Adds the light of suns seen from afar: the integral of the tails' products over the sphere without what
-// is near, by a midpoint rule over the angle's logarithm. A mirror has no tail.
+// Adds the light that the tails of lobes carry away from suns: `light` times the integral of the
+// product of two lobes over the angles from `aside` to 90 degrees, by the midpoint rule in the
+// logarithm of the angle. The mirror contributes nothing.
 static void add_tails(const ki_nodes *nodes, double light, double *products)
 {
     enum { STEPS = 128 };
@@ -92,7 +104,8 @@ static void add_tails(const ki_nodes *nodes, double light, double *products)
     }
 }
 
-// L of a matrix L L', in its place, with zeros above.
+// Cholesky decomposition in place: replaces the positive definite matrix a by the lower triangular
+// L with L L' = a, and sets the elements above the diagonal to 0.
 static void factor(int count, double *a)
 {
     for (int i = 0; i < count; i++)
@@ -104,7 +117,7 @@ static void factor(int count, double *a)
         }
 }
 
-// L^-1 a L^-T of a symmetric matrix, in its place.
+// Replaces a symmetric matrix a by L^-1 a L^-T, where `lower` is L.
 static void divide(int count, const double *lower, double *a)
 {
     for (int side = 0; side < 2; side++) {
@@ -124,7 +137,8 @@ static void divide(int count, const double *lower, double *a)
     }
 }
 
-// With the first norm's matrix L L' and an axis q of L^-1 away L^-T: along = L^-T q, across = L q.
+// Converts eigenvectors q of L^-1 H L^-T, where L L' = G, to the lobes' basis: along = L^-T q and
+// across = L q.
 static void turn_axes(ki_norms *n, const double *lower, const double *axes)
 {
     size_t count = (size_t)n->count;
@@ -163,7 +177,8 @@ kiln_result ki_norms_create(kiln_context *context, const ki_nodes *nodes,
     }
     double *away = lower + size, *axes = away + size;
     n->across = n->along + size;
-    // Relative to the mean radiance, so that no unit overflows; black is as good as white.
+    // Products are relative to the mean radiance, so that no unit of radiance overflows. A black
+    // environment is treated as a white one.
     bool dark = !(mean > 0);
     add_power(nodes, dark ? NULL : all, spectrum->degree, dark ? 1 : mean, lower);
     add_power(nodes, dark ? NULL : power, spectrum->degree, dark ? 1 : mean, away);

@@ -1,3 +1,6 @@
+// Solves for the texels of a cube level whose bilinear interpolation comes nearest to a finer cube,
+// the goal. In: the goal. Out: texels >= 0. Method: a linear least-squares problem, by conjugate
+// gradients.
 #include "tune/tune_read.h"
 
 #include "image/image.h"
@@ -5,14 +8,17 @@
 #include <math.h>
 #include <string.h>
 
-// Texels x are read at points as B x, four taps each. With W the points' solid angles the normal
-// equations B' W B x = B' W goal are solved by conjugate gradients, preconditioned by their diagonal.
-// The matrix is that of bilinear hats, of condition 9 or so, so few steps do. Texels that come out
-// negative are held at 0 and the others solved again.
+// B x are the values that bilinear reads of the texels x give at the points, which are the
+// directions of the goal's texels; each read has four taps. W is the diagonal matrix of the points'
+// solid angles. The normal equations B' W B x = B' W goal are solved by conjugate gradients,
+// preconditioned by their diagonal. The condition number of the matrix is about 9, so that STEPS
+// steps suffice. Texels that become negative are fixed at 0 and the others are solved for again, in
+// up to ROUNDS rounds. Tasks process CHUNK texels or points.
 enum { STEPS = 14, ROUNDS = 3, CHUNK = 2048 };
 
 typedef struct tap {
-    uint32_t at; // a texel of a point, or a point of a texel
+    uint32_t at; // index of the texel that a point reads; in `reverse`, of the point that reads a
+                 // texel
     float weight;
 } tap;
 
@@ -20,15 +26,16 @@ typedef struct reads {
     kiln_context *context;
     const kiln_map *goal;
     size_t texel_count, point_count;
-    tap (*taps)[4];     // by point
+    tap (*taps)[4];     // the four taps of each point: the matrix B
     uint32_t *start;    // [texels + 1], offsets into `reverse`
-    tap *reverse;       // taps by texel: the transpose of B
-    float *solid;       // of the points of a face
-    double (*shown)[3]; // W B x by point
-    // By texel.
+    tap *reverse;       // the taps of each texel: the transpose of B
+    float *solid;       // solid angle of each point of a face, up to a factor
+    double (*shown)[3]; // W B x, or W times the residual, at each point
+    // For each texel: the solution, the residual, the search direction, the matrix times that
+    // direction, the diagonal of the matrix, and whether the texel is fixed at 0.
     double (*x)[3], (*rest)[3], (*way)[3], (*product)[3], *diagonal;
     bool (*held)[3];
-    double (*sums)[2][3]; // by chunk of texels or points
+    double (*sums)[2][3]; // two partial sums of each chunk of texels or points
     double scale[3];
 } reads;
 
@@ -52,9 +59,9 @@ static void add_up(const reads *r, size_t count, int which, double sum[3])
     }
 }
 
-// ------------------------------------------------------------------------------------------- set up
+// ------------------------------------------------------------------------------------------ set up
 
-// Task: a chunk of points' taps.
+// Task: sets the taps and the solid angles of a chunk of points.
 static void make_taps(void *data, int index)
 {
     reads *r = data;
@@ -67,14 +74,16 @@ static void make_taps(void *data, int index)
         ki_cube_taps(size, direction, texels, weights);
         for (int i = 0; i < 4; i++)
             r->taps[p][i] = (tap){(uint32_t)texels[i], (float)weights[i]};
-        // Of a texel, up to a factor: 1 / (distance of the face's point)^3.
+        // A texel's solid angle is proportional to 1 / d^3, where d is the distance from the cube's
+        // centre to the texel on a face at distance 1, and 1 / d is the direction's largest
+        // coordinate.
         double largest = fmax(fabs(direction[0]), fmax(fabs(direction[1]), fabs(direction[2])));
         if (p < face)
             r->solid[p] = (float)(largest * largest * largest);
     }
 }
 
-// The transpose: each texel's points in their order.
+// Fills `reverse`: for each texel, the points that read it, in the order of the points.
 static void transpose_taps(reads *r)
 {
     for (size_t p = 0; p < r->point_count; p++)
@@ -128,7 +137,8 @@ static void release(reads *r)
     ki_free(r->sums);
 }
 
-// Task: the diagonal, and the goal's means as a first guess.
+// Task: for a chunk of texels, sets the diagonal of the matrix, and as the first guess the weighted
+// mean of the goal over the points that read the texel.
 static void begin(void *data, int index)
 {
     reads *r = data;
@@ -149,16 +159,17 @@ static void begin(void *data, int index)
     }
 }
 
-// --------------------------------------------------------------------------------------- the solver
+// -------------------------------------------------------------------------------------- the solver
 
 typedef struct product {
     reads *r;
-    const double (*from)[3]; // by texel
+    const double (*from)[3]; // a value for each texel
     double (*to)[3];
-    bool rest; // B' W (goal - B from) instead of B' W B from
+    bool rest; // true: computes B' W (goal - B from); false: computes B' W B from
 } product;
 
-// Task: W B x, or W (goal - B x), at a chunk of points, and the sums of both the goal and B x.
+// Task: sets `shown` at a chunk of points to W B x or to W (goal - B x), and sums W goal and W B x
+// over the chunk.
 static void show_points(void *data, int index)
 {
     const product *a = data;
@@ -180,7 +191,8 @@ static void show_points(void *data, int index)
     }
 }
 
-// Task: B' times that, at a chunk of texels, and the products that the steps need.
+// Task: sets a chunk of texels of `to` to B' shown, and sums two products over the chunk: of `to`
+// and `from`, and of `to` with itself over the diagonal.
 static void gather(void *data, int index)
 {
     const product *a = data;
@@ -212,7 +224,7 @@ typedef struct step {
     double length[3], turn[3];
 } step;
 
-// Task: along the way, and what rests then.
+// Task: moves a chunk of texels along the search direction and updates the residual.
 static void take_step(void *data, int index)
 {
     const step *s = data;
@@ -227,7 +239,7 @@ static void take_step(void *data, int index)
         }
 }
 
-// Task: the next way.
+// Task: computes the next search direction of a chunk of texels.
 static void turn_way(void *data, int index)
 {
     const step *s = data;
@@ -237,7 +249,8 @@ static void turn_way(void *data, int index)
             r->way[t][c] = r->rest[t][c] / r->diagonal[t] + s->turn[c] * r->way[t][c];
 }
 
-// Conjugate gradients of the texels that are not held, each channel for itself.
+// Solves for the texels that are not fixed, by STEPS steps of conjugate gradients in each colour
+// channel.
 static void solve(reads *r)
 {
     int texel_chunks = chunks(r->texel_count);
@@ -261,7 +274,7 @@ static void solve(reads *r)
     }
 }
 
-// Task: negative texels become 0 and stay it; counts them.
+// Task: sets negative texels of a chunk to 0, fixes them there, and counts them.
 static void hold(void *data, int index)
 {
     reads *r = data;

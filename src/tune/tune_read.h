@@ -1,12 +1,13 @@
-// Texels of a cube such that bilinear reads between them come nearest to a target.
+// Solves for the texels of a cube whose bilinear interpolation comes nearest to a finer cube.
 #ifndef KI_TUNE_READ_H
 #define KI_TUNE_READ_H
 
 #include "base/base.h"
 
-/// Writes level `index` of a cube such that, read bilinearly across faces at the texels of `goal` (a
-/// cube of a multiple of its size, one level), it shows the goal's radiance with the least squares over
-/// the sphere. Nothing is negative; the mean of what is shown is the goal's.
+/// Writes level `index` of the cube `map`. `goal` is a cube of one level whose size is a multiple
+/// of that level's. At the directions of the goal's texels, the level is read bilinearly, across
+/// the edges of faces too. The result minimises the squared difference from the goal's radiance
+/// over the sphere, with no texel negative. The mean of the values read is that of the goal.
 kiln_result ki_solve_texels(kiln_context *context, const kiln_map *goal, kiln_map *map, int index,
                             kiln_error *error);
 

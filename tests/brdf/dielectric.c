@@ -257,7 +257,7 @@ static void both_sides_are_reciprocal(void **unused)
         ki_dielectric_average(&model, roughness, 1 / n, in);
         CHECK_NEAR(out[1], n * n * in[1], 2e-6);
     }
-    // At roughness 0 the same law holds for 1 - F_avg.
+    // At roughness 0, T_avg is 1 - F_avg, and T_avg(ior) = ior^2 T_avg(1 / ior) holds too.
     double out[2], in[2];
     ki_dielectric_average(&(kiln_model){0}, 0, 1.5, out);
     ki_dielectric_average(&(kiln_model){0}, 0, 1 / 1.5, in);

@@ -315,7 +315,8 @@ static double added_light(void *data, double mu)
     return 2 * pi * mu * kiln_kulla_conty(albedo(p->mu_o), albedo(mu), p->e_average);
 }
 
-// The cosine integral of Kulla and Conty's lobe over the light is 1 - E(mu_o), for any function E.
+// The cosine integral of Kulla and Conty's lobe over the light is 1 - E(mu_o), for any albedo E.
+// mu_o is the cosine of the view.
 static void kulla_conty_closes_the_furnace(void **state)
 {
     (void)state;

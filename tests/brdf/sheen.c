@@ -131,8 +131,8 @@ static void albedo_agrees_with_brute_force(void **unused)
 }
 
 // The albedo with Estevez and Kulla's masking agrees with an integral over half vectors, which
-// shares no code with the integrals above. The masking is not smooth at n.l = 1/2 and 1, which are
-// not at the cuts of this integral: it is less precise.
+// shares no code with the integral over light directions. It is less precise, because the masking
+// is not smooth at n.l = 1/2 and 1, and the integral over half vectors is not cut there.
 static void fit_agrees_over_the_half_vector(void **unused)
 {
     (void)unused;

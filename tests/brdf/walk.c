@@ -175,7 +175,8 @@ static void walks_are_reciprocal(void **state)
         }
         for (int i = 0; i < BANDS; i++)
             for (int j = 0; j < i; j++) {
-                // A path can add to a band several times: its variance is taken twice.
+                // A path can add light to a band several times. The variance of one addition is
+                // therefore doubled.
                 double many = sqrt(2 * (square[i][j] + square[j][i]) / PATHS);
                 CHECK_NEAR(flux[i][j][1], flux[j][i][1], 4 * many);
                 double one = sqrt((flux[i][j][0] + flux[j][i][0]) / PATHS);
