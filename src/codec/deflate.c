@@ -2,7 +2,8 @@
 // input in every build and on every machine, which no library that may be there or not can promise.
 //
 // Matches are found by chains of positions with the same hash of four bytes, the most recent first;
-// a match is given up where the next position has one that saves more ("lazy matching"). What is found
+// a match is given up where the next position has one that saves more ("lazy matching"), and a short one
+// where its literals, by how often they occur, cost less: filtered rows and halfs have many. What is found
 // is kept as items, literals and matches, until the statistics change or the store is full; then the
 // block is written in the shortest of deflate's three forms. All arithmetic is in integers.
 #include "codec/deflate.h"
@@ -15,7 +16,7 @@ enum {
     MIN_MATCH = 3,
     MAX_MATCH = 258,
     NEAR = 1 << 12, // a match of three bytes pays up to this distance
-    CHAIN = 48,     // positions that are tried, and half as many where there is a match already
+    CHAIN = 24,     // positions that are tried, and half as many where there is a match already
     NICE = 128,     // a match of this length is taken without trying more
     HASH_BITS = 15,
     NEAR_BITS = 12,
@@ -25,7 +26,9 @@ enum {
     DISTANCES = 30,
     LENGTH_CODES = 19,
     END_OF_BLOCK = 256,
-    CLASSES = 10, // of items, by which statistics are compared
+    CLASSES = 10,     // of items, by which statistics are compared
+    MATCH_BITS = 10,  // of a match, besides those of its distance's logarithm
+    SHORT_MATCH = 16, // bytes of a match whose literals are looked at
 };
 
 struct ki_deflater {
@@ -39,6 +42,7 @@ struct ki_deflater {
     int count, looked; // items; those whose classes are in `before`
     int32_t start, at; // of the block, and behind its last item
     uint32_t before[CLASSES], recent[CLASSES];
+    uint8_t literal_cost[256]; // eighths of a bit
     // Output.
     uint8_t *out, *out_end;
     uint64_t bits;
@@ -64,6 +68,14 @@ static int length_extra(int symbol) // of the 29
 static int log2_of(uint32_t x)
 {
     return 31 - __builtin_clz(x);
+}
+
+// Eighths: the three bits behind the highest one.
+static uint32_t log2_eighths(uint32_t x)
+{
+    int log = log2_of(x);
+    uint32_t fraction = log < 3 ? x << (3 - log) : x >> (log - 3);
+    return 8 * (uint32_t)log + (fraction & 7);
 }
 
 static int distance_symbol(uint32_t distance)
@@ -428,13 +440,40 @@ static void add(ki_deflater *d, uint32_t item, int32_t length)
     d->recent[item < 256 ? item >> 5 : length < 9 ? 8 : 9]++;
 }
 
+// What each byte costs as a literal, by how often it occurs: the logarithm of its part of all.
+static void estimate_literals(ki_deflater *d)
+{
+    uint32_t counts[256] = {0}, most = 8 * 15;
+    for (int32_t i = d->at; i < d->end; i++)
+        counts[d->bytes[i]]++;
+    uint32_t all = log2_eighths((uint32_t)(d->end - d->at));
+    for (int i = 0; i < 256; i++) {
+        uint32_t cost = counts[i] ? all - log2_eighths(counts[i]) : most;
+        d->literal_cost[i] = (uint8_t)(cost < most ? cost : most);
+    }
+}
+
+// Whether a match takes fewer bits than its literals.
+static bool pays(const ki_deflater *d, match m)
+{
+    if (!m.distance || m.length >= SHORT_MATCH)
+        return m.distance > 0;
+    int literals = 0, cost = 8 * (MATCH_BITS + log2_of((uint32_t)m.distance));
+    for (int32_t i = 0; i < m.length; i++)
+        literals += d->literal_cost[d->bytes[d->at + i]];
+    return cost < literals;
+}
+
 // The items of the bytes from `at` to the end.
 static void compress(ki_deflater *d)
 {
     int32_t look_at = d->at;
+    if (d->at < d->end)
+        estimate_literals(d);
     while (d->at < d->end && !d->full) {
         match m = find(d, d->at, MIN_MATCH - 1, CHAIN);
-        while (m.distance && m.length < NICE) {
+        bool taken = pays(d, m);
+        while (taken && m.length < NICE) {
             match later = find(d, d->at + 1, m.length - 1, CHAIN / 2);
             // A bit of a distance counts as a quarter of a byte.
             int gain = 4 * (later.length - m.length);
@@ -444,7 +483,7 @@ static void compress(ki_deflater *d)
             add(d, d->bytes[d->at], 1);
             m = later;
         }
-        if (m.distance)
+        if (taken)
             add(d, (uint32_t)m.length << 16 | (uint32_t)m.distance, m.length);
         else
             add(d, d->bytes[d->at], 1);

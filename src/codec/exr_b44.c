@@ -17,30 +17,51 @@ static uint16_t logarithm(uint16_t half)
     return ki_half_from_float((float)(8 * ki_log((double)ki_float_from_half(half))));
 }
 
-// Sixteen halfs: the first, then 15 differences of 6 bits, down the first column and to the right
-// from there; or three bytes where all are one.
-static size_t undo_block(const uint8_t *bytes, size_t left, uint16_t s[16])
+static uint64_t load_high_first(const uint8_t *bytes)
 {
-    static const uint8_t to[15] = {4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 15};
+    uint64_t value;
+    memcpy(&value, bytes, sizeof value);
+    return __builtin_bswap64(value);
+}
+
+// Stored numbers are in the order of the halfs' values: negative halfs had all bits inverted, others the
+// highest one.
+static void halfs_from_ordered(const uint16_t ordered[16], uint16_t halfs[16])
+{
+    for (int i = 0; i < 16; i++)
+        halfs[i] = (uint16_t)(ordered[i] ^ (ordered[i] >> 15 ? 0x8000 : 0xffff));
+}
+
+// Sixteen halfs, row after row: 16 bits of the first, 6 bits of a shift, then 15 differences of 6 bits,
+// down the first column and to the right from there; or three bytes where all are the same, which a shift
+// of 13 and more says. Returns the number of bytes, 0 where there are too few.
+static size_t undo_block(const uint8_t *bytes, size_t left, uint16_t halfs[16])
+{
     if (left < 3)
         return 0;
+    uint16_t s[16];
     int shift = bytes[2] >> 2;
     bool flat = shift >= 13;
-    if (!flat && left < 14)
-        return 0;
     s[0] = (uint16_t)(bytes[0] << 8 | bytes[1]);
-    for (int i = 0, bit = 22; i < 15; i++, bit += 6) {
-        uint16_t before = s[i < 3 ? to[i] - 4 : to[i] - 1];
-        if (flat) {
-            s[to[i]] = s[0];
-            continue;
+    if (flat) {
+        for (int i = 1; i < 16; i++)
+            s[i] = s[0];
+    } else {
+        if (left < 14)
+            return 0;
+        uint64_t first = load_high_first(bytes + 2), last = load_high_first(bytes + 6);
+        uint16_t difference[15];
+        for (int i = 0; i < 15; i++) {
+            int six = (int)((i < 9 ? first >> (52 - 6 * i) : last >> (84 - 6 * i)) & 63);
+            difference[i] = (uint16_t)((six - 32) * (1 << shift));
         }
-        int two = bytes[bit / 8] << 8 | (bit / 8 < 13 ? bytes[bit / 8 + 1] : 0);
-        int difference = (two >> (10 - bit % 8) & 63) - 32;
-        s[to[i]] = (uint16_t)(before + difference * (1 << shift));
+        for (int y = 1; y < 4; y++)
+            s[4 * y] = (uint16_t)(s[4 * y - 4] + difference[y - 1]);
+        for (int x = 1; x < 4; x++)
+            for (int y = 0; y < 4; y++)
+                s[4 * y + x] = (uint16_t)(s[4 * y + x - 1] + difference[4 * x + y - 1]);
     }
-    for (int i = 0; i < 16; i++)
-        s[i] = s[i] & 0x8000 ? s[i] & 0x7fff : (uint16_t)~s[i];
+    halfs_from_ordered(s, halfs);
     return flat ? 3 : 14;
 }
 
@@ -55,9 +76,13 @@ static bool undo_plane(ki_reader *r, bool linear, int width, int height, uint8_t
                 return false;
             for (int i = 0; linear && i < 16; i++)
                 block[i] = logarithm(block[i]);
-            for (int j = 0; j < ki_min(4, height - y); j++)
-                memcpy(plane + 2 * ((size_t)(y + j) * (size_t)width + (size_t)x),
-                       block + (ptrdiff_t)4 * j, 2 * (size_t)ki_min(4, width - x));
+            uint8_t *to = plane + 2 * ((size_t)y * (size_t)width + (size_t)x);
+            for (int j = 0; j < ki_min(4, height - y); j++, to += 2 * (size_t)width) {
+                if (width - x >= 4) // a size that the compiler knows
+                    memcpy(to, block + (ptrdiff_t)4 * j, 8);
+                else
+                    memcpy(to, block + (ptrdiff_t)4 * j, 2 * (size_t)(width - x));
+            }
         }
     return true;
 }

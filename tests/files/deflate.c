@@ -12,9 +12,12 @@ enum { MOST = 70000, KINDS = 6 };
 // Noise, steps, few symbols, text with far matches, zeros, and two kinds one after the other.
 static void fill(uint8_t *plain, size_t size, int kind)
 {
+    uint64_t random = 88172645463325252U; // Marsaglia's xorshift
     for (size_t i = 0; i < size; i++) {
-        uint32_t n = (uint32_t)i * 2654435761U;
-        n ^= n >> 15;
+        random ^= random << 13;
+        random ^= random >> 7;
+        random ^= random << 17;
+        uint32_t n = (uint32_t)(random >> 20);
         uint8_t few = n & 1U << 27 ? (uint8_t)(n >> 28) : 0;
         uint8_t far = i % 33000 < 100 ? (uint8_t)(i % 33000) : (uint8_t)(n >> 24 & 7);
         plain[i] = kind == 0      ? (uint8_t)(n >> 24)
@@ -107,7 +110,8 @@ static void zlib_inflates_what_is_deflated(void **state)
             check_packed(packed, length, plain, size);
             uLongf other = sizeof by_zlib;
             assert_int_equal(compress2(by_zlib, &other, plain, size, 6), Z_OK);
-            assert_true((double)length <= 1.02 * (double)other + 8);
+            if ((double)length > 1.02 * (double)other + 8)
+                fail_msg("kind %d, %zu bytes: %zu, by zlib %zu", kind, size, length, (size_t)other);
             packed[length] = 77;
             assert_int_equal(ki_deflate(deflater, plain, size, packed, length), length);
             assert_int_equal(packed[length], 77);
