@@ -5,7 +5,7 @@ cd "$(dirname "$0")"
 
 # What each part needs, as tool:package where a tool shows that it is there, else as a package.
 build_needs="cmake:cmake ninja:ninja-build cc:gcc pkg-config:pkg-config libc6-dev libopenexr-dev
-    libdeflate-dev libpng-dev libzstd-dev libpopt-dev libcjson-dev libcmocka-dev
+    libdeflate-dev libpng-dev libzstd-dev libcmocka-dev
     libegl-dev libgles-dev libglfw3-dev libegl1 libgl1-mesa-dri"
 test_needs="node:nodejs npm:npm chromium:chromium mandoc:mandoc clang-format:clang-format script:bsdutils Xvfb:xvfb xauth:xauth
     oiiotool:openimageio-tools

@@ -7,30 +7,6 @@
 #include <stdio.h>
 #include <string.h>
 
-const char *const assignment_names[ASSIGNMENT_TABLES] = {
-    [ASSIGNMENT_MC] = "Emu_MC",
-    [ASSIGNMENT_MC_UNCLAMPED] = "Emu_MC_unclamped",
-    [ASSIGNMENT_IS] = "Emu_IS",
-    [ASSIGNMENT_SPLIT_SUM] = "Emu_split_sum",
-    [ASSIGNMENT_EXACT] = "Emu_exact",
-    [ASSIGNMENT_AVERAGE_MC] = "Eavg_MC",
-    [ASSIGNMENT_AVERAGE] = "Eavg",
-    [ASSIGNMENT_AVERAGE_BYTES] = "Eavg_from_bytes",
-    [ASSIGNMENT_AVERAGE_EXACT] = "Eavg_exact",
-};
-
-const char *const assignment_words[ASSIGNMENT_TABLES] = {
-    [ASSIGNMENT_MC] = "E(mu), cosine-weighted Monte Carlo, D clamped as in figure 1",
-    [ASSIGNMENT_MC_UNCLAMPED] = "the same samples, D as it is",
-    [ASSIGNMENT_IS] = "E(mu), GGX importance sampling: bonus 1, figure 2",
-    [ASSIGNMENT_SPLIT_SUM] = "E(mu) = A + B by split sum with F0 = 1: bonus 2",
-    [ASSIGNMENT_EXACT] = "E(mu), the integral itself",
-    [ASSIGNMENT_AVERAGE_MC] = "E_avg of Emu_MC",
-    [ASSIGNMENT_AVERAGE] = "E_avg of Emu_IS: figure 4 as it should be",
-    [ASSIGNMENT_AVERAGE_BYTES] = "E_avg of Emu_IS as its PNG holds it",
-    [ASSIGNMENT_AVERAGE_EXACT] = "E_avg, the integral itself",
-};
-
 // What each average is the average of.
 static const int source_of[ASSIGNMENT_TABLES] = {
     [ASSIGNMENT_AVERAGE_MC] = ASSIGNMENT_MC,
@@ -38,15 +14,10 @@ static const int source_of[ASSIGNMENT_TABLES] = {
     [ASSIGNMENT_AVERAGE_BYTES] = ASSIGNMENT_IS,
 };
 
-bool assignment_is_exact(int table)
-{
-    return table == ASSIGNMENT_EXACT || table == ASSIGNMENT_AVERAGE_EXACT;
-}
-
-int assignment_check_folder(const char *folder)
+int assignment_check_folder(const cli_command *command, const char *folder)
 {
     if (!folder[0])
-        return cli_wrong(&cli_tables, "--output is empty, it must name a folder");
+        return cli_wrong(command, "--output is empty, it must name a folder");
     os_kind kind = os_kind_of(folder);
     if (kind == OS_UNREACHABLE)
         return cli_fail("%s: %s", folder, strerror(errno));
@@ -86,8 +57,8 @@ static kiln_result compute_energies(assignment *a)
                                             ? KILN_ASSIGNMENT_G_TEXT
                                             : KILN_ASSIGNMENT_G_FIGURES,
                                    .unclamped = methods[i].unclamped};
-        result = kiln_assignment_energy(a->job->context, methods[i].method, &def,
-                                        &a->table[methods[i].table], &a->job->error);
+        result = kiln_assignment_energy(a->work->context, methods[i].method, &def,
+                                        &a->table[methods[i].table], &a->work->error);
     }
     return result;
 }
@@ -97,15 +68,15 @@ static kiln_result compute_average(assignment *a, int table, bool bytes)
 {
     const kiln_image *source = &a->table[source_of[table]];
     kiln_image energy = {0};
-    kiln_result result = kiln_image_create(a->job->context, source->width, source->height, 1,
-                                           &energy, &a->job->error);
+    kiln_result result = kiln_image_create(a->work->context, source->width, source->height, 1,
+                                           &energy, &a->work->error);
     if (!result) {
         memcpy(energy.pixels, source->pixels,
                (size_t)source->width * (size_t)source->height * sizeof *energy.pixels);
         if (bytes)
             kiln_assignment_truncate(&energy);
         result =
-            kiln_assignment_average(a->job->context, &energy, &a->table[table], &a->job->error);
+            kiln_assignment_average(a->work->context, &energy, &a->table[table], &a->work->error);
     }
     kiln_image_free(&energy);
     return result;
@@ -117,14 +88,14 @@ static kiln_result compute_exact(assignment *a)
     int size = a->def->size;
     kiln_table_def def = {.model = {.g = a->def->g}, .width = size, .height = size, .flip = true};
     kiln_table energy = {0}, average = {0};
-    kiln_result result = kiln_table_create(a->job->context, &def, &energy, &a->job->error);
+    kiln_result result = kiln_table_create(a->work->context, &def, &energy, &a->work->error);
     a->table[ASSIGNMENT_EXACT] = energy.image;
     def.kind = KILN_TABLE_E_AVERAGE;
     if (!result)
-        result = kiln_table_create(a->job->context, &def, &average, &a->job->error);
+        result = kiln_table_create(a->work->context, &def, &average, &a->work->error);
     kiln_image *wide = &a->table[ASSIGNMENT_AVERAGE_EXACT];
     if (!result)
-        result = kiln_image_create(a->job->context, size, size, 1, wide, &a->job->error);
+        result = kiln_image_create(a->work->context, size, size, 1, wide, &a->work->error);
     for (int i = 0; i < size * size && !result; i++)
         wide->pixels[i] = average.image.pixels[i / size];
     kiln_table_free(&average);
@@ -142,8 +113,8 @@ static kiln_result compute(assignment *a)
         int exact = t <= ASSIGNMENT_EXACT ? ASSIGNMENT_EXACT : ASSIGNMENT_AVERAGE_EXACT;
         bool mapped = t != exact && t != ASSIGNMENT_AVERAGE_BYTES;
         result =
-            kiln_assignment_compare(a->job->context, &a->table[t], &a->table[exact],
-                                    &a->difference[t], mapped ? &a->map[t] : NULL, &a->job->error);
+            kiln_assignment_compare(a->work->context, &a->table[t], &a->table[exact],
+                                    &a->difference[t], mapped ? &a->map[t] : NULL, &a->work->error);
     }
     return result;
 }
@@ -156,7 +127,7 @@ kiln_result assignment_save(assignment *a, const kiln_image *image, const char *
     char path[4400];
     snprintf(path, sizeof path, "%s/%s%s.png", a->def->folder, before, name);
     a->file_count++;
-    return kiln_image_save(a->job->context, image, path, &a->job->error);
+    return kiln_image_save(a->work->context, image, path, &a->work->error);
 }
 
 // As the framework does: three equal channels, (uint8)(255 x). `figure3` is 1 - E, row 0 at
@@ -166,7 +137,7 @@ static kiln_result save_table(assignment *a, const kiln_image *table, const char
 {
     kiln_image rgb = {0};
     kiln_result result =
-        kiln_image_create(a->job->context, table->width, table->height, 3, &rgb, &a->job->error);
+        kiln_image_create(a->work->context, table->width, table->height, 3, &rgb, &a->work->error);
     if (!result) {
         size_t width = (size_t)table->width, height = (size_t)table->height;
         for (size_t y = 0; y < height; y++)
@@ -188,8 +159,8 @@ static kiln_result save_legend(assignment *a)
     enum { HALF = 160, HEIGHT = 20 };
     kiln_image off = {0}, none = {0}, map = {0};
     kiln_difference difference;
-    kiln_error *error = &a->job->error;
-    kiln_context *context = a->job->context;
+    kiln_error *error = &a->work->error;
+    kiln_context *context = a->work->context;
     kiln_result result = kiln_image_create(context, 2 * HALF, HEIGHT, 1, &off, error);
     if (!result)
         result = kiln_image_create(context, 2 * HALF, HEIGHT, 1, &none, error);
@@ -225,7 +196,7 @@ static void print_figures(const assignment *a)
 {
     printf("%s: %d files, %d x %d, %d samples, %s, %.2f s\n", a->def->folder, a->file_count,
            a->def->size, a->def->size, a->def->samples, kiln_g_names()[a->def->g],
-           cli_seconds() - a->job->began);
+           cli_elapsed(a->work));
     printf("  %-17s %9s %9s %10s\n", "against the exact", "largest", "rms", "mean");
     for (int t = 0; t < ASSIGNMENT_TABLES; t++)
         if (!assignment_is_exact(t))
@@ -233,16 +204,16 @@ static void print_figures(const assignment *a)
                    a->difference[t].rms, a->difference[t].mean);
 }
 
-int assignment_write(cli_job *job, const assignment_def *def)
+int assignment_write(cli_work *work, const assignment_def *def)
 {
-    assignment a = {.job = job, .def = def};
+    assignment a = {.work = work, .def = def};
     int code = CLI_FAILED;
     bool made = false;
     if (compute(&a))
         goto done;
     made = os_make_folder(def->folder);
     if (!made && errno != EEXIST) {
-        cli_clear_progress(job);
+        cli_clear_progress(work);
         code = cli_fail("%s: cannot be made: %s", def->folder, strerror(errno));
         goto done;
     }
@@ -250,9 +221,9 @@ int assignment_write(cli_job *job, const assignment_def *def)
         a.file_count++;
         code = assignment_write_report(&a);
     }
-    cli_clear_progress(job);
+    cli_clear_progress(work);
     if (code == CLI_DONE && def->json)
-        code = assignment_print_json(&a);
+        assignment_print_json(&a);
     else if (code == CLI_DONE && !def->quiet)
         print_figures(&a);
     if (code != CLI_DONE && made)

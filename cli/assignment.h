@@ -1,8 +1,9 @@
-// kiln tables --assignment: the offline part of GAMES202's fourth assignment, beside what is exact.
+// The tables of GAMES202's fourth assignment by its own methods, with the exact integrals, maps of the errors
+// and a report: for kiln tables --assignment, and for kiln assignment, which adds rendered balls.
 #ifndef KILN_CLI_ASSIGNMENT_H
 #define KILN_CLI_ASSIGNMENT_H
 
-#include "cli.h"
+#include "work.h"
 
 #include <kiln/course.h>
 #include <stdio.h>
@@ -21,9 +22,9 @@ typedef struct assignment_def {
 } assignment_def;
 
 /// CLI_GO, or the exit code: the folder's name cannot be one.
-int assignment_check_folder(const char *folder);
+int assignment_check_folder(const cli_command *command, const char *folder);
 /// Computes all, then writes all: pictures and report.md. CLI_DONE or CLI_FAILED.
-int assignment_write(cli_job *job, const assignment_def *def);
+int assignment_write(cli_work *work, const assignment_def *def);
 
 // What follows is between the work and its report.
 
@@ -41,7 +42,7 @@ enum {
 };
 
 typedef struct assignment {
-    cli_job *job;
+    cli_work *work;
     const assignment_def *def;
     kiln_image table[ASSIGNMENT_TABLES];           ///< one channel, the top row is roughness 1
     kiln_image map[ASSIGNMENT_TABLES];             ///< of the error, where there is a file for it
@@ -58,8 +59,8 @@ bool assignment_is_exact(int table);
 /// Writes NAME.png into the folder; `before` stands before the name.
 kiln_result assignment_save(assignment *a, const kiln_image *image, const char *before,
                             const char *name);
-/// report.md, written whole or not at all.
+/// report.md, written whole or not at all. CLI_DONE or CLI_FAILED.
 int assignment_write_report(const assignment *a);
-int assignment_print_json(const assignment *a);
+void assignment_print_json(const assignment *a);
 
 #endif

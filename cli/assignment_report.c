@@ -1,5 +1,6 @@
 // report.md of the assignment's folder, and the same figures for programs.
 #include "assignment.h"
+#include "json.h"
 #include "os.h"
 
 #include <errno.h>
@@ -174,33 +175,35 @@ int assignment_write_report(const assignment *a)
     int reason = errno;
     if (f)
         remove(part);
-    cli_clear_progress(a->job);
+    cli_clear_progress(a->work);
     return cli_fail("%s: cannot be written: %s", path, reason ? strerror(reason) : "no reason");
 }
 
-int assignment_print_json(const assignment *a)
+void assignment_print_json(const assignment *a)
 {
-    cJSON *json = cJSON_CreateObject();
-    cJSON_AddStringToObject(json, "kiln", kiln_version());
-    cJSON_AddStringToObject(json, "output", a->def->folder);
-    cJSON_AddNumberToObject(json, "files", a->file_count);
-    cJSON_AddNumberToObject(json, "size", a->def->size);
-    cJSON_AddNumberToObject(json, "samples", a->def->samples);
-    cJSON_AddStringToObject(json, "g", kiln_g_names()[a->def->g]);
-    cJSON_AddNumberToObject(json, "mirror_average", mirror_average(a->def->g));
-    cJSON_AddNumberToObject(json, "clamped_below_roughness", clamp_reach());
-    cJSON *tables = cJSON_AddArrayToObject(json, "tables");
+    json j = {0};
+    json_object(&j, NULL);
+    json_text(&j, "kiln", kiln_version());
+    json_text(&j, "output", a->def->folder);
+    json_number(&j, "files", a->file_count);
+    json_number(&j, "size", a->def->size);
+    json_number(&j, "samples", a->def->samples);
+    json_text(&j, "g", kiln_g_names()[a->def->g]);
+    json_number(&j, "mirror_average", mirror_average(a->def->g));
+    json_number(&j, "clamped_below_roughness", clamp_reach());
+    json_array(&j, "tables");
     for (int t = 0; t < ASSIGNMENT_TABLES; t++) {
-        cJSON *table = cJSON_CreateObject();
-        cJSON_AddStringToObject(table, "name", assignment_names[t]);
-        cJSON_AddStringToObject(table, "what", assignment_words[t]);
+        json_object(&j, NULL);
+        json_text(&j, "name", assignment_names[t]);
+        json_text(&j, "what", assignment_words[t]);
         if (!assignment_is_exact(t)) {
-            cJSON_AddNumberToObject(table, "max", a->difference[t].max);
-            cJSON_AddNumberToObject(table, "rms", a->difference[t].rms);
-            cJSON_AddNumberToObject(table, "mean", a->difference[t].mean);
+            json_number(&j, "max", a->difference[t].max);
+            json_number(&j, "rms", a->difference[t].rms);
+            json_number(&j, "mean", a->difference[t].mean);
         }
-        cJSON_AddItemToArray(tables, table);
+        json_end(&j);
     }
-    cJSON_AddNumberToObject(json, "seconds", cli_seconds() - a->job->began);
-    return cli_print_json(json);
+    json_end(&j);
+    json_number(&j, "seconds", cli_elapsed(a->work));
+    json_end(&j);
 }

@@ -1,86 +1,145 @@
-// kiln engines: what --for knows.
+// kiln engines: what kiln bake --for knows, in short or one engine in full.
 #include "cli.h"
+#include "json.h"
 
 #include <stdio.h>
+#include <string.h>
 
-enum { JSON = 1 };
+typedef struct engines {
+    bool json;
+} engines;
 
-static const struct poptOption options[] = {
-    {"json", 0, POPT_ARG_NONE, NULL, JSON, "the same as JSON", NULL},
-    CLI_HELP_OPTION,
-    POPT_TABLEEND,
+static const cli_option options[] = {
+    {"json", CLI_FLAG, offsetof(engines, json), .help = "an array of objects, one an engine"},
+    {.name = NULL},
 };
 
-static int list_json(void)
+static const char *engine_word(int index)
 {
-    cJSON *json = cJSON_CreateArray();
-    const kiln_engine *engine;
-    for (int i = 0; (engine = kiln_engine_at(i)) != NULL; i++) {
-        cJSON *row = cJSON_CreateObject();
-        cJSON_AddStringToObject(row, "name", engine->name);
-        cJSON_AddStringToObject(row, "title", engine->title);
-        cJSON_AddStringToObject(row, "files", engine->files);
-        cJSON_AddStringToObject(row, "ending", engine->ending);
-        cJSON_AddStringToObject(row, "mapping", engine->mapping);
-        cJSON_AddNumberToObject(row, "size", engine->size);
-        cJSON_AddNumberToObject(row, "level_count", engine->level_count);
-        cJSON_AddNumberToObject(row, "limit", engine->limit);
-        cJSON *formats = cJSON_AddArrayToObject(row, "formats");
-        for (int k = 0; formats && k < 4 && engine->formats[k]; k++)
-            cJSON_AddItemToArray(formats,
-                                 cJSON_CreateString(kiln_format_names()[engine->formats[k]]));
-        cJSON_AddStringToObject(row, "fit", engine->tune ? "sharp" : "none");
-        cJSON_AddStringToObject(row, "proof", engine->proof);
-        cJSON_AddItemToArray(json, row);
-    }
-    return cli_print_json(json);
+    const kiln_engine *engine = kiln_engine_at(index);
+    return engine ? engine->name : NULL;
 }
 
-static void print(const kiln_engine *engine)
+static void print_json(json *j, const kiln_engine *engine)
+{
+    json_object(j, NULL);
+    json_text(j, "name", engine->name);
+    json_text(j, "title", engine->title);
+    json_text(j, "files", engine->files);
+    json_text(j, "ending", engine->ending);
+    json_text(j, "mapping", engine->mapping);
+    json_number(j, "size", engine->size);
+    json_number(j, "level_count", engine->level_count);
+    json_number(j, "limit", engine->limit);
+    json_array(j, "formats");
+    for (int k = 0; k < 4 && engine->formats[k]; k++)
+        json_text(j, NULL, kiln_format_names()[engine->formats[k]]);
+    json_end(j);
+    json_text(j, "tune", engine->tune ? "sharp" : "none");
+    json_text(j, "proof", engine->proof);
+    json_end(j);
+}
+
+static void print_formats(const kiln_engine *engine)
+{
+    if (!engine->formats[0])
+        return;
+    printf("  format       ");
+    for (int k = 0; k < 4 && engine->formats[k]; k++)
+        printf("%s%s", k ? " or " : "", kiln_format_names()[engine->formats[k]]);
+    puts("");
+}
+
+static void print_short(const kiln_engine *engine)
 {
     printf("%-14s %s\n  writes       %s, by default %d level%s of %d%s\n", engine->name,
            engine->title, engine->files, engine->level_count, engine->level_count > 1 ? "s" : "",
-           engine->size, engine->tune ? ", fitted" : "");
-    if (engine->formats[0]) {
-        printf("  format       ");
-        for (int k = 0; k < 4 && engine->formats[k]; k++)
-            printf("%s%s", k ? " or " : "", kiln_format_names()[engine->formats[k]]);
-        puts("");
-    }
+           engine->size, engine->tune ? ", tuned" : "");
+    print_formats(engine);
     printf("  roughness    %s\n  proof        %s\n", engine->mapping, engine->proof);
 }
 
-static int run(int argc, const char **argv)
+// The sizes and roughness of the levels, as baked by default.
+static void print_levels(const kiln_engine *engine)
 {
-    cli_arguments arguments;
-    int code = cli_arguments_read(&arguments, &cli_engines, argc, argv);
-    if (code == CLI_GO && arguments.rest_count)
-        code = cli_wrong(&cli_engines, "%s: nothing but options is expected", arguments.rest[0]);
-    if (code == CLI_GO && arguments.value[JSON])
-        code = list_json();
-    if (code == CLI_GO) {
-        const kiln_engine *engine;
-        for (int i = 0; (engine = kiln_engine_at(i)) != NULL; i++)
-            print(engine);
-        code = CLI_DONE;
+    float roughness[KILN_MAX_LEVELS];
+    kiln_prefilter_def def;
+    kiln_error error;
+    if (kiln_engine_levels(engine, 0, 0, roughness, &def, &error))
+        return;
+    for (int k = 0; k < def.level_count; k++) {
+        int size = def.size >> k;
+        printf("    level %-2d   size %-5d roughness %.4g\n", k,
+               size > def.smallest ? size : def.smallest, (double)roughness[k]);
     }
-    cli_arguments_free(&arguments);
-    return code;
 }
+
+// Pages are named by the first word of an engine's name: docs/engines/three.md has three-cubeuv too.
+static void print_page(const kiln_engine *engine)
+{
+    printf("  how to load  docs/engines/%.*s.md\n", (int)strcspn(engine->name, "-"), engine->name);
+}
+
+static void print_full(const kiln_engine *engine)
+{
+    print_short(engine);
+    printf("  largest      %g\n  levels       %s\n", engine->limit,
+           engine->tune ? "chosen for what the engine shows (--tune none for exact ones), about:"
+                        : "exact:");
+    print_levels(engine);
+    print_page(engine);
+}
+
+static int run(const cli_call *call)
+{
+    cli_arguments a;
+    engines values;
+    json j = {0};
+    const cli_option words = {.word = engine_word};
+    int only = -1, code = cli_read_arguments(&a, &cli_engines, call, &values);
+    if (code != CLI_GO)
+        return code;
+    if (a.rest_count > 1)
+        return cli_wrong(&cli_engines, "%s: one engine at a time, after %s", a.rest[1], a.rest[0]);
+    if (a.rest_count) {
+        code = cli_find_word(&cli_engines, "engine", a.rest[0], &words, &only);
+        if (code != CLI_GO)
+            return code;
+    }
+    if (values.json)
+        json_array(&j, NULL);
+    const kiln_engine *engine;
+    for (int i = 0; (engine = kiln_engine_at(i)) != NULL; i++)
+        if (only < 0 || i == only) {
+            if (values.json)
+                print_json(&j, engine);
+            else if (only == i)
+                print_full(engine);
+            else
+                print_short(engine);
+        }
+    if (values.json)
+        json_end(&j);
+    return CLI_DONE;
+}
+
+static const cli_example examples[] = {
+    {"kiln engines", "all, in short"},
+    {"kiln engines three", "one in full, with its levels and the page that shows how to load them"},
+    {"kiln bake city.exr --for three -o city.ktx2", NULL},
+    {NULL, NULL}};
 
 const cli_command cli_engines = {
     .name = "engines",
-    .arguments = "[OPTION...]",
+    .arguments = "[ENGINE] [OPTION...]",
     .summary = "Lists the engines that 'kiln bake --for' knows.",
-    .details =
-        "Level k of n, of a size of w texels, is filtered for roughness r; fitted levels differ\n"
-        "from that where the engine then shows less error (kiln bake --fit). The proof of a file "
-        "is\n"
-        "what the engine's own pixels show in kiln's tests, or else what was read of it.\n"
-        "\n"
-        "Examples:\n"
-        "  kiln engines\n"
-        "  kiln bake city.exr --for three -o city.ktx2\n",
+    .about = "Level k of n, of a size of w texels, is filtered for roughness r; tuned levels "
+             "differ from "
+             "that where the engine then shows less error (kiln bake --tune). The proof of a file "
+             "is what "
+             "the engine's own pixels show in kiln's tests, or else what was read of it.",
+    .word = engine_word,
+    .examples = examples,
     .options = options,
     .run = run,
 };

@@ -11,7 +11,6 @@
 // ----------------------------------------------------------------------------------- what there is
 
 typedef enum argument {
-    NONE,
     ROUGHNESS,
     MU,
     NOL,
@@ -30,25 +29,8 @@ typedef enum argument {
     SHEEN,
     F_ADD,
     JSON,
+    OPTIONS
 } argument;
-
-static const struct {
-    const char *name;
-    double low, high;
-} argument_of[ARGUMENTS] = {
-    [ROUGHNESS] = {"roughness", 0, 1},
-    [MU] = {"mu", 0, 1},
-    [NOL] = {"nol", 0, 1},
-    [NOH] = {"noh", 0, 1},
-    [VOH] = {"voh", 0, 1},
-    [F0] = {"f0", 0, 1},
-    [F] = {"f", 0, 1},
-    [IOR] = {"ior", 0, 1e8},
-    [N] = {"n", 0, 1e8},
-    [K] = {"k", 0, 1e8},
-    [REFLECTIVITY] = {"reflectivity", 0, 0.9999},
-    [EDGE_TINT] = {"edge-tint", 0, 1},
-};
 
 typedef struct choices {
     kiln_model model;
@@ -59,8 +41,10 @@ enum { MAX_ARGUMENTS = 4 };
 
 typedef struct quantity {
     const char *name;
+    int count;
     argument takes[MAX_ARGUMENTS]; // in the order of a line on standard input
     double (*value)(const choices *c, const double x[MAX_ARGUMENTS]);
+    const char *meaning;
 } quantity;
 
 static double e(const choices *c, const double *x)
@@ -173,97 +157,108 @@ static double turquin(const choices *c, const double *x)
 }
 
 static const quantity quantities[] = {
-    {"e", {ROUGHNESS, MU}, e},
-    {"eavg", {ROUGHNESS}, e_average},
-    {"a", {ROUGHNESS, MU}, a},
-    {"b", {ROUGHNESS, MU}, b},
-    {"sheen", {ROUGHNESS, MU}, sheen},
-    {"d", {ROUGHNESS, NOH}, d},
-    {"g", {ROUGHNESS, MU, NOL}, g},
-    {"specular", {ROUGHNESS, MU, NOL, NOH}, specular},
-    {"schlick", {F0, VOH}, schlick},
-    {"dielectric", {IOR, VOH}, dielectric},
-    {"conductor", {N, K, VOH}, conductor},
-    {"schlick-avg", {F0}, schlick_average},
-    {"dielectric-avg", {IOR}, dielectric_average},
-    {"conductor-avg", {N, K}, conductor_average},
-    {"dielectric-avg-fit", {IOR}, dielectric_average_fit},
-    {"conductor-avg-fit", {REFLECTIVITY, EDGE_TINT}, conductor_average_fit},
-    {"kulla-conty", {ROUGHNESS, MU, NOL}, kulla_conty},
-    {"f-add", {ROUGHNESS, F}, f_add},
-    {"turquin", {ROUGHNESS, MU, F0}, turquin},
+    {"e", 2, {ROUGHNESS, MU}, e, "the directional albedo for a Fresnel term of 1: E(mu) = A + B"},
+    {"eavg", 1, {ROUGHNESS}, e_average, "its average, 2 int E(mu) mu dmu"},
+    {"a", 2, {ROUGHNESS, MU}, a, "of the split sum, whose specular albedo is F0 A + B"},
+    {"b", 2, {ROUGHNESS, MU}, b, "the other"},
+    {"sheen", 2, {ROUGHNESS, MU}, sheen, "the albedo of Charlie sheen"},
+    {"d", 2, {ROUGHNESS, NOH}, d, "the distribution of the normals"},
+    {"g", 3, {ROUGHNESS, MU, NOL}, g, "masking and shadowing"},
+    {"specular", 4, {ROUGHNESS, MU, NOL, NOH}, specular, "D G / (4 mu n.l)"},
+    {"schlick", 2, {F0, VOH}, schlick, "Schlick's Fresnel term"},
+    {"dielectric", 2, {IOR, VOH}, dielectric, "the exact Fresnel term of a dielectric"},
+    {"conductor", 3, {N, K, VOH}, conductor, "the exact Fresnel term of a metal"},
+    {"schlick-avg", 1, {F0}, schlick_average, "the cosine-weighted average, 2 int F(mu) mu dmu"},
+    {"dielectric-avg", 1, {IOR}, dielectric_average, "the exact average"},
+    {"conductor-avg", 2, {N, K}, conductor_average, "the exact average"},
+    {"dielectric-avg-fit", 1, {IOR}, dielectric_average_fit, "Kulla and Conty's fit"},
+    {"conductor-avg-fit",
+     2,
+     {REFLECTIVITY, EDGE_TINT},
+     conductor_average_fit,
+     "Kulla and Conty's fit"},
+    {"kulla-conty",
+     3,
+     {ROUGHNESS, MU, NOL},
+     kulla_conty,
+     "the lobe that adds the energy that is missing"},
+    {"f-add", 2, {ROUGHNESS, F}, f_add, "the factor of that lobe for an average Fresnel term"},
+    {"turquin", 3, {ROUGHNESS, MU, F0}, turquin, "Turquin's factor to the specular lobe"},
 };
 enum { QUANTITIES = sizeof quantities / sizeof *quantities };
 
+static const char *quantity_word(int index)
+{
+    return index < QUANTITIES ? quantities[index].name : NULL;
+}
+
 // --------------------------------------------------------------------------------------- arguments
-
-#define VALUE(name, option, help, word)                                                            \
-    {                                                                                              \
-        name, 0, POPT_ARG_STRING, NULL, option, help, word                                         \
-    }
-
-static const struct poptOption options[] = {
-    VALUE("roughness", ROUGHNESS, "perceptual, alpha = roughness^2, 0 to 1", "R"),
-    VALUE("mu", MU, "n.v, the cosine with the view, 0 to 1", "MU"),
-    VALUE("nol", NOL, "n.l, with the light", "C"),
-    VALUE("noh", NOH, "n.h, with the half vector", "C"),
-    VALUE("voh", VOH, "v.h, between view and half vector", "C"),
-    VALUE("f0", F0, "reflectance at normal incidence, 0 to 1", "F0"),
-    VALUE("f", F, "average Fresnel reflectance, 0 to 1", "F"),
-    VALUE("ior", IOR, "of a dielectric, relative to outside, 0 to 1e8", "IOR"),
-    VALUE("n", N, "of a conductor's index n + i k, 0 to 1e8", "N"),
-    VALUE("k", K, "of a conductor's index n + i k, 0 to 1e8", "K"),
-    VALUE("reflectivity", REFLECTIVITY, "of a metal, Gulbrandsen's, 0 to 0.9999", "R"),
-    VALUE("edge-tint", EDGE_TINT, "of a metal, Gulbrandsen's, 0 to 1", "G"),
-    VALUE("d", D, "ggx or beckmann (ggx)", "D"),
-    VALUE("g", G, "smith, smith-uncorrelated, schlick-k2 or schlick-text (smith)", "G"),
-    VALUE("sheen", SHEEN, "masking of sheen, ashikhmin or estevez (ashikhmin)", "KIND"),
-    VALUE("f-add", F_ADD, "bounces in f-add, second (from the second on) or assignment (second)",
-          "FORM"),
-    {"json", 0, POPT_ARG_NONE, NULL, JSON, "arguments and value as JSON; an array for many", NULL},
-    CLI_HELP_OPTION,
-    POPT_TABLEEND,
-};
 
 typedef struct eval {
     cli_arguments arguments;
     const quantity *quantity;
     choices choices;
-    double fixed[MAX_ARGUMENTS]; // by option
-    int count, column_count;     // of all arguments, and of those that stand on a line
+    bool json;
+    double given[ARGUMENTS];     // by option
+    double fixed[MAX_ARGUMENTS]; // those that the quantity takes, in its order
+    int column_count;            // of the arguments that stand on a line
     int column[MAX_ARGUMENTS];
     double *lines; // column_count numbers each
     size_t line_count;
 } eval;
 
-static int unknown_quantity(const char *name)
-{
-    char list[512] = "";
-    for (int i = 0; i < QUANTITIES; i++) {
-        size_t used = strlen(list);
-        snprintf(list + used, sizeof list - used, "%s%s",
-                 !i                   ? ""
-                 : i < QUANTITIES - 1 ? ", "
-                                      : " or ",
-                 quantities[i].name);
-    }
-    if (!name)
-        return cli_wrong(&cli_eval, "no quantity: name %s", list);
-    return cli_wrong(&cli_eval, "%s: no such quantity, it must be %s", name, list);
-}
+static const char *const f_adds[] = {"second", "assignment", NULL};
+
+#define AT(field) offsetof(eval, field)
+// An argument that no option gives is read from standard input.
+#define ARGUMENT(index, name, high, value, help)                                                   \
+    [index] = {name, CLI_NUMBER,  AT(given) + (index) * sizeof(double), 0, high, 0, value,         \
+               help, .keep = true}
+
+static const cli_option options[OPTIONS + 1] = {
+    ARGUMENT(ROUGHNESS, "roughness", 1, "R", "perceptual, alpha = roughness^2"),
+    ARGUMENT(MU, "mu", 1, "MU", "n.v, the cosine with the view"),
+    ARGUMENT(NOL, "nol", 1, "C", "n.l, with the light"),
+    ARGUMENT(NOH, "noh", 1, "C", "n.h, with the half vector"),
+    ARGUMENT(VOH, "voh", 1, "C", "v.h, between view and half vector"),
+    ARGUMENT(F0, "f0", 1, "F0", "reflectance at normal incidence"),
+    ARGUMENT(F, "f", 1, "F", "average Fresnel reflectance"),
+    ARGUMENT(IOR, "ior", 1e8, "IOR", "of a dielectric, relative to outside"),
+    ARGUMENT(N, "n", 1e8, "N", "of a conductor's index n + i k"),
+    ARGUMENT(K, "k", 1e8, "K", "of a conductor's index n + i k"),
+    ARGUMENT(REFLECTIVITY, "reflectivity", 0.9999, "R", "of a metal, Gulbrandsen's"),
+    ARGUMENT(EDGE_TINT, "edge-tint", 1, "G", "of a metal, Gulbrandsen's"),
+    [D] = CLI_D_ROW(eval, choices.model.d),
+    [G] = CLI_G_ROW(eval, choices.model.g),
+    [SHEEN] = {"sheen", CLI_CHOICE, AT(choices.sheen), .value = "KIND", .word = cli_sheen_word,
+               .help = "masking of sheen"},
+    [F_ADD] = {"f-add", CLI_CHOICE, AT(choices.f_add), .value = "FORM", .words = f_adds,
+               .help =
+                   "the bounces that f-add counts: from the second on, or as GAMES202's assignment "
+                   "does the first too"},
+    [JSON] = {"json", CLI_FLAG, AT(json), .help = "arguments and value as JSON; an array for many"},
+};
 
 static int read_quantity(eval *v)
 {
-    const cli_arguments *arguments = &v->arguments;
-    if (!arguments->rest_count)
-        return unknown_quantity(NULL);
-    if (arguments->rest_count > 1)
-        return cli_wrong(&cli_eval, "%s: one quantity at a time, after %s", arguments->rest[1],
-                         arguments->rest[0]);
-    for (int i = 0; i < QUANTITIES; i++)
-        if (!strcmp(arguments->rest[0], quantities[i].name))
-            v->quantity = &quantities[i];
-    return v->quantity ? CLI_GO : unknown_quantity(arguments->rest[0]);
+    char list[CLI_RANGE_TEXT];
+    const cli_option words = {.word = quantity_word};
+    const cli_arguments *a = &v->arguments;
+    if (!a->rest_count)
+        return cli_wrong(&cli_eval, "no quantity: name %s", cli_list(&words, list));
+    if (a->rest_count > 1)
+        return cli_wrong(&cli_eval, "%s: one quantity at a time, after %s", a->rest[1], a->rest[0]);
+    int index = 0, code = cli_find_word(&cli_eval, "quantity", a->rest[0], &words, &index);
+    v->quantity = &quantities[index];
+    return code;
+}
+
+static bool takes(const quantity *q, int option)
+{
+    for (int i = 0; i < q->count; i++)
+        if ((int)q->takes[i] == option)
+            return true;
+    return false;
 }
 
 // "roughness mu" of a line.
@@ -273,43 +268,31 @@ static const char *columns(const eval *v, char text[128])
     for (int i = 0; i < v->column_count; i++) {
         size_t used = strlen(text);
         snprintf(text + used, 128 - used, "%s%s", i ? " " : "",
-                 argument_of[v->quantity->takes[v->column[i]]].name);
+                 options[v->quantity->takes[v->column[i]]].name);
     }
     return text;
 }
 
-static int read_arguments(eval *v)
+static int read_options(eval *v, const cli_call *call)
 {
-    static const char *const forms[] = {"second", "assignment", NULL};
-    const cli_arguments *arguments = &v->arguments;
-    bool taken[ARGUMENTS] = {false};
-    int code = read_quantity(v);
-    if (code != CLI_GO || (code = cli_model(arguments, D, G, &v->choices.model)) != CLI_GO ||
-        (code = cli_choice(arguments, SHEEN, "--sheen", kiln_sheen_names(), &v->choices.sheen)) !=
-            CLI_GO ||
-        (code = cli_choice(arguments, F_ADD, "--f-add", forms, &v->choices.f_add)) != CLI_GO)
+    int code = cli_read_arguments(&v->arguments, &cli_eval, call, v);
+    if (code == CLI_GO)
+        code = read_quantity(v);
+    if (code != CLI_GO)
         return code;
-    for (int i = 0; i < MAX_ARGUMENTS && v->quantity->takes[i]; i++) {
-        argument which = v->quantity->takes[i];
-        char name[32];
-        snprintf(name, sizeof name, "--%s", argument_of[which].name);
-        code = cli_number(arguments, (int)which, name, argument_of[which].low,
-                          argument_of[which].high, &v->fixed[i]);
-        if (code != CLI_GO)
-            return code;
-        taken[which] = true;
-        v->count++;
-        if (!arguments->value[which])
+    const quantity *q = v->quantity;
+    for (int i = 0; i < ARGUMENTS; i++)
+        if (v->arguments.text[i] && !takes(q, i))
+            return cli_wrong(&cli_eval, "%s does not depend on --%s", q->name, options[i].name);
+    for (int i = 0; i < q->count; i++) {
+        v->fixed[i] = v->given[q->takes[i]];
+        if (!v->arguments.text[q->takes[i]])
             v->column[v->column_count++] = i;
     }
-    for (int i = 1; i < ARGUMENTS; i++)
-        if (arguments->value[i] && !taken[i])
-            return cli_wrong(&cli_eval, "%s does not depend on --%s", v->quantity->name,
-                             argument_of[i].name);
     char text[128];
     if (v->column_count && os_is_terminal(OS_INPUT))
         return cli_wrong(&cli_eval, "no --%s, and standard input has no lines of '%s'",
-                         argument_of[v->quantity->takes[v->column[0]]].name, columns(v, text));
+                         options[q->takes[v->column[0]]].name, columns(v, text));
     return CLI_GO;
 }
 
@@ -325,10 +308,10 @@ static int read_line(const eval *v, const char *line, size_t index, double *numb
         if (end == at || (*end && !strchr(" \t\r\n", *end)))
             return cli_fail("standard input: line %zu must be numbers, '%s'", index + 1,
                             columns(v, text));
-        if (!(numbers[i] >= argument_of[which].low && numbers[i] <= argument_of[which].high))
+        if (!(numbers[i] >= options[which].low && numbers[i] <= options[which].high))
             return cli_fail("standard input: line %zu: %s is %g, it must be from %g to %g",
-                            index + 1, argument_of[which].name, numbers[i], argument_of[which].low,
-                            argument_of[which].high);
+                            index + 1, options[which].name, numbers[i], options[which].low,
+                            options[which].high);
         at = end;
     }
     char text[128];
@@ -418,8 +401,8 @@ static void print_json(const eval *v, const double *x, double value)
 {
     printf("{\"quantity\": \"%s\", \"d\": \"%s\", \"g\": \"%s\"", v->quantity->name,
            kiln_d_names()[v->choices.model.d], kiln_g_names()[v->choices.model.g]);
-    for (int i = 0; i < v->count; i++) {
-        printf(", \"%s\": ", argument_of[v->quantity->takes[i]].name);
+    for (int i = 0; i < v->quantity->count; i++) {
+        printf(", \"%s\": ", options[v->quantity->takes[i]].name);
         print_argument(x[i]);
     }
     if (isfinite(value))
@@ -430,33 +413,31 @@ static void print_json(const eval *v, const double *x, double value)
 
 static void print_values(const eval *v)
 {
-    bool json = v->arguments.value[JSON], many = v->column_count > 0;
+    bool many = v->column_count > 0;
     size_t count = many ? v->line_count : 1;
     double x[MAX_ARGUMENTS];
     memcpy(x, v->fixed, sizeof x);
-    if (json && many)
+    if (v->json && many)
         fputs("[", stdout);
     for (size_t k = 0; k < count; k++) {
         for (int i = 0; i < v->column_count; i++)
             x[v->column[i]] = v->lines[k * (size_t)v->column_count + (size_t)i];
         double value = v->quantity->value(&v->choices, x);
-        if (json) {
+        if (v->json) {
             fputs(k ? ",\n" : many ? "\n" : "", stdout);
             print_json(v, x, value);
         } else {
             printf("%.12g\n", value);
         }
     }
-    if (json)
+    if (v->json)
         puts(many ? "\n]" : "");
 }
 
-static int run(int argc, const char **argv)
+static int run(const cli_call *call)
 {
     eval v = {0};
-    int code = cli_arguments_read(&v.arguments, &cli_eval, argc, argv);
-    if (code == CLI_GO)
-        code = read_arguments(&v);
+    int code = read_options(&v, call);
     if (code == CLI_GO && v.column_count)
         code = read_lines(&v);
     if (code == CLI_GO) {
@@ -464,41 +445,44 @@ static int run(int argc, const char **argv)
         code = CLI_DONE;
     }
     free(v.lines);
-    cli_arguments_free(&v.arguments);
     return code;
 }
+
+// "specular roughness mu nol noh".
+static const char *list(int index, char left[64])
+{
+    if (index >= QUANTITIES)
+        return NULL;
+    const quantity *q = &quantities[index];
+    snprintf(left, 64, "%s", q->name);
+    for (int i = 0; i < q->count; i++) {
+        size_t used = strlen(left);
+        snprintf(left + used, 64 - used, " %s", options[q->takes[i]].name);
+    }
+    return q->meaning;
+}
+
+static const cli_example examples[] = {
+    {"kiln eval e --roughness 0.5 --mu 0.5", "0.857263435582"},
+    {"kiln eval eavg --g schlick-k2 --roughness 0.5 --json",
+     "the same quantity of another model, for a program"},
+    {"seq 0 0.01 1 | kiln eval e --roughness 0.25", "101 values, mu from standard input"},
+    {NULL, NULL}};
 
 const cli_command cli_eval = {
     .name = "eval",
     .arguments = "QUANTITY [OPTION...]",
     .summary = "Evaluates functions of the reflection model.",
-    .details =
-        "Quantities, and what each depends on. What is not given by an option is read from\n"
-        "standard input: lines of these numbers in this order, a value printed for each.\n"
-        "  e a b                   roughness mu       E = A + B; specular albedo = F0 A + B\n"
-        "  eavg                    roughness          2 int E(mu) mu dmu\n"
-        "  sheen                   roughness mu       albedo of Charlie sheen\n"
-        "  d                       roughness noh      distribution of normals\n"
-        "  g                       roughness mu nol   masking and shadowing\n"
-        "  specular                roughness mu nol noh   D G / (4 mu nol)\n"
-        "  schlick                 f0 voh             Fresnel terms\n"
-        "  dielectric              ior voh\n"
-        "  conductor               n k voh\n"
-        "  schlick-avg             f0                 2 int F(mu) mu dmu\n"
-        "  dielectric-avg          ior                exact, and -fit: Kulla and Conty's\n"
-        "  conductor-avg           n k                exact\n"
-        "  conductor-avg-fit       reflectivity edge-tint   Kulla and Conty's fit\n"
-        "  kulla-conty             roughness mu nol   the lobe that adds what is missing\n"
-        "  f-add                   roughness f        its factor for F_avg = f\n"
-        "  turquin                 roughness mu f0    Turquin's factor to the specular lobe\n"
-        "\n"
-        "Examples:\n"
-        "  kiln eval e --roughness 0.5 --mu 0.5\n"
-        "      0.857263435582\n"
-        "  kiln eval eavg --g schlick-k2 --roughness 0.5 --json\n"
-        "      the same quantity of another model, for a program\n"
-        "  seq 0 0.01 1 | kiln eval e --roughness 0.25\n"
-        "      101 values, mu from standard input\n",
+    .about = "Values have twelve digits. Behind a quantity stands what it depends on. What is not "
+             "given by an "
+             "option is read from standard input: lines of these numbers in this order, a value "
+             "printed for "
+             "each.",
+    .more = "Values are printed in the order of the lines, once all lines have been read.",
+    .word = quantity_word,
+    .list_title = "Quantities",
+    .list = list,
+    .examples = examples,
     .options = options,
     .run = run,
 };

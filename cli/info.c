@@ -1,15 +1,16 @@
 // kiln info: what a file is.
-#include "cli.h"
+#include "json.h"
+#include "work.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 
-enum { JSON = 1 };
+typedef struct info_values {
+    bool json;
+} info_values;
 
-static const struct poptOption options[] = {
-    {"json", 0, POPT_ARG_NONE, NULL, JSON, "an array of objects, one a file", NULL},
-    CLI_HELP_OPTION,
-    POPT_TABLEEND,
+static const cli_option options[] = {
+    {"json", CLI_FLAG, offsetof(info_values, json), .help = "an array of objects, one a file"},
+    {.name = NULL},
 };
 
 static void print_engine(const char *name)
@@ -57,109 +58,104 @@ static void print_text(const char *path, const kiln_file_info *info)
         printf("  writer       %s\n", info->writer);
 }
 
-// The shortest number that is still this float.
-static cJSON *number(float value)
+static void print_json(json *j, const char *path, const kiln_file_info *info)
 {
-    char text[32];
-    for (int digits = 6; digits <= 9; digits++) {
-        snprintf(text, sizeof text, "%.*g", digits, (double)value);
-        if (strtof(text, NULL) == value)
-            break;
-    }
-    return cJSON_CreateNumber(strtod(text, NULL));
-}
-
-static cJSON *to_json(const char *path, const kiln_file_info *info)
-{
-    cJSON *json = cJSON_CreateObject();
-    cJSON_AddStringToObject(json, "path", path);
-    cJSON_AddStringToObject(json, "format", info->format);
-    cJSON_AddStringToObject(json, "encoding", info->encoding);
-    cJSON_AddStringToObject(json, "layout", info->layout);
-    cJSON_AddNumberToObject(json, "width", info->width);
-    cJSON_AddNumberToObject(json, "height", info->height);
-    cJSON_AddNumberToObject(json, "depth", info->depth);
-    cJSON_AddNumberToObject(json, "face_count", info->face_count);
-    cJSON_AddNumberToObject(json, "level_count", info->level_count);
-    cJSON_AddNumberToObject(json, "channel_count", info->channel_count);
-    cJSON_AddNumberToObject(json, "byte_count", (double)info->byte_count);
+    json_object(j, NULL);
+    json_text(j, "path", path);
+    json_text(j, "format", info->format);
+    json_text(j, "encoding", info->encoding);
+    json_text(j, "layout", info->layout);
+    json_number(j, "width", info->width);
+    json_number(j, "height", info->height);
+    json_number(j, "depth", info->depth);
+    json_number(j, "face_count", info->face_count);
+    json_number(j, "level_count", info->level_count);
+    json_number(j, "channel_count", info->channel_count);
+    json_number(j, "byte_count", (double)info->byte_count);
     if (info->roughness[0] >= 0) {
-        cJSON *roughness = cJSON_AddArrayToObject(json, "roughness");
+        json_array(j, "roughness");
         for (int k = 0; k < info->level_count && k < KILN_MAX_LEVELS; k++)
-            cJSON_AddItemToArray(roughness, number(info->roughness[k]));
+            json_float(j, NULL, info->roughness[k]);
+        json_end(j);
     }
     const kiln_engine *engine = kiln_engine_find(info->engine);
     if (info->engine[0])
-        cJSON_AddStringToObject(json, "engine", info->engine);
+        json_text(j, "engine", info->engine);
     if (engine)
-        cJSON_AddStringToObject(json, "mapping", engine->mapping);
+        json_text(j, "mapping", engine->mapping);
     if (info->table[0])
-        cJSON_AddStringToObject(json, "table", info->table);
+        json_text(j, "table", info->table);
     if (info->orientation[0])
-        cJSON_AddStringToObject(json, "orientation", info->orientation);
+        json_text(j, "orientation", info->orientation);
     if (info->writer[0])
-        cJSON_AddStringToObject(json, "writer", info->writer);
+        json_text(j, "writer", info->writer);
     if (info->sh_bands) {
-        cJSON *sh =
-            cJSON_AddArrayToObject(json, info->sh_irradiance ? "sh_irradiance" : "sh_radiance");
+        json_array(j, info->sh_irradiance ? "sh_irradiance" : "sh_radiance");
         for (int i = 0; i < info->sh_bands * info->sh_bands; i++) {
-            cJSON *row = cJSON_CreateArray();
+            json_array(j, NULL);
             for (int c = 0; c < 3; c++)
-                cJSON_AddItemToArray(row, number(info->sh[i][c]));
-            cJSON_AddItemToArray(sh, row);
+                json_float(j, NULL, info->sh[i][c]);
+            json_end(j);
         }
+        json_end(j);
     }
-    return json;
+    json_end(j);
 }
 
-static int describe(const cli_arguments *a, cli_job *job)
+static int describe(const cli_arguments *a, bool as_json, cli_work *work)
 {
     int code = CLI_DONE;
-    cJSON *list = a->value[JSON] ? cJSON_CreateArray() : NULL;
+    json j = {0};
+    if (as_json)
+        json_array(&j, NULL);
     for (int i = 0; i < a->rest_count && !cli_interrupted(); i++) {
         kiln_file_info info;
-        if (kiln_file_describe(job->context, a->rest[i], &info, &job->error)) {
+        if (kiln_file_describe(work->context, a->rest[i], &info, &work->error)) {
             if (!cli_interrupted())
-                cli_fail("%s", job->error.message);
-            job->error.message[0] = 0; // said
+                cli_fail("%s", work->error.message);
+            work->error.message[0] = 0; // said
             code = CLI_FAILED;
-        } else if (list) {
-            cJSON_AddItemToArray(list, to_json(a->rest[i], &info));
+        } else if (as_json) {
+            print_json(&j, a->rest[i], &info);
         } else {
             print_text(a->rest[i], &info);
         }
     }
-    if (list && cli_print_json(list) != CLI_DONE)
-        code = CLI_FAILED;
+    if (as_json)
+        json_end(&j);
     return cli_interrupted() ? CLI_FAILED : code;
 }
 
-static int run(int argc, const char **argv)
+static int run(const cli_call *call)
 {
     cli_arguments a;
-    cli_job job;
-    int code = cli_arguments_read(&a, &cli_info, argc, argv);
-    if (code == CLI_GO && a.rest_count == 0)
-        code = cli_wrong(&cli_info, "no input: name a file");
-    if (code == CLI_GO) {
-        code = cli_job_begin(&job, 1, false);
-        if (code == CLI_GO)
-            code = describe(&a, &job);
-        code = cli_job_end(&job, code);
-    }
-    cli_arguments_free(&a);
-    return code;
+    cli_work work;
+    info_values values;
+    int code = cli_read_arguments(&a, &cli_info, call, &values);
+    if (code != CLI_GO)
+        return code;
+    if (a.rest_count == 0)
+        return cli_wrong(&cli_info, "no input: name a file");
+    code = cli_begin_work(&work, 1, false);
+    if (code == CLI_GO)
+        code = describe(&a, values.json, &work);
+    return cli_end_work(&work, code);
 }
+
+static const cli_example examples[] = {
+    {"kiln info city.exr city.ktx2",
+     "format, layout, size, roughness of the levels, spherical harmonics"},
+    {"kiln info --json city.ktx2", "the same for a program"},
+    {NULL, NULL}};
 
 const cli_command cli_info = {
     .name = "info",
     .arguments = "FILE... [OPTION...]",
     .summary = "Describes files that kiln reads or writes.",
-    .details = "Examples:\n"
-               "  kiln info city.exr city.ktx2\n"
-               "      format, layout, size, roughness of the levels, spherical harmonics\n"
-               "  kiln info --json city.ktx2\n"
-               "      the same for a program\n",
+    .about = "Format, encoding, layout, size, roughness of the levels, spherical harmonics and the "
+             "engine, of files "
+             "that kiln writes for an engine too.",
+    .examples = examples,
     .options = options,
     .run = run,
 };

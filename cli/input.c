@@ -1,5 +1,5 @@
 // What a command reads: one name, or six faces by name or in order.
-#include "cli.h"
+#include "work.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -86,30 +86,30 @@ static void copy_face(const kiln_image *image, float *face)
         }
 }
 
-static int load_faces(cli_job *job, const char **names, kiln_map *map)
+static int load_faces(cli_work *work, const char **names, kiln_map *map)
 {
     int code = CLI_FAILED, order[FACES];
     kiln_image image = {0};
     order_faces(names, order);
     for (int face = 0; face < FACES; face++) {
         const char *name = names[order[face]];
-        if (kiln_image_load(job->context, name, &image, &job->error) != KILN_OK)
+        if (kiln_image_load(work->context, name, &image, &work->error) != KILN_OK)
             goto done;
         int size = image.width;
-        job->error.result = KILN_ERROR_FORMAT;
+        work->error.result = KILN_ERROR_FORMAT;
         if (image.width != image.height) {
-            snprintf(job->error.message, sizeof job->error.message,
+            snprintf(work->error.message, sizeof work->error.message,
                      "%s: is %d x %d, the face of a cube must be square", name, image.width,
                      image.height);
             goto done;
         }
         if (face && size != map->size) {
-            snprintf(job->error.message, sizeof job->error.message,
+            snprintf(work->error.message, sizeof work->error.message,
                      "%s: is %d x %d, but %s is %d x %d", name, size, size, names[order[0]],
                      map->size, map->size);
             goto done;
         }
-        if (!face && kiln_map_create(job->context, KILN_SHAPE_CUBE, size, 1, map, &job->error))
+        if (!face && kiln_map_create(work->context, KILN_SHAPE_CUBE, size, 1, map, &work->error))
             goto done;
         copy_face(&image, map->level[0] + (size_t)face * (size_t)size * (size_t)size * 3);
         kiln_image_free(&image);
@@ -122,11 +122,11 @@ done:
     return code;
 }
 
-int cli_load(cli_job *job, const char **names, int count, enum kiln_layout layout, kiln_map *map)
+int cli_load(cli_work *work, const char **names, int count, kiln_layout layout, kiln_map *map)
 {
     if (count == FACES)
-        return load_faces(job, names, map);
+        return load_faces(work, names, map);
     kiln_load_def def = {.layout = layout};
-    return kiln_map_load(job->context, names[0], &def, map, &job->error) == KILN_OK ? CLI_GO
-                                                                                    : CLI_FAILED;
+    return kiln_map_load(work->context, names[0], &def, map, &work->error) == KILN_OK ? CLI_GO
+                                                                                      : CLI_FAILED;
 }

@@ -1,17 +1,22 @@
-// What the commands about the reflection model share: its options, and names in source code.
+// What the commands about the reflection model share: words of its options, and names in source code.
 #include "cli.h"
 
 #include <ctype.h>
 #include <string.h>
 
-int cli_model(const cli_arguments *a, int option_d, int option_g, kiln_model *model)
+const char *cli_d_word(int index)
 {
-    int d = (int)model->d, g = (int)model->g;
-    int code = cli_choice(a, option_d, "--d", kiln_d_names(), &d);
-    if (code == CLI_GO)
-        code = cli_choice(a, option_g, "--g", kiln_g_names(), &g);
-    *model = (kiln_model){.d = (kiln_d)d, .g = (kiln_g)g};
-    return code;
+    return kiln_d_names()[index];
+}
+
+const char *cli_g_word(int index)
+{
+    return kiln_g_names()[index];
+}
+
+const char *cli_sheen_word(int index)
+{
+    return kiln_sheen_names()[index];
 }
 
 // Lower-case words that C or GLSL ES 3.00 keeps for itself. Of its vectors, matrices and samplers GLSL
@@ -43,10 +48,10 @@ static bool is_reserved(const char *name)
     return false;
 }
 
-int cli_source_name(const cli_arguments *a, int option)
+int cli_check_source_name(const cli_arguments *a, int option)
 {
     enum { LONGEST = 47 };
-    const char *name = a->value[option];
+    const char *name = a->text[option];
     if (!name)
         return CLI_GO;
     bool good = isalpha((unsigned char)*name) && strlen(name) <= LONGEST && !strstr(name, "__") &&
@@ -57,5 +62,5 @@ int cli_source_name(const cli_arguments *a, int option)
                 : cli_wrong(a->command,
                             "--%s is '%s', it must be letters, digits and single underscores, "
                             "%d at most, a letter first, no gl_ and no word of C's or GLSL's",
-                            cli_option_name(a->command, option), name, LONGEST);
+                            a->command->options[option].name, name, LONGEST);
 }

@@ -1,105 +1,120 @@
 // kiln render: the scenes without a window.
-#include "cli.h"
-#include "look.h"
+#include "scene_setup.h"
 
 #include "headless.h"
 #include "reference.h"
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
-enum { OUTPUT = 1, REFERENCE, ERRORS, WALK, ALONE, BOUNCES, NOISE, THREADS, QUIET };
-
-static const struct poptOption options[] = {
-    {"output", 'o', POPT_ARG_STRING, NULL, OUTPUT,
-     "the picture: .png as a screen shows it; .exr or .hdr, linear light", "FILE"},
-    {NULL, 0, POPT_ARG_INCLUDE_TABLE, (void *)look_options, 0, "The view:", NULL},
-    {"reference", 0, POPT_ARG_NONE, NULL, REFERENCE,
-     "integrate the light on the CPU, without approximation", NULL},
-    {"error", 0, POPT_ARG_NONE, NULL, ERRORS,
-     "show the real-time picture's error against the reference", NULL},
-    {"walk", 0, POPT_ARG_NONE, NULL, WALK,
-     "reference: further bounces by random walk, not by --method", NULL},
-    {"alone", 0, POPT_ARG_NONE, NULL, ALONE,
-     "reference: balls do not see one another, as in the real-time picture", NULL},
-    {"bounces", 0, POPT_ARG_STRING, NULL, BOUNCES,
-     "reference: light that would meet more balls is lost, 1 to 1000 (all of it is kept)", "N"},
-    {"noise", 0, POPT_ARG_STRING, NULL, NOISE,
-     "relative standard error at which the reference stops, 1e-4 to 1 (0.01)", "E"},
-    {"threads", 0, POPT_ARG_STRING, NULL, THREADS, "1 to 256, one a core by default", "N"},
-    {"quiet", 'q', POPT_ARG_NONE, NULL, QUIET, "print nothing but errors", NULL},
-    CLI_HELP_OPTION,
-    POPT_TABLEEND,
+enum {
+    OUTPUT = SCENE_OPTIONS,
+    REFERENCE,
+    ERRORS,
+    WALK,
+    ALONE,
+    BOUNCES,
+    NOISE,
+    THREADS,
+    QUIET,
+    OPTIONS
 };
 
 typedef struct render {
-    look look;
+    scene_setup setup; // first: the shared rows write there
+    cli_arguments arguments;
+    const char *output;
     int threads, bounces;
-    bool reference, errors, walk, alone;
+    bool reference, errors, walk, alone, quiet;
     double noise;
 } render;
 
+#define AT(field) offsetof(render, field)
+
+static const cli_option options[OPTIONS + 1] = {
+    SCENE_ROWS,
+    [OUTPUT] = {"output", CLI_FILE, AT(output), .value = "FILE", .letter = 'o', .group = "Output",
+                .help = "the picture: .png as a screen shows it; .exr or .hdr, linear light"},
+    [REFERENCE] =
+        {"reference", CLI_FLAG, AT(reference),
+         .help = "integrate the light on the CPU, without prefiltered levels or split sums, from "
+                 "the environment's own texels, with the light that balls throw on one another"},
+    [ERRORS] =
+        {"error", CLI_FLAG, AT(errors),
+         .help =
+             "show the real-time picture's error against the reference, relative to the mean of "
+             "the balls: red too bright, blue too dark, full at 25 %; signed numbers in .exr"},
+    [WALK] =
+        {"walk", CLI_FLAG, AT(walk),
+         .help =
+             "the reference's bounces from the second one on come from a random walk between the "
+             "microfacets (Heitz et al. 2016), not from --method",
+         .more = "With --error one sees what the method gets wrong too."},
+    [ALONE] = {"alone", CLI_FLAG, AT(alone),
+               .help = "the reference's balls do not see one another, as in the real-time picture",
+               .more = "With --occlusion they are black to one another."},
+    [BOUNCES] = {"bounces", CLI_INTEGER, AT(bounces), 1, 1000, 0, "N",
+                 .help = "the reference loses light that would meet more balls than N",
+                 .unset = "no limit"},
+    [NOISE] = {"noise", CLI_NUMBER, AT(noise), 1e-4, 1, 0.01, "E",
+               .help = "relative standard error of a pixel at which the reference stops"},
+    [THREADS] = CLI_THREADS_ROW(render),
+    [QUIET] = CLI_QUIET_ROW(render),
+};
+
 // Options of the reference without one.
-static int check_reference(const cli_arguments *a, const render *r)
+static int check_reference(const render *r)
 {
-    static const struct {
-        int option;
-        const char *name;
-    } of_it[] = {{NOISE, "--noise"}, {WALK, "--walk"}, {ALONE, "--alone"}, {BOUNCES, "--bounces"}};
+    static const int of_reference[] = {NOISE, WALK, ALONE, BOUNCES};
+    const char *const *given = r->arguments.text;
+    bool reference = r->reference || r->errors;
     if (r->reference && r->errors)
         return cli_wrong(&cli_render, "--reference and --error contradict each other");
-    for (size_t i = 0; i < sizeof of_it / sizeof *of_it && !r->reference && !r->errors; i++)
-        if (a->value[of_it[i].option])
-            return cli_wrong(&cli_render, "%s needs --reference or --error", of_it[i].name);
-    if (r->alone && a->value[BOUNCES])
+    for (size_t i = 0; i < sizeof of_reference / sizeof *of_reference && !reference; i++)
+        if (given[of_reference[i]])
+            return cli_wrong(&cli_render, "--%s needs --reference or --error",
+                             options[of_reference[i]].name);
+    if (r->alone && given[BOUNCES])
         return cli_wrong(&cli_render, "--alone and --bounces contradict each other");
-    if (r->walk && r->look.options.scene == VIEW_SCENE_ASSIGNMENT)
+    if (r->walk && r->setup.options.scene == VIEW_SCENE_ASSIGNMENT)
         return cli_wrong(&cli_render, "--walk: the scene assignment has a light of no size");
-    if ((r->reference || r->errors) && r->look.options.debug)
+    if (reference && r->setup.options.debug)
         return cli_wrong(&cli_render, "--debug has no reference");
     return CLI_GO;
 }
 
-static int read_arguments(const cli_arguments *a, render *r)
+static int read_options(render *r, const cli_call *call)
 {
-    if (!a->value[OUTPUT])
-        return cli_wrong(&cli_render, "no output: name it by -o FILE");
-    const char *ending = cli_ending(a->value[OUTPUT]);
-    if (strcmp(ending, "png") != 0 && strcmp(ending, "exr") != 0 && strcmp(ending, "hdr") != 0)
-        return cli_wrong(&cli_render, "--output %s: must end in .png, .exr or .hdr",
-                         a->value[OUTPUT]);
-    r->reference = a->value[REFERENCE];
-    r->errors = a->value[ERRORS];
-    r->walk = a->value[WALK];
-    r->alone = a->value[ALONE];
-    int code = look_read(a, &r->look);
+    int code = cli_read_arguments(&r->arguments, &cli_render, call, r);
     if (code != CLI_GO)
         return code;
-    if ((code = check_reference(a, r)) != CLI_GO)
+    if (!r->output)
+        return cli_wrong(&cli_render, "no output: name it by -o FILE");
+    if (!cli_ends_in(r->output, "png") && !cli_ends_in(r->output, "exr") &&
+        !cli_ends_in(r->output, "hdr"))
+        return cli_wrong(&cli_render, "--output %s: must end in .png, .exr or .hdr", r->output);
+    code = scene_read(&r->arguments, false, &r->setup);
+    if (code == CLI_GO)
+        code = check_reference(r);
+    if (code != CLI_GO)
         return code;
-    if (r->errors && !strcmp(ending, "hdr"))
-        return cli_wrong(&cli_render, "--output %s: .hdr cannot hold an error's sign",
-                         a->value[OUTPUT]);
-    if ((code = cli_integer(a, THREADS, "--threads", 1, 256, &r->threads)) != CLI_GO ||
-        (code = cli_integer(a, BOUNCES, "--bounces", 1, 1000, &r->bounces)) != CLI_GO ||
-        (code = cli_number(a, NOISE, "--noise", 1e-4, 1, &r->noise)) != CLI_GO)
-        return code;
-    return cli_check_folder(a->value[OUTPUT]);
+    if (r->errors && cli_ends_in(r->output, "hdr"))
+        return cli_wrong(&cli_render, "--output %s: .hdr cannot hold an error's sign", r->output);
+    return cli_check_folder(r->output);
 }
 
-static int draw(cli_job *job, const look *l, const kiln_map *source, bool linear, char name[128],
-                kiln_image *image)
+static int draw(cli_work *work, const scene_setup *s, const kiln_map *source, bool linear,
+                char name[128], kiln_image *image)
 {
     view_headless *headless = NULL;
     view_renderer *renderer = NULL;
     int code = CLI_FAILED;
-    if (view_headless_create(&headless, &job->error) ||
-        view_create(job->context, view_headless_lookup, &renderer, &job->error))
+    if (view_headless_create(&headless, &work->error) ||
+        view_create(work->context, view_headless_lookup, &renderer, &work->error))
         goto done;
-    if (look_has_environment(l) && look_bake(job, l, source, renderer) != CLI_GO)
+    if (scene_has_environment(s) && scene_bake(work, s, source, renderer) != CLI_GO)
         goto done;
-    if (view_picture(renderer, &l->options, l->width, l->height, linear, image, &job->error))
+    if (view_picture(renderer, &s->options, s->width, s->height, linear, image, &work->error))
         goto done;
     snprintf(name, 128, "%s", view_gl_name(renderer));
     code = CLI_GO;
@@ -109,19 +124,19 @@ done:
     return code;
 }
 
-static int integrate(cli_job *job, const render *r, const kiln_map *source, bool linear,
+static int integrate(cli_work *work, const render *r, const kiln_map *source, bool linear,
                      kiln_image *image, view_reference_report *report)
 {
-    const view_options *o = &r->look.options;
+    const view_options *o = &r->setup.options;
     view_reference_def def = {.noise = r->noise,
                               .walk = r->walk,
                               .alone = r->alone,
                               .bounces = r->bounces,
                               .thread_count = r->threads,
                               .progress = cli_progress,
-                              .progress_user = job};
-    if (view_reference(job->context, o, source->size ? source : NULL, r->look.width, r->look.height,
-                       &def, image, report, &job->error))
+                              .progress_user = work};
+    if (view_reference(work->context, o, source->size ? source : NULL, r->setup.width,
+                       r->setup.height, &def, image, report, &work->error))
         return CLI_FAILED;
     size_t count = linear ? 0 : (size_t)image->width * (size_t)image->height;
     for (size_t i = 0; i < count; i++) {
@@ -136,31 +151,31 @@ static int integrate(cli_job *job, const render *r, const kiln_map *source, bool
 }
 
 // The picture that was asked for, and the words about it.
-static int make(cli_job *job, const render *r, bool linear, kiln_image *image, char words[256],
+static int make(cli_work *work, const render *r, bool linear, kiln_image *image, char words[256],
                 view_error *errors)
 {
     kiln_map source = {0};
     kiln_image truth = {0};
     view_reference_report report = {0};
     char name[128] = "";
-    int code = look_has_environment(&r->look) ? look_load(job, &r->look, &source) : CLI_GO;
+    int code = scene_has_environment(&r->setup) ? scene_load(work, &r->setup, &source) : CLI_GO;
     if (code == CLI_GO && r->reference) {
-        code = integrate(job, r, &source, linear, image, &report);
+        code = integrate(work, r, &source, linear, image, &report);
         snprintf(words, 256, "integrated to a noise of %.2g, %.0f samples a ray", report.noise,
                  report.batches);
     } else if (code == CLI_GO && r->errors) {
         view_error e = {0};
-        code = draw(job, &r->look, &source, true, name, image);
+        code = draw(work, &r->setup, &source, true, name, image);
         if (code == CLI_GO)
-            code = integrate(job, r, &source, true, &truth, &report);
+            code = integrate(work, r, &source, true, &truth, &report);
         if (code == CLI_GO)
-            e = view_compare(&r->look.options, image, &truth, !linear);
+            e = view_compare(&r->setup.options, image, &truth, !linear);
         snprintf(words, 256, "error RMS %.3g, largest %.3g, on screen %.2f of 255, noise %.2g",
                  e.rms, e.largest, e.screen, report.noise);
         if (code == CLI_GO)
             *errors = e;
     } else if (code == CLI_GO) {
-        code = draw(job, &r->look, &source, linear, name, image);
+        code = draw(work, &r->setup, &source, linear, name, image);
         snprintf(words, 256, "by %s", name);
     }
     kiln_image_free(&truth);
@@ -179,57 +194,52 @@ static void print_errors(const view_options *o, const view_error *e)
                view_method_name((int)balls[i].method), e->ball[i], e->ball_screen[i]);
 }
 
-static int run(int argc, const char **argv)
+static int run(const cli_call *call)
 {
-    cli_arguments a;
-    cli_job job;
-    render r = {.noise = 0.01};
-    int code = cli_arguments_read(&a, &cli_render, argc, argv);
+    cli_work work;
+    render r = {.noise = 0};
+    char words[256] = "";
+    kiln_image image = {0};
+    view_error errors = {.rms = 0};
+    int code = read_options(&r, call);
+    if (code != CLI_GO)
+        return code;
+    code = cli_begin_work(&work, r.threads, r.quiet);
     if (code == CLI_GO)
-        code = read_arguments(&a, &r);
-    if (code == CLI_GO) {
-        const char *path = a.value[OUTPUT];
-        char words[256] = "";
-        kiln_image image = {0};
-        view_error errors = {.rms = 0};
-        code = cli_job_begin(&job, r.threads, a.value[QUIET]);
-        if (code == CLI_GO)
-            code = make(&job, &r, strcmp(cli_ending(path), "png") != 0, &image, words, &errors);
-        if (code == CLI_GO)
-            code = kiln_image_save(job.context, &image, path, &job.error) ? CLI_FAILED : CLI_DONE;
-        cli_clear_progress(&job);
-        if (code == CLI_DONE && !a.value[QUIET])
-            printf("%s: %s, %d x %d, %s, %.2f s\n", path,
-                   view_scene_name((int)r.look.options.scene), r.look.width, r.look.height, words,
-                   cli_seconds() - job.began);
-        if (code == CLI_DONE && !a.value[QUIET])
-            print_errors(&r.look.options, &errors);
-        kiln_image_free(&image);
-        code = cli_job_end(&job, code);
+        code = make(&work, &r, !cli_ends_in(r.output, "png"), &image, words, &errors);
+    if (code == CLI_GO)
+        code = kiln_image_save(work.context, &image, r.output, &work.error) ? CLI_FAILED : CLI_DONE;
+    cli_clear_progress(&work);
+    if (code == CLI_DONE && !r.quiet) {
+        printf("%s: %s, %d x %d, %s, %.2f s\n", r.output,
+               view_scene_name((int)r.setup.options.scene), r.setup.width, r.setup.height, words,
+               cli_elapsed(&work));
+        print_errors(&r.setup.options, &errors);
     }
-    cli_arguments_free(&a);
-    return code;
+    kiln_image_free(&image);
+    return cli_end_work(&work, code);
 }
+
+static const cli_example examples[] = {
+    {"kiln render -o balls.png", "the assignment's two rows: Kulla-Conty above, one bounce below"},
+    {"kiln render city.exr -o gold.png --material gold --exposure -1", "gold in a city"},
+    {"kiln render city.exr -o compare.png --scene compare",
+     "the exact bake left, the textbook's right"},
+    {"kiln render city.exr -o error.png --error --size 640x360",
+     "what prefiltered levels and tables get wrong, and where"},
+    {"kiln render -o furnace.exr --scene furnace", "where nothing may be seen, in linear light"},
+    {NULL, NULL}};
 
 const cli_command cli_render = {
     .name = "render",
     .arguments = "[ENV] -o FILE [OPTION...]",
     .summary = "Renders rows of balls, lit by the assignment's light or an environment.",
-    .details =
-        "ENV is a panorama or anything else that `kiln bake` reads; a baked .ktx2 is used as it\n"
-        "is. Without one, scenes that need an environment stand under a sky.\n"
-        "\n"
-        "Examples:\n"
-        "  kiln render -o balls.png\n"
-        "      the assignment's two rows: Kulla-Conty above, one bounce below\n"
-        "  kiln render city.exr -o gold.png --material gold --exposure -1\n"
-        "      gold in a city\n"
-        "  kiln render city.exr -o compare.png --scene compare\n"
-        "      the exact bake left, the textbook's right\n"
-        "  kiln render city.exr -o error.png --error --size 640x360\n"
-        "      what prefiltered levels and tables get wrong, and where\n"
-        "  kiln render -o furnace.exr --scene furnace\n"
-        "      where nothing may be seen, in linear light\n",
+    .about =
+        "ENV is a panorama or anything else that kiln bake reads; a baked .ktx2 is used as it is. "
+        "Without one, scenes that need an environment stand under a sky. Pictures are drawn by "
+        "OpenGL "
+        "ES 3.0, without a screen.",
+    .examples = examples,
     .options = options,
     .run = run,
 };

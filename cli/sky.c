@@ -1,89 +1,95 @@
 // kiln sky: a daylight panorama, for when there is no other.
-#include "cli.h"
+#include "work.h"
 
 #include <stdio.h>
-#include <string.h>
 
-enum { OUTPUT = 1, SIZE, ELEVATION, AZIMUTH, TURBIDITY, ALBEDO, QUIET };
+enum { OUTPUT, ELEVATION, AZIMUTH, TURBIDITY, ALBEDO, SIZE, QUIET, OPTIONS };
 
-static const struct poptOption options[] = {
-    {"output", 'o', POPT_ARG_STRING, NULL, OUTPUT, "the panorama, .exr (32-bit) or .hdr", "FILE"},
-    {"elevation", 0, POPT_ARG_STRING, NULL, ELEVATION,
-     "of the sun above the horizon, -5 to 90 (30)", "DEGREES"},
-    {"azimuth", 0, POPT_ARG_STRING, NULL, AZIMUTH, "of the sun, from the centre to the right (0)",
-     "DEGREES"},
-    {"turbidity", 0, POPT_ARG_STRING, NULL, TURBIDITY, "1.7 (clear) to 10 (hazy) (3)", "T"},
-    {"albedo", 0, POPT_ARG_STRING, NULL, ALBEDO, "of the ground below, 0 to 1 (0.2)", "A"},
-    {"size", 0, POPT_ARG_STRING, NULL, SIZE, "rows, 16 to 8192 (512)", "N"},
-    {"quiet", 'q', POPT_ARG_NONE, NULL, QUIET, "print nothing but errors", NULL},
-    CLI_HELP_OPTION,
-    POPT_TABLEEND,
+typedef struct sky {
+    const char *output;
+    kiln_sky_def def;
+    bool quiet;
+} sky;
+
+#define AT(field) offsetof(sky, field)
+
+static const cli_option options[OPTIONS + 1] = {
+    [OUTPUT] = {"output", CLI_FILE, AT(output), .value = "FILE", .letter = 'o',
+                .help = "the panorama, .exr (32-bit floats) or .hdr"},
+    [ELEVATION] = {"elevation", CLI_NUMBER, AT(def.elevation), -5, 90, 30, "DEGREES",
+                   .help = "of the sun above the horizon"},
+    [AZIMUTH] = {"azimuth", CLI_NUMBER, AT(def.azimuth), -360, 360, 0, "DEGREES",
+                 .help = "of the sun, from the picture's centre to the right"},
+    [TURBIDITY] = {"turbidity", CLI_NUMBER, AT(def.turbidity), 1.7, 10, 3, "T",
+                   .help = "haze of the air: 1.7 is clear"},
+    [ALBEDO] = {"albedo", CLI_NUMBER, AT(def.albedo), 0, 1, 0.2, "A",
+                .help = "of the ground below"},
+    [SIZE] = {"size", CLI_INTEGER, AT(def.size), 16, 8192, 512, "N",
+              .help = "rows; twice as many columns"},
+    [QUIET] = CLI_QUIET_ROW(sky),
 };
 
-static int read_def(const cli_arguments *a, kiln_sky_def *def)
-{
-    int code;
-    if (a->rest_count)
-        return cli_wrong(&cli_sky, "%s: sky takes no input; name the output by -o FILE",
-                         a->rest[0]);
-    if (!a->value[OUTPUT])
-        return cli_wrong(&cli_sky, "no output: name it by -o FILE");
-    const char *ending = cli_ending(a->value[OUTPUT]);
-    if (strcmp(ending, "exr") != 0 && strcmp(ending, "hdr") != 0)
-        return cli_wrong(&cli_sky, "--output %s: must end in .exr or .hdr", a->value[OUTPUT]);
-    if ((code = cli_number(a, ELEVATION, "--elevation", -5, 90, &def->elevation)) != CLI_GO ||
-        (code = cli_number(a, AZIMUTH, "--azimuth", -360, 360, &def->azimuth)) != CLI_GO ||
-        (code = cli_number(a, TURBIDITY, "--turbidity", 1.7, 10, &def->turbidity)) != CLI_GO ||
-        (code = cli_number(a, ALBEDO, "--albedo", 0, 1, &def->albedo)) != CLI_GO ||
-        (code = cli_integer(a, SIZE, "--size", 16, 8192, &def->size)) != CLI_GO)
-        return code;
-    if (a->value[ELEVATION] && def->elevation == 0)
-        def->elevation = KILN_ZERO;
-    if (a->value[ALBEDO] && def->albedo == 0)
-        def->albedo = KILN_ZERO;
-    return cli_check_folder(a->value[OUTPUT]);
-}
-
-static int run(int argc, const char **argv)
+static int read_options(sky *s, const cli_call *call)
 {
     cli_arguments a;
-    cli_job job;
-    kiln_sky_def def = {.size = 512};
-    int code = cli_arguments_read(&a, &cli_sky, argc, argv);
-    if (code == CLI_GO)
-        code = read_def(&a, &def);
-    if (code == CLI_GO) {
-        const char *path = a.value[OUTPUT];
-        // A noon sun is beyond what half floats hold.
-        bool exr = !strcmp(cli_ending(path), "exr");
-        kiln_save_def save = {.format = exr ? KILN_FORMAT_RGBA32F : KILN_FORMAT_AUTO};
-        kiln_map map = {0};
-        code = cli_job_begin(&job, 0, a.value[QUIET]);
-        if (code == CLI_GO)
-            code = kiln_sky(job.context, &def, &map, &job.error) ||
-                           kiln_map_save(job.context, &map, path, &save, NULL, &job.error)
-                       ? CLI_FAILED
-                       : CLI_DONE;
-        cli_clear_progress(&job);
-        if (code == CLI_DONE && !a.value[QUIET])
-            printf("%s: panorama of %d x %d, in kcd/m2, %.2f s\n", path, 2 * map.size, map.size,
-                   cli_seconds() - job.began);
-        kiln_map_free(&map);
-        code = cli_job_end(&job, code);
-    }
-    cli_arguments_free(&a);
-    return code;
+    int code = cli_read_arguments(&a, &cli_sky, call, s);
+    if (code != CLI_GO)
+        return code;
+    if (a.rest_count)
+        return cli_wrong(&cli_sky, "%s: sky takes no input; name the output by -o FILE", a.rest[0]);
+    if (!s->output)
+        return cli_wrong(&cli_sky, "no output: name it by -o FILE");
+    if (!cli_ends_in(s->output, "exr") && !cli_ends_in(s->output, "hdr"))
+        return cli_wrong(&cli_sky, "--output %s: must end in .exr or .hdr", s->output);
+    if (s->def.elevation == 0)
+        s->def.elevation = KILN_ZERO; // the library takes 0 for its default
+    if (s->def.albedo == 0)
+        s->def.albedo = KILN_ZERO;
+    return cli_check_folder(s->output);
 }
+
+static int make(cli_work *work, const sky *s, kiln_map *map)
+{
+    // A noon sun is beyond what half floats hold.
+    bool exr = cli_ends_in(s->output, "exr");
+    kiln_save_def save = {.format = exr ? KILN_FORMAT_RGBA32F : KILN_FORMAT_AUTO};
+    if (kiln_sky(work->context, &s->def, map, &work->error) ||
+        kiln_map_save(work->context, map, s->output, &save, NULL, &work->error))
+        return CLI_FAILED;
+    return CLI_DONE;
+}
+
+static int run(const cli_call *call)
+{
+    sky s = {0};
+    cli_work work;
+    kiln_map map = {0};
+    int code = read_options(&s, call);
+    if (code != CLI_GO)
+        return code;
+    code = cli_begin_work(&work, 0, s.quiet);
+    if (code == CLI_GO)
+        code = make(&work, &s, &map);
+    cli_clear_progress(&work);
+    if (code == CLI_DONE && !s.quiet)
+        printf("%s: panorama of %d x %d, in kcd/m2, %.2f s\n", s.output, 2 * map.size, map.size,
+               cli_elapsed(&work));
+    kiln_map_free(&map);
+    return cli_end_work(&work, code);
+}
+
+static const cli_example examples[] = {
+    {"kiln sky -o sky.exr", "a clear sky, the sun 30 degrees high, 1024 x 512"},
+    {"kiln sky -o evening.hdr --elevation 4 --azimuth 60 --turbidity 6",
+     "a low sun to the right, in haze"},
+    {NULL, NULL}};
 
 const cli_command cli_sky = {
     .name = "sky",
     .arguments = "-o FILE [OPTION...]",
     .summary = "Makes a daylight panorama with a sun.",
-    .details = "Examples:\n"
-               "  kiln sky -o sky.exr\n"
-               "      a clear sky, the sun 30 degrees high, 1024 x 512\n"
-               "  kiln sky -o evening.hdr --elevation 4 --azimuth 60 --turbidity 6\n"
-               "      a low sun to the right, in haze\n",
+    .about = "Radiance is in kcd/m2.",
+    .examples = examples,
     .options = options,
     .run = run,
 };

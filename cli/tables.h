@@ -2,15 +2,14 @@
 #ifndef KILN_CLI_TABLES_H
 #define KILN_CLI_TABLES_H
 
-#include "cli.h"
+#include "work.h"
 
 enum {
-    TABLES_OUTPUT = 1,
-    TABLES_ASSIGNMENT,
-    TABLES_METHOD,
+    TABLES_OUTPUT,
+    TABLES_FOR,
     TABLES_TABLE,
-    TABLES_D,
     TABLES_G,
+    TABLES_D,
     TABLES_SHEEN,
     TABLES_SIZE,
     TABLES_AXIS,
@@ -23,15 +22,30 @@ enum {
     TABLES_LOOKUP,
     TABLES_NAME,
     TABLES_PATHS,
+    TABLES_ASSIGNMENT,
+    TABLES_METHOD,
     TABLES_SAMPLES,
     TABLES_THREADS,
     TABLES_JSON,
-    TABLES_FOR,
-    TABLES_QUIET
+    TABLES_QUIET,
+    TABLES_OPTIONS
 };
 
+typedef struct tables {
+    cli_arguments arguments;
+    const char *output, *average, *size;
+    kiln_table_def def;
+    kiln_table_save_def save;
+    int engine; ///< index of tables_engines, -1 without --for
+    int method, samples, threads;
+    bool assignment, lookup, json, quiet;
+    char lookup_path[2][4096]; ///< the files of the code that reads the table
+} tables;
+
+/// The words of --for; NULL behind the last.
+const char *tables_engine_word(int index);
 /// The exact tables: a file, with --lookup the code that reads it, with --average its mean. The exit
 /// code.
-int tables_exact(const cli_arguments *a);
+int tables_make_exact(tables *t);
 
 #endif

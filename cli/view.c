@@ -1,7 +1,6 @@
 // kiln view: the scenes in a window.
-#include "cli.h"
-#include "look.h"
 #include "os.h"
+#include "scene_setup.h"
 
 #include "controls.h"
 #include "window.h"
@@ -9,17 +8,21 @@
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdio.h>
-#include <string.h>
 
-enum { SCREENSHOT = 1, THREADS };
+enum { SCREENSHOT = SCENE_OPTIONS, THREADS, OPTIONS };
 
-static const struct poptOption options[] = {
-    {NULL, 0, POPT_ARG_INCLUDE_TABLE, (void *)look_options, 0, "The view:", NULL},
-    {"screenshot", 0, POPT_ARG_STRING, NULL, SCREENSHOT,
-     "draw once, write what the window holds as .png and leave", "FILE"},
-    {"threads", 0, POPT_ARG_STRING, NULL, THREADS, "1 to 256, one a core by default", "N"},
-    CLI_HELP_OPTION,
-    POPT_TABLEEND,
+typedef struct view {
+    scene_setup setup; // first: the shared rows write there
+    const char *screenshot;
+    int threads;
+} view;
+
+static const cli_option options[OPTIONS + 1] = {
+    SCENE_ROWS,
+    [SCREENSHOT] = {"screenshot", CLI_FILE, offsetof(view, screenshot), .value = "FILE",
+                    .group = "Window",
+                    .help = "draw once, write what the window holds as .png and leave"},
+    [THREADS] = CLI_THREADS_ROW(view),
 };
 
 // The textbook's bake takes a minute or more: it goes on behind the window.
@@ -35,8 +38,8 @@ typedef struct textbook {
 } textbook;
 
 typedef struct show {
-    cli_job *job;
-    const look *look;
+    cli_work *work;
+    const scene_setup *setup;
     const kiln_map *source;
     int threads;
     textbook textbook;
@@ -54,7 +57,7 @@ static void *bake(void *user)
 {
     show *s = user;
     textbook *t = &s->textbook;
-    t->result = view_bake(t->context, s->source, s->look->bake_size, LOOK_TEXTBOOK_SAMPLES,
+    t->result = view_bake(t->context, s->source, s->setup->bake_size, SCENE_TEXTBOOK_SAMPLES,
                           &t->environment, &t->error);
     atomic_store(&t->finished, true);
     return NULL;
@@ -74,8 +77,8 @@ static kiln_result begin_textbook(show *s, view_renderer *renderer, kiln_error *
 {
     textbook *t = &s->textbook;
     // Until then both halves are exact.
-    if (look_bake_slot(s->job, s->look, s->source, VIEW_SLOT_TEXTBOOK, 0, renderer) != CLI_GO) {
-        *error = s->job->error;
+    if (scene_bake_slot(s->work, s->setup, s->source, VIEW_SLOT_TEXTBOOK, 0, renderer) != CLI_GO) {
+        *error = s->work->error;
         return error->result;
     }
     os_without_signals(create_thread, s); // signals are for the window's thread
@@ -117,13 +120,13 @@ static void end_textbook(textbook *t)
     kiln_context_destroy(t->context);
 }
 
-// The job keeps the sentence where the work was its own.
+// Where baking fails, the sentence is in the work's error.
 static kiln_result prepare(void *user, view_renderer *renderer, kiln_error *error)
 {
     const show *s = user;
-    if (look_bake_slot(s->job, s->look, s->source, VIEW_SLOT_EXACT, 0, renderer) == CLI_GO)
+    if (scene_bake_slot(s->work, s->setup, s->source, VIEW_SLOT_EXACT, 0, renderer) == CLI_GO)
         return KILN_OK;
-    *error = s->job->error;
+    *error = s->work->error;
     return error->result;
 }
 
@@ -133,75 +136,78 @@ static bool go_on(void *user)
     return !cli_interrupted();
 }
 
-static int open_window(cli_job *job, const look *l, int threads, const char *screenshot)
+static int open_window(cli_work *work, const view *v)
 {
+    const scene_setup *setup = &v->setup;
     kiln_map source = {0};
     kiln_image image = {0};
-    show s = {.job = job, .look = l, .source = &source, .threads = threads};
-    view_window_def def = {.title = l->input ? l->input : "kiln",
-                           .width = l->width,
-                           .height = l->height,
-                           .options = l->options,
+    show s = {.work = work, .setup = setup, .source = &source, .threads = v->threads};
+    view_window_def def = {.title = setup->input ? setup->input : "kiln",
+                           .width = setup->width,
+                           .height = setup->height,
+                           .options = setup->options,
                            .prepare = prepare,
                            .go_on = go_on,
                            .user = &s,
                            .has_environment = true,
                            .textbook = ask_textbook,
-                           .screenshot = screenshot ? &image : NULL};
-    int code = look_load(job, l, &source);
+                           .screenshot = v->screenshot ? &image : NULL};
+    int code = scene_load(work, setup, &source);
     if (code == CLI_GO)
-        code = view_window(job->context, &def, &job->error) ? CLI_FAILED : CLI_DONE;
+        code = view_window(work->context, &def, &work->error) ? CLI_FAILED : CLI_DONE;
     end_textbook(&s.textbook);
     if (code == CLI_DONE && cli_interrupted())
         code = CLI_FAILED; // closed by a signal, as the exit code will say
-    if (code == CLI_DONE && screenshot)
-        code =
-            kiln_image_save(job->context, &image, screenshot, &job->error) ? CLI_FAILED : CLI_DONE;
+    if (code == CLI_DONE && v->screenshot &&
+        kiln_image_save(work->context, &image, v->screenshot, &work->error))
+        code = CLI_FAILED;
     kiln_image_free(&image);
     kiln_map_free(&source);
     return code;
 }
 
-static int run(int argc, const char **argv)
+static int read_options(view *v, const cli_call *call)
 {
     cli_arguments a;
-    cli_job job;
-    look l;
-    int threads = 0, code = cli_arguments_read(&a, &cli_view, argc, argv);
+    int code = cli_read_arguments(&a, &cli_view, call, v);
     if (code == CLI_GO)
-        code = look_read(&a, &l);
-    if (code == CLI_GO)
-        code = cli_integer(&a, THREADS, "--threads", 1, 256, &threads);
-    if (code == CLI_GO && a.value[SCREENSHOT] &&
-        strcmp(cli_ending(a.value[SCREENSHOT]), "png") != 0)
-        code = cli_wrong(&cli_view, "--screenshot %s: must end in .png", a.value[SCREENSHOT]);
-    if (code == CLI_GO && a.value[SCREENSHOT])
-        code = cli_check_folder(a.value[SCREENSHOT]);
-    if (code == CLI_GO) {
-        code = cli_job_begin(&job, threads, false);
-        if (code == CLI_GO)
-            code = open_window(&job, &l, threads, a.value[SCREENSHOT]);
-        code = cli_job_end(&job, code);
-    }
-    cli_arguments_free(&a);
-    return code;
+        code = scene_read(&a, true, &v->setup);
+    if (code != CLI_GO || !v->screenshot)
+        return code;
+    if (!cli_ends_in(v->screenshot, "png"))
+        return cli_wrong(&cli_view, "--screenshot %s: must end in .png", v->screenshot);
+    return cli_check_folder(v->screenshot);
 }
+
+static int run(const cli_call *call)
+{
+    cli_work work;
+    view v = {.threads = 0};
+    int code = read_options(&v, call);
+    if (code != CLI_GO)
+        return code;
+    code = cli_begin_work(&work, v.threads, false);
+    if (code == CLI_GO)
+        code = open_window(&work, &v);
+    return cli_end_work(&work, code);
+}
+
+static const cli_example examples[] = {
+    {"kiln view city.exr", "gold in a city"},
+    {"kiln view city.exr --scene compare",
+     "the exact bake and the textbook's, which bakes meanwhile; [ and ] move the handle"},
+    {"kiln view", "the assignment's two rows"},
+    {NULL, NULL}};
 
 const cli_command cli_view = {
     .name = "view",
     .arguments = "[ENV] [OPTION...]",
     .summary = "Shows the balls in a window.",
-    .details = "The key h prints what the keys do. Drag to orbit, with shift to turn the\n"
-               "environment; the wheel zooms.\n"
-               "\n"
-               "Examples:\n"
-               "  kiln view city.exr\n"
-               "      gold in a city\n"
-               "  kiln view city.exr --scene compare\n"
-               "      the exact bake beside the textbook's, which bakes meanwhile; [ and ] move "
-               "the handle\n"
-               "  kiln view\n"
-               "      the assignment's two rows\n",
+    .about = "The key h prints what the keys do. Drag to orbit, with shift or the right button to "
+             "turn the "
+             "environment; the wheel zooms; 1 to 5 choose the scene (compare only where it was the "
+             "first).",
+    .examples = examples,
     .options = options,
     .run = run,
 };

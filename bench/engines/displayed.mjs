@@ -56,7 +56,7 @@ function errors(shown, wanted) {
 const percent = (x) => (100 * x).toPrecision(2).padStart(6);
 const lines = ['engine,panorama,maker,roughness,relative rms'];
 makeSite(folder);
-const ways = makeWays(bin, folder, ['--fit=none']);
+const ways = makeWays(bin, folder, ['--tune=none']);
 for (const name of NAMES)
     makePanorama(bin, folder, path.join(panoramas, `${name}.exr`), `${name}.hdr`);
 console.log('  relative rms in % of 192 directions, by roughness from 0.1 to 1; over all 19, and the worst');

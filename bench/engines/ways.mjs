@@ -1,5 +1,5 @@
 // The ways to light in an engine: its own filter, or cmgen's where it has none in the browser, and kiln's file.
-//   const ways = makeWays(BIN, FOLDER, ['--fit=none']): of an engine of models.mjs, [{ maker, make }]; make(panorama)
+//   const ways = makeWays(BIN, FOLDER, ['--tune=none']): of an engine of models.mjs, [{ maker, make }]; make(panorama)
 //   writes what the engine's page loads into FOLDER and names it.
 import { execFileSync } from 'node:child_process';
 import path from 'node:path';

@@ -8,12 +8,13 @@ got=0
 [ $got = 2 ] && grep -q 'Usage: kiln' log/err && [ ! -s log/out ] || die "kiln alone"
 expect 2 "frob: no such command" frob
 expect 2 "frob: no such command" help frob
+expect 2 "one command at a time" help bake sky
 expect 2 "\-\-frob: no such option" --frob
 expect 0 "" --help
 grep -q 'kiln bake' log/out || die "help without the commands"
 expect 0 "" --version
 grep -qx 'kiln [0-9]*\.[0-9]*\.[0-9]*' log/out || die "version"
-commands="bake engines eval fit info sky tables"
+commands="bake completions engines eval fit help info sky tables"
 ! "$KILN" --help | grep -q 'kiln render' || commands="$commands render view assignment"
 for command in $commands; do
     expect 0 "" help $command
@@ -42,9 +43,12 @@ expect 1 "there is no folder nowhere" bake in.exr -o nowhere/out.ktx2
 expect 1 "there is no folder nowhere" bake in.exr -o out.ktx2 --sh nowhere/sh.json
 
 # Engines.
-expect 2 "is 'frob', which is no engine" bake in.exr -o out.ktx2 --for frob
-expect 2 "--fit needs --for ENGINE" bake in.exr -o out.ktx2 --fit
-expect 2 "--fit" bake in.exr -o out.ktx2 --for three --fit=hard
+expect 2 "for is 'frob', it must be three, .* or unreal$" bake in.exr -o out.ktx2 --for frob
+expect 2 "tune needs --for ENGINE" bake in.exr -o out.ktx2 --tune sharp
+expect 2 "tune is 'hard', it must be none, sharp or soft" bake in.exr -o out.ktx2 --for three --tune=hard
+expect 2 "fit: this option is --tune sharp, --tune soft or --tune none since" bake in.exr -o out.ktx2 \
+    --for three --fit
+expect 2 "fit: this option is --tune sharp" bake in.exr -o out.ktx2 --for three --fit=none
 expect 2 "out.dds: --for three writes .ktx2" bake in.exr -o out.dds --for three
 expect 2 "decides what --lobe is" bake in.exr -o out.ktx2 --for three --lobe ggx
 expect 2 "for filament: format is bc6h, it must be rgba16f or b10g11r11" \
@@ -54,7 +58,10 @@ expect 2 "three: size is 100, it must be a power of two from 16 to 4096" \
     bake in.exr -o out.ktx2 --for three --size 100
 expect 2 "three: 1 levels, a size of 32 may have 2 to 6" \
     bake in.exr -o out.ktx2 --for three --size 32 --levels 1
-expect 2 "nothing but options" engines three
+expect 2 "one engine at a time" engines three babylon
+expect 2 "frob: no such engine, it must be three, .* or unreal" engines frob
+expect 2 "name one shell" completions
+expect 2 "no such shell, it must be bash, zsh or fish" completions tcsh
 
 # Values out of their range, with the range.
 expect 2 "size is 0, it must be from 1 to 32768" bake in.exr -o out.ktx2 --size 0

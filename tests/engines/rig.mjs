@@ -298,7 +298,7 @@ export async function makeFiles({ name, ending, format, smallest = 0, bounds, mo
     for (const what of ['coded', 'white'])
         if (bounds[what])
             await write(name, what, size, `${files}-${what}${ending}`, ...(format ? [format[1]] : []));
-    const report = await bake('real', '--fit=none');
+    const report = await bake('real', '--tune=none');
     const roughness = report.output.levels.map((level) => level.roughness);
     const small = roughness.filter((_, k) => size >> k <= smallest); // those that all have the smallest size
     const levels = await bakePlain(size, roughness.slice(0, roughness.length - small.length));

@@ -1,5 +1,5 @@
-// kiln assignment: everything that GAMES202's fourth assignment asks to hand in: its tables, the
-// balls drawn with them, and the report.
+// kiln assignment: everything that GAMES202's fourth assignment asks for: its tables, the balls drawn with
+// them, and the report.
 #include "assignment.h"
 
 #include "headless.h"
@@ -10,19 +10,23 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { OUTPUT = 1, QUIET };
 enum { WIDTH = 1280, HEIGHT = 720 };
 
-static const struct poptOption options[] = {
-    {"output", 'o', POPT_ARG_STRING, NULL, OUTPUT, "the folder, made where missing", "DIR"},
-    {"quiet", 'q', POPT_ARG_NONE, NULL, QUIET, "print nothing but errors", NULL},
-    CLI_HELP_OPTION,
-    POPT_TABLEEND,
+typedef struct values {
+    const char *output;
+    bool quiet;
+} values;
+
+static const cli_option options[] = {
+    {"output", CLI_FILE, offsetof(values, output), .value = "DIR", .letter = 'o',
+     .help = "the folder, made where missing"},
+    CLI_QUIET_ROW(values),
+    {.name = NULL},
 };
 
 typedef struct pictures {
     char by[128];   ///< what drew them
-    bool by_light;  ///< no GL: integrated
+    bool on_cpu;    ///< there is no GL: shaded on the CPU
     double largest; ///< steps of 255 that the assignment's bytes differ from exact tables
     double rms;
 } pictures;
@@ -33,8 +37,8 @@ static kiln_result load_bytes(const assignment *a, int table, kiln_table *to)
     const kiln_image *from = &a->table[table];
     to->def = (kiln_table_def){
         .model = {.g = a->def->g}, .width = from->width, .height = from->height, .flip = true};
-    kiln_result result = kiln_image_create(a->job->context, from->width, from->height, 1,
-                                           &to->image, &a->job->error);
+    kiln_result result = kiln_image_create(a->work->context, from->width, from->height, 1,
+                                           &to->image, &a->work->error);
     if (result == KILN_OK) {
         memcpy(to->image.pixels, from->pixels,
                (size_t)from->width * (size_t)from->height * sizeof *from->pixels);
@@ -50,7 +54,7 @@ static kiln_result use_bytes(const assignment *a, view_renderer *renderer)
     if (result == KILN_OK)
         result = load_bytes(a, ASSIGNMENT_AVERAGE_BYTES, &average);
     if (result == KILN_OK)
-        result = view_set_tables(renderer, &e, &average, NULL, &a->job->error);
+        result = view_set_tables(renderer, &e, &average, NULL, &a->work->error);
     kiln_image_free(&e.image);
     kiln_image_free(&average.image);
     return result;
@@ -59,8 +63,8 @@ static kiln_result use_bytes(const assignment *a, view_renderer *renderer)
 // Without GL the same rays are shaded on the CPU, with exact E.
 static kiln_result shade(assignment *a, const view_options *o, kiln_image *image)
 {
-    kiln_result result =
-        view_reference(a->job->context, o, NULL, WIDTH, HEIGHT, NULL, image, NULL, &a->job->error);
+    kiln_result result = view_reference(a->work->context, o, NULL, WIDTH, HEIGHT, NULL, image, NULL,
+                                        &a->work->error);
     for (size_t i = 0; result == KILN_OK && i < (size_t)WIDTH * HEIGHT; i++) {
         double c[3];
         for (size_t k = 0; k < 3; k++)
@@ -75,7 +79,7 @@ static kiln_result shade(assignment *a, const view_options *o, kiln_image *image
 static kiln_result picture(assignment *a, view_renderer *renderer, const view_options *o,
                            kiln_image *image)
 {
-    return renderer ? view_picture(renderer, o, WIDTH, HEIGHT, false, image, &a->job->error)
+    return renderer ? view_picture(renderer, o, WIDTH, HEIGHT, false, image, &a->work->error)
                     : shade(a, o, image);
 }
 
@@ -123,12 +127,12 @@ static kiln_result draw(assignment *a)
     kiln_error why = {0};
     kiln_result result = view_headless_create(&headless, &why);
     if (result == KILN_OK) {
-        result = view_create(a->job->context, view_headless_lookup, &renderer, &a->job->error);
+        result = view_create(a->work->context, view_headless_lookup, &renderer, &a->work->error);
         if (result == KILN_OK)
             snprintf(p->by, sizeof p->by, "%s", view_gl_name(renderer));
     } else {
-        cli_warn(a->job, "%s; the balls are shaded on the CPU instead", why.message);
-        p->by_light = true;
+        cli_warn(a->work, "%s; the balls are shaded on the CPU instead", why.message);
+        p->on_cpu = true;
         result = KILN_OK;
     }
     if (result == KILN_OK)
@@ -150,7 +154,7 @@ static void describe(const assignment *a, FILE *f)
         "0.95 to 0.15 from left to right. One directional light along (0, 0, -1), radiance 1; "
         "camera at (0, 80, 300), vertical field 75 degrees; c / (c + 1), then the power 1 / 2.2. "
         "The balls are spheres of radius 36, met by 4 x 4 rays a pixel. ");
-    if (p->by_light)
+    if (p->on_cpu)
         fputs("Shaded on the CPU in double precision with exact E, since there was no EGL.\n\n", f);
     else
         fprintf(f,
@@ -174,47 +178,50 @@ static void describe(const assignment *a, FILE *f)
         f);
 }
 
-static int run(int argc, const char **argv)
+static int run(const cli_call *call)
 {
     cli_arguments a;
-    cli_job job;
+    cli_work work;
+    values v;
     pictures p = {.rms = 0};
-    int code = cli_arguments_read(&a, &cli_hand_in, argc, argv);
-    assignment_def def = {.folder = a.value[OUTPUT],
+    int code = cli_read_arguments(&a, &cli_assignment, call, &v);
+    if (code != CLI_GO)
+        return code;
+    assignment_def def = {.folder = v.output,
                           .size = 128,
                           .samples = 1024,
                           .g = KILN_G_SCHLICK_K2,
-                          .quiet = a.value[QUIET],
+                          .quiet = v.quiet,
                           .draw = draw,
                           .describe = describe,
                           .user = &p};
-    if (code == CLI_GO && a.rest_count)
-        code = cli_wrong(&cli_hand_in, "%s: assignment takes no input; name the output by -o DIR",
-                         a.rest[0]);
-    if (code == CLI_GO && !def.folder)
-        code = cli_wrong(&cli_hand_in, "no output: name a folder by -o DIR");
+    if (a.rest_count)
+        return cli_wrong(&cli_assignment,
+                         "%s: assignment takes no input; name the output by -o DIR", a.rest[0]);
+    if (!def.folder)
+        return cli_wrong(&cli_assignment, "no output: name a folder by -o DIR");
+    code = assignment_check_folder(&cli_assignment, def.folder);
+    if (code != CLI_GO)
+        return code;
+    code = cli_begin_work(&work, 0, def.quiet);
     if (code == CLI_GO)
-        code = assignment_check_folder(def.folder);
-    if (code == CLI_GO) {
-        code = cli_job_begin(&job, 0, def.quiet);
-        if (code == CLI_GO)
-            code = assignment_write(&job, &def);
-        code = cli_job_end(&job, code);
-    }
-    cli_arguments_free(&a);
-    return code;
+        code = assignment_write(&work, &def);
+    return cli_end_work(&work, code);
 }
 
-const cli_command cli_hand_in = {
+static const cli_example examples[] = {{"kiln assignment -o images/", NULL}, {NULL, NULL}};
+
+const cli_command cli_assignment = {
     .name = "assignment",
     .arguments = "-o DIR",
     .summary = "Makes all that GAMES202's assignment 4 asks for: tables, renders, report.",
-    .details =
-        "The tables are those of `kiln tables --assignment`; the balls are drawn with them,\n"
-        "and report.md says what was done and where the handout errs.\n"
-        "\n"
-        "Examples:\n"
-        "  kiln assignment -o images/\n",
+    .about = "The tables are those of kiln tables --assignment; the balls are drawn with them, and "
+             "report.md "
+             "says what was done and where the handout errs.",
+    .more = "The pictures are the two rows of balls, the microfacet row alone, and the rows with "
+            "the mistake "
+            "of the assignment's figure 6.",
+    .examples = examples,
     .options = options,
     .run = run,
 };

@@ -1,0 +1,277 @@
+// The parser of a command line. Words and a table of rows go in; values, defaults and the words that are
+// no options come out.
+//   --size 64, --size=64     a long option; the next word is its value whatever it begins with, so that
+//                            --rotate -30 needs no =
+//   -o out, -oout, -o=out    a short option; -qo out is -q -o out
+//   --zstd, --zstd=19        an option with a value of its own takes another by = only
+//   --                       what follows is no option; neither is -
+// Options may stand after other words. An option given twice is wrong. Names cannot be shortened, but
+// the sentence about an unknown name suggests one.
+#include "cli.h"
+#include "suggest.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { HELP = -2, UNKNOWN = -1 };
+
+static int find_name(const cli_command *command, const char *name, size_t length)
+{
+    if (length == 4 && !strncmp(name, "help", 4))
+        return HELP;
+    for (int i = 0; command->options && command->options[i].name; i++)
+        if (strlen(command->options[i].name) == length &&
+            !strncmp(command->options[i].name, name, length))
+            return i;
+    return UNKNOWN;
+}
+
+static int find_letter(const cli_command *command, char letter)
+{
+    if (letter == 'h')
+        return HELP;
+    for (int i = 0; command->options && command->options[i].name; i++)
+        if (command->options[i].letter == letter)
+            return i;
+    return UNKNOWN;
+}
+
+static int no_such_option(const cli_command *command, const char *word)
+{
+    char text[96], name[64];
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(word + 2, "="), word + 2);
+    cli_suggestion suggestion = {.typed = name};
+    for (int i = 0; word[1] == '-' && command->options && command->options[i].name; i++)
+        if (!command->options[i].hidden && command->options[i].kind != CLI_RENAMED)
+            cli_suggest(&suggestion, command->options[i].name);
+    return cli_wrong(command, "%s: no such option%s", word,
+                     cli_suggestion_text(&suggestion, ", ", "--", text));
+}
+
+// One option. `*value` is what stands behind it in its own word, NULL for nothing; where the value is the
+// next word, `*at` moves on to that.
+static int take(cli_arguments *a, const cli_call *call, int index, const char *form,
+                const char *value, int *at)
+{
+    const cli_option *option = &a->command->options[index];
+    if (option->kind == CLI_RENAMED)
+        return cli_wrong(a->command, "%s: %s", form, option->help);
+    if (option->kind == CLI_FLAG && value)
+        return cli_wrong(a->command, "%s takes no value", form);
+    if (option->kind == CLI_FLAG)
+        value = "";
+    else if (!value && option->alone)
+        value = option->alone;
+    else if (!value && *at + 1 < call->count)
+        value = call->words[++*at];
+    if (!value)
+        return cli_wrong(a->command, "%s needs a value", form);
+    if (a->text[index])
+        return cli_wrong(a->command, "--%s is given twice", option->name);
+    a->text[index] = value;
+    return CLI_GO;
+}
+
+static int show_help(const cli_command *command)
+{
+    cli_print_help(command);
+    return CLI_DONE;
+}
+
+static int read_long(cli_arguments *a, const cli_call *call, int *at)
+{
+    const char *word = call->words[*at], *equals = strchr(word, '=');
+    size_t length = equals ? (size_t)(equals - word) : strlen(word);
+    char form[64];
+    int index = find_name(a->command, word + 2, length - 2);
+    if (index == HELP && !equals)
+        return show_help(a->command);
+    if (index < 0)
+        return no_such_option(a->command, word);
+    snprintf(form, sizeof form, "%.*s", (int)length, word);
+    return take(a, call, index, form, equals ? equals + 1 : NULL, at);
+}
+
+static int read_letters(cli_arguments *a, const cli_call *call, int *at)
+{
+    const char *word = call->words[*at];
+    int code = CLI_GO;
+    for (int i = 1; word[i] && code == CLI_GO; i++) {
+        int index = find_letter(a->command, word[i]);
+        char form[] = {'-', word[i], 0};
+        if (index == HELP)
+            return show_help(a->command);
+        if (index < 0)
+            return no_such_option(a->command, word[2] ? form : word);
+        bool flag = a->command->options[index].kind == CLI_FLAG;
+        const char *rest = word + i + 1;
+        code = take(a, call, index, form, flag || !*rest ? NULL : rest + (*rest == '='), at);
+        if (!flag)
+            break;
+    }
+    return code;
+}
+
+// ------------------------------------------------------------------------------------------ values
+
+static int read_integer(const cli_command *command, const char *name, const char *text, double low,
+                        double high, int *value)
+{
+    char *end;
+    errno = 0;
+    long n = strtol(text, &end, 10);
+    if (end == text || *end)
+        return cli_wrong(command, "--%s is '%s', it must be a whole number from %.0f to %.0f", name,
+                         text, low, high);
+    if (errno || (double)n < low || (double)n > high)
+        return cli_wrong(command, "--%s is %s, it must be from %.0f to %.0f", name, text, low,
+                         high);
+    *value = (int)n;
+    return CLI_GO;
+}
+
+static int read_number(const cli_command *command, const cli_option *option, const char *text,
+                       double *value)
+{
+    char *end;
+    double x = strtod(text, &end);
+    if (end == text || *end)
+        return cli_wrong(command, "--%s is '%s', it must be a number from %g to %g", option->name,
+                         text, option->low, option->high);
+    if (!(x >= option->low && x <= option->high))
+        return cli_wrong(command, "--%s is %s, it must be from %g to %g", option->name, text,
+                         option->low, option->high);
+    *value = x;
+    return CLI_GO;
+}
+
+static int read_word(const cli_command *command, const cli_option *option, const char *text,
+                     int *value)
+{
+    char list[CLI_RANGE_TEXT], nearest[96];
+    cli_suggestion suggestion = {.typed = text};
+    const char *word;
+    int count = 0;
+    for (; (word = cli_option_word(option, count)) != NULL; count++) {
+        if (!strcmp(text, word)) {
+            *value = count;
+            return CLI_GO;
+        }
+        cli_suggest(&suggestion, word);
+    }
+    cli_suggestion_text(&suggestion, "; ", "", nearest);
+    if (count == 1)
+        return cli_wrong(command, "--%s is '%s', only %s is there%s", option->name, text,
+                         cli_option_word(option, 0), nearest);
+    return cli_wrong(command, "--%s is '%s', it must be %s%s", option->name, text,
+                     cli_list(option, list), nearest);
+}
+
+int cli_find_word(const cli_command *command, const char *what, const char *text,
+                  const cli_option *words, int *index)
+{
+    char list[CLI_RANGE_TEXT], nearest[96];
+    cli_suggestion suggestion = {.typed = text};
+    const char *word;
+    for (int i = 0; (word = cli_option_word(words, i)) != NULL; i++) {
+        if (!strcmp(text, word)) {
+            *index = i;
+            return CLI_GO;
+        }
+        cli_suggest(&suggestion, word);
+    }
+    return cli_wrong(command, "%s: no such %s, it must be %s%s", text, what, cli_list(words, list),
+                     cli_suggestion_text(&suggestion, "; ", "", nearest));
+}
+
+// Enumerations of the values have the size of an int.
+static int store(const cli_command *command, const cli_option *option, const char *text, char *to)
+{
+    int n = 0, code = CLI_GO;
+    double x = 0;
+    bool flag = true;
+    switch (option->kind) {
+    case CLI_FLAG:
+        memcpy(to, &flag, sizeof flag);
+        break;
+    case CLI_INTEGER:
+        code = read_integer(command, option->name, text, option->low, option->high, &n);
+        memcpy(to, &n, sizeof n);
+        break;
+    case CLI_CHOICE:
+        code = read_word(command, option, text, &n);
+        memcpy(to, &n, sizeof n);
+        break;
+    case CLI_NUMBER:
+        code = read_number(command, option, text, &x);
+        memcpy(to, &x, sizeof x);
+        break;
+    default:
+        memcpy(to, &text, sizeof text);
+    }
+    return code;
+}
+
+static void store_default(const cli_option *option, char *to)
+{
+    int n = (int)option->initial;
+    bool flag = false;
+    const char *text = NULL;
+    if (option->kind == CLI_RENAMED || option->keep)
+        return;
+    if (option->kind == CLI_FLAG)
+        memcpy(to, &flag, sizeof flag);
+    else if (option->kind == CLI_INTEGER || option->kind == CLI_CHOICE)
+        memcpy(to, &n, sizeof n);
+    else if (option->kind == CLI_NUMBER)
+        memcpy(to, &option->initial, sizeof option->initial);
+    else
+        memcpy(to, &text, sizeof text);
+}
+
+int cli_store_values(const cli_arguments *a, void *values)
+{
+    const cli_option *options = a->command->options;
+    int code = CLI_GO;
+    for (int i = 0; options && options[i].name && code == CLI_GO; i++)
+        if (a->text[i])
+            code = store(a->command, &options[i], a->text[i], (char *)values + options[i].at);
+    return code;
+}
+
+int cli_integer(const cli_arguments *a, int option, int low, int high, int *value)
+{
+    const char *text = a->text[option];
+    return text ? read_integer(a->command, a->command->options[option].name, text, low, high, value)
+                : CLI_GO;
+}
+
+int cli_choice(const cli_arguments *a, int option, const char *const *words, int *value)
+{
+    const cli_option row = {.name = a->command->options[option].name, .words = words};
+    return a->text[option] ? read_word(a->command, &row, a->text[option], value) : CLI_GO;
+}
+
+int cli_read_arguments(cli_arguments *a, const cli_command *command, const cli_call *call,
+                       void *values)
+{
+    bool options = true;
+    *a = (cli_arguments){.command = command, .rest = call->words};
+    for (int i = 1; i < call->count; i++) {
+        const char *word = call->words[i];
+        int code = CLI_GO;
+        if (options && !strcmp(word, "--"))
+            options = false;
+        else if (!options || word[0] != '-' || !word[1])
+            a->rest[a->rest_count++] = word; // never further than what has been read
+        else
+            code = word[1] == '-' ? read_long(a, call, &i) : read_letters(a, call, &i);
+        if (code != CLI_GO)
+            return code;
+    }
+    for (int i = 0; command->options && command->options[i].name; i++)
+        store_default(&command->options[i], (char *)values + command->options[i].at);
+    return cli_store_values(a, values);
+}

@@ -1,0 +1,415 @@
+// The options of kiln bake: their rows, and which of them contradict one another. A command line goes in;
+// a `bake` comes out whose numbers are in their ranges, whose engine has decided what is its to decide,
+// and whose outputs can hold what is asked for.
+#include "bake.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    OUTPUT,
+    ENGINE,
+    TUNE,
+    FIT,
+    SIZE,
+    LEVELS,
+    SHAPE,
+    FORMAT,
+    ZSTD,
+    LOBE,
+    ROUGHNESS,
+    METHOD,
+    SAMPLES,
+    PHI_STEPS,
+    THETA_STEPS,
+    IRRADIANCE,
+    IRRADIANCE_SIZE,
+    SH,
+    SH_BANDS,
+    SH_RADIANCE,
+    SH_IRRADIANCE,
+    SH_WINDOW,
+    LAYOUT,
+    ROTATE,
+    EXPOSURE,
+    MIRROR,
+    THREADS,
+    JSON,
+    QUIET,
+    VERBOSE,
+    OPTIONS
+};
+
+const char *const bake_lobes[] = {"ggx", "lambert", "charlie", "phong", NULL};
+const char *const bake_shapes[] = {"auto", "panorama", "cube", "octahedron", NULL};
+const char *const bake_methods[] = {"exact", "textbook", NULL};
+const char *const bake_tunings[] = {"none", "sharp", "soft", NULL};
+static const char *const layouts[] = {"auto", "panorama", "cross", "strip", "octahedron", NULL};
+
+static const char *format_word(int index)
+{
+    return kiln_format_names()[index];
+}
+
+static const char *engine_word(int index)
+{
+    const kiln_engine *engine = kiln_engine_at(index);
+    return engine ? engine->name : NULL;
+}
+
+#define AT(field) offsetof(bake, field)
+
+const cli_option bake_options[OPTIONS + 1] = {
+    [OUTPUT] = {"output", CLI_FILE, AT(output), .value = "OUT", .letter = 'o', .group = "Output",
+                .help =
+                    "what to write, by its ending: .ktx2 and .dds hold a cube with all its levels; "
+                    ".exr, .hdr and .png become one file a face and level; a folder, which ends in "
+                    "/, receives EXR files",
+                .more = "Every file is written whole or not at all."},
+    [ENGINE] = {"for", CLI_CHOICE, AT(engine_index), 0, 0, -1, "ENGINE", .word = engine_word,
+                .help = "write what an engine loads: its levels and their roughness, its axes, its "
+                        "encoding; kiln engines says more",
+                .more = "The size is then a power of two."},
+    [TUNE] = {"tune", CLI_CHOICE, AT(tuning), 0, 0, -1, "WHICH", .words = bake_tunings,
+              .help =
+                  "with --for: choose the levels such that what the engine shows, two levels mixed "
+                  "and texels read bilinearly, errs least in this environment; sharp keeps level 0 "
+                  "a mirror, soft lets it soften, none writes exact levels",
+              .unset = "sharp where kiln engines says tuned, else none"},
+    [FIT] = {"fit", CLI_RENAMED,
+             .help = "this option is --tune sharp, --tune soft or "
+                     "--tune none since version 0.2"},
+    [SIZE] = {"size", CLI_INTEGER, AT(size), 1, KILN_MAX_SIZE, 256, "N",
+              .help = "texels along the edge of a face, or rows of a panorama"},
+    [LEVELS] = {"levels", CLI_INTEGER, AT(level_count), 1, KILN_MAX_LEVELS, 0, "N",
+                .help = "mip levels to write", .unset = "all, down to 1 texel"},
+    [SHAPE] = {"shape", CLI_CHOICE, AT(shape), 0, 0, KILN_SHAPE_CUBE - KILN_SHAPE_PANORAMA, "SHAPE",
+               .words = bake_shapes + KILN_SHAPE_PANORAMA,
+               .help = "how the sphere is laid on texels"},
+    [FORMAT] = {"format", CLI_CHOICE, AT(format), .value = "FORMAT", .word = format_word,
+                .help =
+                    "how texels are stored in KTX2 and DDS; the first two are half or float in EXR "
+                    "too; the last three are for PNG",
+                .unset = "rgba16f",
+                .more =
+                    "bc6h takes a byte a texel, and keeps the order of a per cent. rgbm, rgbd and "
+                    "rgbp hold radiance up to 64, 255 and 64 in four bytes. With --for filament, "
+                    "b10g11r11 writes what cmgen does."},
+    [ZSTD] = {"zstd", CLI_INTEGER, AT(zstd), 1, 22, 0, "LEVEL",
+              .help = "compress KTX2 by Zstandard", .alone = "3"},
+    [LOBE] = {"lobe", CLI_CHOICE, AT(lobe), .value = "LOBE", .words = bake_lobes, .group = "Filter",
+              .help = "what each level is filtered by; alpha is the square of the roughness"},
+    [ROUGHNESS] = {"roughness", CLI_TEXT, AT(roughness_text), .value = "LIST",
+                   .help =
+                       "numbers from 0 to 1 with commas between them, one a level, or linear: from "
+                       "0 to 1 in equal steps",
+                   .unset = "linear"},
+    [METHOD] = {"method", CLI_CHOICE, AT(textbook), .value = "METHOD", .words = bake_methods,
+                .help = "how levels are computed; textbook is what courses teach: importance "
+                        "sampling on Hammersley points, or "
+                        "for --lobe lambert the uniform sum over two angles",
+                .more = "It is there to learn from and to compare with."},
+    [SAMPLES] = {"samples", CLI_INTEGER, AT(samples), 1, 1 << 20, 1024, "N",
+                 .help = "points a texel of the textbook's prefilter"},
+    [PHI_STEPS] = {"phi-steps", CLI_INTEGER, AT(phi_steps), 1, 10000, 100, "N",
+                   .help = "steps around the normal of the textbook's irradiance"},
+    [THETA_STEPS] = {"theta-steps", CLI_INTEGER, AT(theta_steps), 1, 10000, 100, "N",
+                     .help = "steps away from the normal of the textbook's irradiance"},
+    [IRRADIANCE] =
+        {"irradiance", CLI_FILE, AT(irradiance_path), .value = "FILE", .group = "Diffuse light",
+         .help = "write a map of the diffuse irradiance, divided by pi so that white stays 1"},
+    [IRRADIANCE_SIZE] = {"irradiance-size", CLI_INTEGER, AT(irradiance_size), 1, KILN_MAX_SIZE, 64,
+                         "N", .help = "texels along the edge of a face of that map, or its rows"},
+    [SH] = {"sh", CLI_FILE, AT(sh_path), .value = "FILE",
+            .help = "write spherical harmonics as .json, .txt or .h",
+            .more = "KTX2 files hold those of the radiance in their metadata in any case."},
+    [SH_BANDS] = {"sh-bands", CLI_INTEGER, AT(sh_bands), 1, KILN_MAX_BANDS, 3, "N",
+                  .help = "bands of harmonics; n bands have n x n coefficients"},
+    [SH_RADIANCE] = {"sh-radiance", CLI_FLAG, AT(sh_radiance),
+                     .help = "coefficients of the radiance, as without this option"},
+    [SH_IRRADIANCE] = {"sh-irradiance", CLI_FLAG, AT(sh_irradiance),
+                       .help = "coefficients of the irradiance"},
+    [SH_WINDOW] = {"sh-window", CLI_NUMBER, AT(sh_window), 1, 1000, 0, "W",
+                   .help = "multiply band l by (1 + cos(pi l / W)) / 2 against ringing",
+                   .unset = "none"},
+    [LAYOUT] = {"layout", CLI_CHOICE, AT(layout), .value = "LAYOUT", .words = layouts,
+                .group = "Input",
+                .help = "how a flat picture lies on the sphere; auto tells by its proportions"},
+    [ROTATE] = {"rotate", CLI_NUMBER, AT(rotation), -3600, 3600, 0, "DEGREES",
+                .help = "turn about the vertical axis, after mirroring; a panorama's content moves "
+                        "to the left"},
+    [EXPOSURE] = {"exposure", CLI_NUMBER, AT(exposure), -64, 64, 0, "STOPS",
+                  .help = "multiply by 2^STOPS"},
+    [MIRROR] = {"mirror", CLI_FLAG, AT(mirror), .help = "swap left and right, before turning"},
+    [THREADS] = {"threads", CLI_INTEGER, AT(threads), 1, 256, 0, "N",
+                 .help = "threads to work on; their number never changes the result",
+                 .unset = "one a core", .group = "Work and report"},
+    [JSON] = {"json", CLI_FLAG, AT(json),
+              .help = "report as JSON on standard output: what was read and written, the levels, "
+                      "seconds by stage and the most memory held"},
+    [QUIET] = CLI_QUIET_ROW(bake),
+    [VERBOSE] = {"verbose", CLI_FLAG, AT(verbose), .letter = 'v',
+                 .help = "print levels, times and memory"},
+};
+
+// --------------------------------------------------------------------------------------- roughness
+
+static int read_roughness(bake *b)
+{
+    const char *text = b->roughness_text;
+    if (!text || !strcmp(text, "linear"))
+        return CLI_GO;
+    int count = 0;
+    for (const char *at = text;; at++) {
+        char *end;
+        double r = strtod(at, &end);
+        if (end == at || (*end && *end != ','))
+            return cli_wrong(b->arguments.command,
+                             "--roughness is '%s', it must be 'linear' or numbers from "
+                             "0 to 1 with commas between them",
+                             text);
+        if (!(r >= 0 && r <= 1))
+            return cli_wrong(b->arguments.command,
+                             "--roughness: number %d is %g, it must be from 0 to 1", count + 1, r);
+        if (count == KILN_MAX_LEVELS)
+            return cli_wrong(b->arguments.command, "--roughness has more than %d numbers",
+                             KILN_MAX_LEVELS);
+        b->roughness[count++] = (float)r;
+        at = end;
+        if (!*at)
+            break;
+    }
+    if (b->level_count && b->level_count != count)
+        return cli_wrong(b->arguments.command, "--roughness has %d numbers, but --levels is %d",
+                         count, b->level_count);
+    b->level_count = count;
+    b->has_roughness = true;
+    return CLI_GO;
+}
+
+// ----------------------------------------------------------------------------------------- outputs
+
+// The first engine that loads files of such a name, NULL for none.
+static const kiln_engine *engine_of(const char *path)
+{
+    const kiln_engine *engine;
+    for (int i = 0; (engine = kiln_engine_at(i)) != NULL; i++)
+        if (engine->ending[0] && cli_ends_in(path, engine->ending))
+            return engine;
+    return NULL;
+}
+
+// What can be written where. `option` names the path in sentences.
+static int check_output(const bake *b, const char *option, const char *path)
+{
+    const kiln_save_def def = {.format = (kiln_format)b->format};
+    kiln_error error;
+    if (!strcmp(path, "-"))
+        return cli_wrong(b->arguments.command,
+                         "%s: writing to standard output is not possible, name a file", option);
+    if (!kiln_map_save_check(path, (kiln_shape)b->shape, &def, &error))
+        return CLI_GO;
+    bool is_main = path == b->output;
+    const kiln_engine *engine = is_main ? engine_of(path) : NULL;
+    kiln_error ignored;
+    if (engine && kiln_map_save_check(path, KILN_SHAPE_CUBE, NULL, &ignored))
+        return cli_wrong(b->arguments.command, "%s %s: .%s is what %s loads, add --for %s", option,
+                         path, engine->ending, engine->title, engine->name);
+    return cli_wrong(b->arguments.command, "%s %s", option, error.message);
+}
+
+static int check_paths(const bake *b)
+{
+    const char *paths[] = {b->output, b->irradiance_path, b->sh_path};
+    static const char *const names[] = {"--output", "--irradiance", "--sh"};
+    int code = CLI_GO;
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < i; k++)
+            if (paths[i] && paths[k] && !strcmp(paths[i], paths[k]))
+                return cli_wrong(b->arguments.command, "%s and %s are the same file, %s", names[k],
+                                 names[i], paths[i]);
+    if (b->sh_path && !cli_ends_in(b->sh_path, "json") && !cli_ends_in(b->sh_path, "txt") &&
+        !cli_ends_in(b->sh_path, "h"))
+        return cli_wrong(b->arguments.command, "--sh %s: must end in .json, .txt or .h",
+                         b->sh_path);
+    if (!b->engine)
+        code = check_output(b, "--output", b->output);
+    if (code == CLI_GO && b->irradiance_path)
+        code = check_output(b, "--irradiance", b->irradiance_path);
+    for (int i = 0; i < 3 && code == CLI_GO; i++)
+        if (paths[i])
+            code = cli_check_folder(paths[i]);
+    return code;
+}
+
+// A folder that exists may be named without the slash at its end, which the library wants.
+static const char *add_slash(const char *path, char folder[4096])
+{
+    size_t length = path ? strlen(path) : 0;
+    if (!length || length + 2 > 4096 || path[length - 1] == '/' || !cli_ends_in(path, "/"))
+        return path;
+    snprintf(folder, 4096, "%s/", path);
+    return folder;
+}
+
+// ------------------------------------------------------------------------------ options of an engine
+
+// Options that an engine decides.
+static int check_engine(const bake *b)
+{
+    static const int decided[] = {SHAPE, ZSTD, ROUGHNESS, LOBE, METHOD};
+    const char *name = b->engine->name, *ending = b->engine->ending;
+    for (size_t i = 0; i < sizeof decided / sizeof *decided; i++)
+        if (b->arguments.text[decided[i]])
+            return cli_wrong(b->arguments.command,
+                             "--for %s decides what --%s is, leave one of them out", name,
+                             bake_options[decided[i]].name);
+    if (ending[0] && !cli_ends_in(b->output, ending))
+        return cli_wrong(b->arguments.command, "--output %s: --for %s writes .%s", b->output, name,
+                         ending);
+    return CLI_GO;
+}
+
+// --for decides the lobe and each level's roughness, and which formats there are.
+static int apply_engine(bake *b)
+{
+    b->engine = kiln_engine_at(b->engine_index);
+    if (!b->engine && b->arguments.text[TUNE])
+        return cli_wrong(b->arguments.command, "--tune needs --for ENGINE");
+    if (!b->engine)
+        return CLI_GO;
+    kiln_error error = {0};
+    kiln_format format = (kiln_format)b->format;
+    kiln_prefilter_def def;
+    int code = check_engine(b);
+    if (code != CLI_GO)
+        return code;
+    if (kiln_engine_format(b->engine, &format, &error) ||
+        kiln_engine_levels(b->engine, b->arguments.text[SIZE] ? b->size : 0, b->level_count,
+                           b->roughness, &def, &error))
+        return cli_wrong(b->arguments.command, "--for %s", error.message);
+    b->size = def.size;
+    b->level_count = def.level_count;
+    b->stores_sh = true;
+    if (b->tuning < 0 && b->engine->tune)
+        b->tuning = BAKE_SHARP;
+    return CLI_GO;
+}
+
+// ---------------------------------------------------------------------------------- contradictions
+
+static int check_textbook(const bake *b)
+{
+    const char *const *given = b->arguments.text;
+    bool lambert = b->lobe == KILN_LOBE_LAMBERT;
+    if (b->lobe != KILN_LOBE_GGX && !lambert)
+        return cli_wrong(b->arguments.command,
+                         "--method textbook knows the lobes ggx and lambert, not %s",
+                         bake_lobes[b->lobe]);
+    if (b->has_roughness)
+        return cli_wrong(b->arguments.command,
+                         "--method textbook spaces its roughness linearly, leave "
+                         "--roughness out");
+    if (given[SAMPLES] && lambert)
+        return cli_wrong(b->arguments.command,
+                         "--samples is for --lobe ggx; the textbook irradiance has "
+                         "--phi-steps and --theta-steps");
+    if ((given[PHI_STEPS] || given[THETA_STEPS]) && !lambert && !b->irradiance_path)
+        return cli_wrong(b->arguments.command, "--phi-steps and --theta-steps are for irradiance: "
+                                               "--lobe lambert or --irradiance FILE");
+    return CLI_GO;
+}
+
+static int check_exact(const bake *b)
+{
+    static const int sampled[] = {SAMPLES, PHI_STEPS, THETA_STEPS};
+    for (size_t i = 0; i < sizeof sampled / sizeof *sampled; i++)
+        if (b->arguments.text[sampled[i]])
+            return cli_wrong(b->arguments.command,
+                             "--%s is for --method textbook; the exact method has no samples",
+                             bake_options[sampled[i]].name);
+    return CLI_GO;
+}
+
+static int check_harmonics(const bake *b)
+{
+    static const int of_file[] = {SH_WINDOW, SH_RADIANCE, SH_IRRADIANCE};
+    if (b->sh_radiance && b->sh_irradiance)
+        return cli_wrong(b->arguments.command,
+                         "--sh-radiance and --sh-irradiance contradict each other");
+    for (size_t i = 0; i < sizeof of_file / sizeof *of_file && !b->sh_path; i++)
+        if (b->arguments.text[of_file[i]])
+            return cli_wrong(b->arguments.command, "--%s needs --sh FILE",
+                             bake_options[of_file[i]].name);
+    if (b->arguments.text[SH_BANDS] && !b->sh_path && !b->stores_sh)
+        return cli_wrong(b->arguments.command, "--sh-bands needs --sh FILE or a .ktx2 output");
+    return CLI_GO;
+}
+
+static int largest_level_count(int size)
+{
+    int count = 1;
+    for (; size > 1; size /= 2)
+        count++;
+    return count < KILN_MAX_LEVELS ? count : KILN_MAX_LEVELS;
+}
+
+static int check_levels(const bake *b)
+{
+    if (b->lobe == KILN_LOBE_LAMBERT && b->level_count > 1)
+        return cli_wrong(b->arguments.command, "--lobe lambert has no roughness: one level, not %d",
+                         b->level_count);
+    if (!b->engine && b->level_count > largest_level_count(b->size))
+        return cli_wrong(b->arguments.command, "%d levels: a size of %d has %d at most",
+                         b->level_count, b->size, largest_level_count(b->size));
+    return CLI_GO;
+}
+
+// The options of one method, lobe or file given without that.
+static int check_combinations(const bake *b)
+{
+    const char *const *given = b->arguments.text;
+    if (b->quiet && b->verbose)
+        return cli_wrong(b->arguments.command, "--quiet and --verbose contradict each other");
+    if (b->json && b->verbose)
+        return cli_wrong(b->arguments.command,
+                         "--json and --verbose contradict each other: the report has "
+                         "everything");
+    int code = b->textbook ? check_textbook(b) : check_exact(b);
+    if (code == CLI_GO)
+        code = check_levels(b);
+    if (code != CLI_GO)
+        return code;
+    if (given[ZSTD] && !cli_ends_in(b->output, "ktx2"))
+        return cli_wrong(b->arguments.command, "--zstd is for .ktx2, not for %s", b->output);
+    if (given[IRRADIANCE_SIZE] && !b->irradiance_path)
+        return cli_wrong(b->arguments.command, "--irradiance-size needs --irradiance FILE");
+    if (given[LAYOUT] && b->arguments.rest_count > 1)
+        return cli_wrong(b->arguments.command, "--layout is for one picture, not for six faces");
+    return check_harmonics(b);
+}
+
+int bake_read_options(bake *b, const cli_command *command, const cli_call *call)
+{
+    cli_arguments *a = &b->arguments;
+    int code = cli_read_arguments(a, command, call, b);
+    b->shape += KILN_SHAPE_PANORAMA; // the first of the words
+    if (code == CLI_GO)
+        code = cli_check_input(command, a->rest, a->rest_count);
+    if (code != CLI_GO)
+        return code;
+    if (!b->output)
+        return cli_wrong(b->arguments.command, "no output: name it by -o OUT");
+    b->output = add_slash(b->output, b->folder[0]);
+    b->irradiance_path = add_slash(b->irradiance_path, b->folder[1]);
+    b->stores_sh = cli_ends_in(b->output, "ktx2");
+    if ((code = read_roughness(b)) != CLI_GO || (code = apply_engine(b)) != CLI_GO ||
+        (code = check_combinations(b)) != CLI_GO)
+        return code;
+    if (b->tuning < 0)
+        b->tuning = BAKE_EXACT;
+    if (b->lobe == KILN_LOBE_LAMBERT)
+        b->level_count = 1;
+    return check_paths(b);
+}

@@ -1,0 +1,128 @@
+// What kiln bake says when its work is done: a line, with --verbose more, or JSON.
+#include "bake.h"
+#include "json.h"
+#include "os.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static double total_seconds(const bake *b)
+{
+    double sum = 0;
+    for (int i = 0; i < BAKE_STAGES; i++)
+        sum += b->seconds[i];
+    return sum;
+}
+
+static void report_input(const bake *b, json *j)
+{
+    json_object(j, "input");
+    json_array(j, "files");
+    for (int i = 0; i < b->arguments.rest_count; i++)
+        json_text(j, NULL, b->arguments.rest[i]);
+    json_end(j);
+    json_text(j, "shape", bake_shapes[b->source_shape]);
+    json_number(j, "width", b->source_width);
+    json_number(j, "height", b->source_height);
+    json_end(j);
+}
+
+static void report_output(const bake *b, json *j)
+{
+    json_object(j, "output");
+    json_text(j, "path", b->output);
+    if (b->irradiance_path)
+        json_text(j, "irradiance", b->irradiance_path);
+    if (b->sh_path)
+        json_text(j, "sh", b->sh_path);
+    json_number(j, "file_count", b->file_count);
+    json_text(j, "shape", bake_shapes[b->made.levels.shape]);
+    json_number(j, "size", b->made.levels.size);
+    json_number(j, "level_count", b->made.levels.level_count);
+    json_array(j, "levels");
+    for (int k = 0; k < b->made.levels.level_count; k++) {
+        json_object(j, NULL);
+        json_number(j, "size", kiln_map_level_size(&b->made.levels, k));
+        json_rounded(j, "roughness", (double)b->made.levels.roughness[k], 9);
+        json_end(j);
+    }
+    json_end(j);
+    json_end(j);
+}
+
+static void report_seconds(const bake *b, json *j)
+{
+    static const char *const stages[BAKE_STAGES] = {"load", "filter", "save"};
+    json_object(j, "seconds");
+    for (int i = 0; i < BAKE_STAGES; i++)
+        json_number(j, stages[i], round(b->seconds[i] * 1e6) / 1e6);
+    json_number(j, "total", round(total_seconds(b) * 1e6) / 1e6);
+    json_end(j);
+}
+
+static void report_json(const bake *b)
+{
+    json j = {0};
+    json_object(&j, NULL);
+    json_text(&j, "kiln", kiln_version());
+    report_input(b, &j);
+    report_output(b, &j);
+    json_text(&j, "method", bake_methods[b->textbook]);
+    json_text(&j, "lobe", bake_lobes[b->lobe]);
+    if (b->engine)
+        json_text(&j, "tune", bake_tunings[b->tuning]);
+    if (b->made.degree)
+        json_number(&j, "degree", b->made.degree);
+    json_text(&j, "cpu", kiln_context_cpu(b->work.context));
+    report_seconds(b, &j);
+    size_t now, peak;
+    kiln_context_memory(b->work.context, &now, &peak);
+    json_object(&j, "peak_memory");
+    json_number(&j, "kiln", (double)peak);
+    json_number(&j, "process", os_peak_memory());
+    json_end(&j);
+    json_end(&j);
+}
+
+static void print_summary(const bake *b)
+{
+    char files[32] = "";
+    if (b->main_count > 1)
+        snprintf(files, sizeof files, " in %d files", b->main_count);
+    printf("%s: %s of %d, %d level%s%s, %s %s, from %s %s of %d x %d, %.2f s\n", b->output,
+           bake_shapes[b->made.levels.shape], b->made.levels.size, b->made.levels.level_count,
+           b->made.levels.level_count > 1 ? "s" : "", files,
+           b->tuning != BAKE_EXACT ? "tuned" : bake_methods[b->textbook], bake_lobes[b->lobe],
+           b->source_shape == KILN_SHAPE_OCTAHEDRON ? "an" : "a", bake_shapes[b->source_shape],
+           b->source_width, b->source_height, total_seconds(b));
+}
+
+static void print_details(const bake *b)
+{
+    const double *s = b->seconds;
+    char text[32];
+    for (int k = 0; k < b->made.levels.level_count; k++)
+        printf("  level %-2d  size %-5d  roughness %.4g\n", k,
+               kiln_map_level_size(&b->made.levels, k), (double)b->made.levels.roughness[k]);
+    if (b->irradiance_path)
+        printf("  irradiance %s, size %d\n", b->irradiance_path, b->made.irradiance.size);
+    if (b->sh_path)
+        printf("  harmonics  %s, %d bands of %s\n", b->sh_path, b->sh_bands,
+               b->sh_irradiance ? "irradiance" : "radiance");
+    if (b->made.degree)
+        printf("  degree     %d\n", b->made.degree);
+    printf("  seconds    load %.3f, filter %.3f, save %.3f (%s)\n", s[BAKE_LOAD], s[BAKE_FILTER],
+           s[BAKE_SAVE], kiln_context_cpu(b->work.context));
+    printf("  memory     %s at most\n", cli_bytes(os_peak_memory(), text));
+}
+
+void bake_report(bake *b)
+{
+    cli_clear_progress(&b->work);
+    if (b->json)
+        report_json(b);
+    else if (!b->quiet)
+        print_summary(b);
+    if (b->verbose)
+        print_details(b);
+}

@@ -1,0 +1,51 @@
+// Names of files and folders.
+#include "cli.h"
+#include "os.h"
+
+#include <ctype.h>
+#include <string.h>
+
+const char *cli_ending(const char *path)
+{
+    size_t length = strlen(path);
+    if ((length && path[length - 1] == '/') || os_kind_of(path) == OS_FOLDER)
+        return "/";
+    const char *slash = strrchr(path, '/'), *dot = strrchr(path, '.');
+    bool has_ending = dot && dot > path && (!slash || dot > slash + 1);
+    return has_ending ? dot + 1 : "";
+}
+
+bool cli_ends_in(const char *path, const char *ending)
+{
+    const char *has = cli_ending(path);
+    while (*has && tolower((unsigned char)*has) == *ending) {
+        has++;
+        ending++;
+    }
+    return !*has && !*ending;
+}
+
+int cli_check_folder(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    if (!slash || !slash[1])
+        return CLI_GO; // here, or a folder that will be made
+    char folder[4096];
+    size_t length = slash == path ? 1 : (size_t)(slash - path);
+    if (length >= sizeof folder)
+        return cli_fail("%.60s...: the name is too long", path);
+    memcpy(folder, path, length);
+    folder[length] = 0;
+    if (strchr(folder, '%') || strchr(folder, '{'))
+        return CLI_GO;
+    switch (os_kind_of(folder)) {
+    case OS_NOTHING:
+        return cli_fail("%s: there is no folder %s", path, folder);
+    case OS_UNREACHABLE:
+        return cli_fail("%s: cannot enter the folder %s", path, folder);
+    case OS_FILE:
+        return cli_fail("%s: %s is not a folder", path, folder);
+    default:
+        return CLI_GO;
+    }
+}

@@ -1,0 +1,171 @@
+// JSON (RFC 8259), written as it comes.
+#include "json.h"
+
+#include <float.h>
+#include <limits.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void indent(int depth)
+{
+    for (int i = 0; i < depth; i++)
+        putchar('\t');
+}
+
+static void print_text(const char *text);
+
+// What stands before a value: a comma after another value, a new line in an object, and the key.
+static void begin(json *j, const char *key)
+{
+    bool array = j->array[j->depth];
+    if (j->filled[j->depth])
+        fputs(array ? ", " : ",", stdout);
+    j->filled[j->depth] = true;
+    if (!j->depth || array)
+        return;
+    putchar('\n');
+    indent(j->depth);
+    print_text(key);
+    fputs(":\t", stdout);
+}
+
+static void open_container(json *j, const char *key, bool array)
+{
+    begin(j, key);
+    putchar(array ? '[' : '{');
+    j->depth += j->depth < JSON_DEPTH;
+    j->array[j->depth] = array;
+    j->filled[j->depth] = false;
+}
+
+void json_object(json *j, const char *key)
+{
+    open_container(j, key, false);
+}
+
+void json_array(json *j, const char *key)
+{
+    open_container(j, key, true);
+}
+
+void json_end(json *j)
+{
+    bool array = j->array[j->depth];
+    j->depth--;
+    if (!array) {
+        putchar('\n');
+        indent(j->depth);
+    }
+    putchar(array ? ']' : '}');
+    if (!j->depth)
+        putchar('\n');
+}
+
+// ----------------------------------------------------------------------------------------- numbers
+
+// printf writes the locale's decimal separator, JSON has a point.
+static void print_digits(double value, int digits)
+{
+    char text[32];
+    snprintf(text, sizeof text, "%.*g", digits, value);
+    for (char *at = text; *at; at++)
+        putchar(strchr("0123456789+-e", *at) ? *at : '.');
+}
+
+void json_number(json *j, const char *key, double value)
+{
+    char text[32];
+    begin(j, key);
+    if (!isfinite(value)) {
+        fputs("null", stdout);
+        return;
+    }
+    snprintf(text, sizeof text, "%.15g", value);
+    double off = fabs(strtod(text, NULL) - value);
+    print_digits(value, off <= fabs(value) * DBL_EPSILON ? 15 : 17);
+}
+
+void json_rounded(json *j, const char *key, double value, int digits)
+{
+    char text[32];
+    snprintf(text, sizeof text, "%.*g", digits, value);
+    json_number(j, key, strtod(text, NULL));
+}
+
+void json_float(json *j, const char *key, float value)
+{
+    char text[32];
+    int digits = 6;
+    for (; digits < 9; digits++) {
+        snprintf(text, sizeof text, "%.*g", digits, (double)value);
+        if (strtof(text, NULL) == value)
+            break;
+    }
+    json_rounded(j, key, (double)value, digits);
+}
+
+void json_bool(json *j, const char *key, bool value)
+{
+    begin(j, key);
+    fputs(value ? "true" : "false", stdout);
+}
+
+// -------------------------------------------------------------------------------------------- text
+
+// The length of the UTF-8 sequence at `at`, 0 where there is none: RFC 3629 has no overlong sequences, no
+// surrogates and nothing above U+10FFFF.
+static int sequence(const unsigned char *at)
+{
+    static const struct {
+        unsigned char first, last, low, high; // the range of the second byte
+        int length;
+    } forms[] = {
+        {0x00, 0x7f, 0x00, 0x00, 1}, {0xc2, 0xdf, 0x80, 0xbf, 2}, {0xe0, 0xe0, 0xa0, 0xbf, 3},
+        {0xe1, 0xec, 0x80, 0xbf, 3}, {0xed, 0xed, 0x80, 0x9f, 3}, {0xee, 0xef, 0x80, 0xbf, 3},
+        {0xf0, 0xf0, 0x90, 0xbf, 4}, {0xf1, 0xf3, 0x80, 0xbf, 4}, {0xf4, 0xf4, 0x80, 0x8f, 4}};
+    for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
+        if (*at < forms[i].first || *at > forms[i].last)
+            continue;
+        if (forms[i].length > 1 && (at[1] < forms[i].low || at[1] > forms[i].high))
+            return 0;
+        for (int k = 2; k < forms[i].length; k++)
+            if ((at[k] & 0xc0) != 0x80)
+                return 0;
+        return forms[i].length;
+    }
+    return 0;
+}
+
+static void print_escaped(unsigned char c)
+{
+    static const char from[] = "\"\\\b\f\n\r\t", to[] = "\"\\bfnrt";
+    const char *known = strchr(from, c);
+    if (known)
+        printf("\\%c", to[known - from]);
+    else
+        printf("\\u%04x", c);
+}
+
+static void print_text(const char *text)
+{
+    putchar('"');
+    for (const unsigned char *at = (const unsigned char *)text; *at;) {
+        int length = sequence(at);
+        if (!length)
+            fputs("\xef\xbf\xbd", stdout); // U+FFFD, the replacement character
+        else if (*at < 32 || *at == '"' || *at == '\\')
+            print_escaped(*at);
+        else
+            fwrite(at, 1, (size_t)length, stdout);
+        at += length ? length : 1;
+    }
+    putchar('"');
+}
+
+void json_text(json *j, const char *key, const char *text)
+{
+    begin(j, key);
+    print_text(text);
+}

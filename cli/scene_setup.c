@@ -1,0 +1,102 @@
+// Options of a picture into numbers, and a name into an environment.
+#include "scene_setup.h"
+
+#include <stdio.h>
+#include <string.h>
+
+const char *scene_diffuse_word(int index)
+{
+    static const char *const words[] = {"sh", "cube", NULL};
+    return words[index];
+}
+
+static int read_size(const cli_arguments *a, scene_setup *s)
+{
+    char rest;
+    s->width = 1280;
+    s->height = 720;
+    if (s->size && sscanf(s->size, "%dx%d%c", &s->width, &s->height, &rest) != 2)
+        return cli_wrong(a->command, "--size is '%s', it must be WIDTHxHEIGHT", s->size);
+    if (s->width < 1 || s->width > 16384 || s->height < 1 || s->height > 16384)
+        return cli_wrong(a->command, "--size is %s, each side must be from 1 to 16384", s->size);
+    return CLI_GO;
+}
+
+// Which options mean something only together with others.
+static int check(const cli_arguments *a, bool may_change, const scene_setup *s)
+{
+    const view_options *o = &s->options;
+    const char *scene = view_scene_name((int)o->scene);
+    if (s->input && !may_change && !scene_has_environment(s))
+        return cli_wrong(a->command, "%s: the scene %s has no environment", s->input, scene);
+    if (o->as_printed && o->scene != VIEW_SCENE_ASSIGNMENT)
+        return cli_wrong(a->command, "--as-printed is for --scene assignment, not %s", scene);
+    if (a->text[SCENE_SPLIT] && o->scene != VIEW_SCENE_COMPARE)
+        return cli_wrong(a->command, "--split is for --scene compare, not %s", scene);
+    if (a->text[SCENE_LEVEL] && o->debug != VIEW_DEBUG_LEVEL)
+        return cli_wrong(a->command, "--level needs --debug level");
+    if (o->debug == VIEW_DEBUG_LEVEL && !scene_has_environment(s))
+        return cli_wrong(a->command, "--debug level: the scene %s has no environment", scene);
+    if (a->text[SCENE_MATERIAL] &&
+        (o->scene == VIEW_SCENE_ASSIGNMENT || o->scene == VIEW_SCENE_FURNACE))
+        return cli_wrong(a->command, "--material: the scene %s has its own", scene);
+    return CLI_GO;
+}
+
+int scene_read(const cli_arguments *a, bool may_change, scene_setup *s)
+{
+    if (a->rest_count > 1)
+        return cli_wrong(a->command, "%d inputs: one environment", a->rest_count);
+    s->input = a->rest_count ? a->rest[0] : NULL;
+    if (s->scene < 0)
+        s->scene = s->input ? VIEW_SCENE_IBL : VIEW_SCENE_ASSIGNMENT;
+    // The scene decides the defaults of others, whose values are then written once more.
+    s->options = view_defaults((view_scene)s->scene);
+    int code = cli_store_values(a, s);
+    if (code == CLI_GO)
+        code = read_size(a, s);
+    s->options.cube_diffuse = s->cube_diffuse;
+    s->options.bent = !s->straight;
+    return code == CLI_GO ? check(a, may_change, s) : code;
+}
+
+bool scene_has_environment(const scene_setup *s)
+{
+    return s->options.scene != VIEW_SCENE_ASSIGNMENT && s->options.scene != VIEW_SCENE_FURNACE;
+}
+
+int scene_load(cli_work *work, const scene_setup *s, kiln_map *source)
+{
+    if (s->input) {
+        const char *names[] = {s->input};
+        return cli_load(work, names, 1, KILN_LAYOUT_AUTO, source);
+    }
+    // kcd/m2 to something near 1.
+    kiln_sky_def def = {0};
+    if (kiln_sky(work->context, &def, source, &work->error) != KILN_OK)
+        return CLI_FAILED;
+    kiln_map_expose(source, -4);
+    return CLI_GO;
+}
+
+int scene_bake_slot(cli_work *work, const scene_setup *s, const kiln_map *source, view_slot slot,
+                    int samples, view_renderer *renderer)
+{
+    kiln_environment e;
+    if (view_bake(work->context, source, s->bake_size, samples, &e, &work->error) != KILN_OK)
+        return CLI_FAILED;
+    kiln_result result =
+        view_set_environment(renderer, slot, &e.levels, &e.sh, &e.irradiance, &work->error);
+    kiln_environment_free(&e);
+    return result == KILN_OK ? CLI_GO : CLI_FAILED;
+}
+
+int scene_bake(cli_work *work, const scene_setup *s, const kiln_map *source,
+               view_renderer *renderer)
+{
+    int code = scene_bake_slot(work, s, source, VIEW_SLOT_EXACT, 0, renderer);
+    if (code == CLI_GO && s->options.scene == VIEW_SCENE_COMPARE)
+        code =
+            scene_bake_slot(work, s, source, VIEW_SLOT_TEXTBOOK, SCENE_TEXTBOOK_SAMPLES, renderer);
+    return code;
+}

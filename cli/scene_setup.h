@@ -1,0 +1,201 @@
+// What `kiln render` and `kiln view` share: the options of a picture, and its environment.
+#ifndef KILN_CLI_SCENE_SETUP_H
+#define KILN_CLI_SCENE_SETUP_H
+
+#include "work.h"
+
+#include "viewer.h"
+
+/// The indices of the shared rows; a command's own follow.
+enum {
+    SCENE,
+    SCENE_METHOD,
+    SCENE_MATERIAL,
+    SCENE_SIZE,
+    SCENE_SAMPLES,
+    SCENE_EXPOSURE,
+    SCENE_ROTATE,
+    SCENE_BACKGROUND,
+    SCENE_AZIMUTH,
+    SCENE_ELEVATION,
+    SCENE_DISTANCE,
+    SCENE_FOV,
+    SCENE_DEBUG,
+    SCENE_LEVEL,
+    SCENE_SPLIT,
+    SCENE_AS_PRINTED,
+    SCENE_OCCLUSION,
+    SCENE_STRAIGHT,
+    SCENE_DIFFUSE,
+    SCENE_BAKE_SIZE,
+    SCENE_OPTIONS
+};
+
+/// The first member of the structure that a command's rows write to.
+typedef struct scene_setup {
+    view_options options;
+    int scene; ///< a view_scene; -1 while no option names one
+    const char *size;
+    int cube_diffuse;
+    bool straight;
+    int width, height;
+    int bake_size;     ///< edge of the environment's level 0
+    const char *input; ///< the environment's name, NULL for a sky
+} scene_setup;
+
+/// The shared rows, for the head of a command's table.
+#define SCENE_ROWS                                                                                 \
+    [SCENE] =                                                                                      \
+        {"scene",                                                                                  \
+         CLI_CHOICE,                                                                               \
+         offsetof(scene_setup, scene),                                                             \
+         0,                                                                                        \
+         0,                                                                                        \
+         -1,                                                                                       \
+         "SCENE",                                                                                  \
+         .word = view_scene_name,                                                                  \
+         .help =                                                                                   \
+             "assignment is two rows of five copper balls under one directional light, "           \
+             "compensated by Kulla and Conty above and with one bounce below; ibl the same rows "  \
+             "in the environment; furnace in uniform white; grid roughness to the right by "       \
+             "metallic upwards; compare the exact bake left of a line and the textbook's right",   \
+         .unset = "ibl with an ENV, else assignment",                                              \
+         .group = "Picture"},                                                                      \
+    [SCENE_METHOD] = {"method",                                                                    \
+                      CLI_CHOICE,                                                                  \
+                      offsetof(scene_setup, options.method),                                       \
+                      .value = "METHOD",                                                           \
+                      .word = view_method_name,                                                    \
+                      .keep = true,                                                                \
+                      .help = "how the upper row makes up for what a single bounce loses; "        \
+                              "handout is Kulla and Conty's with the assignment's factor",         \
+                      .unset = "kulla-conty, of the scene assignment handout"},                    \
+    [SCENE_MATERIAL] = {"material",                                                                \
+                        CLI_CHOICE,                                                                \
+                        offsetof(scene_setup, options.material),                                   \
+                        .value = "MATERIAL",                                                       \
+                        .word = view_material_name,                                                \
+                        .keep = true,                                                              \
+                        .help = "what the balls are made of",                                      \
+                        .unset = "gold"},                                                          \
+    [SCENE_SIZE] = {"size",                                                                        \
+                    CLI_TEXT,                                                                      \
+                    offsetof(scene_setup, size),                                                   \
+                    .value = "WxH",                                                                \
+                    .help = "pixels, each side 1 to 16384",                                        \
+                    .unset = "1280x720"},                                                          \
+    [SCENE_SAMPLES] =                                                                              \
+        {"samples",                                                                                \
+         CLI_INTEGER,                                                                              \
+         offsetof(scene_setup, options.samples),                                                   \
+         1,                                                                                        \
+         8,                                                                                        \
+         4,                                                                                        \
+         "N",                                                                                      \
+         .help = "N x N rays a pixel on a regular grid, whose mean is taken before tone mapping"}, \
+    [SCENE_EXPOSURE] = {"exposure", CLI_NUMBER, offsetof(scene_setup, options.exposure), -64, 64,  \
+                        0,          "STOPS",    .help = "brighter by this many stops"},            \
+    [SCENE_ROTATE] = {"rotate", CLI_NUMBER, offsetof(scene_setup, options.rotation), -3600, 3600,  \
+                      0,        "DEGREES",  .help = "turn the environment about +Y"},              \
+    [SCENE_BACKGROUND] = {"background",                                                            \
+                          CLI_NUMBER,                                                              \
+                          offsetof(scene_setup, options.background),                               \
+                          0,                                                                       \
+                          1,                                                                       \
+                          0,                                                                       \
+                          "ROUGHNESS",                                                             \
+                          .help = "how blurred the environment is behind the balls",               \
+                          .keep = true,                                                            \
+                          .unset = "0"},                                                           \
+    [SCENE_AZIMUTH] = {"azimuth",                                                                  \
+                       CLI_NUMBER,                                                                 \
+                       offsetof(scene_setup, options.camera.azimuth),                              \
+                       -360,                                                                       \
+                       360,                                                                        \
+                       0,                                                                          \
+                       "DEGREES",                                                                  \
+                       .help = "of the camera around the balls",                                   \
+                       .keep = true,                                                               \
+                       .unset = "that of the scene",                                               \
+                       .group = "Camera"},                                                         \
+    [SCENE_ELEVATION] = {"elevation",                                                              \
+                         CLI_NUMBER,                                                               \
+                         offsetof(scene_setup, options.camera.elevation),                          \
+                         -89,                                                                      \
+                         89,                                                                       \
+                         0,                                                                        \
+                         "DEGREES",                                                                \
+                         .help = "of the camera above the balls",                                  \
+                         .keep = true,                                                             \
+                         .unset = "that of the scene"},                                            \
+    [SCENE_DISTANCE] = {"distance",                                                                \
+                        CLI_NUMBER,                                                                \
+                        offsetof(scene_setup, options.camera.distance),                            \
+                        10,                                                                        \
+                        10000,                                                                     \
+                        0,                                                                         \
+                        "D",                                                                       \
+                        .help = "of the camera from the balls; a ball is 72 wide",                 \
+                        .keep = true,                                                              \
+                        .unset = "that of the scene"},                                             \
+    [SCENE_FOV] = {"fov",                                                                          \
+                   CLI_NUMBER,                                                                     \
+                   offsetof(scene_setup, options.camera.fov),                                      \
+                   1,                                                                              \
+                   150,                                                                            \
+                   0,                                                                              \
+                   "DEGREES",                                                                      \
+                   .help = "vertical field of view",                                               \
+                   .keep = true,                                                                   \
+                   .unset = "that of the scene"},                                                  \
+    [SCENE_DEBUG] = {"debug",                                                                      \
+                     CLI_CHOICE,                                                                   \
+                     offsetof(scene_setup, options.debug),                                         \
+                     .value = "VIEW",                                                              \
+                     .word = view_debug_name,                                                      \
+                     .help = "show a level of the environment, a table, or E or Fresnel's "        \
+                             "reflectance on the balls",                                           \
+                     .group = "What is shown"},                                                    \
+    [SCENE_LEVEL] = {"level", CLI_INTEGER, offsetof(scene_setup, options.debug_level),  0, 15,     \
+                     0,       "K",         .help = "the level that --debug level shows"},          \
+    [SCENE_SPLIT] = {"split", CLI_NUMBER, offsetof(scene_setup, options.split),      0, 1,         \
+                     0.5,     "X",        .help = "where the scene compare is split"},             \
+    [SCENE_AS_PRINTED] = {"as-printed", CLI_FLAG, offsetof(scene_setup, options.as_printed),       \
+                          .help = "assignment: with the mistake of the handout's figure 6, whose " \
+                                  "sampler of the average albedo reads the colour of the balls"},  \
+    [SCENE_OCCLUSION] = {"occlusion", CLI_FLAG, offsetof(scene_setup, options.occlusion),          \
+                         .help = "balls shade one another's environment"},                         \
+    [SCENE_STRAIGHT] = {"straight", CLI_FLAG, offsetof(scene_setup, straight),                     \
+                        .help = "rough balls look the environment up in the mirror direction, "    \
+                                "and not nearer to their normal (Lagarde and de Rousiers 2014)"},  \
+    [SCENE_DIFFUSE] =                                                                              \
+        {"diffuse",                                                                                \
+         CLI_CHOICE,                                                                               \
+         offsetof(scene_setup, cube_diffuse),                                                      \
+         .value = "SOURCE",                                                                        \
+         .word = scene_diffuse_word,                                                               \
+         .help =                                                                                   \
+             "light of diffuse surfaces, from harmonics of three bands or a cube of irradiance"},  \
+    [SCENE_BAKE_SIZE] = {                                                                          \
+        "bake-size", CLI_INTEGER, offsetof(scene_setup, bake_size),       16, 2048,                \
+        256,         "N",         .help = "edge of the baked environment"}
+/// The words of rows.
+const char *scene_diffuse_word(int index);
+
+/// After cli_read_arguments: CLI_GO or an exit code. With `may_change`, as in a window, an environment is no
+/// mistake in a scene that has none.
+int scene_read(const cli_arguments *a, bool may_change, scene_setup *s);
+/// Whether the scene needs an environment.
+bool scene_has_environment(const scene_setup *s);
+/// Loads the environment, or makes a sky. CLI_GO or CLI_FAILED.
+int scene_load(cli_work *work, const scene_setup *s, kiln_map *source);
+/// Samples a texel of the textbook's bake.
+enum { SCENE_TEXTBOOK_SAMPLES = 1024 };
+/// Bakes the environment for the renderer, one slot (`samples` 0: exactly) or all that the scene needs.
+/// CLI_GO or CLI_FAILED.
+int scene_bake_slot(cli_work *work, const scene_setup *s, const kiln_map *source, view_slot slot,
+                    int samples, view_renderer *renderer);
+int scene_bake(cli_work *work, const scene_setup *s, const kiln_map *source,
+               view_renderer *renderer);
+
+#endif

@@ -1,0 +1,61 @@
+// What the command says on standard error, and the end of standard output.
+#include "cli.h"
+#include "os.h"
+
+#include <errno.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+static void say(const char *format, va_list list)
+{
+    fputs("kiln: ", stderr);
+    vfprintf(stderr, format, list);
+    fputc('\n', stderr);
+}
+
+int cli_wrong(const cli_command *command, const char *format, ...)
+{
+    va_list list;
+    va_start(list, format);
+    say(format, list);
+    va_end(list);
+    fprintf(stderr, "Try 'kiln %s%s--help'.\n", command ? command->name : "", command ? " " : "");
+    return CLI_WRONG;
+}
+
+int cli_fail(const char *format, ...)
+{
+    va_list list;
+    va_start(list, format);
+    say(format, list);
+    va_end(list);
+    return CLI_FAILED;
+}
+
+const char *cli_bytes(double bytes, char text[32])
+{
+    static const char *const units[] = {"bytes", "kB", "MB", "GB", "TB"};
+    int unit = 0;
+    while (bytes >= 1000 && unit < 4) {
+        bytes /= 1000;
+        unit++;
+    }
+    snprintf(text, 32, unit ? "%.3g %s" : "%.0f %s", bytes >= 999.5 ? 999 : bytes, units[unit]);
+    return text;
+}
+
+int cli_close_output(int code)
+{
+    bool failed = ferror(stdout) != 0;
+    errno = 0;
+    failed = fflush(stdout) != 0 || failed;
+    if (!failed)
+        return code;
+    int gone = os_reader_gone(errno);
+    if (gone)
+        return gone; // the reader knows it
+    if (code == CLI_DONE)
+        cli_fail("standard output: %s", errno ? strerror(errno) : "cannot be written");
+    return code == CLI_DONE ? CLI_FAILED : code;
+}

@@ -1,0 +1,88 @@
+// Work with its progress line and signals.
+#include "work.h"
+#include "os.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { PROGRESS_WIDTH = 40 };
+
+bool cli_interrupted(void)
+{
+    return os_signal() != 0;
+}
+
+double cli_elapsed(const cli_work *work)
+{
+    return os_seconds() - work->began;
+}
+
+void cli_clear_progress(cli_work *work)
+{
+    if (work->drawn > 0)
+        fprintf(stderr, "\r%*s\r", PROGRESS_WIDTH, "");
+    work->drawn = 0;
+}
+
+bool cli_progress(void *user, const char *stage, double fraction)
+{
+    cli_work *work = user;
+    double now = os_seconds();
+    // Within a stage the line only goes forward.
+    if (!work->stage || strcmp(stage, work->stage) != 0 || fraction > work->furthest)
+        work->furthest = fraction;
+    work->stage = stage;
+    bool due = now - work->began > 0.5 && now - work->drawn > 0.1;
+    if (work->on_terminal && due && !cli_interrupted()) {
+        char line[PROGRESS_WIDTH + 1];
+        snprintf(line, sizeof line, "kiln: %s %.0f %%", stage, 100 * work->furthest);
+        fprintf(stderr, "\r%-*s", PROGRESS_WIDTH, line);
+        work->drawn = now;
+    }
+    return !cli_interrupted();
+}
+
+static void create_context(void *user)
+{
+    cli_work *work = user;
+    kiln_context_def def = {
+        .thread_count = work->threads,
+        .progress = cli_progress,
+        .progress_user = work,
+        // Beyond what the machine has, a bake would be killed without a sentence.
+        .memory_limit = os_physical_memory(),
+    };
+    work->error.result = kiln_context_create(&def, &work->context, &work->error);
+}
+
+int cli_begin_work(cli_work *work, int threads, bool quiet)
+{
+    *work = (cli_work){.began = os_seconds(),
+                       .threads = threads,
+                       .on_terminal = !quiet && os_is_terminal(OS_ERRORS)};
+    os_catch_signals();
+    os_without_signals(create_context, work);
+    return work->context ? CLI_GO : CLI_FAILED;
+}
+
+int cli_end_work(cli_work *work, int code)
+{
+    int signal = os_signal();
+    cli_clear_progress(work);
+    if (code == CLI_FAILED && !signal && work->error.message[0])
+        cli_fail("%s", work->error.message);
+    kiln_context_destroy(work->context);
+    return code == CLI_FAILED && signal ? 128 + signal : code;
+}
+
+void cli_warn(cli_work *work, const char *format, ...)
+{
+    cli_clear_progress(work);
+    fputs("kiln: warning: ", stderr);
+    va_list list;
+    va_start(list, format);
+    vfprintf(stderr, format, list);
+    va_end(list);
+    fputc('\n', stderr);
+}
