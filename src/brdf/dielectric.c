@@ -47,7 +47,7 @@ typedef struct boundary {
     double root_v;   // n.v (1 + 2 Lambda(v)) for GGX with KILN_G_SMITH, 0 for other models
     double pole;     // the pole of G nearest to 0 is at about n.l = -pole
     double most;     // upper bound of G(v, l) / (n.v)
-    double coarse;   // bound on a ring's share of the result below which 8 nodes per panel suffice
+    double coarse;   // share of the result below which a ring of half vectors needs 8 nodes only
 } boundary;
 
 // Smith's Lambda of a direction with this cosine to n, at most 1e9 for ki_beta.
@@ -174,8 +174,9 @@ static double integrate_arc(const boundary *s, part what, const double h[2], dou
     return 16 * slope / panels * sum;
 }
 
-// The inner integral: over the azimuth of half vectors with sine and cosine h[0] and h[1] to n.
-// Finds the arc's end and the singularity nearest to it. `coarse` marks a ring of little influence
+// The inner integral: over a ring of half vectors, those at one angle to n, whose sine and cosine
+// are h[0] and h[1]. Finds the end of the arc of azimuths to which light is reflected or
+// transmitted, and the singularity nearest to that end. `coarse` marks a ring with little influence
 // on the result.
 static double ring(const boundary *s, part what, const double h[2], bool coarse)
 {
@@ -218,10 +219,10 @@ static double density(const boundary *s, const double h[2])
     return h[0] * a2 / (KI_PI * d * d);
 }
 
-// The outer integral over theta between two of the angles at which the arc opens, closes or changes
-// its limiting condition. theta = width sinh x, because D is narrow; x is a polynomial of the
-// panels' variable with zero slope at the ends, because the arc's length behaves as a square root
-// there.
+// The outer integral, over the angle theta of half vectors to n. At `from` and `to`, the arc of
+// azimuths that ring() integrates over opens, closes or changes the condition that limits it. D is
+// narrow, and theta = width sinh(x) spreads its peak over x. The arc's length behaves as a square
+// root at the ends, so that x is a polynomial of the quadrature variable with zero slope there.
 static double integrate_rings(const boundary *s, part what, double from, double to)
 {
     double width = fmin(s->alpha, fmax(s->mu, 0.1 * s->alpha)), sum = 0;

@@ -86,7 +86,7 @@ static void view_set(view *v, const kiln_model *model, double roughness, double 
     if (split && v->pole > nov)
         v->pole = nov;
     v->split = (nov > v->alpha ? nov : v->alpha) / 2;
-    // A pole nearer than 1e-12 of the interval has no influence on the integral.
+    // How near the pole is does not matter below 1e-12 of the first interval's length.
     v->pole = ki_clamp(v->pole, 1e-12 * v->split, 1);
 }
 
@@ -171,7 +171,7 @@ static void even_nodes(const view *v, panel *p)
 typedef struct stretch {
     double m_rest; // 1 - m, where m is the centre of the peak of D
     double ahead;  // m - mu, where mu is the cosine of the view
-    double d;      // width of the peak of D
+    double d;      // width of the peak of D in mu_i
 } stretch;
 
 // The nodes of a panel of the second interval, mu_i = m + d sinh t. The panel is t0 - h to t0 + h,
@@ -377,9 +377,9 @@ static void add(const view *v, const panel *p, double e[HALF], double b[HALF], b
         add_b(v, p, top, bottom, b);
 }
 
-// An interval of u or t cut into `count` panels of equal length.
+// An interval of the integration variable, u or t, cut into `count` panels of equal length.
 typedef struct tiling {
-    double from;     // e^x at the interval's lower end, where x is u or t
+    double from;     // e^x at the interval's lower end, where x is the integration variable
     double ratio;    // e^x at the interval's upper end over e^x at the lower end
     double h, ahead; // half the length of a panel, and e^h
     int count;

@@ -68,8 +68,8 @@ static void build_row(void *data, int row)
 
 // The numbers of Chebyshev coefficients that bring the error of E below 7e-8 for each masking. For
 // KILN_G_SMITH, E has a logarithmic singularity at n.v = 0, which the fourth root in u smooths. For
-// KILN_G_SCHLICK_TEXT, E changes in a layer of width k / (1 - k) and faintly in one of width alpha,
-// which needs more coefficients in roughness.
+// KILN_G_SCHLICK_TEXT, E changes over n.v < k / (1 - k) and, by a small amount, over n.v < alpha.
+// The two widths need more coefficients in roughness.
 static void choose_degrees(ki_surface *surface)
 {
     surface->quartic = surface->model.g == KILN_G_SMITH;

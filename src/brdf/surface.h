@@ -3,7 +3,7 @@
 // texel.
 //
 // E changes fast at grazing angles, n.v < c, where c is about alpha. In t = n.v (1 + c) / (n.v + c)
-// that layer has the same width at every roughness. Therefore E is a smooth function of u and
+// that range has the same width at every roughness. Therefore E is a smooth function of u and
 // roughness, where u is the square root or the fourth root of t. docs/theory/energy.md.
 #ifndef KI_SURFACE_H
 #define KI_SURFACE_H
@@ -21,7 +21,7 @@ typedef struct ki_surface {
     double coefficient[KI_SURFACE_ROUGHNESS][KI_SURFACE_NOV];
 } ki_surface;
 
-/// The width c of the layer of n.v at grazing angles in which E changes fast: alpha, at least
+/// The width c of the range of n.v at grazing angles in which E changes fast: alpha, at least
 /// 1e-12, or k / (1 - k) with k = (roughness + 1)^2 / 8 for KILN_G_SCHLICK_TEXT.
 double ki_grazing_scale(const kiln_model *model, double roughness);
 

@@ -48,7 +48,7 @@ static float clamp(float x, float low)
     return x > low ? x < 1 ? x : 1 : low;
 }
 
-// t = nov (1 + c) / (nov + c), in which the layer of fast change at grazing angles has the same
+// t = nov (1 + c) / (nov + c). E changes fast for n.v below about c; in t that range has the same
 // width at every roughness. c is ki_grazing_scale without its lower bound.
 static float axis_t(const kiln_fit_def *def, float nov, float roughness)
 {

@@ -133,8 +133,8 @@ kiln_result ki_fit_nodes(kiln_context *context, const kiln_fit_def *def, ki_fit_
     for (int i = 0; i < points->count; i++) {
         points->x[i] = node(i % columns, columns);
         points->y[i] = node(i / columns, rows);
-        // At roughness 0 the layer at grazing angles has no width, and x determines no n.v. The
-        // node takes the limit from a small roughness.
+        // At roughness 0 every x < 1 stands for n.v = 0. The node takes the limit from a small
+        // roughness.
         points->roughness[i] = roughness_of(def, points->y[i]);
         if (points->roughness[i] < KI_GRAZING_MIN)
             points->roughness[i] = KI_GRAZING_MIN;

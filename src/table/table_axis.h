@@ -6,8 +6,9 @@
 
 #include <kiln/brdf.h>
 
-/// Least roughness on the grazing axis. At roughness 0 the layer that this axis resolves has no
-/// width, so that a row of smaller roughness is computed at this roughness.
+/// Least roughness on the grazing axis. That axis stretches the range of n.v, about as wide as
+/// alpha, in which E changes fast. At roughness 0 the range is empty, so that rows of smaller
+/// roughness are computed at this roughness.
 #define KI_GRAZING_MIN 1e-6
 
 /// Returns the place u in [0, 1] along def->axis that belongs to nov in [0, 1] in a row of this

@@ -16,8 +16,8 @@ static const double least_roughness = 0.05;
 // weight of the roughnesses that read the level. Without that equation, a level that hardly any
 // roughness in [0.05, 1] reads would be undetermined.
 static const double prior = 1e-3;
-// The weight of the equation that level 0, where it may differ, equals the mirror: that of an
-// interval of roughness of this length.
+// The weight of the equation that level 0 equals the mirror, where level 0 is tuned. It is the
+// weight that an interval of roughness of this length has.
 static const double mirror_weight = 1e-3;
 // Weights of lobes smaller than this in absolute value are set to 0.
 static const double least_weight = 1e-5;
@@ -37,7 +37,8 @@ void ki_nodes_place(ki_nodes *nodes, double (*level)(double, int, int), int leve
     double from = least_roughness;
     nodes->level_count = level_count;
     while (from < 1 && nodes->count + KI_LOBES <= KI_MOST_LOBES - 2) {
-        // Finds by bisection the largest roughness at which the engine reads the same two levels.
+        // Finds by bisection the largest roughness at which the engine reads the same two levels as
+        // at roughness `from`.
         double next = floor(level(from + 1e-9, level_count, size)) + 1, low = from, high = 1;
         if (level(1, level_count, size) <= next)
             low = 1;

@@ -113,8 +113,7 @@ static void random_place(int lump, uint64_t *random, double *r, double *nov)
 
 // The specular lobe scaled by the default table has the albedo of random walks within 2e-3, for
 // every f0, roughness and n.v, both with exact A and B and with A and B from a table. The exception
-// is roughness below 1e-6 together with n.v below 1e-9, where the grazing axis does not resolve the
-// layer of fast change.
+// is roughness below 1e-6 together with n.v below 1e-9, which the grazing axis does not resolve.
 static void scaled_lobe_has_the_albedo_of_the_walk(void **state)
 {
     (void)state;
