@@ -143,8 +143,8 @@ static kiln_result plan_irradiance(kiln_plan *p, int rows, kiln_error *error)
     ki_zonal zonal;
     ki_zonal_spectrum lobe = {0};
     if (result == KILN_OK)
-        result = ki_lobe_spectrum(p->context, &lambert, ki_prefilter_tolerance, false, &zonal,
-                                  &lobe, error);
+        result =
+            ki_lobe_spectrum(p->context, &lambert, ki_lobe_tolerance, false, &zonal, &lobe, error);
     if (result == KILN_OK)
         result =
             ki_level_create(p->context, &analysis->legendre, &zonal, &lobe, p->prefilter->def.shape,

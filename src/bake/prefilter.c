@@ -7,8 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-const double ki_prefilter_tolerance = 1.5e-4;
-
 bool ki_is_mirror(const kiln_lobe *lobe)
 {
     return lobe->kind == KILN_LOBE_GGX && lobe->parameter < 1e-7;
@@ -60,7 +58,7 @@ kiln_result ki_prefilter_resolve(const kiln_prefilter_def *def, kiln_prefilter_d
     if (!(fabs(d.rotation) <= 1e6))
         return ki_fail(error, KILN_ERROR_ARGUMENT, "rotation is %g degrees, it must be within 1e6",
                        d.rotation);
-    d.tolerance = d.tolerance != 0 ? d.tolerance : ki_prefilter_tolerance;
+    d.tolerance = d.tolerance != 0 ? d.tolerance : ki_lobe_tolerance;
     if (!(d.tolerance >= 1e-6 && d.tolerance <= 0.01))
         return ki_fail(error, KILN_ERROR_ARGUMENT, "tolerance is %g, it must be 1e-6 to 0.01",
                        d.tolerance);
@@ -79,34 +77,6 @@ kiln_result ki_prefilter_resolve(const kiln_prefilter_def *def, kiln_prefilter_d
     d.roughness = NULL;
     *resolved = d;
     return KILN_OK;
-}
-
-kiln_result ki_lobe_spectrum(kiln_context *context, const kiln_lobe *lobe, double tolerance,
-                             bool split, ki_zonal *zonal, ki_zonal_spectrum *spectrum,
-                             kiln_error *error)
-{
-    *zonal = (ki_zonal){.lobe = *lobe};
-    // The widest lobes have the longest tails, from their kink at the horizon.
-    double width = ki_lobe_width(lobe), guess = (width < 1 ? 160 : 320) + 14 / width;
-    // Charlie is narrow at the horizon, not around its centre.
-    split = split && lobe->kind != KILN_LOBE_CHARLIE;
-    int limit = guess < KILN_MAX_DEGREE ? (int)guess : KILN_MAX_DEGREE;
-    if (guess < 2 * KILN_MAX_DEGREE || !split) {
-        kiln_result result = ki_zonal_analyze(context, zonal, tolerance, limit, spectrum, error);
-        if (result != KILN_OK || spectrum->rest <= tolerance)
-            return result;
-        if (limit < KILN_MAX_DEGREE) {
-            ki_zonal_free(spectrum);
-            result = ki_zonal_analyze(context, zonal, tolerance, KILN_MAX_DEGREE, spectrum, error);
-        }
-        // A kink at the horizon makes long but thin tails, which no split would mend.
-        if (result != KILN_OK || spectrum->rest <= 10 * tolerance || !split)
-            return result;
-        ki_zonal_free(spectrum);
-    }
-    zonal->inner = 0.01;
-    zonal->outer = 0.05;
-    return ki_zonal_analyze(context, zonal, tolerance, KILN_MAX_DEGREE, spectrum, error);
 }
 
 // A mirror shows the source itself, so that what was a cube stays as sharp, or the same; where its

@@ -8,23 +8,12 @@
 #include "sphere/zonal.h"
 #include "tune/tune.h"
 
-/// What a level leaves out by stopping at a degree, as part of the L2 norm for a lone bright point.
-/// Bright points are kept out of the spectrum (spectrum.h), so the error of a real environment is a
-/// small fraction of it.
-extern const double ki_prefilter_tolerance;
-
 /// Fills in the defaults and checks. `levels` receives the lobe of each level.
 kiln_result ki_prefilter_resolve(const kiln_prefilter_def *def, kiln_prefilter_def *resolved,
                                  float roughness[KILN_MAX_LEVELS], kiln_lobe lobes[KILN_MAX_LEVELS],
                                  kiln_error *error);
 /// Whether a lobe is a perfect mirror: such levels are resampled by area.
 bool ki_is_mirror(const kiln_lobe *lobe);
-
-/// A lobe's spectrum, up to a degree that its width suggests; the whole lobe's. Where KILN_MAX_DEGREE
-/// does not suffice and `split` is true, the part of the lobe around its centre is left out.
-kiln_result ki_lobe_spectrum(kiln_context *context, const kiln_lobe *lobe, double tolerance,
-                             bool split, ki_zonal *zonal, ki_zonal_spectrum *spectrum,
-                             kiln_error *error);
 
 /// All that the levels of one size need, from panoramas of one size.
 typedef struct ki_prefilter {

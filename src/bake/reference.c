@@ -594,12 +594,3 @@ done:
         memset(values, 0, (size_t)count * sizeof *values);
     return result;
 }
-
-kiln_result ki_reference_filter(kiln_context *context, const kiln_map *panorama,
-                                const kiln_lobe *lobe, double rotation,
-                                const double (*directions)[3], int count, double (*values)[3],
-                                kiln_error *error)
-{
-    return ki_reference_integrate(context, panorama, lobe, rotation, directions, count, NULL,
-                                  values, error);
-}

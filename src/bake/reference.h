@@ -24,10 +24,4 @@ kiln_result ki_reference_integrate(kiln_context *context, const kiln_map *panora
                                    const ki_reference_rule *rule, double (*values)[3],
                                    kiln_error *error);
 
-/// The same with the default rule.
-kiln_result ki_reference_filter(kiln_context *context, const kiln_map *panorama,
-                                const kiln_lobe *lobe, double rotation,
-                                const double (*directions)[3], int count, double (*values)[3],
-                                kiln_error *error);
-
 #endif

@@ -3,6 +3,7 @@
 // them.
 #include "brdf/brdf.h"
 
+#include "brdf/arguments.h"
 #include "math/math.h"
 
 double ki_kulla_conty(double e_o, double e_i, double e_average)
@@ -42,4 +43,31 @@ void ki_fdez_aguera(double f0, double a, double b, double *single, double *multi
     double f = (1 + 20 * f0) / 21, e = a + b, rest = (1 - f) + f * e; // rest = 1 - f m
     *single = f0 * a + b;
     *multiple = rest > 0 ? *single * f * (1 - e) / rest : 1;
+}
+
+double kiln_kulla_conty(double e_o, double e_i, double e_average)
+{
+    return ki_kulla_conty(ki_unit(e_o), ki_unit(e_i), ki_unit(e_average));
+}
+
+double kiln_kulla_conty_fresnel(kiln_f_add form, double f_average, double e_average)
+{
+    return ki_kulla_conty_fresnel(form, ki_unit(f_average), ki_unit(e_average));
+}
+
+double kiln_turquin(double f0, double e)
+{
+    // Below every albedo that a lobe with light in it has; so that the factor stays finite.
+    return ki_turquin(ki_unit(f0), ki_clamp(e, 1e-6, 1));
+}
+
+void kiln_fdez_aguera(double f0, double a, double b, double *single, double *multiple)
+{
+    double a1 = ki_unit(a), b1 = ki_unit(b);
+    ki_fdez_aguera(ki_unit(f0), a1, b1 < 1 - a1 ? b1 : 1 - a1, single, multiple);
+}
+
+double kiln_compensate_walk(double e_single, double added)
+{
+    return 1 + ki_unit(added) / ki_clamp(e_single, 1e-6, 1);
 }

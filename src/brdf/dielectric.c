@@ -335,7 +335,7 @@ static double reflected(const boundary *s)
     return s->critical > 0 ? fmax(0, ki_energy(&s->model, s->roughness, s->mu) - sum) : sum;
 }
 
-void ki_dielectric(const kiln_model *model, double roughness, double ior, double nov, double rt[2])
+void kiln_glass(const kiln_model *model, double roughness, double ior, double nov, double rt[2])
 {
     boundary s;
     if (!prepare(model, roughness, ior, nov, &s)) {
@@ -359,7 +359,7 @@ double ki_dielectric_reflection(const kiln_model *model, double roughness, doubl
 // R and T change fast at grazing angles, near the critical angle and where the cone of total
 // reflection meets the horizon (n.v = ior). The integral over n.v is cut at these cosines, and a
 // cubic substitution places more nodes near the cuts.
-void ki_dielectric_average(const kiln_model *model, double roughness, double ior, double rt[2])
+void kiln_glass_average(const kiln_model *model, double roughness, double ior, double rt[2])
 {
     enum { PANELS = 2 };
     ior = ki_clamp(ior, LEAST_IOR, 1 / LEAST_IOR);
@@ -374,7 +374,7 @@ void ki_dielectric_average(const kiln_model *model, double roughness, double ior
         double x = (panel % PANELS + (1 + ki_gauss16_nodes[i % NODES]) / 2) / PANELS;
         double weight = ki_gauss16_weights[i % NODES] / (2 * PANELS) * 6 * x * (1 - x) * length;
         double mu = cuts[third] + length * (x * x * (3 - 2 * x));
-        ki_dielectric(model, roughness, ior, mu, at);
+        kiln_glass(model, roughness, ior, mu, at);
         for (int k = 0; k < 2; k++)
             rt[k] += 2 * mu * weight * at[k];
     }

@@ -5,6 +5,7 @@
 #include "brdf/energy.h"
 
 #include "base/vector.h"
+#include "brdf/arguments.h"
 #include "brdf/beckmann.h"
 #include "math/math.h"
 
@@ -79,4 +80,19 @@ double ki_energy_average(const kiln_model *model, double roughness)
             sum += 2 * weight[j] * h * c * rise[j] * nov[j] * e[j];
     }
     return sum;
+}
+
+double kiln_energy(const kiln_model *model, double roughness, double nov)
+{
+    return ki_energy(model, ki_clamp(roughness, 0, 1), ki_clamp(nov, 0, 1));
+}
+
+double kiln_energy_average(const kiln_model *model, double roughness)
+{
+    return ki_energy_average(model, ki_clamp(roughness, 0, 1));
+}
+
+void kiln_energy_split(const kiln_model *model, double roughness, double nov, double ab[2])
+{
+    ki_energy_split(model, ki_clamp(roughness, 0, 1), ki_clamp(nov, 0, 1), ab);
 }

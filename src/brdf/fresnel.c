@@ -5,6 +5,7 @@
 #include "brdf/brdf.h"
 
 #include "base/base.h"
+#include "brdf/arguments.h"
 #include "math/math.h"
 
 #include <math.h>
@@ -205,4 +206,61 @@ double ki_fresnel_conductor_average_fit(double r, double g)
     return 0.087237 + 0.0230685 * g - 0.0864902 * g2 + 0.0774594 * (g2 * g) + 0.782654 * r -
            0.136432 * r2 + 0.278708 * (r2 * r) + 0.19744 * (r * g) + 0.0360605 * (g2 * r) -
            0.2586 * (g * r2);
+}
+
+double kiln_fresnel_schlick(double f0, double voh)
+{
+    double f = ki_unit(f0);
+    return f + (1 - f) * ki_schlick_fresnel(ki_unit(voh));
+}
+
+double kiln_fresnel_dielectric(double ior, double voh)
+{
+    return ki_fresnel_dielectric(ki_index(ior), ki_unit(voh));
+}
+
+double kiln_fresnel_conductor(double n, double k, double voh)
+{
+    return ki_fresnel_conductor(ki_index(n), ki_index(k), ki_unit(voh));
+}
+
+void kiln_gulbrandsen(double reflectivity, double edge_tint, double *n, double *k)
+{
+    ki_gulbrandsen(ki_clamp(reflectivity, 0, 0.9999), ki_unit(edge_tint), n, k);
+}
+
+double kiln_fresnel_f82(double f0, double f82, double voh)
+{
+    return ki_fresnel_f82(ki_unit(f0), ki_unit(f82), ki_unit(voh));
+}
+
+double kiln_fresnel_f82_average(double f0, double f82)
+{
+    double f = ki_unit(f0);
+    return (1 + 20 * f) / 21 - ki_f82_dip(f, ki_unit(f82)) / 126;
+}
+
+double kiln_fresnel_schlick_average(double f0)
+{
+    return (1 + 20 * ki_unit(f0)) / 21;
+}
+
+double kiln_fresnel_dielectric_average(double ior)
+{
+    return ki_fresnel_dielectric_average(ki_index(ior));
+}
+
+double kiln_fresnel_conductor_average(double n, double k)
+{
+    return ki_fresnel_conductor_average(ki_index(n), ki_index(k));
+}
+
+double kiln_fresnel_dielectric_average_fit(double ior)
+{
+    return ki_fresnel_dielectric_average_fit(ki_clamp(ior, 0, 400));
+}
+
+double kiln_fresnel_conductor_average_fit(double reflectivity, double edge_tint)
+{
+    return ki_fresnel_conductor_average_fit(ki_unit(reflectivity), ki_unit(edge_tint));
 }

@@ -3,6 +3,7 @@
 #include "brdf/beckmann.h"
 #include "brdf/brdf.h"
 
+#include "brdf/arguments.h"
 #include "math/math.h"
 
 #include <math.h>
@@ -73,4 +74,23 @@ double ki_masking(const kiln_model *model, double roughness, double nov, double 
         return roughness > 0 || model->g == KILN_G_SCHLICK_TEXT ? 0 : 1;
     double g = nov * nol * ki_visibility(model, roughness, nov, nol);
     return g < 1 ? g : 1;
+}
+
+double kiln_brdf_d(kiln_d d, double roughness, double noh)
+{
+    return ki_brdf_d(d, ki_roughness(roughness), ki_unit(noh));
+}
+
+double kiln_brdf_g(const kiln_model *model, double roughness, double nov, double nol)
+{
+    return ki_masking(model, ki_roughness(roughness), ki_cosine(nov), ki_cosine(nol));
+}
+
+double kiln_brdf_specular(const kiln_model *model, double roughness, double nov, double nol,
+                          double noh)
+{
+    double r = ki_roughness(roughness), d = ki_brdf_d(model->d, r, ki_unit(noh));
+    if (!(d > 0 && d < HUGE_VAL))
+        return d;
+    return d * ki_visibility(model, r, ki_cosine(nov), ki_cosine(nol)) / 4;
 }

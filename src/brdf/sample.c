@@ -1,6 +1,7 @@
 // Maps two uniform numbers xi to directions with the densities of the reflection model.
 #include "brdf/brdf.h"
 
+#include "brdf/arguments.h"
 #include "math/math.h"
 
 #include <math.h>
@@ -47,4 +48,61 @@ void ki_sample_visible(double alpha, const double v[3], const double xi[2], doub
     length = sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2]);
     for (int c = 0; c < 3; c++)
         h[c] /= length;
+}
+
+// xi into [0, 1): generators of floats may well round up to 1.
+static const double *clamp_xi(const double xi[2], double clamped[2])
+{
+    for (int i = 0; i < 2; i++)
+        clamped[i] = ki_clamp(xi[i], 0, 1 - 0x1p-53);
+    return clamped;
+}
+
+void kiln_sample_cosine(const double xi[2], double l[3])
+{
+    double x[2];
+    ki_sample_cosine(clamp_xi(xi, x), l);
+}
+
+double kiln_pdf_cosine(double nol)
+{
+    return ki_unit(nol) / KI_PI;
+}
+
+void kiln_sample_half_vector(kiln_d d, double roughness, const double xi[2], double h[3])
+{
+    double r = ki_roughness(roughness), x[2];
+    if (d == KILN_D_GGX)
+        ki_ggx_half_vector(r * r, clamp_xi(xi, x), h);
+    else
+        ki_beckmann_half_vector(r * r, clamp_xi(xi, x), h);
+}
+
+double kiln_pdf_half_vector(kiln_d d, double roughness, double noh)
+{
+    double c = ki_unit(noh);
+    return c > 0 ? c * ki_brdf_d(d, ki_roughness(roughness), c) : 0;
+}
+
+void kiln_sample_visible(double roughness, const double v[3], const double xi[2], double h[3])
+{
+    double r = ki_roughness(roughness), x[2];
+    h[0] = h[1] = 0;
+    h[2] = 1; // of the mirror
+    if (r > 0)
+        ki_sample_visible(r * r, v, clamp_xi(xi, x), h);
+}
+
+double kiln_pdf_visible(double roughness, double nov, double noh, double voh)
+{
+    double r = ki_roughness(roughness), d = ki_brdf_d(KILN_D_GGX, r, ki_unit(noh)),
+           c = ki_unit(voh);
+    if (!(d > 0 && d < HUGE_VAL && c > 0))
+        return c > 0 ? d : 0;
+    return d * ki_smith_g1_over_cosine(r * r, ki_cosine(nov)) * c;
+}
+
+double kiln_pdf_reflection(double pdf, double voh)
+{
+    return voh > 0 ? pdf / (4 * voh) : 0;
 }

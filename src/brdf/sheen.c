@@ -197,7 +197,7 @@ static double estevez_albedo(double alpha, double mu)
     return sum * (2 + 1 / alpha) / (4 * mu);
 }
 
-double ki_sheen_albedo(kiln_sheen sheen, double roughness, double nov)
+double kiln_sheen_albedo(kiln_sheen sheen, double roughness, double nov)
 {
     roughness = ki_clamp(roughness, 0.01, 1);
     if (sheen == KILN_SHEEN_ESTEVEZ)

@@ -11,11 +11,5 @@ double ki_sheen_d(double alpha, double noh);
 /// The masking factor V of the lobe D V. KILN_SHEEN_ASHIKHMIN: 1 / (4 (n.l + n.v - (n.l)(n.v))),
 /// which does not use alpha. KILN_SHEEN_ESTEVEZ: 1 / (4 (n.v)(n.l) (1 + Lambda(v) + Lambda(l))).
 double ki_sheen_visibility(kiln_sheen sheen, double alpha, double nov, double nol);
-/// The directional albedo E at the cosine nov for colour 1. E exceeds 1 at grazing angles.
-/// Roughness is clamped to [0.01, 1]. nov is clamped to [0, 1] for KILN_SHEEN_ASHIKHMIN, and to
-/// [1e-4, 1] for KILN_SHEEN_ESTEVEZ, whose albedo is infinite at 0. The error, relative to the
-/// greater of 1 and E, is below 1e-9 for KILN_SHEEN_ASHIKHMIN and below 1e-7 for
-/// KILN_SHEEN_ESTEVEZ.
-double ki_sheen_albedo(kiln_sheen sheen, double roughness, double nov);
 
 #endif

@@ -10,6 +10,7 @@
 // Lambda(w)) leaves the surface.
 #include "brdf/walk.h"
 
+#include "brdf/arguments.h"
 #include "brdf/brdf.h"
 #include "brdf/energy.h"
 #include "math/math.h"
@@ -259,4 +260,13 @@ void ki_walk_column(double roughness, double nov, const double *f0, int count, i
         double f = (f0[k] * ab[0] + ab[1]) / e;
         added[k] = missing * (c.weight > 0 ? c.sum[k] / c.weight : f * f);
     }
+}
+
+void kiln_walk_albedo(const kiln_walk_def *def, double roughness, double nov, kiln_walk *walk)
+{
+    kiln_walk_def d = *def;
+    d.f0 = ki_unit(d.f0);
+    d.n = ki_index(d.n);
+    d.k = ki_index(d.k);
+    ki_walk_albedo(&d, ki_roughness(roughness), ki_unit(nov), walk);
 }

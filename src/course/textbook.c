@@ -7,12 +7,11 @@
 // The textbook's coordinate axes are kiln's after a quarter turn about +Y: the textbook's (x, y, z)
 // is kiln's (z, y, -x). In both, a column of a panorama is then the same fraction of the picture's
 // width.
-#include "course/textbook.h"
-
 #include "brdf/brdf.h"
 #include "image/image.h"
 #include "math/math.h"
 
+#include <kiln/course.h>
 #include <math.h>
 #include <string.h>
 
@@ -148,7 +147,9 @@ static void irradiance_row(void *data, int index)
     }
 }
 
-kiln_result ki_textbook_irradiance(kiln_context *context, const kiln_map *panorama, int phi_count,
+// Fills level 0 of an allocated map with irradiance / pi, from phi_count x theta_count texels of the
+// panorama for each texel.
+static kiln_result fill_irradiance(kiln_context *context, const kiln_map *panorama, int phi_count,
                                    int theta_count, kiln_map *map, kiln_error *error)
 {
     irradiance r = {
@@ -234,8 +235,10 @@ static void prefilter_row(void *data, int index)
     }
 }
 
-kiln_result ki_textbook_prefilter(kiln_context *context, const kiln_map *panorama, int sample_count,
-                                  kiln_map *map, kiln_error *error)
+// Fills all levels of an allocated map with the panorama filtered by GGX. Level k of n gets the
+// roughness k / (n - 1), and a single level the roughness 0.
+static kiln_result fill_levels(kiln_context *context, const kiln_map *panorama, int sample_count,
+                               kiln_map *map, kiln_error *error)
 {
     kiln_result result = KILN_OK;
     prefilter r = {.panorama = panorama, .map = map};
@@ -314,10 +317,89 @@ static void brdf_row(void *data, int index)
     }
 }
 
-kiln_result ki_textbook_brdf(kiln_context *context, int sample_count, kiln_image *table,
-                             kiln_error *error)
+// Fills an allocated table of size x size texels and two channels with A and B of the split sum.
+static kiln_result fill_split_sum(kiln_context *context, int sample_count, kiln_image *table,
+                                  kiln_error *error)
 {
     brdf_table r = {.image = table, .sample_count = sample_count};
     return run_rows(context, "textbook table", table->height, brdf_row, &r, &r.first_row, 0, 1,
                     error);
+}
+
+// ---------------------------------------------------------------------------------------- textbook
+
+enum { MAX_STEPS = 1 << 16, MAX_SAMPLES = 1 << 20, MAX_TABLE = 4096 };
+
+static kiln_result check_count(const char *name, int count, int limit, kiln_error *error)
+{
+    if (count < 0 || count > limit)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s is %d, it must be 1 to %d, or 0", name,
+                       count, limit);
+    return KILN_OK;
+}
+
+// Fills the defaults in and makes the map that the result goes to.
+static kiln_result start(kiln_context *context, const kiln_map *panorama,
+                         const kiln_textbook_def *given, int level_count, kiln_textbook_def *def,
+                         kiln_map *map, kiln_error *error)
+{
+    kiln_result result = ki_map_check_panorama(panorama, error);
+    *map = (kiln_map){0};
+    *def = given ? *given : (kiln_textbook_def){0};
+    if (!result)
+        result = check_count("phi_count", def->phi_count, MAX_STEPS, error);
+    if (!result)
+        result = check_count("theta_count", def->theta_count, MAX_STEPS, error);
+    if (!result)
+        result = check_count("sample_count", def->sample_count, MAX_SAMPLES, error);
+    if (result)
+        return result;
+    if (def->shape == KILN_SHAPE_AUTO)
+        def->shape = KILN_SHAPE_PANORAMA;
+    def->size = def->size ? def->size : 64;
+    def->phi_count = def->phi_count ? def->phi_count : 100;
+    def->theta_count = def->theta_count ? def->theta_count : 100;
+    def->sample_count = def->sample_count ? def->sample_count : 1024;
+    return kiln_map_create(context, def->shape, def->size, level_count, map, error);
+}
+
+kiln_result kiln_textbook_irradiance(kiln_context *context, const kiln_map *panorama,
+                                     const kiln_textbook_def *def, kiln_map *map, kiln_error *error)
+{
+    kiln_textbook_def d;
+    kiln_result result = start(context, panorama, def, 1, &d, map, error);
+    if (!result)
+        result = fill_irradiance(context, panorama, d.phi_count, d.theta_count, map, error);
+    if (result)
+        kiln_map_free(map);
+    return result;
+}
+
+kiln_result kiln_textbook_prefilter(kiln_context *context, const kiln_map *panorama,
+                                    const kiln_textbook_def *def, kiln_map *map, kiln_error *error)
+{
+    kiln_textbook_def d;
+    kiln_result result = start(context, panorama, def, def ? def->level_count : 0, &d, map, error);
+    if (!result)
+        result = fill_levels(context, panorama, d.sample_count, map, error);
+    if (result)
+        kiln_map_free(map);
+    return result;
+}
+
+kiln_result kiln_textbook_brdf(kiln_context *context, int size, int sample_count, kiln_image *table,
+                               kiln_error *error)
+{
+    *table = (kiln_image){0};
+    if (size < 2 || size > MAX_TABLE)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "size of the table is %d, it must be 2 to %d",
+                       size, MAX_TABLE);
+    kiln_result result = check_count("sample_count", sample_count, MAX_SAMPLES, error);
+    if (!result)
+        result = kiln_image_create(context, size, size, 2, table, error);
+    if (!result)
+        result = fill_split_sum(context, sample_count ? sample_count : 1024, table, error);
+    if (result)
+        kiln_image_free(table);
+    return result;
 }

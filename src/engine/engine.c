@@ -2,11 +2,14 @@
 #include "engine/engine.h"
 
 #include "codec/codec.h"
+#include "codec/pixel_format.h"
+#include "codec/save.h"
 #include "image/image.h"
 #include "math/math.h"
 #include "sphere/sh.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 enum { RECIPES = 12 };
@@ -102,7 +105,7 @@ void ki_turn_sh(const kiln_sh *source, const ki_axes *axes, kiln_sh *turned)
         ki_sincos(i % 8 * (KI_PI / 4), &sine, &cosine);
         const double at[3] = {r * cosine, r * sine, z};
         turn(axes, at, from);
-        ki_sh_evaluate(source, from, value);
+        kiln_sh_evaluate(source, from, value);
         ki_sh_basis(at, basis);
         for (int j = 0; j < count; j++)
             for (int c = 0; c < 3; c++)
@@ -128,4 +131,262 @@ kiln_result ki_export_dds(ki_export *to, kiln_error *error)
         result = ki_export_add(to, to->path, &bytes, error);
     ki_writer_free(&bytes);
     return result;
+}
+
+const kiln_engine *kiln_engine_at(int index)
+{
+    const ki_recipe *recipe = ki_recipe_at(index);
+    return recipe ? &recipe->about : NULL;
+}
+
+const kiln_engine *kiln_engine_find(const char *name)
+{
+    const kiln_engine *engine = NULL;
+    for (int i = 0; (engine = kiln_engine_at(i)) != NULL; i++)
+        if (!strcmp(engine->name, name))
+            break;
+    return engine;
+}
+
+static kiln_result check_levels(const ki_recipe *recipe, int size, int level_count,
+                                kiln_error *error)
+{
+    const char *name = recipe->about.name;
+    int all = ki_recipe_levels(recipe, size);
+    if (size < recipe->size_min || size > recipe->size_max || (size & (size - 1)))
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "%s: size is %d, it must be a power of two from %d to %d", name, size,
+                       recipe->size_min, recipe->size_max);
+    if (!recipe->level_count_min && level_count != all)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: %d levels, a size of %d must have %d", name,
+                       level_count, size, all);
+    int most = 1;
+    while (size >> most && most < KILN_MAX_LEVELS)
+        most++;
+    if (level_count < recipe->level_count_min || level_count > most + recipe->extra_levels)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: %d levels, a size of %d may have %d to %d",
+                       name, level_count, size, recipe->level_count_min, most);
+    return KILN_OK;
+}
+
+static kiln_result find_recipe(const kiln_engine *engine, const ki_recipe **recipe,
+                               kiln_error *error)
+{
+    *recipe = ki_recipe_of(engine);
+    return *recipe ? KILN_OK
+                   : ki_fail(error, KILN_ERROR_ARGUMENT,
+                             "the engine is none of kiln's: take it from kiln_engine_find");
+}
+
+kiln_result kiln_engine_levels(const kiln_engine *engine, int size, int level_count,
+                               float roughness[KILN_MAX_LEVELS], kiln_prefilter_def *def,
+                               kiln_error *error)
+{
+    *def = (kiln_prefilter_def){0};
+    const ki_recipe *recipe;
+    kiln_result result = find_recipe(engine, &recipe, error);
+    if (result != KILN_OK)
+        return result;
+    size = size ? size : recipe->about.size;
+    level_count = level_count ? level_count : ki_recipe_levels(recipe, size);
+    result = check_levels(recipe, size, level_count, error);
+    if (result != KILN_OK)
+        return result;
+    for (int k = 0; k < level_count; k++)
+        roughness[k] = (float)recipe->roughness(k, level_count, size);
+    *def = (kiln_prefilter_def){.size = size,
+                                .level_count = level_count,
+                                .smallest = recipe->smallest,
+                                .roughness = roughness};
+    return KILN_OK;
+}
+
+double kiln_engine_level(const kiln_engine *engine, double roughness, int size, int level_count)
+{
+    const ki_recipe *recipe = ki_recipe_of(engine);
+    return recipe && recipe->level ? recipe->level(roughness, level_count, size) : -1;
+}
+
+kiln_result kiln_engine_format(const kiln_engine *engine, kiln_format *format, kiln_error *error)
+{
+    const ki_recipe *recipe;
+    kiln_result result = find_recipe(engine, &recipe, error);
+    if (result != KILN_OK)
+        return result;
+    const kiln_format *formats = engine->formats;
+    char names[64] = "";
+    if (*format == KILN_FORMAT_AUTO) {
+        *format = formats[0];
+        return KILN_OK;
+    }
+    for (int i = 0; i < 4 && formats[i]; i++) {
+        if (*format == formats[i])
+            return KILN_OK;
+        size_t length = strlen(names);
+        snprintf(names + length, sizeof names - length, "%s%s", i ? " or " : "",
+                 ki_format_names[formats[i]]);
+    }
+    if (!names[0])
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: has one format and takes no other",
+                       engine->name);
+    bool known = *format > KILN_FORMAT_AUTO && *format <= KILN_FORMAT_RGBP;
+    return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: format is %s, it must be %s", engine->name,
+                   known ? ki_format_names[*format] : "none of kiln's", names);
+}
+
+// What is shown at some roughness.
+typedef struct view {
+    const kiln_map *map;
+    int level;
+    double mix;
+    const double (*directions)[3];
+    double (*values)[3];
+    int count;
+} view;
+
+enum { VIEW_CHUNK = 1024 };
+
+// Task: one chunk of directions.
+static void show(void *data, int index)
+{
+    const view *v = data;
+    int first = index * VIEW_CHUNK, end = ki_min(first + VIEW_CHUNK, v->count);
+    for (int i = first; i < end; i++) {
+        double next[3];
+        ki_cube_read(v->map, v->level, v->directions[i], v->values[i]);
+        if (v->mix <= 0)
+            continue;
+        ki_cube_read(v->map, v->level + 1, v->directions[i], next);
+        for (int c = 0; c < 3; c++)
+            v->values[i][c] += v->mix * (next[c] - v->values[i][c]);
+    }
+}
+
+kiln_result kiln_engine_show(kiln_context *context, const kiln_engine *engine, const kiln_map *map,
+                             double roughness, const double (*directions)[3], int count,
+                             double (*values)[3], kiln_error *error)
+{
+    const ki_recipe *recipe;
+    kiln_result result = find_recipe(engine, &recipe, error);
+    if (result != KILN_OK || (result = ki_map_check(map, error)) != KILN_OK)
+        return result;
+    if (!recipe->level || map->shape != KILN_SHAPE_CUBE)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: shows levels of cubes only",
+                       recipe->about.name);
+    if (!(roughness >= 0 && roughness <= 1))
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "roughness is %g, it must be 0 to 1", roughness);
+    double level = recipe->level(roughness, map->level_count, map->size);
+    view v = {.map = map, .directions = directions, .values = values, .count = count};
+    v.level = (int)ki_clamp(floor(level), 0, map->level_count - 1);
+    v.mix = v.level + 1 < map->level_count ? level - v.level : 0;
+    ki_parallel_for(context, (count + VIEW_CHUNK - 1) / VIEW_CHUNK, show, &v);
+    return KILN_OK;
+}
+
+// The path must end as the recipe says.
+static kiln_result check_path(const ki_recipe *recipe, const char *path, kiln_error *error)
+{
+    const char *ending = kiln_path_ending(path), *wanted = recipe->about.ending;
+    bool good = path[0] && (!wanted[0] || (ending[0] == '.' && !strcmp(ending + 1, wanted)));
+    return good ? KILN_OK
+                : ki_fail(error, KILN_ERROR_ARGUMENT, "%s: %s's file must end in .%s", path,
+                          recipe->about.name, wanted);
+}
+
+static kiln_result check_map(const ki_recipe *recipe, const kiln_map *map, const kiln_sh *sh,
+                             kiln_error *error)
+{
+    kiln_result result = ki_map_check(map, error);
+    if (result != KILN_OK)
+        return result;
+    if (map->shape != KILN_SHAPE_CUBE)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: takes a cube, the map has shape %d",
+                       recipe->about.name, (int)map->shape);
+    if (map->smallest != recipe->smallest)
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "%s: levels are no smaller than %d, the map's smallest is %d",
+                       recipe->about.name, recipe->smallest, map->smallest);
+    if (!sh || sh->bands < 3 || sh->bands > KILN_MAX_BANDS || sh->irradiance)
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "%s: takes harmonics of radiance, of 3 to %d bands", recipe->about.name,
+                       KILN_MAX_BANDS);
+    return check_levels(recipe, map->size, map->level_count, error);
+}
+
+// A cube and harmonics in the engine's directions, and the files made of them.
+static kiln_result write_turned(ki_export *to, const ki_recipe *recipe, const kiln_map *map,
+                                const kiln_sh *sh, kiln_error *error)
+{
+    kiln_map turned = {.shape = KILN_SHAPE_CUBE,
+                       .size = map->size,
+                       .level_count = map->level_count,
+                       .smallest = map->smallest};
+    kiln_sh few = *sh, turned_sh;
+    few.bands = 3;
+    kiln_result result = ki_map_allocate(to->context, &turned, error);
+    if (result != KILN_OK)
+        return result;
+    ki_turn_cube(map, &recipe->axes, &turned);
+    ki_turn_sh(&few, &recipe->axes, &turned_sh);
+    to->map = &turned;
+    to->sh = &turned_sh;
+    result = recipe->write(to, error);
+    kiln_map_free(&turned);
+    return result;
+}
+
+kiln_result ki_engine_write(ki_file_set *set, kiln_context *context, const kiln_engine *engine,
+                            const kiln_map *map, const kiln_sh *sh, kiln_format format,
+                            const char *path, kiln_save_report *report, kiln_error *error)
+{
+    const ki_recipe *recipe;
+    kiln_result result = find_recipe(engine, &recipe, error);
+    if (result != KILN_OK || (result = check_path(recipe, path, error)) != KILN_OK ||
+        (result = check_map(recipe, map, sh, error)) != KILN_OK ||
+        (result = kiln_engine_format(engine, &format, error)) != KILN_OK)
+        return result;
+    if (!ki_progress(context, "writing", 0))
+        return ki_fail_cancelled(error, "writing");
+    bool least = format == KILN_FORMAT_B10G11R11;
+    if (report)
+        ki_count_cut(map, least ? kiln_format_limit(format) : engine->limit, report);
+    ki_export to = {.context = context, .format = format, .path = path, .set = set};
+    result = write_turned(&to, recipe, map, sh, error);
+    if (report)
+        report->file_count = to.file_count;
+    return result;
+}
+
+// To files, or to memory where `files` is not NULL.
+static kiln_result write_engine(kiln_context *context, const kiln_engine *engine,
+                                const kiln_map *map, const kiln_sh *sh, kiln_format format,
+                                const char *path, kiln_files *files, kiln_save_report *report,
+                                kiln_error *error)
+{
+    kiln_result result = KILN_OK;
+    ki_file_set *set = files ? ki_file_set_begin_in_memory(context) : ki_file_set_begin(context);
+    if (report)
+        *report = (kiln_save_report){0};
+    if (set)
+        result = ki_engine_write(set, context, engine, map, sh, format, path, report, error);
+    result = ki_file_set_end(context, set, result, files, error);
+    if (report && result != KILN_OK)
+        *report = (kiln_save_report){0};
+    return result;
+}
+
+kiln_result kiln_engine_save(kiln_context *context, const kiln_engine *engine, const kiln_map *map,
+                             const kiln_sh *sh, kiln_format format, const char *path,
+                             kiln_save_report *report, kiln_error *error)
+{
+    return write_engine(context, engine, map, sh, format, path, NULL, report, error);
+}
+
+kiln_result kiln_engine_encode(kiln_context *context, const kiln_engine *engine,
+                               const kiln_map *map, const kiln_sh *sh, kiln_format format,
+                               const char *name, kiln_files *files, kiln_save_report *report,
+                               kiln_error *error)
+{
+    *files = (kiln_files){0};
+    return write_engine(context, engine, map, sh, format, name, files, report, error);
 }

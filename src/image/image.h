@@ -38,6 +38,9 @@ void ki_level_extent(const kiln_map *map, int level, int *width, int *height);
 /// Fails unless the map's own numbers are in range and its levels are there.
 kiln_result ki_map_check(const kiln_map *map, kiln_error *error);
 
+/// The same, and that it is a panorama.
+kiln_result ki_map_check_panorama(const kiln_map *map, kiln_error *error);
+
 /// A cube of `size` read bilinearly across faces, as graphics processors do, in a direction that is not
 /// 0: four texels and their weights.
 void ki_cube_taps(int size, const double direction[3], size_t texels[4], double weights[4]);

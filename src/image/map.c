@@ -1,133 +1,10 @@
-// Where the texels of each shape lie on the sphere, and the memory they lie in.
+// Maps and images: their memory, and what changes them in place.
 #include "image/image.h"
 #include "math/math.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
-
-const char *const ki_face_names[6] = {"px", "nx", "py", "ny", "pz", "nz"};
-
-// ---------------------------------------------------------------------------------------- geometry
-
-void ki_face_direction(int face, double s, double t, double direction[3])
-{
-    double *d = direction;
-    switch (face) {
-    case 0: // +X
-        d[0] = 1, d[1] = -t, d[2] = -s;
-        break;
-    case 1: // -X
-        d[0] = -1, d[1] = -t, d[2] = s;
-        break;
-    case 2: // +Y
-        d[0] = s, d[1] = 1, d[2] = t;
-        break;
-    case 3: // -Y
-        d[0] = s, d[1] = -1, d[2] = -t;
-        break;
-    case 4: // +Z
-        d[0] = s, d[1] = -t, d[2] = 1;
-        break;
-    default: // -Z
-        d[0] = -s, d[1] = -t, d[2] = -1;
-        break;
-    }
-}
-
-int ki_direction_face(const double direction[3], double *s, double *t)
-{
-    double x = direction[0], y = direction[1], z = direction[2];
-    double ax = fabs(x), ay = fabs(y), az = fabs(z);
-    if (ax >= ay && ax >= az && ax > 0) {
-        *s = x > 0 ? -z / ax : z / ax;
-        *t = -y / ax;
-        return x > 0 ? 0 : 1;
-    }
-    if (ay >= az && ay > 0) {
-        *s = x / ay;
-        *t = y > 0 ? z / ay : -z / ay;
-        return y > 0 ? 2 : 3;
-    }
-    if (az > 0) {
-        *s = z > 0 ? x / az : -x / az;
-        *t = -y / az;
-        return z > 0 ? 4 : 5;
-    }
-    *s = *t = 0;
-    return 0;
-}
-
-void ki_panorama_direction(double u, double v, double direction[3])
-{
-    double sin_theta, cos_theta, sin_phi, cos_phi;
-    ki_sincos(KI_PI * v, &sin_theta, &cos_theta);
-    ki_sincos(2 * KI_PI * (u - 0.5), &sin_phi, &cos_phi);
-    direction[0] = sin_theta * sin_phi;
-    direction[1] = cos_theta;
-    direction[2] = -sin_theta * cos_phi;
-}
-
-void ki_direction_panorama(const double direction[3], double *u, double *v)
-{
-    double x = direction[0], y = direction[1], z = direction[2];
-    *u = ki_clamp(0.5 + ki_atan2(x, -z) / (2 * KI_PI), 0, 1);
-    *v = ki_clamp(ki_atan2(sqrt(x * x + z * z), y) / KI_PI, 0, 1);
-}
-
-// The octahedron |x| + |y| + |z| = 1 from above: its upper half fills the inner diamond, with +X to
-// the right and +Z downwards as on the cube's +Y face; the four lower sides are folded out, so that
-// -Y is in every corner.
-void ki_octahedron_direction(double u, double v, double direction[3])
-{
-    double x = 2 * u - 1, z = 2 * v - 1;
-    double y = 1 - fabs(x) - fabs(z);
-    if (y < 0) {
-        double folded = copysign(1 - fabs(z), x);
-        z = copysign(1 - fabs(x), z);
-        x = folded;
-    }
-    double length = sqrt(x * x + y * y + z * z);
-    direction[0] = x / length;
-    direction[1] = y / length;
-    direction[2] = z / length;
-}
-
-void ki_direction_octahedron(const double direction[3], double *u, double *v)
-{
-    double sum = fabs(direction[0]) + fabs(direction[1]) + fabs(direction[2]);
-    double x = 0, z = 0;
-    if (sum > 0) {
-        x = direction[0] / sum;
-        z = direction[2] / sum;
-    }
-    if (direction[1] < 0) {
-        double folded = copysign(1 - fabs(z), x);
-        z = copysign(1 - fabs(x), z);
-        x = folded;
-    }
-    *u = ki_clamp(0.5 * x + 0.5, 0, 1);
-    *v = ki_clamp(0.5 * z + 0.5, 0, 1);
-}
-
-// The angle of a panorama's column grows by `degrees`: x = sin, z = -cos of that angle. Quarter
-// turns are exact.
-void ki_turn(const double direction[3], double degrees, double turned[3])
-{
-    double rest = fmod(degrees, 360), sine, cosine;
-    double quarter = floor(rest / 90);
-    ki_sincos((rest - 90 * quarter) * (KI_PI / 180), &sine, &cosine);
-    for (int k = (int)quarter & 3; k > 0; k--) {
-        double swap = sine;
-        sine = cosine;
-        cosine = -swap;
-    }
-    double x = direction[0], z = direction[2];
-    turned[0] = x * cosine - z * sine;
-    turned[1] = direction[1];
-    turned[2] = z * cosine + x * sine;
-}
-
-// ------------------------------------------------------------------------------------------ memory
 
 static const char *const shape_names[] = {
     [KILN_SHAPE_PANORAMA] = "panorama",
@@ -161,6 +38,16 @@ kiln_result ki_map_check(const kiln_map *map, kiln_error *error)
             return ki_fail(error, KILN_ERROR_ARGUMENT, "level %d of %d of the %s is NULL", k,
                            map->level_count, shape_names[map->shape]);
     return KILN_OK;
+}
+
+kiln_result ki_map_check_panorama(const kiln_map *panorama, kiln_error *error)
+{
+    kiln_result result = ki_map_check(panorama, error);
+    if (!result && panorama->shape != KILN_SHAPE_PANORAMA)
+        result = ki_fail(error, KILN_ERROR_ARGUMENT,
+                         "the source is a %s, it must be a panorama (kiln_map_convert makes one)",
+                         panorama->shape == KILN_SHAPE_CUBE ? "cube" : "octahedron");
+    return result;
 }
 
 void ki_level_extent(const kiln_map *map, int level, int *width, int *height)
@@ -253,42 +140,118 @@ kiln_result ki_image_allocate(kiln_context *context, kiln_image *image, kiln_err
     return KILN_OK;
 }
 
-// Texel (x, y) of a face, which may lie one beyond its edge: then it is the neighbour's that is
-// nearest.
-static size_t texel_at(int n, int face, int x, int y)
+kiln_result kiln_map_create(kiln_context *context, kiln_shape shape, int size, int level_count,
+                            kiln_map *map, kiln_error *error)
 {
-    if (x < 0 || y < 0 || x >= n || y >= n) {
-        double direction[3], s, t;
-        ki_face_direction(face, (2 * x + 1.0) / n - 1, (2 * y + 1.0) / n - 1, direction);
-        face = ki_direction_face(direction, &s, &t);
-        x = (int)ki_clamp(floor((s + 1) / 2 * n), 0, n - 1);
-        y = (int)ki_clamp(floor((t + 1) / 2 * n), 0, n - 1);
-    }
-    return ((size_t)face * (size_t)n + (size_t)y) * (size_t)n + (size_t)x;
+    if (level_count == 0 && size > 0)
+        while (level_count < KILN_MAX_LEVELS && size >> level_count)
+            level_count++;
+    *map = (kiln_map){.shape = shape, .size = size, .level_count = level_count};
+    return ki_map_allocate(context, map, error);
 }
 
-void ki_cube_taps(int size, const double direction[3], size_t texels[4], double weights[4])
+void kiln_map_free(kiln_map *map)
 {
-    double s, t;
-    int face = ki_direction_face(direction, &s, &t);
-    double u = (s + 1) / 2 * size - 0.5, v = (t + 1) / 2 * size - 0.5;
-    int x = (int)floor(u), y = (int)floor(v);
-    u -= x;
-    v -= y;
-    for (int i = 0; i < 4; i++) {
-        texels[i] = texel_at(size, face, x + i % 2, y + i / 2);
-        weights[i] = (i % 2 ? u : 1 - u) * (i / 2 ? v : 1 - v);
+    if (!map)
+        return;
+    ki_free(map->owner);
+    *map = (kiln_map){0};
+}
+
+kiln_result kiln_image_create(kiln_context *context, int width, int height, int channels,
+                              kiln_image *image, kiln_error *error)
+{
+    *image = (kiln_image){.width = width, .height = height, .channels = channels};
+    return ki_image_allocate(context, image, error);
+}
+
+void kiln_image_free(kiln_image *image)
+{
+    if (!image)
+        return;
+    ki_free(image->owner);
+    *image = (kiln_image){0};
+}
+
+int kiln_map_level_size(const kiln_map *map, int level)
+{
+    return level < 0 || level >= KILN_MAX_LEVELS
+               ? 1
+               : ki_max(ki_max(1, map->smallest), map->size >> level);
+}
+
+size_t kiln_map_texels(const kiln_map *map, int level)
+{
+    int width, height;
+    ki_level_extent(map, ki_min(ki_max(level, 0), KILN_MAX_LEVELS - 1), &width, &height);
+    return (size_t)width * (size_t)height;
+}
+
+void kiln_map_direction(const kiln_map *map, int level, size_t index, double direction[3])
+{
+    level = ki_min(ki_max(level, 0), KILN_MAX_LEVELS - 1);
+    int width, height, n = kiln_map_level_size(map, level);
+    ki_level_extent(map, level, &width, &height);
+    size_t row = index / (size_t)width;
+    double u = ((double)(index % (size_t)width) + 0.5) / width;
+    double v = ((double)(row % (size_t)n) + 0.5) / n;
+    if (map->shape == KILN_SHAPE_PANORAMA) {
+        ki_panorama_direction(u, v, direction);
+    } else if (map->shape == KILN_SHAPE_OCTAHEDRON) {
+        ki_octahedron_direction(u, v, direction);
+    } else {
+        ki_face_direction((int)(row / (size_t)n), 2 * u - 1, 2 * v - 1, direction);
+        double *d = direction, length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+        for (int c = 0; c < 3; c++)
+            d[c] /= length;
     }
 }
 
-void ki_cube_read(const kiln_map *cube, int level, const double direction[3], double rgb[3])
+static void swap_texels(float *a, float *b)
 {
-    size_t texels[4];
-    double w[4];
-    ki_cube_taps(kiln_map_level_size(cube, level), direction, texels, w);
     for (int c = 0; c < 3; c++) {
-        const float *from = cube->level[level] + c;
-        rgb[c] = (w[0] * (double)from[3 * texels[0]] + w[1] * (double)from[3 * texels[1]]) +
-                 (w[2] * (double)from[3 * texels[2]] + w[3] * (double)from[3 * texels[3]]);
+        float swap = a[c];
+        a[c] = b[c];
+        b[c] = swap;
+    }
+}
+
+void kiln_map_mirror(kiln_map *map)
+{
+    for (int level = 0; level < map->level_count; level++) {
+        int width, height, n = kiln_map_level_size(map, level);
+        ki_level_extent(map, level, &width, &height);
+        float *texel = map->level[level];
+        size_t row = (size_t)width * 3;
+        int done = 0;
+        if (map->shape == KILN_SHAPE_CUBE) {
+            // +X and -X change places, each turned left to right.
+            float *other = texel + (size_t)n * row;
+            for (int y = 0; y < n; y++)
+                for (int x = 0; x < n; x++)
+                    swap_texels(texel + (size_t)y * row + (size_t)x * 3,
+                                other + (size_t)y * row + (size_t)(n - 1 - x) * 3);
+            done = 2 * n;
+        }
+        for (int y = done; y < height; y++)
+            for (int x = 0; x < width / 2; x++)
+                swap_texels(texel + (size_t)y * row + (size_t)x * 3,
+                            texel + (size_t)y * row + (size_t)(width - 1 - x) * 3);
+    }
+}
+
+void kiln_map_expose(kiln_map *map, double stops)
+{
+    if (stops == 0 || !isfinite(stops))
+        return;
+    // Whole stops are exact; what would overflow becomes the largest float.
+    double whole = floor(ki_clamp(stops, -600, 600)), part = ki_clamp(stops - whole, 0, 1);
+    double factor = ldexp(ki_exp(part * 0.69314718055994530942), (int)whole);
+    for (int level = 0; level < map->level_count; level++) {
+        size_t count = kiln_map_texels(map, level) * 3;
+        float *value = map->level[level];
+        for (size_t i = 0; i < count; i++)
+            value[i] =
+                (float)ki_clamp((double)value[i] * factor, -(double)FLT_MAX, (double)FLT_MAX);
     }
 }

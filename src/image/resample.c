@@ -861,3 +861,21 @@ kiln_result ki_map_resample(kiln_context *context, const kiln_map *source, doubl
     ki_resample_plan_destroy(plan);
     return result;
 }
+
+kiln_result kiln_map_convert(kiln_context *context, const kiln_map *source, kiln_shape shape,
+                             int size, double rotation, kiln_map *map, kiln_error *error)
+{
+    kiln_map made = {.shape = shape, .size = size, .level_count = 1};
+    kiln_result result = ki_map_check(source, error);
+    if (result)
+        goto done;
+    result = ki_map_allocate(context, &made, error);
+    if (result)
+        goto done;
+    result = ki_map_resample(context, source, rotation, &made, 0, error);
+done:
+    if (result)
+        kiln_map_free(&made);
+    *map = made;
+    return result;
+}

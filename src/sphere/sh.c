@@ -145,7 +145,20 @@ kiln_result kiln_sh_filter(const kiln_sh *radiance, int bands, bool irradiance, 
     return KILN_OK;
 }
 
-void ki_sh_evaluate(const kiln_sh *sh, const double direction[3], double value[3])
+kiln_result kiln_spectrum_sh(const kiln_spectrum *spectrum, int bands, bool irradiance,
+                             double window, double rotation, kiln_sh *sh, kiln_error *error)
+{
+    *sh = (kiln_sh){0};
+    kiln_sh radiance = {0};
+    kiln_result result = ki_sh_check_bands(bands, window, rotation, error);
+    if (result == KILN_OK)
+        result = ki_sh_project(spectrum, bands, rotation, &radiance, error);
+    if (result == KILN_OK)
+        result = kiln_sh_filter(&radiance, bands, irradiance, window, sh, error);
+    return result;
+}
+
+void kiln_sh_evaluate(const kiln_sh *sh, const double direction[3], double value[3])
 {
     double y[25];
     ki_sh_basis(direction, y);

@@ -11,7 +11,6 @@ kiln_result ki_sh_check_bands(int bands, double window, double rotation, kiln_er
 /// The first bands of the radiance, in the world's directions.
 kiln_result ki_sh_project(const kiln_spectrum *spectrum, int bands, double rotation, kiln_sh *sh,
                           kiln_error *error);
-void ki_sh_evaluate(const kiln_sh *sh, const double direction[3], double value[3]);
 
 /// Sum over m of |a_lm|^2 by channel, degrees 0 to the spectrum's: of the suns too, or without them.
 kiln_result ki_spectrum_power(const kiln_spectrum *spectrum, bool suns, double (*power)[3],

@@ -165,6 +165,11 @@ void kiln_spectrum_destroy(kiln_spectrum *spectrum)
     ki_free(spectrum);
 }
 
+int kiln_spectrum_degree(const kiln_spectrum *spectrum)
+{
+    return spectrum->degree;
+}
+
 // ------------------------------------------------------------------------------------------ intake
 
 struct ki_intake {

@@ -5,6 +5,8 @@
 
 #include <math.h>
 
+const double ki_lobe_tolerance = 1.5e-4;
+
 enum { PANEL_NODES = 24 };
 
 double ki_zonal_step(const ki_zonal *zonal, double one_minus_cos)
@@ -154,4 +156,32 @@ void ki_zonal_free(ki_zonal_spectrum *spectrum)
 {
     ki_free(spectrum->k);
     *spectrum = (ki_zonal_spectrum){0};
+}
+
+kiln_result ki_lobe_spectrum(kiln_context *context, const kiln_lobe *lobe, double tolerance,
+                             bool split, ki_zonal *zonal, ki_zonal_spectrum *spectrum,
+                             kiln_error *error)
+{
+    *zonal = (ki_zonal){.lobe = *lobe};
+    // The widest lobes have the longest tails, from their kink at the horizon.
+    double width = ki_lobe_width(lobe), guess = (width < 1 ? 160 : 320) + 14 / width;
+    // Charlie is narrow at the horizon, not around its centre.
+    split = split && lobe->kind != KILN_LOBE_CHARLIE;
+    int limit = guess < KILN_MAX_DEGREE ? (int)guess : KILN_MAX_DEGREE;
+    if (guess < 2 * KILN_MAX_DEGREE || !split) {
+        kiln_result result = ki_zonal_analyze(context, zonal, tolerance, limit, spectrum, error);
+        if (result != KILN_OK || spectrum->rest <= tolerance)
+            return result;
+        if (limit < KILN_MAX_DEGREE) {
+            ki_zonal_free(spectrum);
+            result = ki_zonal_analyze(context, zonal, tolerance, KILN_MAX_DEGREE, spectrum, error);
+        }
+        // A kink at the horizon makes long but thin tails, which no split would mend.
+        if (result != KILN_OK || spectrum->rest <= 10 * tolerance || !split)
+            return result;
+        ki_zonal_free(spectrum);
+    }
+    zonal->inner = 0.01;
+    zonal->outer = 0.05;
+    return ki_zonal_analyze(context, zonal, tolerance, KILN_MAX_DEGREE, spectrum, error);
 }

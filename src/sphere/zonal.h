@@ -36,4 +36,15 @@ kiln_result ki_zonal_analyze(kiln_context *context, const ki_zonal *zonal, doubl
                              int limit, ki_zonal_spectrum *spectrum, kiln_error *error);
 void ki_zonal_free(ki_zonal_spectrum *spectrum);
 
+/// What a level leaves out by stopping at a degree, as part of the L2 norm for a lone bright point.
+/// Bright points are kept out of the spectrum (spectrum.h), so the error of a real environment is a
+/// small fraction of it.
+extern const double ki_lobe_tolerance;
+
+/// A lobe's spectrum, up to a degree that its width suggests; the whole lobe's. Where KILN_MAX_DEGREE
+/// does not suffice and `split` is true, the part of the lobe around its centre is left out.
+kiln_result ki_lobe_spectrum(kiln_context *context, const kiln_lobe *lobe, double tolerance,
+                             bool split, ki_zonal *zonal, ki_zonal_spectrum *spectrum,
+                             kiln_error *error);
+
 #endif

@@ -9,15 +9,7 @@
 
 #include <kiln/brdf.h>
 
-/// Replaces zeros in `def` by defaults and checks every field. Fails with KILN_ERROR_ARGUMENT.
-kiln_result ki_fit_complete(kiln_fit_def *def, kiln_error *error);
-/// Searches the form for fit->def, which ki_fit_complete has filled in, and sets the other fields
-/// of `fit`. Fails with KILN_ERROR_UNSUPPORTED if no form has the wanted error.
-kiln_result ki_fit_make(kiln_context *context, kiln_fit *fit, kiln_error *error);
-/// Sets values[0], or values[0] and values[1] for KILN_FIT_DFG, to the form's value. Computes in
-/// floats, operation by operation as the source code that the library writes for the form.
-void ki_fit_evaluate(const kiln_fit *fit, float nov, float roughness, float *values);
-/// Returns the value of one part P or P / Q, in floats as ki_fit_evaluate.
+/// Returns the value of one part P or P / Q, in floats as kiln_fit_evaluate.
 float ki_fit_evaluate_part(const kiln_fit_def *def, const kiln_fit_part *part, float nov,
                            float roughness);
 

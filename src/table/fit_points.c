@@ -22,7 +22,7 @@ static double target_value(const kiln_fit_def *def, ki_fit_target target, double
     case KI_FIT_E_AVERAGE:
         return ki_energy_average(&def->model, roughness);
     case KI_FIT_SHEEN:
-        return ki_sheen_albedo(KILN_SHEEN_ASHIKHMIN, roughness, nov);
+        return kiln_sheen_albedo(KILN_SHEEN_ASHIKHMIN, roughness, nov);
     default:
         ki_energy_split(&def->model, roughness, nov, ab);
         return ab[1] - (ab[0] + ab[1]) * ki_schlick_fresnel(nov);
@@ -200,7 +200,7 @@ void ki_fit_measure(kiln_fit *fit, const ki_fit_points points[2])
             exact[0] -= exact[1];
         }
         float values[2] = {0};
-        ki_fit_evaluate(fit, (float)nov, (float)points->roughness[i], values);
+        kiln_fit_evaluate(fit, (float)nov, (float)points->roughness[i], values);
         for (int k = 0; k < channels; k++) {
             double e = fabs((double)values[k] - exact[k]);
             largest = e > largest ? e : largest;

@@ -82,7 +82,7 @@ static void fill_multiscatter(const fill_job *job, double roughness, double thir
         const double *a = ab + 2 * (size_t)i;
         *out++ = a[1];
         *out++ = a[0] + a[1];
-        *out++ = ki_sheen_albedo(KILN_SHEEN_ASHIKHMIN, roughness, nov[i]);
+        *out++ = kiln_sheen_albedo(KILN_SHEEN_ASHIKHMIN, roughness, nov[i]);
     }
 }
 
@@ -91,7 +91,7 @@ static void fill_sheen(const fill_job *job, double roughness, double third, cons
 {
     (void)third;
     for (int i = 0; i < count; i++)
-        out[i] = ki_sheen_albedo(job->def->sheen, roughness, nov[i]);
+        out[i] = kiln_sheen_albedo(job->def->sheen, roughness, nov[i]);
 }
 
 static void fill_dielectric(const fill_job *job, double roughness, double third, const double *nov,
@@ -105,8 +105,8 @@ static void fill_glass(const fill_job *job, double roughness, double third, cons
                        int count, double *out)
 {
     for (int i = 0; i < count; i++, out += 4) {
-        ki_dielectric(&job->def->model, roughness, third, nov[i], out);
-        ki_dielectric(&job->def->model, roughness, 1 / third, nov[i], out + 2);
+        kiln_glass(&job->def->model, roughness, third, nov[i], out);
+        kiln_glass(&job->def->model, roughness, 1 / third, nov[i], out + 2);
     }
 }
 
@@ -214,7 +214,7 @@ static void fill_row(void *data, int index)
     const kiln_table_def *def = job->def;
     int slice = index / def->height, row = index % def->height;
     double nov, roughness, third;
-    ki_table_texel(job->table, 0, row, slice, &nov, &roughness, &third);
+    kiln_table_texel(job->table, 0, row, slice, &nov, &roughness, &third);
     float *texel =
         job->table->image.pixels + (size_t)index * (size_t)def->width * (size_t)job->channels;
     for (int x = 0; x < def->width; x += CHUNK) {
@@ -241,7 +241,7 @@ static void fill_walk_row(void *data, int row)
         for (int x = 0; x < def->width; x++) {
             double nov = 0, roughness = 0;
             for (int i = 0; i < count; i++)
-                ki_table_texel(job->table, x, row, z + i, &nov, &roughness, &f0[i]);
+                kiln_table_texel(job->table, x, row, z + i, &nov, &roughness, &f0[i]);
             ki_walk_column(roughness, nov, f0, count, def->path_count, 0, added);
             for (int i = 0; i < count; i++) {
                 double value = def->complement ? 1 - added[i] : added[i];
@@ -259,7 +259,7 @@ static bool wants_surface(const kiln_table_def *def)
            def->width * def->height > 4 * KI_SURFACE_NOV * KI_SURFACE_ROUGHNESS;
 }
 
-kiln_result ki_table_fill(kiln_context *context, kiln_table *table, kiln_error *error)
+static kiln_result fill_table(kiln_context *context, kiln_table *table, kiln_error *error)
 {
     const kiln_table_def *def = &table->def;
     fill_job job = {.context = context,
@@ -281,4 +281,27 @@ kiln_result ki_table_fill(kiln_context *context, kiln_table *table, kiln_error *
                                    walks ? fill_walk_row : fill_row, &job);
     ki_free(surface);
     return whole ? KILN_OK : ki_fail_cancelled(error, "table");
+}
+
+kiln_result kiln_table_create(kiln_context *context, const kiln_table_def *def, kiln_table *table,
+                              kiln_error *error)
+{
+    *table = (kiln_table){.def = def ? *def : (kiln_table_def){0}};
+    kiln_result result = ki_table_complete(&table->def, error);
+    if (!result)
+        result = kiln_image_create(context, table->def.width, table->def.height * table->def.depth,
+                                   ki_table_channels(table->def.kind), &table->image, error);
+    if (!result)
+        result = fill_table(context, table, error);
+    if (result)
+        kiln_table_free(table);
+    return result;
+}
+
+void kiln_table_free(kiln_table *table)
+{
+    if (!table)
+        return;
+    kiln_image_free(&table->image);
+    *table = (kiln_table){0};
 }

@@ -5,21 +5,46 @@
 #include <stdio.h>
 #include <string.h>
 
-const char *const ki_kind_names[] = {
+static const char *const kind_names[] = {
     "e", "eavg", "dfg", "dfg-multiscatter", "sheen", "e-dielectric", "glass", "e-walk", NULL};
-const char *const ki_d_names[] = {"ggx", "beckmann", NULL};
-const char *const ki_g_names[] = {"smith", "smith-uncorrelated", "schlick-k2", "schlick-text",
-                                  NULL};
-const char *const ki_sheen_names[] = {"ashikhmin", "estevez", NULL};
-const char *const ki_axis_names[] = {"linear", "sqrt", "cbrt", "grazing", NULL};
+static const char *const d_names[] = {"ggx", "beckmann", NULL};
+static const char *const g_names[] = {"smith", "smith-uncorrelated", "schlick-k2", "schlick-text",
+                                      NULL};
+static const char *const sheen_names[] = {"ashikhmin", "estevez", NULL};
+static const char *const axis_names[] = {"linear", "sqrt", "cbrt", "grazing", NULL};
+
+const char *const *kiln_d_names(void)
+{
+    return d_names;
+}
+
+const char *const *kiln_g_names(void)
+{
+    return g_names;
+}
+
+const char *const *kiln_sheen_names(void)
+{
+    return sheen_names;
+}
+
+const char *const *kiln_table_kind_names(void)
+{
+    return kind_names;
+}
+
+const char *const *kiln_axis_names(void)
+{
+    return axis_names;
+}
 
 void ki_table_describe(const kiln_table_def *def, char text[KI_TABLE_TEXT])
 {
     snprintf(text, KI_TABLE_TEXT,
              "kind=%s d=%s g=%s sheen=%s axis=%s corners=%d complement=%d flip=%d size=%dx%dx%d "
              "paths=%d",
-             ki_kind_names[def->kind], ki_d_names[def->model.d], ki_g_names[def->model.g],
-             ki_sheen_names[def->sheen], ki_axis_names[def->axis], def->corners, def->complement,
+             kind_names[def->kind], d_names[def->model.d], g_names[def->model.g],
+             sheen_names[def->sheen], axis_names[def->axis], def->corners, def->complement,
              def->flip, def->width, def->height, def->depth, def->path_count);
 }
 
@@ -76,11 +101,11 @@ bool ki_table_parse(const char *text, kiln_table_def *def)
     static const char *const answers[] = {"0", "1", NULL};
     int kind = 0, d = 0, g = 0, sheen = 0, axis = 0, corners = 0, complement = 0, flip = 0;
     *def = (kiln_table_def){0};
-    text = parse_word(text, "kind", ki_kind_names, &kind);
-    text = parse_word(text, "d", ki_d_names, &d);
-    text = parse_word(text, "g", ki_g_names, &g);
-    text = parse_word(text, "sheen", ki_sheen_names, &sheen);
-    text = parse_word(text, "axis", ki_axis_names, &axis);
+    text = parse_word(text, "kind", kind_names, &kind);
+    text = parse_word(text, "d", d_names, &d);
+    text = parse_word(text, "g", g_names, &g);
+    text = parse_word(text, "sheen", sheen_names, &sheen);
+    text = parse_word(text, "axis", axis_names, &axis);
     text = parse_word(text, "corners", answers, &corners);
     text = parse_word(text, "complement", answers, &complement);
     text = parse_word(text, "flip", answers, &flip);

@@ -7,10 +7,6 @@
 
 enum { KI_TABLE_TEXT = 160 };
 
-/// Names of the enums' values, in the order of the values, with a NULL after the last name.
-extern const char *const ki_d_names[], *const ki_g_names[], *const ki_sheen_names[];
-extern const char *const ki_kind_names[], *const ki_axis_names[];
-
 /// Writes the line for a def whose fields are in range. paths= is path_count, used by
 /// KILN_TABLE_E_WALK only.
 void ki_table_describe(const kiln_table_def *def, char text[KI_TABLE_TEXT]);

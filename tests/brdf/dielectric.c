@@ -161,7 +161,7 @@ static void compare(const setting *s)
 {
     double wanted[2], value[2];
     brute(s, wanted);
-    ki_dielectric(&s->model, s->roughness, s->ior, s->nov, value);
+    kiln_glass(&s->model, s->roughness, s->ior, s->nov, value);
     for (int k = 0; k < 2; k++) {
         double error = fabs(value[k] - wanted[k]);
         if (!(error <= 2e-6))
@@ -214,7 +214,7 @@ static void no_energy_is_made(void **unused)
         kiln_model model = {KILN_D_GGX, (kiln_g)(i / 7 % 4)};
         int row = i / 28 % 6, column = i / 168;
         double roughness = row / 5.0, nov = column / 6.0, rt[2];
-        ki_dielectric(&model, roughness, ior[i % 7], nov, rt);
+        kiln_glass(&model, roughness, ior[i % 7], nov, rt);
         assert_true(rt[0] >= -1e-6 && rt[1] >= 0);
         CHECK_BELOW(rt[0] + rt[1], 1 + 2e-6);
         CHECK_BELOW(rt[0], kiln_energy(&model, roughness, nov) + 2e-6);
@@ -231,12 +231,12 @@ static void smooth_glass_is_fresnel(void **unused)
         kiln_model model = {0};
         int column = i / 6;
         double n = ior[i % 6], nov = column / 8.0, rt[2], f = kiln_fresnel_dielectric(n, nov);
-        ki_dielectric(&model, 0, n, nov, rt);
+        kiln_glass(&model, 0, n, nov, rt);
         CHECK_NEAR(rt[0], f, 1e-15);
         CHECK_NEAR(rt[1], 1 - f, 1e-15);
         // A roughness just above 0 gives nearly the same, except near the critical angle.
         if (nov > 0.1 && fabs(nov - sqrt(fmax(0, 1 - n * n))) > 0.02) {
-            ki_dielectric(&model, 0.003, n, nov, rt);
+            kiln_glass(&model, 0.003, n, nov, rt);
             CHECK_NEAR(rt[0], f, 1e-5);
             CHECK_NEAR(rt[1], 1 - f, 1e-5);
         }
@@ -253,14 +253,14 @@ static void both_sides_are_reciprocal(void **unused)
         kiln_model model = {KILN_D_GGX, (kiln_g)(i % 4)};
         int step = i / 4;
         double n = 1.1 + 0.3 * step, roughness = 0.2 + 0.2 * (i % 5), out[2], in[2];
-        ki_dielectric_average(&model, roughness, n, out);
-        ki_dielectric_average(&model, roughness, 1 / n, in);
+        kiln_glass_average(&model, roughness, n, out);
+        kiln_glass_average(&model, roughness, 1 / n, in);
         CHECK_NEAR(out[1], n * n * in[1], 2e-6);
     }
     // At roughness 0, T_avg is 1 - F_avg, and T_avg(ior) = ior^2 T_avg(1 / ior) holds too.
     double out[2], in[2];
-    ki_dielectric_average(&(kiln_model){0}, 0, 1.5, out);
-    ki_dielectric_average(&(kiln_model){0}, 0, 1 / 1.5, in);
+    kiln_glass_average(&(kiln_model){0}, 0, 1.5, out);
+    kiln_glass_average(&(kiln_model){0}, 0, 1 / 1.5, in);
     CHECK_NEAR(out[1], 1.5 * 1.5 * in[1], 1e-6);
     CHECK_NEAR(out[0], kiln_fresnel_dielectric_average(1.5), 1e-6);
 }
@@ -270,14 +270,14 @@ static void arguments_are_clamped(void **unused)
     (void)unused;
     kiln_model model = {0};
     double a[2], b[2];
-    ki_dielectric(&model, -1, 1.5, 7, a);
-    ki_dielectric(&model, 0, 1.5, 1, b);
+    kiln_glass(&model, -1, 1.5, 7, a);
+    kiln_glass(&model, 0, 1.5, 1, b);
     assert_memory_equal(a, b, sizeof a);
-    ki_dielectric(&model, 3, 100, -1, a);
-    ki_dielectric(&model, 1, 16, 0, b);
+    kiln_glass(&model, 3, 100, -1, a);
+    kiln_glass(&model, 1, 16, 0, b);
     assert_memory_equal(a, b, sizeof a);
-    ki_dielectric(&model, 0.5, -2, 0.5, a);
-    ki_dielectric(&model, 0.5, 1.0 / 16, 0.5, b);
+    kiln_glass(&model, 0.5, -2, 0.5, a);
+    kiln_glass(&model, 0.5, 1.0 / 16, 0.5, b);
     assert_memory_equal(a, b, sizeof a);
 }
 

@@ -114,7 +114,7 @@ static void check(double (*brute)(const setting *s), kiln_sheen kind, double bou
         setting s = {kind, 0.01 + 0.99 * x[0], 1e-4 + 0.9999 * x[1] * x[1]};
         if (i < 9 * 11)
             s = (setting){kind, roughness[i % 9], nov[i / 9]};
-        double wanted = brute(&s), value = ki_sheen_albedo(s.sheen, s.roughness, s.nov);
+        double wanted = brute(&s), value = kiln_sheen_albedo(s.sheen, s.roughness, s.nov);
         double error = fabs(value - wanted) / fmax(1, wanted);
         if (error > worst)
             worst = error, at = s;
@@ -139,7 +139,7 @@ static void fit_agrees_over_the_half_vector(void **unused)
     for (int i = 0; i < 40; i++) {
         setting s = {KILN_SHEEN_ESTEVEZ, 0.15 + (i % 8) * 0.12, 0.003 + (i % 5) * 0.2};
         double wanted = half_albedo(&s);
-        CHECK_NEAR(ki_sheen_albedo(s.sheen, s.roughness, s.nov), wanted, 2e-6 * fmax(1, wanted));
+        CHECK_NEAR(kiln_sheen_albedo(s.sheen, s.roughness, s.nov), wanted, 2e-6 * fmax(1, wanted));
     }
 }
 

@@ -1,0 +1,168 @@
+// Where the texels of each shape lie on the sphere: directions to faces, panoramas and octahedra and
+// back, and the texels that a bilinear read across a cube's faces takes.
+#include "image/image.h"
+#include "math/math.h"
+
+#include <math.h>
+
+const char *const ki_face_names[6] = {"px", "nx", "py", "ny", "pz", "nz"};
+
+void ki_face_direction(int face, double s, double t, double direction[3])
+{
+    double *d = direction;
+    switch (face) {
+    case 0: // +X
+        d[0] = 1, d[1] = -t, d[2] = -s;
+        break;
+    case 1: // -X
+        d[0] = -1, d[1] = -t, d[2] = s;
+        break;
+    case 2: // +Y
+        d[0] = s, d[1] = 1, d[2] = t;
+        break;
+    case 3: // -Y
+        d[0] = s, d[1] = -1, d[2] = -t;
+        break;
+    case 4: // +Z
+        d[0] = s, d[1] = -t, d[2] = 1;
+        break;
+    default: // -Z
+        d[0] = -s, d[1] = -t, d[2] = -1;
+        break;
+    }
+}
+
+int ki_direction_face(const double direction[3], double *s, double *t)
+{
+    double x = direction[0], y = direction[1], z = direction[2];
+    double ax = fabs(x), ay = fabs(y), az = fabs(z);
+    if (ax >= ay && ax >= az && ax > 0) {
+        *s = x > 0 ? -z / ax : z / ax;
+        *t = -y / ax;
+        return x > 0 ? 0 : 1;
+    }
+    if (ay >= az && ay > 0) {
+        *s = x / ay;
+        *t = y > 0 ? z / ay : -z / ay;
+        return y > 0 ? 2 : 3;
+    }
+    if (az > 0) {
+        *s = z > 0 ? x / az : -x / az;
+        *t = -y / az;
+        return z > 0 ? 4 : 5;
+    }
+    *s = *t = 0;
+    return 0;
+}
+
+void ki_panorama_direction(double u, double v, double direction[3])
+{
+    double sin_theta, cos_theta, sin_phi, cos_phi;
+    ki_sincos(KI_PI * v, &sin_theta, &cos_theta);
+    ki_sincos(2 * KI_PI * (u - 0.5), &sin_phi, &cos_phi);
+    direction[0] = sin_theta * sin_phi;
+    direction[1] = cos_theta;
+    direction[2] = -sin_theta * cos_phi;
+}
+
+void ki_direction_panorama(const double direction[3], double *u, double *v)
+{
+    double x = direction[0], y = direction[1], z = direction[2];
+    *u = ki_clamp(0.5 + ki_atan2(x, -z) / (2 * KI_PI), 0, 1);
+    *v = ki_clamp(ki_atan2(sqrt(x * x + z * z), y) / KI_PI, 0, 1);
+}
+
+// The octahedron |x| + |y| + |z| = 1 from above: its upper half fills the inner diamond, with +X to
+// the right and +Z downwards as on the cube's +Y face; the four lower sides are folded out, so that
+// -Y is in every corner.
+void ki_octahedron_direction(double u, double v, double direction[3])
+{
+    double x = 2 * u - 1, z = 2 * v - 1;
+    double y = 1 - fabs(x) - fabs(z);
+    if (y < 0) {
+        double folded = copysign(1 - fabs(z), x);
+        z = copysign(1 - fabs(x), z);
+        x = folded;
+    }
+    double length = sqrt(x * x + y * y + z * z);
+    direction[0] = x / length;
+    direction[1] = y / length;
+    direction[2] = z / length;
+}
+
+void ki_direction_octahedron(const double direction[3], double *u, double *v)
+{
+    double sum = fabs(direction[0]) + fabs(direction[1]) + fabs(direction[2]);
+    double x = 0, z = 0;
+    if (sum > 0) {
+        x = direction[0] / sum;
+        z = direction[2] / sum;
+    }
+    if (direction[1] < 0) {
+        double folded = copysign(1 - fabs(z), x);
+        z = copysign(1 - fabs(x), z);
+        x = folded;
+    }
+    *u = ki_clamp(0.5 * x + 0.5, 0, 1);
+    *v = ki_clamp(0.5 * z + 0.5, 0, 1);
+}
+
+// The angle of a panorama's column grows by `degrees`: x = sin, z = -cos of that angle. Quarter
+// turns are exact.
+void ki_turn(const double direction[3], double degrees, double turned[3])
+{
+    double rest = fmod(degrees, 360), sine, cosine;
+    double quarter = floor(rest / 90);
+    ki_sincos((rest - 90 * quarter) * (KI_PI / 180), &sine, &cosine);
+    for (int k = (int)quarter & 3; k > 0; k--) {
+        double swap = sine;
+        sine = cosine;
+        cosine = -swap;
+    }
+    double x = direction[0], z = direction[2];
+    turned[0] = x * cosine - z * sine;
+    turned[1] = direction[1];
+    turned[2] = z * cosine + x * sine;
+}
+
+// ---------------------------------------------------------------------------------- bilinear reads
+
+// Texel (x, y) of a face, which may lie one beyond its edge: then it is the neighbour's that is
+// nearest.
+static size_t texel_at(int n, int face, int x, int y)
+{
+    if (x < 0 || y < 0 || x >= n || y >= n) {
+        double direction[3], s, t;
+        ki_face_direction(face, (2 * x + 1.0) / n - 1, (2 * y + 1.0) / n - 1, direction);
+        face = ki_direction_face(direction, &s, &t);
+        x = (int)ki_clamp(floor((s + 1) / 2 * n), 0, n - 1);
+        y = (int)ki_clamp(floor((t + 1) / 2 * n), 0, n - 1);
+    }
+    return ((size_t)face * (size_t)n + (size_t)y) * (size_t)n + (size_t)x;
+}
+
+void ki_cube_taps(int size, const double direction[3], size_t texels[4], double weights[4])
+{
+    double s, t;
+    int face = ki_direction_face(direction, &s, &t);
+    double u = (s + 1) / 2 * size - 0.5, v = (t + 1) / 2 * size - 0.5;
+    int x = (int)floor(u), y = (int)floor(v);
+    u -= x;
+    v -= y;
+    for (int i = 0; i < 4; i++) {
+        texels[i] = texel_at(size, face, x + i % 2, y + i / 2);
+        weights[i] = (i % 2 ? u : 1 - u) * (i / 2 ? v : 1 - v);
+    }
+}
+
+void ki_cube_read(const kiln_map *cube, int level, const double direction[3], double rgb[3])
+{
+    size_t texels[4];
+    double w[4];
+    ki_cube_taps(kiln_map_level_size(cube, level), direction, texels, w);
+    for (int c = 0; c < 3; c++) {
+        const float *from = cube->level[level] + c;
+        rgb[c] = (w[0] * (double)from[3 * texels[0]] + w[1] * (double)from[3 * texels[1]]) +
+                 (w[2] * (double)from[3 * texels[2]] + w[3] * (double)from[3 * texels[3]]);
+    }
+}
