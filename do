@@ -3,18 +3,6 @@
 set -eu
 cd "$(dirname "$0")"
 
-# What each part needs, as tool:package where a tool shows that it is there, else as a package.
-build_needs="cmake:cmake ninja:ninja-build cc:gcc pkg-config:pkg-config libc6-dev libopenexr-dev
-    libdeflate-dev libpng-dev libzstd-dev libcmocka-dev
-    libegl-dev libgles-dev libglfw3-dev libegl1 libgl1-mesa-dri"
-test_needs="node:nodejs npm:npm chromium:chromium mandoc:mandoc clang-format:clang-format script:bsdutils Xvfb:xvfb xauth:xauth
-    oiiotool:openimageio-tools
-    glslangValidator:glslang-tools"
-web_needs="cmake:cmake ninja:ninja-build emcc:emscripten node:nodejs npm:npm"
-bench_needs="cmgen:libfilament-tools oiiotool:openimageio-tools valgrind:valgrind chromium:chromium"
-lint_needs="clang-tidy:clang-tidy clang-format:clang-format cppcheck:cppcheck shellcheck:shellcheck"
-fuzz_needs="clang:clang libclang-rt-14-dev"
-
 usage() {
     cat <<'HELP'
 ./do build     builds the command: build/release/bin/kiln
@@ -25,6 +13,7 @@ usage() {
 ./do lint      clang-tidy, cppcheck, shellcheck, formatting, layers
 ./do format    formats the sources
 ./do fuzz [S]  runs every fuzz target for S seconds (60)
+./do test-bare [bookworm|trixie]   demo and test on a bare Debian 12, 13 or both, made by debootstrap
 ./do clean     removes what was built and fetched
 
 Each sets up what it needs. On Debian and Ubuntu, missing packages are installed when root or sudo
@@ -35,33 +24,52 @@ HELP
 say() { printf '\n== %s\n' "$*"; }
 fail() { printf 'do: %s\n' "$*" >&2; exit 1; }
 
-# need ENTRY...: installs the packages that are missing, or names them.
-need() {
-    missing=
-    for entry; do
-        package=${entry#*:}
-        case $entry in
-        *:*) command -v "${entry%%:*}" >/dev/null 2>&1 || missing="$missing $package" ;;
-        *) dpkg -s "$package" >/dev/null 2>&1 || missing="$missing $package" ;;
-        esac
-    done
-    [ -n "$missing" ] || return 0
-    command -v apt-get >/dev/null 2>&1 ||
-        fail "please install what Debian 12 calls:$missing"
-    root=
-    if [ "$(id -u)" != 0 ]; then
-        command -v sudo >/dev/null 2>&1 ||
-            fail "please run as root: apt-get install$missing"
-        root=sudo
-    fi
-    say "installing$missing"
-    # shellcheck disable=SC2086 # several words on purpose
-    install="$root env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends $missing"
-    $install || { $root apt-get update -q && $install; } || fail "cannot install:$missing"
+# is_there WHAT: whether that which a row of scripts/needs.txt is shown by is there.
+is_there() {
+    case $1 in
+    pkg:*) pkg-config --exists "${1#pkg:}" 2>/dev/null ;;
+    lib:*) { ldconfig -p || /sbin/ldconfig -p; } 2>/dev/null | grep -qF "${1#lib:}" ;;
+    @swrast) [ -n "$(find /usr/lib* -maxdepth 3 -name swrast_dri.so 2>/dev/null)" ] ;;
+    @fuzzer) [ -n "$(find "$(clang -print-resource-dir 2>/dev/null || echo /none)" -name '*fuzzer*.a' 2>/dev/null)" ] ;;
+    /*) [ -e "$1" ] ;;
+    *) command -v "$1" >/dev/null 2>&1 ;;
+    esac
 }
 
-# shellcheck disable=SC2086 # a list is split on purpose
-need_all() { need $1; }
+# names COLUMN: the packages of that column, each once, of the rows of standard input.
+names() {
+    awk -v at="$1" 'NF && $at != "-" && !seen[$at]++ { printf " %s", $at }'
+}
+
+# install_by_apt PACKAGE...: as root or by sudo; waits for another program that installs.
+install_by_apt() {
+    root=$([ "$(id -u)" = 0 ] || echo sudo)
+    wait="-o DPkg::Lock::Timeout=600"
+    say "installing $*"
+    install="$root env DEBIAN_FRONTEND=noninteractive apt-get install $wait -q -y --no-install-recommends $*"
+    $install || { $root apt-get update $wait -q && $install; } || fail "cannot install: $*"
+}
+
+# need PART...: installs by apt what the parts' rows of scripts/needs.txt name and is not there, or
+# says its names.
+need() {
+    missing=$(for part; do
+        awk -v part="$part" '!/^#/ && index("," $1 ",", "," part ",")' scripts/needs.txt
+    done | while read -r parts shown rest; do
+        is_there "$shown" || echo "$parts $shown $rest"
+    done)
+    debian=$(echo "$missing" | names 3)
+    [ -n "$debian" ] || return 0
+    if command -v apt-get >/dev/null 2>&1 && { [ "$(id -u)" = 0 ] || command -v sudo >/dev/null 2>&1; }; then
+        # shellcheck disable=SC2086 # a list is split on purpose
+        install_by_apt $debian
+        return
+    fi
+    fedora=$(echo "$missing" | names 4)
+    arch=$(echo "$missing" | names 5)
+    homebrew=$(echo "$missing" | names 6)
+    fail "please install what is missing, named by Debian$debian; by Fedora$fedora; by Arch$arch; by Homebrew$homebrew"
+}
 
 # build PRESET TARGET... [-D...]
 build() {
@@ -113,12 +121,12 @@ command=${1:-help}
 [ $# = 0 ] || shift
 case $command in
 build)
-    need_all "$build_needs"
+    need build
     build release
     say "the command is build/release/bin/kiln"
     ;;
 test)
-    need_all "$build_needs $test_needs $web_needs"
+    need build web test
     panoramas
     npm_packages web tests/web tests/files/ktx tests/brdf/witness tests/engines
     build release
@@ -130,20 +138,20 @@ test)
     [ "$failed" = 0 ]
     ;;
 web)
-    need_all "$web_needs"
+    need web
     npm_packages web
     build wasm
     node web/serve.mjs build/wasm/site "$@"
     ;;
 demo)
-    need_all "$build_needs"
+    need build
     panoramas || echo "No real panorama can be had: the demo shows the sky alone."
     build release
     set -- build/data/blender/city.exr
     [ -e "$1" ] || shift
     mkdir -p build/demo
     if [ $# -gt 0 ]; then
-        need_all "$web_needs $bench_needs"
+        need web demo
         npm_packages tests/web tests/engines
         say "drawing in the engines"
         node examples/gallery.mjs build/release/bin build/gallery build/demo/gallery.part \
@@ -155,7 +163,7 @@ demo)
     say "open $PWD/build/demo/index.html"
     ;;
 bench)
-    need_all "$build_needs $bench_needs $web_needs"
+    need build web bench
     panoramas
     npm_packages web tests/web tests/engines bench/blocks
     build release
@@ -163,7 +171,7 @@ bench)
     bench/run.sh "$@"
     ;;
 lint)
-    need_all "$build_needs $lint_needs $web_needs"
+    need build web lint
     say "layers" && scripts/layers.sh
     say "formatting" && scripts/format.sh --check
     say "shellcheck"
@@ -184,11 +192,11 @@ lint)
         --extra-arg=--sysroot="$(em-config CACHE)/sysroot" web/*.c 2>>build/tidy.log
     ;;
 format)
-    need clang-format:clang-format
+    need format
     scripts/format.sh
     ;;
 fuzz)
-    need_all "$build_needs $fuzz_needs"
+    need build fuzz
     build fuzz
     for target in build/fuzz/bin/fuzz_*; do
         name=${target##*/fuzz_}
@@ -198,6 +206,12 @@ fuzz)
             -artifact_prefix="build/finds/$name-" "build/corpus/$name" tests/files/good \
             tests/files/bad
     done
+    ;;
+test-bare)
+    [ "$(id -u)" = 0 ] ||
+        fail "test-bare makes root file systems by debootstrap, which only root can do: sudo -E ./do test-bare"
+    need bare
+    exec scripts/test-bare.sh "$@"
     ;;
 clean)
     rm -rf build web/node_modules tests/*/node_modules tests/*/*/node_modules
