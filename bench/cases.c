@@ -43,7 +43,7 @@ static bool probe_at(bench *b, kiln_context *context, const kiln_map *source, do
     done = done && !kiln_plan_environment(plan, &environment, &b->error);
     // An execution is short: each run is the best of many in a row.
     for (int i = 0; i < b->runs && done; i++) {
-        execute[i] = INFINITY;
+        execute[i] = HUGE_VAL;
         for (int k = 0; k < 20 && done; k++) {
             double start = bench_cpu();
             done = !kiln_plan_execute(plan, source, &environment, &b->error);
@@ -164,7 +164,7 @@ bool bench_instructions(bench *b)
 // Seconds that merely reading every texel takes: nothing that uses them all can be faster.
 static double read_all(const kiln_map *map)
 {
-    double best = INFINITY;
+    double best = HUGE_VAL;
     volatile float sink;
     size_t count = 3 * kiln_map_texels(map, 0);
     for (int run = 0; run < 5; run++) {

@@ -163,7 +163,7 @@ static bool time_table(bench *b, kiln_context *context, const kiln_table_def *de
 {
     bool done = true;
     for (int i = 0; i < b->runs && done; i++) {
-        seconds[i] = INFINITY;
+        seconds[i] = HUGE_VAL;
         for (int k = 0; k < repeats && done; k++) {
             kiln_table_free(table);
             double start = bench_cpu();
@@ -182,7 +182,7 @@ static bool beside_sampling(bench *b, kiln_context *context, kiln_g g, samples *
     kiln_table_def def = {.model.g = g};
     fill_function *run = fill_for(context);
     for (int i = 0; i < b->runs; i++) {
-        theirs[i] = INFINITY;
+        theirs[i] = HUGE_VAL;
         for (int k = 0; k < 10; k++) {
             double start = bench_cpu();
             run(g, s, sampled);

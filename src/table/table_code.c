@@ -46,8 +46,8 @@ static void write_result_comment(const code_job *j)
         [KILN_TABLE_E_DIELECTRIC] = "the albedo of a rough dielectric's reflection",
         [KILN_TABLE_GLASS] = "reflected and transmitted from outside, then from inside",
         [KILN_TABLE_E_WALK] =
-            "the albedo of the bounces after the first; the specular lobe is multiplied by\n"
-            "// 1 + result / (f0 A + B)",
+            ("the albedo of the bounces after the first; the specular lobe is multiplied by\n"
+             "// 1 + result / (f0 A + B)"),
     };
     ki_write_text(j->w, "// The result is %s.\n", results[j->def->kind]);
 }

@@ -69,7 +69,8 @@ static void the_irradiance_is_the_integral_over_the_cosine(void **state)
 {
     (void)state;
     for (int shape = 0; shape < 3; shape++) {
-        kiln_map panorama = scene_panorama(context, 32, 9), source = make_source(shape, 9);
+        kiln_map panorama = scene_panorama(context, 32, 9),
+                 source = make_source((kiln_shape)shape, 9);
         kiln_bake_def def = {.levels = {.size = 4}, .irradiance_size = 8};
         kiln_environment made;
         CHECK_OK(kiln_bake(context, &source, &def, &made, &error));
@@ -127,7 +128,8 @@ static void the_source_is_mirrored_and_exposed_first(void **state)
 {
     (void)state;
     for (int shape = 0; shape < 3; shape++) {
-        kiln_map source = make_source((kiln_shape)shape, 3), changed = make_source(shape, 3);
+        kiln_map source = make_source((kiln_shape)shape, 3),
+                 changed = make_source((kiln_shape)shape, 3);
         kiln_bake_def def = {.levels = {.size = 8, .rotation = 40}, .irradiance_size = 4};
         kiln_environment wanted, made;
         kiln_map_mirror(&changed);
@@ -148,11 +150,11 @@ static void a_plan_makes_the_same_of_every_shape(void **state)
 {
     (void)state;
     for (int shape = 0; shape < 3; shape++) {
-        kiln_map source[2] = {make_source(shape, 1), make_source(shape, 2)};
+        kiln_map source[2] = {make_source((kiln_shape)shape, 1), make_source((kiln_shape)shape, 2)};
         kiln_bake_def def = {.levels = {.size = 16, .level_count = 3}, .exposure = 0.5};
         kiln_environment wanted[2], made;
         kiln_plan *plan;
-        CHECK_OK(kiln_plan_create(context, shape, source[0].size, &def, &plan, &error));
+        CHECK_OK(kiln_plan_create(context, (kiln_shape)shape, source[0].size, &def, &plan, &error));
         CHECK_OK(kiln_plan_environment(plan, &made, &error));
         for (int i = 0; i < 2; i++)
             CHECK_OK(kiln_bake(context, &source[i], &def, &wanted[i], &error));

@@ -302,13 +302,13 @@ static void wrong_arguments_are_named(void **state)
                      KILN_ERROR_ARGUMENT);
     assert_non_null(strstr(error.message, "direction 0 is (0, 2, 0)"));
     CHECK_NEAR(value[0][0], 0, 0);
-    d[0][1] = NAN;
+    d[0][1] = (double)NAN;
     assert_int_equal(kiln_reference_filter(context, &map, &lobe, 0, two, 1, value, &error),
                      KILN_ERROR_ARGUMENT);
     assert_int_equal(kiln_reference_filter(context, &map, &wrong, 0, one, 1, value, &error),
                      KILN_ERROR_ARGUMENT);
     assert_non_null(strstr(error.message, "1.5"));
-    assert_int_equal(kiln_reference_filter(context, &map, &lobe, INFINITY, one, 1, value, &error),
+    assert_int_equal(kiln_reference_filter(context, &map, &lobe, HUGE_VAL, one, 1, value, &error),
                      KILN_ERROR_ARGUMENT);
     assert_int_equal(kiln_reference_filter(context, &map, &lobe, 0, one, -1, value, &error),
                      KILN_ERROR_ARGUMENT);

@@ -296,10 +296,10 @@ static void wrong_arguments_are_named(void **state)
         {{.size = 8}, "size of the sky is 8"},
         {{.size = 9000}, "9000"},
         {{.elevation = -6}, "elevation of the sky is -6"},
-        {{.elevation = NAN}, "elevation"},
+        {{.elevation = (double)NAN}, "elevation"},
         {{.turbidity = 1}, "turbidity of the sky is 1, it must be 1.7 to 10"},
         {{.albedo = 1.5}, "albedo"},
-        {{.azimuth = INFINITY}, "azimuth"},
+        {{.azimuth = HUGE_VAL}, "azimuth"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         assert_int_equal(kiln_sky(context, &cases[i].def, &map, &error), KILN_ERROR_ARGUMENT);

@@ -98,7 +98,7 @@ static void corners_are_limits(void **unused)
                 assert_true(e >= 0 && e <= 1 + 1e-11);
             }
     }
-    CHECK_NEAR(kiln_energy(&models[0], NAN, NAN), kiln_energy(&models[0], 0, 0), 0);
+    CHECK_NEAR(kiln_energy(&models[0], (double)NAN, (double)NAN), kiln_energy(&models[0], 0, 0), 0);
     CHECK_NEAR(kiln_energy(&models[0], -1, 2), kiln_energy(&models[0], 0, 1), 0);
 }
 

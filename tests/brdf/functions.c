@@ -371,7 +371,7 @@ static void furnaces_close_at_f0_of_one(void **state)
 }
 
 static const double wild[] = {-HUGE_VAL, -1, -0.0, 5e-324, 1e-200,   1e-75,
-                              0.5,       1,  2,    1e300,  HUGE_VAL, NAN};
+                              0.5,       1,  2,    1e300,  HUGE_VAL, (double)NAN};
 enum { WILD = sizeof wild / sizeof *wild };
 
 static void nothing_is_not_a_number(void **state)

@@ -142,7 +142,7 @@ static void gradients_err_by_half_a_step(void **state)
 // each of its diagonals, and for each texel the best of sixteen.
 static double plain_error(int code[TEXELS][3])
 {
-    double least = INFINITY;
+    double least = HUGE_VAL;
     for (int diagonal = 0; diagonal < 4; diagonal++) {
         int end[2][3];
         for (int c = 0; c < 3; c++) {
@@ -157,7 +157,7 @@ static double plain_error(int code[TEXELS][3])
         }
         double sum = 0;
         for (int i = 0; i < TEXELS; i++) {
-            double nearest = INFINITY;
+            double nearest = HUGE_VAL;
             for (int k = 0; k < 16; k++) {
                 double error2 = 0;
                 int w = ki_bc6h_weight(k, 1);

@@ -403,7 +403,7 @@ static void bad_arguments_give_sentences(void **state)
                                  {.size = 16, .level_count = 9},
                                  {.size = 16, .level_count = 1, .roughness = &wild},
                                  {.size = 16, .lobe = KILN_LOBE_CUSTOM},
-                                 {.size = 16, .rotation = INFINITY}};
+                                 {.size = 16, .rotation = HUGE_VAL}};
     for (size_t i = 0; i < sizeof defs / sizeof *defs; i++) {
         kiln_error error = {0};
         assert_int_equal(kiln_prefilter(context, &in, &defs[i], &out, &error), KILN_ERROR_ARGUMENT);

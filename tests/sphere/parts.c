@@ -253,7 +253,7 @@ static void sh_basis_is_orthonormal(void **state)
 static void lobes_out_of_range_are_refused(void **state)
 {
     (void)state;
-    kiln_lobe bad[] = {kiln_lobe_ggx(-0.1),  kiln_lobe_ggx(1.5),   kiln_lobe_ggx(NAN),
+    kiln_lobe bad[] = {kiln_lobe_ggx(-0.1),  kiln_lobe_ggx(1.5),   kiln_lobe_ggx((double)NAN),
                        kiln_lobe_charlie(0), kiln_lobe_phong(0.5), kiln_lobe_custom(NULL, NULL, 1)};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         kiln_error error = {0};
