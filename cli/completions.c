@@ -31,12 +31,16 @@ static void print_commands(const cli_call *call)
         printf("%s%s", i ? " " : "", call->commands[i]->name);
 }
 
-// The help up to its first semicolon or colon, without what the shells' quoting would make special.
-static const char *summary(const cli_option *option, char text[128])
+enum { SUMMARY = 160 };
+
+// The help up to its first semicolon or colon, as text inside a shell's single quotes.
+static const char *summary(const char *help, char text[SUMMARY])
 {
     size_t used = 0;
-    for (const char *at = option->help; *at && !strchr(";:", *at) && used < 100; at++)
-        if (!strchr("'[]\\$`\"", *at))
+    for (const char *at = help; *at && !strchr(";:", *at) && used < 120; at++)
+        if (*at == '\'')
+            used += (size_t)snprintf(text + used, SUMMARY - used, "'\\''");
+        else if (!strchr("[]\\$`\"", *at))
             text[used++] = *at;
     text[used] = 0;
     return text;
@@ -116,7 +120,7 @@ static void print_bash(const cli_call *call)
 // '(-o --output)'{-o+,--output=}'[what to write]:OUT:_files'
 static void print_zsh_option(const cli_option *option)
 {
-    char text[128];
+    char text[SUMMARY];
     bool flag = option->kind == CLI_FLAG;
     const char *equals = flag ? "" : option->alone ? "=-" : "=";
     fputs("            ", stdout);
@@ -125,7 +129,7 @@ static void print_zsh_option(const cli_option *option)
                flag ? "" : "+", option->name, equals);
     else
         printf("'--%s%s", option->name, equals);
-    printf("[%s]", summary(option, text));
+    printf("[%s]", summary(option->help, text));
     if (!flag)
         printf("%s:%s:", option->alone ? ":" : "", option->value);
     if (option->kind == CLI_FILE)
@@ -147,9 +151,9 @@ static void print_zsh(const cli_call *call)
           "    commands=(\n",
           stdout);
     for (int i = 0; call->commands[i]; i++) {
-        const cli_option text = {.help = call->commands[i]->summary};
-        char words[128];
-        printf("        '%s:%s'\n", call->commands[i]->name, summary(&text, words));
+        char text[SUMMARY];
+        printf("        '%s:%s'\n", call->commands[i]->name,
+               summary(call->commands[i]->summary, text));
     }
     fputs("    )\n"
           "    if ((CURRENT == 2)); then\n"
@@ -184,7 +188,7 @@ static void print_zsh(const cli_call *call)
 
 static void print_fish_option(const cli_command *command, const cli_option *option)
 {
-    char text[128];
+    char text[SUMMARY];
     printf("complete -c kiln -n '__fish_seen_subcommand_from %s' -l %s", command->name,
            option->name);
     if (option->letter)
@@ -198,7 +202,7 @@ static void print_fish_option(const cli_command *command, const cli_option *opti
         print_words(option->word, option->words);
         putchar('\'');
     }
-    printf(" -d '%s'\n", summary(option, text));
+    printf(" -d '%s'\n", summary(option->help, text));
 }
 
 static void print_fish(const cli_call *call)
@@ -206,10 +210,9 @@ static void print_fish(const cli_call *call)
     puts("# Completions of kiln for fish, written by kiln completions fish.");
     for (int i = 0; call->commands[i]; i++) {
         const cli_command *command = call->commands[i];
-        const cli_option about = {.help = command->summary};
-        char text[128];
+        char text[SUMMARY];
         printf("complete -c kiln -f -n __fish_use_subcommand -a %s -d '%s'\n", command->name,
-               summary(&about, text));
+               summary(command->summary, text));
         for (int k = 0; command->options && command->options[k].name; k++)
             if (is_shown(&command->options[k]))
                 print_fish_option(command, &command->options[k]);
