@@ -15,7 +15,7 @@ typedef struct assignment_def {
     int size, samples;
     kiln_g g; ///< one of Schlick's two
     bool json, quiet;
-    /// More pictures beside the tables, and their part of the report. May be NULL.
+    /// Draws pictures that are no tables, and writes their part of the report. May be NULL.
     kiln_result (*draw)(struct assignment *a);
     void (*describe)(const struct assignment *a, FILE *report);
     void *user;

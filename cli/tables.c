@@ -222,7 +222,7 @@ static const cli_example examples[] = {
     {"kiln tables -o e.h --table e --size 32 --axis grazing --corners",
      "an array for those who want no texture"},
     {"kiln tables --assignment -o images",
-     "what GAMES202's assignment 4 asks for, 128 x 128, beside what is exact"},
+     "what GAMES202's assignment 4 asks for, 128 x 128, and the exact ones"},
     {"kiln tables --assignment -o text --g schlick-text",
      "the same with the k of its text, with which a mirror glows"},
     {"kiln tables --method textbook -o brdf.exr",

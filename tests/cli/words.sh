@@ -107,6 +107,16 @@ grep -q 'level 5 .* size 8 .* roughness 1$' log/out || die "engines three: no le
 grep -q 'level 1 .* size 128 .* roughness 0.1056$' log/out || die "engines three: the roughness"
 grep -q 'docs/engines/three.md' log/out || die "engines three: no page"
 ! grep -q babylon log/out || die "engines three names babylon"
+for engine in three-cubeuv filament; do
+    expect 0 "" engines $engine
+    sed -n 's/^  *level .* size \([0-9]*\) *roughness \(.*\)/\1 \2/p' log/out >log/levels
+    case $engine in three-cubeuv) out=L.exr ;; *) out=L ;; esac
+    expect 0 "" bake sky.exr --for $engine -o $out --exposure -8 --tune none --json
+    node -e '
+        const { output } = JSON.parse(require("fs").readFileSync("log/out", "utf8"));
+        for (const l of output.levels) console.log(l.size, +l.roughness.toPrecision(4));' >log/baked
+    same log/levels log/baked
+done
 for engine in $("$KILN" engines --json | node -e '
     JSON.parse(require("fs").readFileSync(0, "utf8")).forEach(e => console.log(e.name))'); do
     expect 0 "" engines "$engine"

@@ -44,6 +44,9 @@ PKG_CONFIG_LIBDIR="$libdir/pkgconfig" pkg-config --static --libs kiln >/dev/null
 
 [ "$("$prefix/bin/kiln" --version)" = "kiln $(pkg-config --modversion kiln)" ]
 [ -s "$prefix/share/man/man1/kiln.1" ]
+grep -q 'complete .* kiln$' "$prefix/share/bash-completion/completions/kiln"
+grep -q '^#compdef kiln$' "$prefix/share/zsh/site-functions/_kiln"
+grep -q '^complete -c kiln ' "$prefix/share/fish/vendor_completions.d/kiln.fish"
 
 # Each header stands alone, in C and in C++, where its functions keep their C names.
 compile() {
