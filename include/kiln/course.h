@@ -1,6 +1,7 @@
-// kiln: the methods that courses teach, with their defaults and their errors, to learn from and to
-// compare exact results with: the textbook's sums for irradiance, prefiltered radiance and the
-// split-sum table, and the tables of GAMES202's fourth assignment.
+// kiln: the methods that rendering courses teach, with their default sizes and their errors, to
+// learn from and to compare with exact results. The first section has the LearnOpenGL textbook's
+// sums for irradiance, prefiltered radiance and the split-sum table, the second the tables of the
+// fourth assignment of the course GAMES202.
 // SPDX-License-Identifier: MIT
 #ifndef KILN_COURSE_H
 #define KILN_COURSE_H
@@ -13,91 +14,103 @@ extern "C" {
 
 // ------------------------------------------------------------------------- the textbook, by its name
 
-/// The methods that courses teach, with their defaults and their errors, to learn from and to
-/// compare with. See docs/theory/textbook.md.
+/// Parameters of a textbook method. {0} selects the textbook's own sizes. See
+/// docs/theory/textbook.md.
 typedef struct kiln_textbook_def {
-    kiln_shape shape; ///< of the result; KILN_SHAPE_AUTO for a panorama, as in the textbook
-    int size;         ///< rows or edge; 0 for 64
-    int level_count;  ///< prefilter only; 0 for all
-    int phi_count;    ///< irradiance: steps of phi, to 65536; 0 for 100
-    int theta_count;  ///< irradiance: steps of theta, to 65536; 0 for 100
-    int sample_count; ///< prefilter: Hammersley points, to 1048576; 0 for 1024
+    kiln_shape shape; ///< shape of the result; KILN_SHAPE_AUTO for a panorama, as in the textbook
+    int size;         ///< rows of a panorama, or texels along a side of a face; 0 for 64
+    int level_count;  ///< number of levels, only for kiln_textbook_prefilter; 0 for all
+    int phi_count;    ///< steps of phi for irradiance, at most 65536; 0 for 100
+    int theta_count;  ///< steps of theta for irradiance, at most 65536; 0 for 100
+    int sample_count; ///< Hammersley points for prefiltering, at most 1048576; 0 for 1024
 } kiln_textbook_def;
 
-/// Irradiance / pi as the textbook's uniform sum over (phi, theta) gives it: white stays near 1
-/// (0.99992 with 100 x 100). A panorama's texels look where the textbook's do, at i / (width - 1) and
-/// j / (height - 1), which is up to half a texel from their centres.
+/// Computes irradiance / pi by the textbook's uniform sum over (phi, theta), which keeps white near
+/// 1 (0.99992 with 100 x 100 steps). The texel in column i and row j of a panorama is evaluated
+/// where the textbook does, at i / (width - 1) and j / (height - 1), up to half a texel from the
+/// texel's centre.
 KILN_API KILN_CHECKED kiln_result kiln_textbook_irradiance(kiln_context *context,
                                                            const kiln_map *panorama,
                                                            const kiln_textbook_def *def,
                                                            kiln_map *map, kiln_error *error);
-/// GGX importance sampling on Hammersley points with N = V = R, weighted by n.l, nearest texels;
-/// roughness level / (level_count - 1). A panorama's texels as for kiln_textbook_irradiance.
+/// Computes prefiltered radiance by GGX importance sampling with Hammersley points, N = V = R,
+/// weights n.l and the nearest texel of the source. Level k has roughness k / (level_count - 1).
+/// The texels of a panorama are evaluated where kiln_textbook_irradiance evaluates them.
 KILN_API KILN_CHECKED kiln_result kiln_textbook_prefilter(kiln_context *context,
                                                           const kiln_map *panorama,
                                                           const kiln_textbook_def *def,
                                                           kiln_map *map, kiln_error *error);
-/// The 1024-sample split-sum table: x is n.v = i/(size-1), y is roughness = j/(size-1), row 0 at
-/// the top holds roughness 1; two channels (A, B). Where n.v is 0 the textbook divides 0 by 0; here
-/// the estimator's limit n.v -> 0 is evaluated, at n.v = 1e-4. `size` 2 to 4096; `sample_count` to
-/// 1048576, 0 for 1024.
+/// Computes the split-sum table (A, B) with two channels. Column i has n.v = i / (size - 1).
+/// Roughness runs from 1 in row 0, at the top, to 0 in the last row, in steps of 1 / (size - 1).
+/// Where n.v is 0 the textbook divides 0 by 0; kiln evaluates the estimator at n.v = 1e-4 instead,
+/// close to its limit. `size` is 2 to 4096, `sample_count` at most 1048576; 0 for 1024.
 KILN_API KILN_CHECKED kiln_result kiln_textbook_brdf(kiln_context *context, int size,
                                                      int sample_count, kiln_image *table,
                                                      kiln_error *error);
 
 // ----------------------------------------------------------------------- the assignment, by its name
 
-/// How GAMES202's fourth assignment (2021) computes E(mu), with its sizes, its samples and its
-/// errors. See docs/theory/assignment.md.
+/// Method by which GAMES202's fourth assignment (2021) computes E(mu), with its own sizes, samples
+/// and errors. See docs/theory/assignment.md.
 typedef enum kiln_assignment_method {
-    KILN_ASSIGNMENT_MONTE_CARLO, ///< light drawn by its cosine, in jittered strata (SplitMix64)
-    KILN_ASSIGNMENT_IMPORTANCE,  ///< GGX's half vectors on Hammersley points: its bonus 1
-    KILN_ASSIGNMENT_SPLIT_SUM    ///< the sums A and B on the same points, added: its bonus 2
+    KILN_ASSIGNMENT_MONTE_CARLO, ///< cosine-distributed light in jittered strata (SplitMix64)
+    KILN_ASSIGNMENT_IMPORTANCE,  ///< GGX half vectors from Hammersley points: bonus task 1
+    KILN_ASSIGNMENT_SPLIT_SUM    ///< A + B of the split sum with the same points: bonus task 2
 } kiln_assignment_method;
 
-/// The masking of the assignment's E, with GGX's D.
+/// The masking G that the assignment combines with GGX.
 typedef enum kiln_assignment_g {
-    KILN_ASSIGNMENT_G_FIGURES = 0, ///< Schlick's with k = roughness^2 / 2, as in its figures
-    KILN_ASSIGNMENT_G_TEXT,        ///< Schlick's with k = (roughness + 1)^2 / 8, as in its text
-    KILN_ASSIGNMENT_G_SMITH,       ///< the height-correlated one, KILN_G_SMITH
-    KILN_ASSIGNMENT_G_UNCORRELATED ///< KILN_G_SMITH_UNCORRELATED
+    /// Schlick's with k = roughness^2 / 2, as in the assignment's figures.
+    KILN_ASSIGNMENT_G_FIGURES = 0,
+    /// Schlick's with k = (roughness + 1)^2 / 8, as in the assignment's text.
+    KILN_ASSIGNMENT_G_TEXT,
+    KILN_ASSIGNMENT_G_SMITH,       ///< the height-correlated Smith masking, KILN_G_SMITH
+    KILN_ASSIGNMENT_G_UNCORRELATED ///< the uncorrelated Smith masking, KILN_G_SMITH_UNCORRELATED
 } kiln_assignment_g;
 
-/// The same masking as the exact functions and tables name it.
+/// Returns the kiln_g that names the same masking for the exact functions and tables.
 KILN_API kiln_g kiln_assignment_masking(kiln_assignment_g g);
 
-/// {0} is the assignment's own: 128 x 128 texels, 1024 samples each, k = roughness^2 / 2.
+/// Parameters of the assignment's tables. {0} selects the assignment's own: 128 x 128 texels, 1024
+/// samples each, k = roughness^2 / 2.
 typedef struct kiln_assignment_def {
-    int size;         ///< 2 to 1024; 0 for 128
-    int sample_count; ///< to 1048576; 0 for 1024. Monte Carlo takes the largest square up to it
+    int size; ///< texels along each side of the table, 2 to 1024; 0 for 128
+    /// Samples per texel, at most 1048576; 0 for 1024. Monte Carlo uses the largest square number
+    /// up to this.
+    int sample_count;
     kiln_assignment_g g;
-    bool unclamped; ///< Monte Carlo: D's denominator as it is; false: at least 1e-4
-    bool unflipped; ///< row 0 holds roughness 0, as in figure 3; else the top row is roughness 1
-    uint64_t seed;  ///< of Monte Carlo's numbers
+    /// Monte Carlo, true: D's denominator unchanged; false: clamped to at least 1e-4.
+    bool unclamped;
+    /// True: row 0 holds roughness 0, as in figure 3; false: row 0 holds roughness 1.
+    bool unflipped;
+    uint64_t seed; ///< seed of Monte Carlo's random numbers
 } kiln_assignment_def;
 
-/// E with F = 1, size x size, one channel, before it is cut to bytes: mu = (x + 1/2) / size from left
-/// to right, roughness = (y + 1/2) / size upwards. `def` may be NULL.
+/// Computes a table of E with F = 1: size x size texels, one channel, not yet truncated to bytes.
+/// Column x has mu = (x + 1/2) / size, from left to right. Row y from the bottom has roughness = (y
+/// + 1/2) / size. `def` may be NULL.
 KILN_API KILN_CHECKED kiln_result kiln_assignment_energy(kiln_context *context,
                                                          kiln_assignment_method method,
                                                          const kiln_assignment_def *def,
                                                          kiln_image *table, kiln_error *error);
-/// E_avg of such a table: each row is 2 mean(E mu) of that row, in every texel.
+/// Computes E_avg from a table of E: every texel of a row is 2 mean(E mu), the mean being over that
+/// row of `energy`.
 KILN_API KILN_CHECKED kiln_result kiln_assignment_average(kiln_context *context,
                                                           const kiln_image *energy,
                                                           kiln_image *average, kiln_error *error);
-/// Cuts every value to what (uint8)(255 x) keeps of it: saved as PNG, it is that byte.
+/// Truncates every value to the one that remains after (uint8)(255 x): saved as PNG, the value
+/// gives that byte exactly.
 KILN_API void kiln_assignment_truncate(kiln_image *image);
 
-/// Of the texels of two tables, the one minus the other.
+/// Statistics of the differences between two tables, `table` minus `exact`, over all texels.
 typedef struct kiln_difference {
-    double max, rms; ///< of its size
-    double mean;     ///< with its sign
+    double max, rms; ///< largest absolute difference and root mean square
+    double mean;     ///< mean difference, with its sign
 } kiln_difference;
 
-/// Tables of one channel, alike in size. `map`, which may be NULL, receives a picture (sRGB) of the
-/// error by decades from 1e-4, white, to 1, dark: blue where `table` is too dark, red where too
-/// bright.
+/// Compares two tables of one channel and equal size. `map`, which may be NULL, receives an sRGB
+/// picture of the error on a logarithmic scale from white (1e-4) to dark (1): blue where `table` is
+/// too dark, red where `table` is too bright.
 KILN_API KILN_CHECKED kiln_result kiln_assignment_compare(kiln_context *context,
                                                           const kiln_image *table,
                                                           const kiln_image *exact,

@@ -400,7 +400,8 @@ typedef struct kiln_prefilter_def {
     kiln_shape shape; ///< shape of the result; KILN_SHAPE_AUTO for a cube
     int size;         ///< size of level 0, 1 to KILN_MAX_SIZE; 0 for 256
     int level_count;  ///< number of levels, 1 to KILN_MAX_LEVELS; 0 for all levels down to size 1
-    int smallest; ///< smallest size of a level, as in kiln_map; needed for more levels than halving to 1 gives
+    /// Smallest size of a level, as in kiln_map; needed for more levels than halving to 1 gives.
+    int smallest;
     /// Lobe of every level: GGX (alpha = roughness^2), Lambert, Charlie (alpha = roughness^2, at
     /// least 0.01) or Phong (exponent 2 / alpha^2 - 2, at least 1).
     kiln_lobe_kind lobe;
@@ -437,9 +438,9 @@ KILN_API KILN_CHECKED kiln_result kiln_prefilter(kiln_context *context, const ki
 /// directions (y up) the harmonics are proportional to 1, y, z, x, xy, yz, 3z^2-1, xz, x^2-y^2, ...
 typedef struct kiln_sh {
     int bands; ///< number of bands, 1 to KILN_MAX_BANDS
-    bool
-        irradiance; ///< true: band l is multiplied by the cosine lobe's pi, 2 pi/3, pi/4, 0, -pi/24
-    double window;  ///< width of the deringing window, 0 for none
+    /// True: band l is multiplied by the cosine lobe's pi, 2 pi/3, pi/4, 0, -pi/24.
+    bool irradiance;
+    double window; ///< width of the deringing window, 0 for none
     double c[KILN_MAX_BANDS * KILN_MAX_BANDS][3];
 } kiln_sh;
 
@@ -470,9 +471,9 @@ KILN_API void kiln_sh_evaluate(const kiln_sh *sh, const double direction[3], dou
 /// kiln_environment_save also accepts an environment that the caller filled with other maps.
 typedef struct kiln_environment {
     kiln_map levels; ///< prefiltered radiance, each level for its entry of levels.roughness
-    kiln_map
-        irradiance; ///< irradiance / pi, one level; empty ({0}) where no irradiance was asked for
-    kiln_sh sh;     ///< harmonics of the radiance without a window; kiln_sh_filter derives others
+    /// Irradiance / pi, one level; empty ({0}) where no irradiance was asked for.
+    kiln_map irradiance;
+    kiln_sh sh; ///< harmonics of the radiance without a window; kiln_sh_filter derives others
     kiln_lobe_kind lobe; ///< lobe that the levels were filtered with
     int degree;          ///< degree of the spectrum behind the levels; 0 if there was none
 } kiln_environment;
@@ -491,8 +492,8 @@ typedef enum kiln_tune {
 /// What kiln_bake computes. {0} selects the defaults of kiln_prefilter_def, an irradiance map of
 /// size 64 and three bands of harmonics.
 typedef struct kiln_bake_def {
-    kiln_prefilter_def
-        levels; ///< `levels.rotation` also turns irradiance and harmonics, and follows `mirror`
+    /// `levels.rotation` also turns irradiance and harmonics, and follows `mirror`.
+    kiln_prefilter_def levels;
     /// Engine that the levels are for, or NULL. The engine decides lobe, roughness, smallest and
     /// tuning of `levels`, whose own fields of these names must be 0; also size and level_count if
     /// these are 0.
@@ -500,7 +501,8 @@ typedef struct kiln_bake_def {
     kiln_tune tune;  ///< tuning of the levels; applies only with `engine`
     bool mirror;     ///< true: swaps left and right of the source
     double exposure; ///< multiplies the source by 2^exposure, -600 to 600
-    int irradiance_size; ///< size of the irradiance map, 1 to KILN_MAX_SIZE; 0 for 64, KILN_NO_IRRADIANCE for none
+    /// Size of the irradiance map, 1 to KILN_MAX_SIZE; 0 for 64, KILN_NO_IRRADIANCE for none.
+    int irradiance_size;
     int sh_bands; ///< number of bands of harmonics, 1 to KILN_MAX_BANDS; 0 for 3
 } kiln_bake_def;
 
@@ -561,7 +563,8 @@ typedef enum kiln_format {
     KILN_FORMAT_RGB9E5,
     KILN_FORMAT_B10G11R11,
     KILN_FORMAT_BC6H, ///< unsigned, 4 x 4 texels in 16 bytes, KTX2 and DDS only
-    KILN_FORMAT_RGBM, ///< RGBM, RGBD and RGBP: four bytes a texel, PNG only; see docs/conventions.md
+    /// RGBM, RGBD and RGBP: four bytes a texel, PNG only; see docs/conventions.md.
+    KILN_FORMAT_RGBM,
     KILN_FORMAT_RGBD,
     KILN_FORMAT_RGBP
 } kiln_format;
@@ -576,8 +579,8 @@ KILN_API double kiln_format_limit(kiln_format format);
 typedef struct kiln_save_def {
     kiln_format format;
     int zstd; ///< zstd compression level of a KTX2 file, 1 to 22; 0 for no compression
-    const kiln_sh
-        *sh; ///< harmonics stored in the metadata of formats that have metadata; may be NULL
+    /// Harmonics stored in the metadata of formats that have metadata; may be NULL.
+    const kiln_sh *sh;
     const char *lobe; ///< name of the lobe, stored in the metadata; may be NULL
 } kiln_save_def;
 
@@ -672,8 +675,8 @@ struct kiln_engine {
     /// Ending of the path for kiln_engine_save, for example "ktx2"; "" where the path is the
     /// beginning of several file names.
     const char *ending;
-    const char
-        *mapping;    ///< formula for the roughness r of level k of n, w being the size of level 0
+    /// Formula for the roughness r of level k of n, w being the size of level 0.
+    const char *mapping;
     int size;        ///< default size of a cube face in texels
     int level_count; ///< default number of levels
     double limit;    ///< largest radiance that the files hold
@@ -735,13 +738,14 @@ KILN_API KILN_CHECKED kiln_result kiln_engine_encode(kiln_context *context,
 /// Options for saving an environment. {0} saves only the levels, with the harmonics and the name of
 /// the lobe in the metadata of formats that have metadata.
 typedef struct kiln_environment_save_def {
-    const kiln_engine
-        *engine;        ///< engine whose files hold the levels; NULL for the files of kiln_map_save
+    /// Engine whose files hold the levels; NULL for the files of kiln_map_save.
+    const kiln_engine *engine;
     kiln_format format; ///< format of levels and irradiance
-    int zstd; ///< zstd level of KTX2 files that are not for an engine, 1 to 22; 0 for no compression
+    /// Zstd level of KTX2 files that are not for an engine, 1 to 22; 0 for no compression.
+    int zstd;
     const char *irradiance_path; ///< path of the irradiance map; NULL to leave the irradiance out
-    const char
-        *sh_path;      ///< path of the harmonics (.json, .txt or .h); NULL for no file of harmonics
+    /// Path of the harmonics (.json, .txt or .h); NULL for no file of harmonics.
+    const char *sh_path;
     const kiln_sh *sh; ///< harmonics for sh_path; NULL for those of the environment
 } kiln_environment_save_def;
 
