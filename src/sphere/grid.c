@@ -4,7 +4,8 @@
 
 #include <math.h>
 
-enum { UNKNOWNS = KI_TAPS + 1 }; // the taps and the constraint's multiplier
+// Unknowns of the linear system: the interpolation weights and the multiplier of the constraint.
+enum { UNKNOWNS = KI_TAPS + 1 };
 
 // Solves a x = b in place by elimination with partial pivoting.
 static void solve(double a[UNKNOWNS][UNKNOWNS], double b[UNKNOWNS])
@@ -36,12 +37,12 @@ static void solve(double a[UNKNOWNS][UNKNOWNS], double b[UNKNOWNS])
     }
 }
 
-// The interpolation of a random function with autocorrelation r(x) = sum_l density_l cos(l x) errs
-// least in the mean square with the weights that solve  sum_j r(x_i - x_j) w_j = r(x_i - x)
-// (Wiener's filter), here with the constraint sum w = 1.
+// A random function with autocorrelation r(x) = sum_l density_l cos(l x) is known at the points
+// x_i. The mean square error of its interpolation at x is least with the weights w that solve
+// sum_j r(x_i - x_j) w_j = r(x_i - x) (Wiener's filter). Here the constraint sum w = 1 is added.
 void ki_taps_design(double step, const double *density, int degree, double *taps)
 {
-    // The autocorrelation is smooth enough in l for every stride-th degree to stand for all.
+    // The density is smooth in l, so that every stride-th degree represents its neighbours.
     int stride = 1 + degree / 64;
     double total = 0, apart[KI_TAPS] = {0};
     for (int l = 0; l <= degree; l += stride) {
@@ -57,7 +58,8 @@ void ki_taps_design(double step, const double *density, int degree, double *taps
             a[i][KI_TAPS] = a[KI_TAPS][i] = 1;
         }
         a[KI_TAPS][KI_TAPS] = 0;
-        // cos(l x) through its recurrence, whose error (about 1e-13) is far below the taps'.
+        // cos(l x) by its recurrence in l. The recurrence errs by about 1e-13, far less than the
+        // interpolation itself.
         double twice[KI_TAPS], now[KI_TAPS], before[KI_TAPS];
         for (int i = 0; i < KI_TAPS; i++) {
             double c = ki_cos((fraction - (i - 3)) * step * stride);
@@ -79,7 +81,7 @@ void ki_taps_design(double step, const double *density, int degree, double *taps
         double sum = 0;
         for (int i = 0; i < KI_TAPS; i++)
             sum += b[i];
-        // From the other side the taps are the same in reverse.
+        // The weights for the fraction 1 - t are those for t in reverse order.
         for (int i = 0; i < KI_TAPS; i++)
             taps[(KI_TAP_STEPS - n) * KI_TAPS + KI_TAPS - 1 - i] = b[i] / sum;
         for (int i = 0; i < KI_TAPS; i++)
@@ -87,7 +89,8 @@ void ki_taps_design(double step, const double *density, int degree, double *taps
     }
 }
 
-// GGX's transform falls like exp(-2 alpha l), and is left at about exp(-10.4).
+// The power of environments is modelled as 1 / (l + 1), and the transform of a GGX lobe as
+// exp(-2 alpha l), with alpha chosen so that the lobe's transform is exp(-10.4) at the last degree.
 void ki_model_density(int degree, double *density)
 {
     for (int l = 0; l <= degree; l++)

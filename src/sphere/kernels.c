@@ -1,4 +1,4 @@
-// Which kernels a context uses.
+// Chooses the kernels for the instruction set of a context.
 #include "sphere/kernels.h"
 
 #include "base/vector.h"

@@ -1,5 +1,10 @@
-// The bodies. Before inclusion: KI_WIDTH, doubles in a native vector (1, 2, 4, 8), KI_BLOCK, degrees
-// that the analysis takes at once (2 or 4: as accumulators fit in registers), KI_TABLE, the name.
+// The bodies of the inner loops that kernels.h declares: the FFT, the distribution of rows onto
+// latitude rings, the sums with associated Legendre functions (docs/theory/spectral.md), and the
+// interpolation of texels. Data are doubles in groups of eight lanes.
+//
+// The including file defines KI_WIDTH, the number of doubles in a native vector (1, 2, 4 or 8);
+// KI_BLOCK, the number of degrees that the analysis sums at once (2 or 4, as many as the registers
+// hold); and KI_TABLE, the name of the table of kernels.
 #include "sphere/kernels.h"
 
 #include <string.h>
@@ -51,7 +56,7 @@ enum { FLOATS = KI_WIDTH < 4 ? 4 : 8 };
 typedef float floats __attribute__((vector_size(4 * FLOATS), may_alias));
 #endif
 
-// The next KI_WIDTH floats as doubles.
+// Loads KI_WIDTH floats and converts them to doubles.
 static inline vec widen(const float *p)
 {
 #if KI_WIDTH == 1
@@ -78,7 +83,7 @@ static inline double sum_lanes(const double *v)
 
 // --------------------------------------------------------------------------------------------- FFT
 
-// Multiplies the complex number (re, im) by w and stores it.
+// Multiplies the complex number (re, im) by w and stores the product.
 static inline void store_twisted(double *to, vec re, vec im, const double *w)
 {
     vec wr = splat(w[0]), wi = splat(w[1]);
@@ -154,7 +159,7 @@ static void pass4(const ki_fft_pass *pass, const double *x, double *y)
     }
 }
 
-// Any other radix, by its definition.
+// A pass of any other radix, by the definition of the Fourier transform.
 static void pass_any(const ki_fft_pass *pass, const double *x, double *y)
 {
     ptrdiff_t r = pass->radix, m = pass->length / r, s = pass->stride, apart = 16 * s * m;
@@ -215,7 +220,7 @@ static double *fft(const ki_fft *plan, double *data, double *work)
 static void spread(double *accumulator, const float *rows, const ptrdiff_t *offsets,
                    const double *weights, int row_count, int count)
 {
-    enum { AT_ONCE = 4 }; // vectors, to hide the latency of the sums
+    enum { AT_ONCE = 4 }; // number of vectors summed at once, which hides the latency of additions
     int i = 0;
     for (; i + AT_ONCE * KI_WIDTH <= count; i += AT_ONCE * KI_WIDTH) {
         vec sum[AT_ONCE];
@@ -259,8 +264,8 @@ static float sum_row(const float *row, int count, double sum[3])
 
 // ---------------------------------------------------------------------------------------- Legendre
 
-// q_l = 2 x q_{l-1} - f_l q_{l-2}: the associated Legendre functions up to a factor that depends
-// on l and m only (legendre.c).
+// Evaluates q_l = 2 x q_{l-1} - f_l q_{l-2}, the associated Legendre functions up to a factor that
+// depends only on l and m (legendre.h).
 static void analyze(const double *f, int count, const double *twice_cos, const double *start,
                     const double *data, int first, int last, double *state, double *out)
 {
@@ -315,7 +320,7 @@ static void analyze(const double *f, int count, const double *twice_cos, const d
     }
 }
 
-// One part of a vector. Everything stays in registers.
+// Synthesises KI_WIDTH lanes of a vector. All sums stay in registers.
 static inline void synthesize_one(const double *f, int count, vec x, vec q0, const double *b,
                                   double *out)
 {
@@ -339,7 +344,7 @@ static inline void synthesize_one(const double *f, int count, vec x, vec q0, con
 }
 
 #if KI_WIDTH == 8
-// Two vectors at once hide the recurrence's latency.
+// Synthesises two vectors at once, which hides the latency of the recurrence.
 static void synthesize(const double *f, int count, const double *twice_cos, const double *start,
                        const double *b, double *out0, double *out1)
 {
@@ -408,7 +413,7 @@ static void sum_orders(const double *orders, size_t pitch, int count, const doub
 
 // ----------------------------------------------------------------------------------------- texels
 
-// Taps at a fraction, between the two nearest that are tabulated.
+// Interpolates the eight weights at a fraction linearly between two entries of the table.
 static inline void taps_at(const float *table, double fraction, float taps[KI_TAPS])
 {
     double at = fraction * KI_TAP_STEPS;
@@ -450,7 +455,8 @@ static inline vec versine(const double *directions, int h, const double *p)
     return ((x * x + y * y) + z * z) * 0.5;
 }
 
-// Adds a list of points; the same arithmetic in every lane.
+// Adds the light of `count` points through a GGX lobe for eight directions. Every lane runs the
+// same arithmetic.
 static inline void add_points(double a2, const double *directions, const double (*points)[6],
                               int count, double *sum)
 {

@@ -1,4 +1,4 @@
-// One table of kernels an instruction set.
+// The tables of kernels, one for each instruction set.
 #ifndef KI_KERNELS_TABLES_H
 #define KI_KERNELS_TABLES_H
 

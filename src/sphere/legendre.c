@@ -5,7 +5,8 @@
 
 #include <math.h>
 
-enum { ROW_PADDING = 8 }; // kernels run past the last degree
+// Entries after the last degree, which the kernels read when they handle several degrees at once.
+enum { ROW_PADDING = 8 };
 
 size_t ki_legendre_row(const ki_legendre *legendre, int m)
 {
@@ -23,8 +24,9 @@ bool ki_legendre_create(kiln_context *context, int degree, ki_legendre *legendre
         ki_legendre_destroy(legendre);
         return false;
     }
-    // P_mm = sqrt((2m+1)!! / (2m)!! / 4 pi) sin^m; with a_l = sqrt((4 l^2 - 1) / (l^2 - m^2)),
-    // P_l = a_l (x P_{l-1} - P_{l-2} / a_{l-1}), so scale_l = a_l scale_{l-1} / 2, f_l = 4 / a_{l-1}^2.
+    // P_mm = sqrt((2m+1)!! / (2m)!! / 4 pi) sin^m theta. With
+    // a_l = sqrt((4 l^2 - 1) / (l^2 - m^2)), P_l = a_l (x P_{l-1} - P_{l-2} / a_{l-1}). The factorisation P_l = scale_l q_l
+    // therefore has scale_l = a_l scale_{l-1} / 2 and f_l = 4 / a_{l-1}^2.
     double start = sqrt(1 / (4 * KI_PI));
     for (int m = 0; m <= degree; m++) {
         double *f = legendre->f + ki_legendre_row(legendre, m);
@@ -50,8 +52,8 @@ void ki_legendre_destroy(ki_legendre *legendre)
     *legendre = (ki_legendre){0};
 }
 
-// |P_lm| is below 1e-13 of its largest where m exceeds l sin theta by this much (Airy's decay
-// beyond the turning point).
+// Returns the margin by which m must exceed l sin theta so that |P_lm| is below 1e-13 of its
+// largest value. Beyond the turning point m = l sin theta, P_lm decays like an Airy function.
 static double order_margin(double l_sin)
 {
     return 12 + 9 * ki_pow(l_sin, 1.0 / 3);
@@ -77,7 +79,8 @@ bool ki_rings_create(kiln_context *context, const double *theta, int pair_count,
         for (int m = 0; m <= degree; m++) {
             rings->start[(size_t)m * (size_t)lanes + (size_t)k] = power;
             power = power > 1e-280 ? power * sine : 0;
-            // The lane nearest the equator decides whether a vector is needed.
+            // The lane nearest the equator has the largest sin theta: it decides whether the vector
+            // contributes to order m.
             if (k % KI_LANES == KI_LANES - 1 && m > reach)
                 rings->first[m] = k / KI_LANES + 1;
         }
@@ -109,7 +112,7 @@ void ki_rings_destroy(ki_rings *rings)
 
 size_t ki_coefficient_row(int degree, int m)
 {
-    // Row k holds degree - k + 1 degrees, one more where that is odd.
+    // Row k holds degree - k + 1 degrees, and one entry of padding if that number is odd.
     size_t row = (size_t)m, length = (size_t)degree + 1;
     size_t full = row * length - row * (row - (row > 0)) / 2;
     size_t odd_rows = length % 2 ? (row + 1) / 2 : row / 2;

@@ -1,12 +1,13 @@
-// The associated Legendre functions' recurrence, and rings to evaluate it on.
+// The recurrence of the associated Legendre functions, and the latitude rings on which the
+// functions are evaluated.
 #ifndef KI_LEGENDRE_H
 #define KI_LEGENDRE_H
 
 #include "base/base.h"
 
-/// Coefficients of all orders up to a degree. With P_lm orthonormal over the sphere, without the
-/// Condon-Shortley sign, P_lm = scale_lm q_lm and
-///     q_lm = 2 x q_{l-1,m} - f_lm q_{l-2,m},   q_mm = sin^m theta.
+/// Coefficients of the recurrence for all orders m up to a degree. P_lm, orthonormal over the
+/// sphere and without the Condon-Shortley sign, is scale_lm q_lm with
+///     q_lm = 2 x q_{l-1,m} - f_lm q_{l-2,m},   q_mm = sin^m theta,   x = cos theta.
 typedef struct ki_legendre {
     int degree;
     double *f, *scale;
@@ -14,30 +15,36 @@ typedef struct ki_legendre {
 
 bool ki_legendre_create(kiln_context *context, int degree, ki_legendre *legendre);
 void ki_legendre_destroy(ki_legendre *legendre);
-/// Where order m's row starts in `f` and `scale`; it holds l = m .. degree and some more.
+/// Returns the index in `f` and `scale` at which the row of order m begins. The row holds the
+/// degrees l = m .. degree and eight entries of padding.
 size_t ki_legendre_row(const ki_legendre *legendre, int m);
 
-/// Rings in pairs, mirror images of each other at the equator. Vector g, lane j is pair 8 g + j.
+/// Pairs of latitude rings that are mirror images at the equator. Lane j of vector g holds pair 8 g
+/// + j.
 typedef struct ki_rings {
     int pair_count, vector_count, degree;
-    double *twice_cos; // of the northern ring, [vector][8]
+    double *twice_cos; // 2 cos theta of the northern ring of each pair, [vector][8]
     double *start;     // sin^m theta, [degree + 1][vector][8]
-    int *first;        // [degree + 1], vectors before it hold nothing of that order
+    // The first vector that contributes to each order, [degree + 1]: P_lm is negligible on the
+    // rings before.
+    int *first;
 } ki_rings;
 
-/// Pairs of rings at the given theta, increasing, at most pi / 2. The last is repeated to make the
-/// number of vectors even.
+/// Creates ring pairs at the given increasing theta, each at most pi / 2. The last pair is repeated
+/// until the number of vectors is even. Returns false when memory runs out.
 bool ki_rings_create(kiln_context *context, const double *theta, int pair_count, int degree,
                      ki_rings *rings);
-/// Rings at equal steps, theta = (k + 1/2) pi / (2 pair_count): half as many again as the degree, so
-/// that interpolation between them errs less than the degree does, rounded up to fill the vectors.
+/// Creates ring pairs at equal steps, theta = (k + 1/2) pi / (2 pair_count). There are at least 1.5
+/// (degree + 1) rings, so that interpolation between rings errs less than the truncation at
+/// `degree`. Returns false when memory runs out.
 bool ki_rings_create_grid(kiln_context *context, int degree, ki_rings *rings);
 void ki_rings_destroy(ki_rings *rings);
 
-/// Rows of spherical-harmonic coefficients a_lm by order: row m holds l = m .. degree, six doubles
-/// each (re, im of r, g, b), padded to an even number of degrees.
+/// Returns the index of the row of order m in an array of spherical-harmonic coefficients a_lm. The
+/// row holds l = m .. degree, six doubles for each degree (real and imaginary part of r, g, b), and
+/// is padded to an even number of degrees.
 size_t ki_coefficient_row(int degree, int m);
-/// Doubles in all rows.
+/// Returns the number of doubles in all rows of coefficients of a degree.
 size_t ki_coefficient_count(int degree);
 
 #endif

@@ -1,21 +1,22 @@
-// Synthesis: a spectrum times a lobe, onto the texels of one level.
+// Synthesis: the product of a spectrum and a lobe is evaluated at the texels of one level of a map.
 #ifndef KI_LEVEL_H
 #define KI_LEVEL_H
 
 #include "sphere/spectrum.h"
 #include "sphere/zonal.h"
 
-/// All that depends on sizes and the lobe only.
+/// Everything about a level that depends only on sizes and on the lobe.
 typedef struct ki_level ki_level;
 
-/// A level of `size` in the given shape. `zonal` and its `spectrum`, which the level takes over
-/// (also on failure), give the lobe; `legendre` must outlive the level and reach its degree.
+/// Prepares a level of `size` in the given shape, filtered by the lobe of `zonal`. The level takes
+/// over `spectrum`, the lobe's coefficients, also on failure. `legendre` must outlive the level and
+/// reach the degree of `spectrum`.
 kiln_result ki_level_create(kiln_context *context, const ki_legendre *legendre,
                             const ki_zonal *zonal, ki_zonal_spectrum *spectrum, kiln_shape shape,
                             int size, ki_level **level, kiln_error *error);
 void ki_level_destroy(ki_level *level);
-/// Writes level `index` of `map`. `panorama` is needed where the zonal has an inner radius. `stage` as
-/// in ki_parallel_steps.
+/// Writes level `index` of `map`. `panorama` is needed if the zonal has an outer angle > 0. `stage`
+/// is described at ki_parallel_steps.
 kiln_result ki_level_execute(ki_level *level, const kiln_spectrum *spectrum,
                              const kiln_map *panorama, double rotation, kiln_map *map, int index,
                              const ki_stage *stage, kiln_error *error);

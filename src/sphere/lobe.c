@@ -48,8 +48,9 @@ double ki_lobe_weight(const kiln_lobe *lobe, double one_minus_cos)
     case KILN_LOBE_GGX: {
         if (!(c > 0))
             return 0;
-        // With h half-way between N = V = R and L, cos^2 of h's angle is (1 + c) / 2; divided by
-        // its value at c = 1, so that tiny alphas stay in range.
+        // With N = V = R, the half vector h of N and the light at angle theta has cos^2 = (1 + c) /
+        // 2, where c = cos theta. D(h) is divided by its value at c = 1, so that D stays in the
+        // range of doubles for tiny alphas.
         double a2 = lobe->parameter * lobe->parameter;
         double d = a2 + (1 - a2) * (0.5 * one_minus_cos);
         return d > 0 ? c * (a2 / d) * (a2 / d) : 1;
@@ -57,7 +58,8 @@ double ki_lobe_weight(const kiln_lobe *lobe, double one_minus_cos)
     case KILN_LOBE_LAMBERT:
         return c > 0 ? c : 0;
     case KILN_LOBE_CHARLIE:
-        // sin^2 of h's angle is (1 - c) / 2; divided by its value at the horizon.
+        // The half vector of N and the light has sin^2 = (1 - c) / 2. The lobe is divided by its
+        // value at the horizon, c = 0.
         return c > 0 ? c * ki_pow(one_minus_cos, 0.5 / lobe->parameter) : 0;
     case KILN_LOBE_PHONG:
         return c > 0 ? ki_pow(c, lobe->parameter) : 0;
@@ -111,7 +113,7 @@ double ki_lobe_width(const kiln_lobe *lobe)
     case KILN_LOBE_GGX:
         return ki_clamp(2 * lobe->parameter, 1e-9, 1);
     case KILN_LOBE_CHARLIE:
-        // Falls from the horizon by (1 - c)^(1 / 2 alpha).
+        // The lobe falls from the horizon like (1 - c)^(1 / (2 alpha)).
         return ki_clamp(2 * lobe->parameter, 0.02, 1);
     case KILN_LOBE_PHONG:
         return ki_clamp(1 / sqrt(lobe->parameter), 1e-3, 1);

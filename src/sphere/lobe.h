@@ -1,17 +1,17 @@
-// Zonal kernels and their spectra.
+// Zonal kernels: the weights of lobes, their checks and their widths.
 #ifndef KI_LOBE_H
 #define KI_LOBE_H
 
 #include "base/base.h"
 
-/// The lobe's weight, up to its scale. `one_minus_cos` is 1 - cos theta in [0, 2], which the caller
-/// knows better than cos theta itself where theta is small.
+/// Returns the lobe's weight up to a constant factor. `one_minus_cos` is 1 - cos theta in [0, 2]:
+/// for small theta the caller knows that difference with more digits than cos theta itself.
 double ki_lobe_weight(const kiln_lobe *lobe, double one_minus_cos);
-/// The same from cos theta in [-1, 1].
+/// Returns the same weight as ki_lobe_weight from cos theta in [-1, 1].
 double ki_lobe_evaluate(const kiln_lobe *lobe, double cos_theta);
-/// Fails with a sentence where the lobe's numbers are out of range.
+/// Fails with an error message if the parameter of the lobe is out of its range.
 kiln_result ki_lobe_check(const kiln_lobe *lobe, kiln_error *error);
-/// The angle in radians over which the lobe changes most, in (0, pi].
+/// Returns the angle in radians, in (0, pi], over which the lobe changes most.
 double ki_lobe_width(const kiln_lobe *lobe);
 
 #endif

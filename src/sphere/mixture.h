@@ -1,20 +1,22 @@
-// A zonal kernel made of GGX lobes, some of which may be taken away.
+// A zonal kernel that is a weighted sum of GGX lobes, with weights of either sign.
 #ifndef KI_MIXTURE_H
 #define KI_MIXTURE_H
 
 #include "base/base.h"
 
-/// Ranges of a cubic table over 1 - cos + 2^-20, which goes by octaves.
+/// The kernel is tabulated as cubics in x = 1 - cos theta + 2^-20: each octave of x is divided into
+/// KI_MIXTURE_STEPS ranges, and each range has a cubic.
 enum { KI_MIXTURE_STEPS = 32, KI_MIXTURE_OCTAVES = 21 };
 
-/// weight = sum of weights[i] lobe_i / integral_i, 0 beyond the horizon; tabulated to 1e-7.
+/// The weight is the sum of weights[i] lobe_i / integral_i, and 0 beyond the horizon. The table's
+/// error is below 1e-7.
 typedef struct ki_mixture {
     double cubic[KI_MIXTURE_STEPS * KI_MIXTURE_OCTAVES][4];
 } ki_mixture;
 
 void ki_mixture_create(ki_mixture *mixture, const double *alphas, const double *weights,
                        const double *integrals, int count);
-/// The weight at 1 - cos theta.
+/// Returns the weight at 1 - cos theta.
 double ki_mixture_weight(const ki_mixture *mixture, double one_minus_cos);
 
 #endif

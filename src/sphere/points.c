@@ -1,3 +1,9 @@
+// Light that a filtered environment receives by sums over points instead of harmonics
+// (docs/theory/spectral.md). In: the suns that the analysis kept out of the spectrum, or the
+// panorama around a direction for a lobe with its centre left out; and the lobe. Out: radiance that
+// is added to texels, eight directions at a time. Method: each sun becomes 1, 4 or more points in
+// proportion to how fast the lobe changes across its texel; texels near a direction are integrated
+// over cells cut until the lobe is smooth in each.
 #include "sphere/points.h"
 
 #include "image/image.h"
@@ -9,7 +15,7 @@
 
 enum { MOST_CELLS = 24 };
 
-// Gauss nodes on [-1/2, 1/2] and their weights.
+// Gauss-Legendre nodes on [-1/2, 1/2], then their weights.
 static const double gauss_two[2][2] = {{-0.28867513459481288225, 0.28867513459481288225},
                                        {0.5, 0.5}};
 static const double gauss_four[2][4] = {{-0.43056815579702628761, -0.16999052179242813170,
@@ -17,15 +23,16 @@ static const double gauss_four[2][4] = {{-0.43056815579702628761, -0.16999052179
                                         {0.17392742256872692869, 0.32607257743127307131,
                                          0.32607257743127307131, 0.17392742256872692869}};
 
-// 1 - cos of the angle between two unit directions, precise for small ones.
+// Returns 1 - cos of the angle between two unit directions, precise for small angles.
 static double versine(const double *a, const double *b)
 {
     double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
     return 0.5 * (x * x + y * y + z * z);
 }
 
-// Writes n^2 points that share a texel's solid angle: nodes across it in [0, 1], with their weights and
-// in the proportion of sin theta.
+// Divides a sun's texel into n^2 points that share its solid angle. `nodes` in [0, 1] lie across
+// each side of the texel; a point's share is the product of its `weights` times sin theta,
+// normalised. The radiance is divided by `integral`.
 static void divide(const ki_sun *sun, int size, int n, const double *nodes, const double *weights,
                    double rotation, double integral, double (*points)[6])
 {
@@ -40,7 +47,7 @@ static void divide(const ki_sun *sun, int size, int n, const double *nodes, cons
         for (int i = 0; i < n; i++, points++) {
             double s, c, turned[3];
             ki_sincos((sun->column + nodes[i]) * step, &s, &c);
-            // See ki_panorama_direction.
+            // The signs are those of ki_panorama_direction.
             ki_turn((double[3]){-sine * s, cosine, sine * c}, -rotation, turned);
             for (int k = 0; k < 3; k++) {
                 (*points)[k] = turned[k];
@@ -50,9 +57,10 @@ static void divide(const ki_sun *sun, int size, int n, const double *nodes, cons
     }
 }
 
-// A texel of size h seen at a distance or through a lobe of width s errs by about (h/s)^2 / 24 times
-// k'' s^2 / k (20 in GGX's tail) as one point, by (h/s)^4 / 4320 times 840 as two by two Gauss nodes,
-// by 1e-4 (h/s)^8 as four by four.
+// Number of points that a sun needs. Let h be the size of its texel and s the distance from the sun
+// or the width of the lobe k. The relative error of one point is about (h/s)^2 / 24 times k'' s^2 /
+// k, which is 20 in the tail of GGX. Two by two Gauss nodes err by (h/s)^4 / 4320 times 840, four
+// by four by 1e-4 (h/s)^8.
 kiln_result ki_points_create(const kiln_spectrum *spectrum, const ki_zonal *zonal, double integral,
                              double rotation, ki_points *points, kiln_error *error)
 {
@@ -66,7 +74,7 @@ kiln_result ki_points_create(const kiln_spectrum *spectrum, const ki_zonal *zona
     if (!suns->count)
         return KILN_OK;
     double texel = KI_PI / spectrum->size, width = ki_lobe_width(&zonal->lobe);
-    // Charlie is steep where the horizon cuts a texel.
+    // The Charlie lobe is steep where the horizon cuts through a texel, hence at least 4 cells.
     int least = zonal->lobe.kind == KILN_LOBE_CHARLIE ? 4 : 1;
     int cells = (int)ki_clamp(ceil(texel / width / 0.5), least, MOST_CELLS), n = 4 * cells;
     suns->near_count = n * n;
@@ -105,7 +113,8 @@ void ki_points_destroy(ki_points *points)
     *points = (ki_points){0};
 }
 
-// The kernel suns_ggx's rule, lane by lane.
+// Adds the suns through a mixture of lobes, with the same choice of points as the kernel suns_ggx
+// but for each lane alone.
 static void add_mixture(const ki_points *points, const double *directions, double *sum)
 {
     const ki_sun_points *suns = &points->suns;
@@ -147,7 +156,7 @@ void ki_points_add(const ki_points *points, const double *directions, double *su
         points->kernels->suns_ggx(suns, ggx ? lobe->parameter : 1, directions, sum);
         return;
     }
-    // Other lobes are rare: one lane at a time.
+    // Suns through lobes other than GGX and Lambert are rare, so each lane is summed alone.
     for (int i = 0; i < suns->count; i++)
         for (int j = 0; j < KI_LANES; j++) {
             const double direction[3] = {directions[j], directions[8 + j], directions[16 + j]};
@@ -168,9 +177,9 @@ void ki_points_add(const ki_points *points, const double *directions, double *su
 
 // -------------------------------------------------------------------------------- narrow lobes
 
-// The integral over a cell of a texel of lobe * (1 - step): cut in four until the cell is small
-// against its distance and the lobe's width, then by four by four Gauss nodes, or two by two where
-// it is very small.
+// Integrates lobe * (1 - step) over a square cell of a texel. The cell is cut in four until it is
+// small relative to its distance from the direction and to the lobe's width. It is then integrated
+// with four by four Gauss nodes, or two by two if it is very small.
 typedef struct cell_sum {
     const ki_zonal *zonal;
     double direction[3], width;
@@ -216,7 +225,8 @@ void ki_surroundings_add(const kiln_map *panorama, const ki_zonal *zonal, double
     double theta = ki_atan2(sine, direction[1]), phi = ki_atan2(-direction[0], direction[2]);
     int first = (int)fmax(0, floor((theta - reach) / step));
     int last = (int)fmin(size - 1, floor((theta + reach) / step));
-    // The widest meridian angle within reach; all columns where a pole is.
+    // Largest difference in longitude of a point within reach. All columns are within reach where
+    // the disc contains a pole.
     double span = KI_PI;
     if (theta - reach > 0 && theta + reach < KI_PI)
         span = ki_asin(fmin(1, ki_sin(reach) / sine));

@@ -6,7 +6,7 @@
 #include "sphere/spectrum.h"
 #include "sphere/zonal.h"
 
-/// The suns of a spectrum as points on the sphere, as finely divided as a lobe asks for.
+/// The suns of a spectrum as points on the sphere. The lobe decides how many points a sun needs.
 typedef struct ki_points {
     const ki_kernels *kernels;
     ki_zonal zonal;
@@ -16,11 +16,12 @@ typedef struct ki_points {
 kiln_result ki_points_create(const kiln_spectrum *spectrum, const ki_zonal *zonal, double integral,
                              double rotation, ki_points *points, kiln_error *error);
 void ki_points_destroy(ki_points *points);
-/// Adds the suns' light to eight unit directions [3][8]: sum[channel][lane].
+/// Adds the light of the suns in eight unit directions, [3][8], to sum[channel][lane].
 void ki_points_add(const ki_points *points, const double *directions, double *sum);
 
-/// The mean, weighted by what `zonal` leaves out of its lobe, of the texels around a direction:
-/// adds radiance * (lobe - zonal) / integral to rgb. For zonals with an inner radius.
+/// Adds the light that the lobe of `zonal` has within its outer angle and `zonal` leaves out: the
+/// sum over the texels around a direction of radiance * (lobe - zonal) / integral. For zonals with
+/// outer > 0.
 void ki_surroundings_add(const kiln_map *panorama, const ki_zonal *zonal, double integral,
                          const double direction[3], double rgb[3]);
 

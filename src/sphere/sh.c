@@ -1,3 +1,8 @@
+// The first bands of spherical harmonics as rendering engines use them (docs/theory/spectral.md).
+// In: a spectrum about the axis +Y with its list of suns. Out: up to 25 real coefficients for each
+// channel about the axis z, of radiance or irradiance, with or without a window; and the power of
+// each degree. Method: the first bands are evaluated on a Gauss grid and projected onto the basis,
+// exactly for polynomials.
 #include "sphere/sh.h"
 
 #include "image/image.h"
@@ -6,8 +11,9 @@
 #include <math.h>
 #include <string.h>
 
-// Real orthonormal spherical harmonics as polynomials; the normalisations are the usual closed
-// forms, e.g. Sloan, "Stupid Spherical Harmonics Tricks" (2008), appendix A2, without its signs.
+// Real orthonormal spherical harmonics as polynomials in x, y, z. The normalisations are the usual
+// closed forms, for example in Sloan, "Stupid Spherical Harmonics Tricks" (2008), appendix A2,
+// without Sloan's signs.
 void ki_sh_basis(const double d[3], double y[25])
 {
     double x = d[0], v = d[1], z = d[2], x2 = x * x, v2 = v * v, z2 = z * z;
@@ -45,8 +51,9 @@ void ki_sh_basis(const double d[3], double y[25])
     y[24] = k4 / 4 * (x2 * (x2 - 3 * v2) - v2 * (3 * x2 - v2));
 }
 
-// The engine's polar axis is +Y, the basis' is z: the first bands are evaluated on a product grid
-// that integrates polynomials of twice the degree exactly, and projected again.
+// The spectrum has the polar axis +Y, the basis the polar axis z. Therefore the first bands are
+// evaluated on a product grid, which integrates polynomials of twice the degree exactly, and
+// projected onto the basis.
 kiln_result ki_sh_project(const kiln_spectrum *spectrum, int bands, double rotation, kiln_sh *sh,
                           kiln_error *error)
 {
@@ -90,7 +97,7 @@ kiln_result ki_sh_project(const kiln_spectrum *spectrum, int bands, double rotat
                     q = next;
                 }
             }
-            // Place of (u, theta): ki_panorama_direction with cos theta given.
+            // Direction of (u, theta) as in ki_panorama_direction, with cos theta given.
             double y[25], s, c;
             ki_sincos(2 * KI_PI * u, &s, &c);
             ki_sh_basis((double[3]){-sine * s, nodes[j], sine * c}, y);

@@ -1,3 +1,8 @@
+// The spectrum of a lobe (docs/theory/spectral.md). In: a lobe, whole or with its centre left out,
+// a tolerance and the highest degree. Out: its Legendre coefficients k_l divided by the lobe's
+// integral, and the degree at which the coefficients may be cut off. Method: Gauss-Legendre
+// quadrature over panels of theta that are narrow where the lobe is, with P_l by its recurrence in
+// l.
 #include "sphere/zonal.h"
 
 #include "math/math.h"
@@ -13,7 +18,8 @@ double ki_zonal_step(const ki_zonal *zonal, double one_minus_cos)
 {
     if (zonal->outer <= 0)
         return 1;
-    // theta = 2 asin(sqrt((1 - cos) / 2)), and a step with six continuous derivatives.
+    // theta = 2 asin(sqrt((1 - cos theta) / 2)). The step is a polynomial with six continuous
+    // derivatives.
     double theta = 2 * ki_asin(sqrt(ki_clamp(0.5 * one_minus_cos, 0, 1)));
     double t = ki_clamp((theta - zonal->inner) / (zonal->outer - zonal->inner), 0, 1);
     double t2 = t * t, t4 = t2 * t2;
@@ -29,8 +35,10 @@ double ki_zonal_weight(const ki_zonal *zonal, double one_minus_cos)
     return step > 0 ? step * ki_lobe_weight(&zonal->lobe, one_minus_cos) : 0;
 }
 
-// Panels of theta that double from a fraction of the lobe's width to pi, cut at the horizon, where
-// lobes have a kink, and at the step's ends; none longer than 24 nodes can follow P_limit.
+// Panels of theta for quadrature, whose lengths double from a sixteenth of the lobe's width up to
+// pi. The panels end at pi / 2, where lobes have a kink, and where the step that leaves out the
+// lobe's centre begins and ends. No panel is longer than `longest`, over which PANEL_NODES nodes
+// integrate P_limit exactly enough.
 typedef struct panels {
     double longest;
     double *edges;
@@ -89,7 +97,8 @@ kiln_result ki_zonal_analyze(kiln_context *context, const ki_zonal *zonal, doubl
     }
     lay_panels(&p, zonal, width);
 
-    // x = cos theta, w = weight(theta) dOmega, and the last two Legendre polynomials.
+    // Arrays over the nodes: x = cos theta, w = weight(theta) dOmega, and the Legendre polynomials
+    // of x of the last two degrees.
     double *x = nodes, *w = x + count, *p0 = w + count, *p1 = p0 + count;
     double whole = 0, sum = 0, squares = 0;
     size_t n = 0;
@@ -119,8 +128,9 @@ kiln_result ki_zonal_analyze(kiln_context *context, const ki_zonal *zonal, doubl
     spectrum->integral = whole;
     spectrum->k[0] = sum / whole;
 
-    // Parseval: integral of weight^2 = sum (2l + 1) / 4 pi k_l^2. Once the tolerance is met, a quarter
-    // more degrees may bring it to a quarter: so it goes with lobes that fall exponentially.
+    // Parseval: the integral of weight^2 is the sum of (2l + 1) / 4 pi k_l^2. Once the tolerance is
+    // met, at most a quarter more degrees are computed, because the coefficients of most lobes fall
+    // exponentially and the error may fall to a quarter of the tolerance.
     double left = squares * 4 * KI_PI - sum * sum;
     double stop = tolerance * tolerance * squares * 4 * KI_PI;
     int l = 1, last = limit;
@@ -163,9 +173,11 @@ kiln_result ki_lobe_spectrum(kiln_context *context, const kiln_lobe *lobe, doubl
                              kiln_error *error)
 {
     *zonal = (ki_zonal){.lobe = *lobe};
-    // The widest lobes have the longest tails, from their kink at the horizon.
+    // First guess of the degree. The widest lobes get a longer allowance, because their kink at the
+    // horizon makes their coefficients fall slowly.
     double width = ki_lobe_width(lobe), guess = (width < 1 ? 160 : 320) + 14 / width;
-    // Charlie is narrow at the horizon, not around its centre.
+    // A split would not help the Charlie lobe, which is narrow at the horizon and not around its
+    // centre.
     split = split && lobe->kind != KILN_LOBE_CHARLIE;
     int limit = guess < KILN_MAX_DEGREE ? (int)guess : KILN_MAX_DEGREE;
     if (guess < 2 * KILN_MAX_DEGREE || !split) {
@@ -176,7 +188,8 @@ kiln_result ki_lobe_spectrum(kiln_context *context, const kiln_lobe *lobe, doubl
             ki_zonal_free(spectrum);
             result = ki_zonal_analyze(context, zonal, tolerance, KILN_MAX_DEGREE, spectrum, error);
         }
-        // A kink at the horizon makes long but thin tails, which no split would mend.
+        // A kink at the horizon makes coefficients that fall slowly but are small. Leaving out the
+        // centre of the lobe would not shorten that tail.
         if (result != KILN_OK || spectrum->rest <= 10 * tolerance || !split)
             return result;
         ki_zonal_free(spectrum);
