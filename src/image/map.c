@@ -1,4 +1,7 @@
-// Maps and images: their memory, and what changes them in place.
+// Maps and images. In: shapes, sizes and level counts. Out: allocated texels, the size and
+// direction of texels, and maps that are mirrored or exposed in place. The levels of a map lie in
+// one block of memory, each aligned to 64 bytes; a level is faces, rows and RGB texels in this
+// order.
 #include "image/image.h"
 #include "math/math.h"
 
@@ -57,7 +60,8 @@ void ki_level_extent(const kiln_map *map, int level, int *width, int *height)
     *height = map->shape == KILN_SHAPE_CUBE ? 6 * n : n;
 }
 
-// Floats of a level, rounded up so that the next one is aligned to 64 bytes.
+// Sets *count to the number of floats of a level, rounded up so that the next level is aligned to
+// 64 bytes. Returns false if the number is too large.
 static bool level_floats(const kiln_map *map, int level, size_t *count)
 {
     int width, height;
@@ -69,7 +73,7 @@ static bool level_floats(const kiln_map *map, int level, size_t *count)
     return true;
 }
 
-enum { PIECE = 1 << 20 }; // floats
+enum { PIECE = 1 << 20 }; // number of floats that one task clears
 
 typedef struct clear_job {
     float *memory;
@@ -104,7 +108,7 @@ kiln_result ki_map_allocate(kiln_context *context, kiln_map *map, kiln_error *er
         *map = (kiln_map){0};
         return ki_fail_memory(context, error, "a map", fits ? total * sizeof(float) : SIZE_MAX);
     }
-    // Memory is slow to come by where there is much of it.
+    // The first write to fresh memory is slow, so that all threads clear the texels together.
     clear_job job = {memory, total};
     if (!ki_parallel_steps(context, NULL, (int)((total + PIECE - 1) / PIECE), clear_piece, &job)) {
         ki_free(memory);
@@ -119,7 +123,8 @@ kiln_result ki_map_allocate(kiln_context *context, kiln_map *map, kiln_error *er
 
 kiln_result ki_image_allocate(kiln_context *context, kiln_image *image, kiln_error *error)
 {
-    enum { LIMIT = 6 * KILN_MAX_SIZE }; // a strip of six faces
+    // Longest side: six faces of the largest cube, one below the other.
+    enum { LIMIT = 6 * KILN_MAX_SIZE };
     kiln_image made = *image;
     *image = (kiln_image){0};
     if (made.width < 1 || made.width > LIMIT || made.height < 1 || made.height > LIMIT)
@@ -225,7 +230,7 @@ void kiln_map_mirror(kiln_map *map)
         size_t row = (size_t)width * 3;
         int done = 0;
         if (map->shape == KILN_SHAPE_CUBE) {
-            // +X and -X change places, each turned left to right.
+            // +X and -X change places, and each is mirrored left to right.
             float *other = texel + (size_t)n * row;
             for (int y = 0; y < n; y++)
                 for (int x = 0; x < n; x++)
@@ -244,7 +249,8 @@ void kiln_map_expose(kiln_map *map, double stops)
 {
     if (stops == 0 || !isfinite(stops))
         return;
-    // Whole stops are exact; what would overflow becomes the largest float.
+    // The whole part of `stops` is an exact power of two. Values that would overflow become the
+    // largest float.
     double whole = floor(ki_clamp(stops, -600, 600)), part = ki_clamp(stops - whole, 0, 1);
     double factor = ldexp(ki_exp(part * 0.69314718055994530942), (int)whole);
     for (int level = 0; level < map->level_count; level++) {

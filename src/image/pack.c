@@ -1,11 +1,15 @@
-// Small floats, by integers and exact float operations only: the same bits on every machine.
+// Conversion between floats and the small number formats of textures: in and out are arrays of
+// floats, halves (16 bits), r9g9b9e5, b10g11r11 and sRGB values. The methods use integers and exact
+// float operations only, so that every machine gives the same bits. The roundings are to nearest,
+// ties to even.
 #include "image/pack.h"
 #include "math/math.h"
 
 #include <stdbool.h>
 #include <string.h>
 
-// Signed, because vectors compare signed integers fastest.
+// Returns the bits of a float as a signed integer, because vector units compare signed integers
+// fastest.
 static inline int32_t bits_of(float value)
 {
     int32_t bits;
@@ -20,13 +24,13 @@ static inline float float_of(int32_t bits)
     return value;
 }
 
-// A float's bits, sign apart, as a float of 5 exponent bits, biased by 15, and `m` mantissa bits.
-// Branchless, so that loops over it are vectorised.
+// Converts the bits of a non-negative float to a small float of 5 exponent bits, biased by 15, and
+// `m` mantissa bits. The code has no branches, so that compilers vectorise loops over it.
 //
-// Adding a power of two, 2^(23 - m) times the value's own, leaves m bits after the leading one and
-// rounds the rest, to nearest and ties to even; the difference of the bits is that mantissa. Below
-// 2^-14, where the small float's exponent ends, the power stays the same. A mantissa that rounds up
-// to 2 carries into the exponent.
+// Adding a power of two that is 2^(23 - m) times the power of two in the value leaves m bits after
+// the leading bit and rounds the lower bits, to nearest and ties to even. The difference of the
+// bits of sum and power is the rounded mantissa. Below 2^-14, the smallest normal number of the
+// small format, the power stays constant. A mantissa that rounds up to 2 carries into the exponent.
 static inline int32_t small_float(int32_t bits, int m)
 {
     const int32_t largest = 142 << 23 | ((1 << m) - 1) << (23 - m);
@@ -38,10 +42,10 @@ static inline int32_t small_float(int32_t bits, int m)
     return mantissa + (exponent >> (23 - m)) - (113 << m);
 }
 
-// The inverse; `bits` has no sign.
+// Converts a small float without sign, of 5 exponent bits and `m` mantissa bits, to a float.
 static inline float large_float(int32_t bits, int m)
 {
-    int32_t unit = (127 + 9 - m) << 23; // whose last place is 2^(-14-m)
+    int32_t unit = (127 + 9 - m) << 23; // float whose unit in the last place is 2^(-14-m)
     float low = float_of(bits + unit) - float_of(unit);
     int32_t high = (bits << (23 - m)) + (bits >> m == 31 ? 224 << 23 : 112 << 23);
     return bits >> m == 0 ? low : float_of(high);
@@ -113,8 +117,8 @@ void ki_radiance_from_floats(const void *restrict samples, size_t count, float *
     }
 }
 
-// EXT_texture_shared_exponent: value = mantissa 2^(exponent - 15 - 9). The exponent is the smallest
-// with which the largest mantissa, rounded, still fits into 9 bits.
+// EXT_texture_shared_exponent: value = mantissa 2^(exponent - 15 - 9). The chosen exponent is the
+// smallest for which the largest mantissa, rounded, still fits in 9 bits.
 uint32_t ki_rgb9e5_from_float(const float rgb[3])
 {
     const float largest = KI_RGB9E5_MAX; // 511 / 512 * 2^16
@@ -126,7 +130,7 @@ uint32_t ki_rgb9e5_from_float(const float rgb[3])
     }
     int exponent = (bits_of(most) >> 23) - 127 + 16;
     exponent = exponent < 0 ? 0 : exponent;
-    // 2^23 has a last place of 1: adding it rounds to an integer, ties to even.
+    // The unit in the last place of 2^23 is 1: adding 2^23 rounds to an integer, ties to even.
     const float round = 8388608;
     float scale = float_of((127 + 24 - exponent) << 23);
     if ((most * scale + round) - round >= 512) {
@@ -158,18 +162,20 @@ void ki_float_from_b10g11r11(uint32_t packed, float rgb[3])
     rgb[2] = large_float((int32_t)(packed >> 22), 5);
 }
 
-// Converts a stretch without its gaps, then spreads it: both loops are vectors or single words.
+// Converts a block of RGB values to halves without gaps, then copies them to RGBA texels. Both
+// loops compile to vector instructions or copies of single words.
 void ki_pack_rgba16f(const float *rgb, size_t count, uint16_t *rgba)
 {
     enum { STRETCH = 64 };
-    uint16_t half[STRETCH * 3 + 1] = {0}; // one more, which the last texel's word reaches
+    // One more element than 3 a texel, because the last texel is copied as four halves.
+    uint16_t half[STRETCH * 3 + 1] = {0};
     while (count) {
         size_t n = count < STRETCH ? count : STRETCH;
         ki_halfs_from_floats(rgb, n * 3, half);
         for (size_t i = 0; i < n; i++) {
             uint16_t texel[4];
             memcpy(texel, half + 3 * i, sizeof texel);
-            texel[3] = 0x3c00; // 1
+            texel[3] = 0x3c00; // 1 as a half
             memcpy(rgba + 4 * i, texel, sizeof texel);
         }
         rgb += 3 * n;
@@ -178,7 +184,7 @@ void ki_pack_rgba16f(const float *rgb, size_t count, uint16_t *rgba)
     }
 }
 
-// IEC 61966-2-1.
+// The transfer functions of sRGB, IEC 61966-2-1.
 float ki_linear_from_srgb(float value)
 {
     double v = (double)value;

@@ -1,33 +1,37 @@
-// Floats of 16, 14, 11 and 10 bits. Packing rounds to nearest, ties to even; values outside are
-// clamped to the largest finite one, not-a-number and negatives (where there is no sign) become 0.
+// Conversion between floats and numbers of 16, 14, 11 and 10 bits. Packing rounds to nearest, ties
+// to even. Values beyond the range become the largest finite value. Not-a-number becomes 0, and so
+// do negative values in formats without a sign.
 #ifndef KI_PACK_H
 #define KI_PACK_H
 
 #include <stddef.h>
 #include <stdint.h>
 
-/// The largest finite values; blue's of b10g11r11 is the least of its three.
+/// The largest finite values of the formats. For b10g11r11 the value is that of blue, the smallest
+/// of its three.
 enum { KI_HALF_MAX = 65504, KI_RGB9E5_MAX = 65408, KI_B10G11R11_MAX = 64512 };
 
 uint16_t ki_half_from_float(float value);
 float ki_float_from_half(uint16_t half);
-/// Many at once, fast.
+/// Convert `count` values at once, with vector instructions.
 void ki_halfs_from_floats(const float *values, size_t count, uint16_t *halfs);
 void ki_floats_from_halfs(const uint16_t *halfs, size_t count, float *values);
-/// Radiance as files and callers hand it in, at any address, to radiance that kiln computes with: not-a-number
-/// and negative values become 0, infinities the largest finite value of the type.
+/// Convert radiance from files or callers, at any address, to the radiance that kiln computes with:
+/// not-a-number and negative values become 0, infinities the largest finite value of the type.
 void ki_radiance_from_halfs(const void *samples, size_t count, float *values);
 void ki_radiance_from_floats(const void *samples, size_t count, float *values);
-/// Shared exponent, 9 bits each (VK_FORMAT_E5B9G9R9_UFLOAT_PACK32, EXT_texture_shared_exponent).
+/// The format with a shared exponent and 9 bits for each channel (VK_FORMAT_E5B9G9R9_UFLOAT_PACK32,
+/// EXT_texture_shared_exponent).
 uint32_t ki_rgb9e5_from_float(const float rgb[3]);
 void ki_float_from_rgb9e5(uint32_t packed, float rgb[3]);
-/// VK_FORMAT_B10G11R11_UFLOAT_PACK32: red in the low bits.
+/// The format VK_FORMAT_B10G11R11_UFLOAT_PACK32, with red in the low bits.
 uint32_t ki_b10g11r11_from_float(const float rgb[3]);
 void ki_float_from_b10g11r11(uint32_t packed, float rgb[3]);
 
-/// `count` RGB floats to RGBA halves with alpha 1, fast.
+/// Converts `count` RGB texels of floats to RGBA texels of halves with alpha 1, with vector
+/// instructions.
 void ki_pack_rgba16f(const float *rgb, size_t count, uint16_t *rgba);
-/// sRGB transfer function, exact: [0,1] to linear and back.
+/// The exact sRGB transfer function: convert an sRGB value in [0, 1] to linear, and back.
 float ki_linear_from_srgb(float value);
 float ki_srgb_from_linear(float value);
 

@@ -1,4 +1,7 @@
-// Areas of overlap between great-circle polygons and the texels of a panorama.
+// Areas of overlap between great-circle polygons and the texels of a panorama. In: a grid of texels
+// of a cube or an octahedron, and the height of a panorama. Out: for each texel of the grid a
+// stencil, the box of panorama texels that overlap the texel and their weights. Method: exact areas
+// by Green's theorem, as follows.
 //
 // On the sphere, area is dphi dz with z = cos theta: rows and columns of a panorama are rectangles
 // in (phi, z), and a great circle that is no meridian is a curve z(phi),
@@ -6,34 +9,37 @@
 //     cot theta = c(phi) = A cos phi + B sin phi,     z = c / sqrt(1 + c^2).
 //
 // By Green's theorem the area of a polygon within the texel of column i and row j is the sum over
-// its arcs, with sign, of the area north of the arc within that texel. Per column and arc that is:
-// all of the rows north of the arc, nothing of those south of it, and in between differences of
+// the polygon's arcs, with sign, of the area north of the arc within that texel. For each column
+// and arc, that area is the whole texel for rows north of the arc, 0 for rows south of the arc, and
+// for rows that the arc crosses a difference of
 //
 //     G(Z) = integral of max(0, Z - z) dphi
 //
-// at the rows' borders Z. With s(phi) = -c'(phi) = A sin phi - B cos phi, q = sqrt(1 + c^2) and
-// K = sqrt(1 + A^2 + B^2),
+// at the rows' borders Z. With s(phi) = -c'(phi) = A sin phi - B cos phi, q = sqrt(1 + c^2) and K =
+// sqrt(1 + A^2 + B^2),
 //
-//     integral of z dphi = I = arcsin(s / K),     cos I = q / K,
+//     integral of z dphi = I = arcsin(s / K),     cos I = q / K.
 //
-// so that I(b) - I(a) = arcsin((s_b q_a - s_a q_b) / K^2) has no cancellation worth speaking of, and
-// neither arcsin nor arctan is needed where the angles are small: a short series does.
+// The difference I(b) - I(a) = arcsin((s_b q_a - s_a q_b) / K^2) has almost no cancellation. Small
+// angles are computed by a short series instead of arcsin and arctan.
 #include "image/stencil.h"
 #include "math/math.h"
 
 #include <math.h>
 #include <string.h>
 
-// A corner of the grid. x is towards the grid's first direction, y a quarter turn east, z up.
+// A corner of the grid. In its coordinates, x points in the grid's first direction, y a quarter
+// turn east of x, and z up.
 typedef struct corner {
-    double x, y, z;      // not normalised
-    double cosine, sine; // of phi
-    double height;       // z / length
-    double radius;       // of (x, y)
-    int column, row;     // of the panorama
+    double x, y, z;      // direction of the corner, not normalised
+    double cosine, sine; // cosine and sine of phi
+    double height;       // z of the normalised direction
+    double radius;       // length of (x, y)
+    int column, row;     // column and row of the panorama that hold the corner
 } corner;
 
-// Area north of an arc in one texel, and the width for which all rows north of `row` count too.
+// Area north of an arc in one texel. All rows north of `row` in the same column get `width` times
+// their height.
 typedef struct entry {
     int column, row;
     double area, width;
@@ -45,28 +51,31 @@ typedef struct trace {
     int first_column, end_column, first_row, end_row;
 } trace;
 
-// A great circle that is no meridian.
+// A great circle that is no meridian, cot theta = a cos phi + b sin phi. kappa2 = a^2 + b^2,
+// inverse_k2 = 1 / (1 + kappa2).
 typedef struct circle {
-    double a, b; // cot theta = a cos phi + b sin phi
+    double a, b; // coefficients of cot theta = a cos phi + b sin phi
     double kappa2, inverse_k2;
-    double sign; // of what it adds
+    double sign; // sign with which areas north of the circle are added
 } circle;
 
-// A point of an arc that is being traced.
+// A point at which an arc is divided while it is traced; s, q and z as in the head of this file.
 typedef struct node {
-    double cosine, sine; // of phi
+    double cosine, sine; // cosine and sine of phi
     double s, q, z;
 } node;
 
 typedef struct builder {
     kiln_context *context;
     const ki_stencil_grid *grid;
-    const double *height, *cotangent; // of the borders between rows, height + 1 each
-    const double *cosine, *sine;      // of the borders between columns, from first_border
+    // cos and cot of theta at the borders between rows, height + 1 numbers each.
+    const double *height, *cotangent;
+    // Cosine and sine of phi at the borders between columns, from first_border on.
+    const double *cosine, *sine;
     int first_border, end_border;
-    bool small; // columns below 45 degrees
+    bool small; // columns are narrower than 45 degrees
     ki_stencil_chunk *chunk;
-    double *area, *width; // the box that is being filled
+    double *area, *width; // areas and widths of the box of texels that is being filled
     size_t box_room;
 } builder;
 
@@ -106,9 +115,9 @@ void ki_stencil_grid_range(const ki_stencil_grid *grid, int j, int *first, int *
 
 // --------------------------------------------------------------------------------------------- arcs
 
-// The angle with this sine and cosine, within a half turn. Small ones by the series of arcsin, whose
-// next term is below 1e-16 of the first; no angle between neighbouring nodes is above 45 degrees
-// where there are eight columns or more.
+// Returns the angle in [-pi, pi] with this sine and cosine. With eight columns or more,
+// neighbouring nodes are less than 45 degrees apart. Small angles are then computed by the series
+// of arcsin, whose first omitted term is below 1e-16 of the first term.
 static inline double angle(double sine, double cosine, bool small)
 {
     double y = sine * sine, p;
@@ -148,7 +157,7 @@ static inline node node_at(const circle *on, double cosine, double sine)
     return (node){cosine, sine, a * sine - b * cosine, q, c / q};
 }
 
-// The row with height[row] >= z > height[row + 1], searched from `row`.
+// Returns the row with height[row] >= z > height[row + 1], by a search that begins at `row`.
 static inline int find_row(const builder *b, double z, int row)
 {
     while (row > 0 && z > b->height[row])
@@ -158,10 +167,11 @@ static inline int find_row(const builder *b, double z, int row)
     return row;
 }
 
-// The column of a direction, searched from `column`.
+// Returns the column of a direction, by a search that begins at `column`.
 static inline int find_column(const builder *b, double cosine, double sine, int column)
 {
-    if (!b->small) // too wide to tell before from behind
+    // Such wide columns need arctan: the sign of a cross product cannot find the column.
+    if (!b->small)
         return (int)floor(ki_atan2(sine, cosine) * (b->grid->height / KI_PI) + b->grid->offset);
     const double *bc = b->cosine - b->first_border, *bs = b->sine - b->first_border;
     while (column > b->first_border && sine * bc[column] - cosine * bs[column] < 0)
@@ -176,8 +186,8 @@ static inline void add_entry(trace *arc, int column, int row, double area, doubl
     arc->entries[arc->count++] = (entry){column, row, area, width};
 }
 
-// One column's part of an arc that goes through several rows, from `north` to `south`; `rest` is G
-// of the northern one's upper border and `low` the part's lower end.
+// Adds the areas of one column's piece of an arc that crosses the rows `north` to `south`. `rest`
+// is G at the upper border of row `north`, and `low` is the lower end of the piece.
 static void trace_rows(const builder *b, trace *arc, const circle *on, const node *low, double side,
                        int column, int north, int south, double rest, double width)
 {
@@ -185,7 +195,7 @@ static void trace_rows(const builder *b, trace *arc, const circle *on, const nod
     for (int j = north; j <= south; j++) {
         double next = 0;
         if (j < south) {
-            // Where the arc meets the row's southern border.
+            // The node where the arc crosses the row's southern border.
             double c = b->cotangent[j + 1], s2 = on->kappa2 - c * c;
             double s = copysign(s2 > 0 ? sqrt(s2) : 0, side);
             node cut = {(a_ * c - b_ * s) / on->kappa2, (b_ * c + a_ * s) / on->kappa2, s,
@@ -199,7 +209,8 @@ static void trace_rows(const builder *b, trace *arc, const circle *on, const nod
     }
 }
 
-// One column's part of an arc, along which z rises or falls only. Returns the row at `end`.
+// Adds one column's piece of an arc, over which z only rises or only falls. Returns the row at
+// `end`.
 static inline int trace_piece(const builder *b, trace *arc, const circle *on, const node *start,
                               const node *end, int column, int row)
 {
@@ -217,8 +228,8 @@ static inline int trace_piece(const builder *b, trace *arc, const circle *on, co
     return last;
 }
 
-// Follows the great circle from one corner to another and writes what lies north of it, positive
-// where phi grows. Meridians leave nothing.
+// Follows the great circle from one corner to another and lists the areas north of it, positive
+// where phi grows along the arc. Meridians contribute no area.
 static void trace_arc(const builder *b, const corner *from, const corner *to, trace *arc)
 {
     arc->count = 0;
@@ -245,14 +256,14 @@ static void trace_arc(const builder *b, const corner *from, const corner *to, tr
     for (;;) {
         bool last = column >= to->column;
         if (last && column > from->column && to->sine * at.cosine - to->cosine * at.sine < 1e-14) {
-            column--; // the corner lies on the border
+            column--; // the corner lies on the border of its column
             break;
         }
         int border = column + 1 - b->first_border;
         node next = last ? node_at(&on, to->cosine, to->sine)
                          : node_at(&on, b->cosine[border], b->sine[border]);
         if (at.s * next.s < 0) {
-            // The arc's highest or lowest point lies between.
+            // The highest or lowest point of the arc lies between the two nodes.
             double kappa = sqrt(on.kappa2);
             double c = on.a / kappa, s = on.b / kappa;
             if (c * at.cosine + s * at.sine < 0) {
@@ -275,7 +286,7 @@ static void trace_arc(const builder *b, const corner *from, const corner *to, tr
 
 // -------------------------------------------------------------------------------------------- texels
 
-// Room for `more` weights.
+// Reserves room for `more` weights in a chunk. Returns false when memory runs out.
 static bool grow(kiln_context *context, ki_stencil_chunk *chunk, size_t more)
 {
     size_t wanted = chunk->weight_count + more, room = chunk->weight_room;
@@ -303,8 +314,8 @@ static void add_arc(const builder *b, const trace *arc, double sign, int column,
     }
 }
 
-// The stencil of the polygon whose arcs are, counter-clockwise seen from below (east, then north
-// on a side), arcs[0] + arcs[1] - arcs[2] - arcs[3].
+// Adds the stencil of a polygon. Its boundary is arcs[0] + arcs[1] - arcs[2] - arcs[3],
+// counter-clockwise with the sphere seen from inside (east, then north, on a side of the cube).
 static bool add_stencil(builder *b, const trace *const arcs[4], bool pole)
 {
     int column = INT32_MAX, row = INT32_MAX, end_column = INT32_MIN, end_row = INT32_MIN;
@@ -361,7 +372,7 @@ static bool add_stencil(builder *b, const trace *const arcs[4], bool pole)
     return true;
 }
 
-// Line j of the grid's corners, first <= i <= end.
+// Computes the corners first <= i <= end of line j of the grid.
 static void fill_corners(const builder *b, int j, int first, int end, corner *corners)
 {
     const ki_stencil_grid *grid = b->grid;
@@ -394,7 +405,8 @@ static corner below_horizon(const builder *b, const corner *above)
     return c;
 }
 
-// The texels that the horizon cuts: two sides above it, two below.
+// Computes the stencils of the octahedron's texels that the horizon cuts. Such a texel has two
+// sides above the horizon and two below.
 static bool build_rim(builder *b, int begin, int stop, entry *entries, size_t line)
 {
     for (int j = begin; j < stop; j++) {
@@ -416,7 +428,7 @@ static bool build_rim(builder *b, int begin, int stop, entry *entries, size_t li
     return true;
 }
 
-// A line of corners and the arcs between them.
+// A line of corners of the grid and the arcs between them.
 typedef struct grid_line {
     corner *corners;
     trace *arcs;
@@ -434,12 +446,13 @@ static void trace_line(const builder *b, int j, int first, int end, grid_line *l
     }
 }
 
-// Each line of arcs is the top of one row and the bottom of the next, each arc between lines the
-// right side of one texel and the left of the next.
+// Computes the stencils of the rows begin .. stop - 1. Each line of arcs is traced once, as the top
+// of a row and the bottom of the next row. Each arc between two lines is traced once too, as the
+// right side of a texel and the left side of the next texel.
 static bool build_rows(builder *b, int begin, int stop, grid_line bottom, grid_line top,
                        entry *entries, size_t line)
 {
-    int skip = 0; // texels at the start of the line below that have no texel above them
+    int skip = 0; // number of texels at the start of the bottom line that have no texel above them
     for (int j = begin; j < stop; j++) {
         int first, end;
         ki_stencil_grid_range(b->grid, j, &first, &end);
@@ -481,7 +494,8 @@ static void build_chunk(void *data, int index)
         ki_stencil_grid_range(grid, j, &first, &end);
         texels += (size_t)(end - first);
     }
-    // A line of arcs crosses every column once and every row twice at most, and has a node a texel.
+    // Upper bound for the entries of a line of arcs: the line crosses every column once and every
+    // row at most twice, and has a node for each texel.
     size_t count = 2 * (size_t)grid->half + 2;
     size_t line = (size_t)(b.end_border - b.first_border) + 2 * (size_t)grid->height + 3 * count;
     chunk->failed = true;
@@ -512,7 +526,8 @@ kiln_result ki_stencil_grid_build(kiln_context *context, ki_stencil_grid *grid, 
 {
     kiln_result result = KILN_OK;
     int rows = grid->height, width = 2 * rows;
-    // Borders between columns from -45 or 0 degrees to 45 or 90, and one more on either side.
+    // The borders between columns from -45 to 45 degrees for a side, else from 0 to 90 degrees, and
+    // one more border on either end.
     double step = 2 * KI_PI / width, eighth = width / 8.0;
     double low = grid->kind == KI_STENCIL_SIDE ? -eighth : 0;
     double high = grid->kind == KI_STENCIL_SIDE ? eighth : 2 * eighth;
