@@ -51,13 +51,13 @@ typedef struct ki_exr_part {
     bool tiled, deep;
     uint32_t tile_width, tile_height; // 0 where the header does not say
     int32_t stated_chunks;            // -1 where the header does not say
-    uint64_t table;                   // where the offsets of the chunks begin in the file
 } ki_exr_part;
 
 typedef struct ki_exr_header {
     const uint8_t *bytes; // of the whole file, which names and attributes point into
     size_t size;
     bool multipart;
+    size_t tables; // where the offsets of the chunks begin, part after part
     int part_count;
     ki_exr_part *parts;
 } ki_exr_header;
@@ -136,11 +136,6 @@ typedef struct ki_exr_chunk {
 
 /// "zip"; the compression must be a known one.
 const char *ki_exr_compression_name(int compression);
-/// Lines of a chunk of scan lines; 0 for an unknown compression.
-int ki_exr_chunk_lines(int compression);
-/// The number of entries in a part's table of chunks, of one with mip levels those of level 0, which
-/// come first; 0 where the header is wrong.
-int32_t ki_exr_chunk_count(const ki_exr_part *part);
 
 /// Finds the chunks of a part and checks every size in them, so that what is allocated for the
 /// picture later is bounded by the file's size. `chunks` is allocated; it is NULL on failure.

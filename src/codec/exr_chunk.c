@@ -31,7 +31,8 @@ const char *ki_exr_compression_name(int compression)
     return methods[compression].name;
 }
 
-int ki_exr_chunk_lines(int compression)
+// Lines of a chunk of scan lines; 0 for an unknown compression.
+static int chunk_lines(int compression)
 {
     return compression < KI_EXR_COMPRESSIONS ? methods[compression].lines : 0;
 }
@@ -49,7 +50,7 @@ static grid make_grid(const ki_exr_part *p)
     grid g = {.width = (int64_t)p->data.right - p->data.left + 1,
               .height = (int64_t)p->data.bottom - p->data.top + 1};
     g.chunk_width = p->tiled ? p->tile_width : g.width;
-    g.chunk_height = p->tiled ? (int64_t)p->tile_height : ki_exr_chunk_lines(p->compression);
+    g.chunk_height = p->tiled ? (int64_t)p->tile_height : chunk_lines(p->compression);
     if (g.width < 1 || g.height < 1 || !g.chunk_width || !g.chunk_height)
         return (grid){0};
     g.across = (g.width + g.chunk_width - 1) / g.chunk_width;
@@ -57,7 +58,9 @@ static grid make_grid(const ki_exr_part *p)
     return g;
 }
 
-int32_t ki_exr_chunk_count(const ki_exr_part *part)
+// The number of entries in a part's table of chunks, of one with mip levels those of level 0, which
+// come first; 0 where the header is wrong.
+static int32_t chunk_count(const ki_exr_part *part)
 {
     grid g = make_grid(part);
     if (part->stated_chunks >= 0)
@@ -77,7 +80,8 @@ typedef struct search {
     const ki_exr_part *part;
     int part_index, entry_count;
     grid grid;
-    size_t left; // bytes of the file that no chunk has taken
+    uint64_t table; // where the part's offsets begin
+    size_t left;    // bytes of the file that no chunk has taken
 } search;
 
 // A reader at chunk `index` of the table, behind what says which chunk it is; failed where the table
@@ -86,7 +90,7 @@ static ki_reader open_chunk(const search *s, int64_t index, int column, int row)
 {
     const ki_exr_header *h = s->header;
     ki_reader nowhere = {.failed = true};
-    uint64_t entry = s->part->table + 8 * (uint64_t)index;
+    uint64_t entry = s->table + 8 * (uint64_t)index;
     if (index >= s->entry_count || entry > h->size || h->size - entry < 8)
         return nowhere;
     ki_reader r = ki_reader_make(h->bytes + entry, 8);
@@ -135,12 +139,10 @@ kiln_result ki_exr_find_chunks(kiln_context *context, const ki_exr_header *heade
                                const char *name, ki_exr_chunk **chunks, int *count,
                                kiln_error *error)
 {
-    search s = {header,
-                &header->parts[part],
-                part,
-                ki_exr_chunk_count(&header->parts[part]),
-                make_grid(&header->parts[part]),
-                header->size};
+    const ki_exr_part *p = &header->parts[part];
+    search s = {header, p, part, chunk_count(p), make_grid(p), header->tables, header->size};
+    for (int i = 0; i < part; i++)
+        s.table += 8 * (uint64_t)chunk_count(&header->parts[i]);
     *chunks = NULL;
     *count = 0;
     int64_t needed = s.grid.across * s.grid.down;

@@ -228,11 +228,7 @@ static const char *read_parts(kiln_context *context, ki_exr_header *h, bool *sta
     } while (h->multipart && ki_reader_left(&r) && *r.at);
     if (h->multipart)
         ki_read_u8(&r);
-    uint64_t table = h->size - ki_reader_left(&r);
-    for (int i = 0; i < h->part_count; i++) {
-        h->parts[i].table = table;
-        table += 8 * (uint64_t)ki_exr_chunk_count(&h->parts[i]);
-    }
+    h->tables = h->size - ki_reader_left(&r);
     return r.failed ? "it ends too early" : NULL;
 }
 
