@@ -1,4 +1,5 @@
-// The ground everything stands on: errors, memory, threads and the processor's abilities.
+// Errors, memory, threads and the properties of the processor: what every other folder of the
+// library uses.
 #ifndef KI_BASE_H
 #define KI_BASE_H
 
@@ -9,13 +10,15 @@
 #include <stddef.h>
 #include <stdint.h>
 
-// A double that the compiler keeps with more bits than it stores, as the x87 does, rounds twice: results
-// would differ from every other machine's, and loops that compare sums may never end.
+// The x87 keeps doubles with more bits than memory holds, so that a result is rounded twice.
+// Results would then differ from those of other machines, and loops that compare sums might never
+// end.
 _Static_assert(FLT_EVAL_METHOD == 0,
                "kiln needs arithmetic in the precision of its types: on 32-bit x86 compile with "
                "-msse2 -mfpmath=sse");
 
-/// Lets the compiler check a function's arguments against its format, printf's as C17 has it.
+/// Lets the compiler check the arguments of a function against its format string, by the rules of
+/// printf in C17.
 #if defined(__MINGW32__) && !defined(__clang__)
 #define KI_PRINTF(format_at, first) __attribute__((format(gnu_printf, format_at, first)))
 #else
@@ -24,66 +27,71 @@ _Static_assert(FLT_EVAL_METHOD == 0,
 
 // ------------------------------------------------------------------------------------------ errors
 
-/// Writes the result and its sentence (printf's format) to `error` unless that is NULL.
+/// Writes the result and an error message (printf's format) to `error`, unless `error` is NULL.
 void ki_describe(kiln_error *error, kiln_result result, const char *format, ...) KI_PRINTF(3, 4);
 
-/// The same, and is `result`: a macro, so that compilers see that it is not KILN_OK.
+/// Writes the message as ki_describe does and evaluates to `result`. A macro, so that compilers see
+/// that the value is not KILN_OK.
 #define ki_fail(error, result, ...) (ki_describe((error), (result), __VA_ARGS__), (result))
 
 // ------------------------------------------------------------------------------------------ memory
 
-/// Returns `count` times `size` bytes, zeroed and aligned to 64, or NULL where the context's limit,
-/// the allocator or size_t does not suffice. Safe to call from any thread.
+/// Allocates `count` times `size` bytes, zeroed and aligned to 64. Returns NULL if the context's
+/// limit is reached, the allocator fails or the product overflows. Safe to call from any thread.
 void *ki_alloc(kiln_context *context, size_t count, size_t size);
-/// The same, not zeroed.
+/// Allocates as ki_alloc does, but does not zero the memory.
 void *ki_alloc_raw(kiln_context *context, size_t count, size_t size);
-/// `memory` may be NULL. It knows its context.
+/// Frees memory from ki_alloc or ki_alloc_raw; the memory itself records its context. `memory` may
+/// be NULL.
 void ki_free(void *memory);
-/// Writes the sentence "out of memory: WHAT needs N bytes, ...".
+/// Writes the error message "out of memory: WHAT needs N bytes, ...".
 void ki_describe_memory(kiln_context *context, kiln_error *error, const char *what,
                         size_t byte_count);
-/// Fails with that sentence.
+/// Fails with the message of ki_describe_memory.
 static inline kiln_result ki_fail_memory(kiln_context *context, kiln_error *error, const char *what,
                                          size_t byte_count)
 {
     ki_describe_memory(context, error, what, byte_count);
     return KILN_ERROR_MEMORY;
 }
-/// Multiplies, or returns false on overflow.
+/// Sets *product to a times b. Returns false on overflow.
 bool ki_mul_size(size_t a, size_t b, size_t *product);
 
 // ----------------------------------------------------------------------------------------- threads
 
 typedef void ki_task(void *data, int index);
 
-/// Runs task(data, 0 .. count-1) on the context's threads. The tasks must write different places:
-/// then the result cannot depend on their order.
+/// Runs task(data, i) for i = 0 .. count - 1 on the context's threads. No two tasks may write the
+/// same place, so that the result does not depend on their order.
 void ki_parallel_for(kiln_context *context, int count, ki_task *task, void *data);
 
-/// The same for tasks that need scratch of their own: `worker` is below ki_context_threads and no
-/// two tasks with the same worker run at once.
+/// Runs tasks as ki_parallel_for does, for tasks that need scratch memory of their own. `worker` is
+/// less than ki_context_threads, and no two tasks run with the same worker at the same time.
 void ki_parallel_workers(kiln_context *context, int count,
                          void (*task)(void *data, int worker, int index), void *data);
 
-/// Reports progress; false when the caller wants to stop. From the calling thread only. `stage` is a
-/// literal.
+/// Reports progress to the caller of the library. Returns false if the caller wants to stop. May be
+/// called only on the thread on which the library was called. `stage` is a string literal.
 bool ki_progress(kiln_context *context, const char *stage, double fraction);
-/// Says again what was said last: for long work in small steps.
+/// Repeats the last report of progress, so that long work with many small steps can be stopped.
+/// Returns false if the caller wants to stop.
 bool ki_go_on(kiln_context *context);
-/// Part of a stage's progress, from one fraction to another.
+/// The range of fractions that a part of the work covers in progress reports.
 typedef struct ki_stage {
     const char *name;
     double from, to;
 } ki_stage;
-/// ki_parallel_for that reports progress on its way, or without a stage (NULL) as ki_go_on. False when stopped: some tasks have not run then.
+/// Runs tasks as ki_parallel_for does and reports progress meanwhile: within `stage`, or as
+/// ki_go_on if `stage` is NULL. Returns false if a report asked to stop; some tasks have then not
+/// run.
 bool ki_parallel_steps(kiln_context *context, const ki_stage *stage, int count, ki_task *task,
                        void *data);
-/// KILN_ERROR_CANCELLED with its sentence.
+/// Fails with KILN_ERROR_CANCELLED and a message that names the stage.
 kiln_result ki_fail_cancelled(kiln_error *error, const char *stage);
 
 // --------------------------------------------------------------------------------------- processor
 
-/// The instruction set kernels are chosen by.
+/// Returns the instruction set by which kernels are chosen.
 enum kiln_cpu ki_context_cpu(const kiln_context *context);
 int ki_context_threads(const kiln_context *context);
 
@@ -99,7 +107,7 @@ static inline int ki_max(int a, int b)
     return a > b ? a : b;
 }
 
-/// Not a number becomes `low`.
+/// Clamps x to [low, high]. Not-a-number becomes `low`.
 static inline double ki_clamp(double x, double low, double high)
 {
     return x > low ? x < high ? x : high : low;

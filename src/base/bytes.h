@@ -1,11 +1,11 @@
-// Little-endian bytes, read and written within bounds.
+// Reading and writing of little-endian bytes, with checked bounds.
 #ifndef KI_BYTES_H
 #define KI_BYTES_H
 
 #include "base/base.h"
 
-/// Bytes still to be read. Reading past the end gives zeros and sets `failed`, which stays set:
-/// a parser reads a whole header and checks once.
+/// The bytes that remain to be read. Reading past the end gives zeros and sets `failed`, which
+/// stays set: a parser can read a whole header and check once.
 typedef struct ki_reader {
     const uint8_t *at, *end;
     bool failed;
@@ -21,7 +21,7 @@ static inline size_t ki_reader_left(const ki_reader *r)
     return (size_t)(r->end - r->at);
 }
 
-/// The next `size` bytes, or NULL.
+/// Returns the next `size` bytes and advances, or returns NULL if fewer are left.
 static inline const uint8_t *ki_read_bytes(ki_reader *r, size_t size)
 {
     if (r->failed || ki_reader_left(r) < size) {
@@ -52,7 +52,7 @@ static inline uint64_t ki_read_u64(ki_reader *r)
     return low | (uint64_t)ki_read_u32(r) << 32;
 }
 
-/// Bytes that grow. An allocation that fails sets `failed`; later writes do nothing.
+/// A growing array of bytes. A failed allocation sets `failed`, and later writes do nothing.
 typedef struct ki_writer {
     kiln_context *context;
     uint8_t *bytes;
@@ -60,7 +60,8 @@ typedef struct ki_writer {
     bool failed;
 } ki_writer;
 
-/// Room for `size` more bytes at the end, not zeroed, counted as written; NULL on failure.
+/// Appends `size` bytes that are not initialised, and returns a pointer to them. Returns NULL on
+/// failure.
 uint8_t *ki_write_room(ki_writer *w, size_t size);
 void ki_write(ki_writer *w, const void *bytes, size_t size);
 void ki_write_u8(ki_writer *w, uint8_t value);
@@ -69,9 +70,9 @@ void ki_write_u32(ki_writer *w, uint32_t value);
 void ki_write_u64(ki_writer *w, uint64_t value);
 /// Writes text by printf's format, without its NUL.
 void ki_write_text(ki_writer *w, const char *format, ...) KI_PRINTF(2, 3);
-/// Zeros until the size is a multiple of `alignment`.
+/// Appends zeros until the size is a multiple of `alignment`.
 void ki_write_align(ki_writer *w, size_t alignment);
-/// Writes over what is already there.
+/// Overwrites bytes that were already written, at the position `at`.
 void ki_patch_u32(ki_writer *w, size_t at, uint32_t value);
 void ki_patch_u64(ki_writer *w, size_t at, uint64_t value);
 void ki_writer_free(ki_writer *w);

@@ -1,4 +1,6 @@
-// The context: allocator with its limit, error sentences, progress.
+// The context: in goes its definition (allocator, limit, threads, progress callback), out come
+// memory blocks, error messages and progress reports. Every allocation is counted against the limit
+// with atomic operations, so that any thread may allocate.
 #include "base/context.h"
 #include "base/base.h"
 
@@ -25,10 +27,10 @@ void ki_describe(kiln_error *error, kiln_result result, const char *format, ...)
     }
 }
 
-// Every block is preceded by 64 bytes that name its heap and size.
+// A header of 64 bytes before every memory block, which records the block's heap and size.
 typedef struct block_head {
     alignas(64) ki_heap *heap;
-    size_t size; // with the head
+    size_t size; // size of the block with its header
 } block_head;
 
 bool ki_mul_size(size_t a, size_t b, size_t *product)
@@ -63,7 +65,7 @@ static ki_heap *heap_create(const kiln_context_def *def)
     return heap;
 }
 
-// The last owner takes the heap along.
+// Drops one owner of the heap. The last owner frees the heap.
 static void heap_leave(ki_heap *heap)
 {
     if (atomic_fetch_sub(&heap->owners, 1) == 1)

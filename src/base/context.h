@@ -1,4 +1,4 @@
-// What a context is made of. Only the base folder looks inside.
+// The fields of a context. Only files in src/base read them.
 #ifndef KI_CONTEXT_H
 #define KI_CONTEXT_H
 
@@ -13,32 +13,32 @@ typedef struct ki_pool {
     ki_os_mutex mutex;
     ki_os_condition work, done;
     ki_os_thread thread[KI_MAX_THREADS];
-    ki_os_work helper; // what each thread runs
-    int thread_count;  // helpers; the caller works too
+    ki_os_work helper; // the function that each thread runs, and its data
+    int thread_count;  // number of helper threads; the calling thread works too
     void (*task)(void *data, int index);
     void *data;
     int count;
-    atomic_int next; // the first index nobody has taken
-    int running;     // helpers still at it
-    unsigned round;  // one a parallel_for
+    atomic_int next; // the next index that no thread has taken
+    int running;     // number of helpers that have not finished
+    unsigned round;  // number of calls of ki_parallel_for so far
     bool stop;
 } ki_pool;
 
-/// Where blocks come from and go back to. It lives as long as the context or any block, so that an object
-/// may be freed after its context.
+/// The source of memory blocks. A heap lives until its context and all its blocks are freed, so
+/// that an object may be freed after its context.
 typedef struct ki_heap {
     void *(*allocate)(void *user, size_t size);
     void (*release)(void *user, void *memory, size_t size);
     void *user;
-    size_t limit; // 0 for none
+    size_t limit; // greatest number of bytes held at once, 0 for no limit
     atomic_size_t held, peak;
-    atomic_size_t owners; // the context, and every block
+    atomic_size_t owners; // number of owners: the context and every block
 } ki_heap;
 
 struct kiln_context {
     kiln_context_def def;
     ki_heap *heap;
-    ki_stage said; // the last report of progress
+    ki_stage said; // the last progress report
     ki_pool pool;
 };
 

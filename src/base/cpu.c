@@ -1,4 +1,4 @@
-// What the processor can do, filled weakest first.
+// Finds the best instruction set of the processor, and names instruction sets.
 #include "base/base.h"
 #include "base/context.h"
 

@@ -1,3 +1,7 @@
+// Files. In: paths, and bytes to write. Out: the bytes of a file, files on disk that appear
+// completely or not at all, or files in memory. Method: each file is written under a temporary name
+// in the same folder, synchronised to disk and renamed; a set renames its first file only after
+// every file is written.
 #include "base/file.h"
 #include "base/os.h"
 
@@ -37,7 +41,8 @@ kiln_result ki_file_read(kiln_context *context, const char *path, uint8_t **byte
     uint8_t *buffer = NULL;
     size_t filled = 0, capacity = 0;
     uint64_t expected = ki_os_size(fd);
-    // One byte more than the file holds, so that a regular file ends without growing the buffer.
+    // The buffer has one byte more than the file, so that the end of a regular file is found
+    // without growing the buffer.
     capacity = expected ? (size_t)(expected < SIZE_MAX ? expected : SIZE_MAX - 1) + 1 : 65536;
     buffer = ki_alloc_raw(context, capacity, 1);
     if (!buffer) {
@@ -82,10 +87,11 @@ done:
     return result;
 }
 
-// A file under its temporary name, a folder that was made, or a file in memory.
+// A member of a set: a file under its temporary name, a folder that was created, or a file in
+// memory.
 typedef struct set_entry {
     struct set_entry *next;
-    char *path, *temporary; // NULL where nothing is to be renamed
+    char *path, *temporary; // temporary is NULL for entries that are not renamed
     bool is_folder;
     uint8_t *bytes;
     size_t size;
@@ -115,7 +121,7 @@ ki_file_set *ki_file_set_begin_in_memory(kiln_context *context)
     return set;
 }
 
-// An entry with its path, and `room` bytes behind the path.
+// Creates an entry that holds a copy of its path and `room` more bytes after the path.
 static set_entry *create_entry(ki_file_set *set, const char *path, size_t room, kiln_error *error)
 {
     size_t length = strlen(path) + 1;
@@ -156,10 +162,12 @@ kiln_result ki_file_set_make_folder(ki_file_set *set, const char *path, kiln_err
                                       path, strerror(reason));
 }
 
-// Synced on the way, so that the last sync, which nothing interrupts, is short.
+// Large files are synchronised to disk during writing too. The last synchronisation cannot be
+// interrupted and is therefore short.
 enum { WRITE_STEP = 4 << 20, SYNC_STEP = 64 << 20 };
 
-// False with errno set; ECANCELED where the progress callback said so.
+// Writes all bytes and synchronises. On failure returns false with errno set, to ECANCELED if the
+// progress callback asked to stop.
 static bool write_all(kiln_context *context, int fd, const uint8_t *bytes, size_t size)
 {
     for (size_t done = 0; done < size;) {
@@ -180,7 +188,7 @@ static bool write_all(kiln_context *context, int fd, const uint8_t *bytes, size_
     return ki_os_sync(fd);
 }
 
-// Creates PATH.kiln-PID-N.tmp, a name nobody has.
+// Creates a file PATH.kiln-PID-N.tmp whose name is not in use, and returns its descriptor.
 static int create_temporary(char *name, size_t room, const char *path)
 {
     for (int n = 0; n < 1000; n++) {
@@ -261,7 +269,7 @@ static void remove_folders(const ki_file_set *set)
 
 kiln_result ki_file_set_commit(ki_file_set *set, kiln_error *error)
 {
-    // The last moment at which nothing has happened yet.
+    // The last report at which the caller can stop before any file is renamed.
     kiln_result result = KILN_OK;
     if (!ki_progress(set->context, "writing", 1))
         result = ki_fail_cancelled(error, "writing");
@@ -291,7 +299,7 @@ void ki_file_set_abandon(ki_file_set *set)
     free_entries(set);
 }
 
-// Every file keeps the entry that it was; the list is a block of its own.
+// The entries of the set become the owners of the files; the list is a separate block.
 kiln_result ki_file_set_take(ki_file_set *set, kiln_files *files, kiln_error *error)
 {
     size_t count = 0, at = 0;

@@ -1,8 +1,9 @@
-// The operating system by POSIX.1-2008: Linux, macOS, the BSDs, WebAssembly by emscripten.
+// The functions of os.h by POSIX.1-2008, for Linux, macOS, the BSDs, and WebAssembly by emscripten.
+// In and out: UTF-8 paths, file descriptors, aligned memory, pthreads.
 #define _POSIX_C_SOURCE 200809L
 #define _FILE_OFFSET_BITS 64
 #if defined(__APPLE__)
-#define _DARWIN_C_SOURCE // _SC_NPROCESSORS_ONLN
+#define _DARWIN_C_SOURCE // declares _SC_NPROCESSORS_ONLN
 #endif
 #include "base/os.h"
 
@@ -49,7 +50,7 @@ int ki_os_standard_input(void)
     return STDIN_FILENO;
 }
 
-// With the permissions of an ordinary new file.
+// The file gets the permissions of an ordinary new file.
 int ki_os_create(const char *path)
 {
     return open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
@@ -153,7 +154,8 @@ void ki_os_thread_join(ki_os_thread *thread)
 
 uintptr_t ki_os_this_thread(void)
 {
-    return (uintptr_t)pthread_self(); // an integer with some C libraries, a pointer with others
+    // Pthread_t is an integer in some C libraries, a pointer in others.
+    return (uintptr_t)pthread_self();
 }
 
 void ki_os_mutex_begin(ki_os_mutex *mutex)

@@ -1,6 +1,7 @@
-// The operating system by Windows 7 and later. The wide functions are called, since the others read
-// paths in the code page of the user; what they see is UTF-16 made from kiln's UTF-8. Paths may have
-// as many characters as Windows allows without a prefix (260), forward slashes included.
+// The functions of os.h for Windows 7 and later. The wide functions of Windows are called, because
+// the others take paths in the user's code page. Paths are converted from kiln's UTF-8 to UTF-16. A
+// path may have as many characters as Windows allows without a prefix (260), and may use forward
+// slashes.
 #define WIN32_LEAN_AND_MEAN
 #define _WIN32_WINNT 0x0601
 #include "base/os.h"
@@ -17,9 +18,9 @@
 
 // ------------------------------------------------------------------------------------------- paths
 
-enum { ROOM = 4096 }; // UTF-16 units of a path, its zero included
+enum { ROOM = 4096 }; // greatest number of UTF-16 units of a path, with its terminating zero
 
-// False with errno set where a path is no UTF-8 or has no room.
+// Converts a path to UTF-16. Returns false with errno set if the path is not UTF-8 or is too long.
 static bool widen(const char *path, wchar_t wide[ROOM])
 {
     if (MultiByteToWideChar(CP_UTF8, MB_ERR_INVALID_CHARS, path, -1, wide, ROOM))
@@ -28,7 +29,7 @@ static bool widen(const char *path, wchar_t wide[ROOM])
     return false;
 }
 
-// Sets errno from Windows' last error; false.
+// Sets errno from the last error of Windows. Always returns false.
 static bool failed(void)
 {
     switch (GetLastError()) {
@@ -37,7 +38,7 @@ static bool failed(void)
         errno = ENOENT;
         break;
     case ERROR_ACCESS_DENIED:
-    case ERROR_SHARING_VIOLATION: // another process has it open
+    case ERROR_SHARING_VIOLATION: // another process has the file open
         errno = EACCES;
         break;
     case ERROR_ALREADY_EXISTS:
@@ -106,7 +107,7 @@ int ki_os_create(const char *path)
                : -1;
 }
 
-// Windows takes no more than an int's bytes at a time.
+// Limits the size of one read or write, because _read and _write take at most INT_MAX bytes.
 static unsigned at_once(size_t size)
 {
     return size < 1u << 30 ? (unsigned)size : 1u << 30;
@@ -197,7 +198,8 @@ void ki_os_release(void *memory)
 
 // ----------------------------------------------------------------------------------------- threads
 
-// A lock is one pointer, initially zero; the header says so without <windows.h>.
+// A lock is one pointer that is initially zero, so that the header can declare it without
+// <windows.h>.
 _Static_assert(sizeof(ki_os_mutex) == sizeof(SRWLOCK), "ki_os_mutex holds an SRWLOCK");
 _Static_assert(sizeof(ki_os_condition) == sizeof(CONDITION_VARIABLE),
                "ki_os_condition holds a CONDITION_VARIABLE");

@@ -1,5 +1,6 @@
-// Threads that wait for work. Which thread takes which index is left to chance; what an index
-// computes is not.
+// Threads that wait for work. In: a task and a number of indices. Out: every index has been run
+// once. Method: each thread takes the next index by an atomic counter. The assignment of indices to
+// threads is left to chance, but the work of an index does not depend on its thread.
 #include "base/base.h"
 #include "base/context.h"
 
@@ -124,14 +125,15 @@ typedef struct steps {
     const ki_stage *stage;
     uintptr_t caller;
     int count, told;
-    double asked; // seconds
+    double asked; // time of the last report, in seconds
     atomic_int done;
     atomic_bool stopped;
 } steps;
 
 enum { REPORTS = 64 };
 
-// Longest silence but for one task, so that work of hours stops as soon as short work.
+// Longest time in seconds between two progress reports, apart from the duration of one task. Long
+// work can therefore be stopped as quickly as short work.
 static const double silence = 0.05;
 
 static void step(void *data, int index)

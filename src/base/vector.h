@@ -1,12 +1,14 @@
-// Kernels by instruction set, and vectors of 16 bytes: by the extension that GCC and clang share, which
-// every processor with a compiler of theirs has, as instructions or as plain arithmetic.
+// The choice of kernels by instruction set, and vectors of 16 bytes by the vector extension of GCC
+// and clang. The compilers translate the extension to instructions of the processor, or to scalar
+// arithmetic where there are no such instructions.
 #ifndef KI_VECTOR_H
 #define KI_VECTOR_H
 
 #include "base/base.h"
 
-/// The variant of a kernel that the context's instruction set allows: of NAME_scalar, NAME_simd128
-/// (vectors of 128 bits: SSE2, NEON, WebAssembly's), NAME_avx2 and NAME_avx512 the last that is built.
+/// Selects the variant of a kernel for the context's instruction set: the best that is built of
+/// NAME_scalar, NAME_simd128 (vectors of 128 bits: SSE2, NEON, WebAssembly), NAME_avx2 and
+/// NAME_avx512.
 #if defined(KILN_HAVE_AVX)
 #define KI_FASTEST(context, name)                                                                  \
     (ki_context_cpu(context) >= KILN_CPU_AVX512 ? name##_avx512                                    \
@@ -23,8 +25,9 @@
 typedef float ki_float4 __attribute__((vector_size(16)));
 typedef uint8_t ki_bytes16 __attribute__((vector_size(16)));
 
-/// The lanes of a and b that the indices name, counted through both. GCC before 12 has the function
-/// that takes the indices as a vector of integers as large as the lanes.
+/// Selects lanes of the vectors a and b by indices, which count the lanes of a first and continue
+/// with those of b. GCC before 12 has only __builtin_shuffle, whose indices are a vector of
+/// integers of the lanes' size.
 #if defined(__clang__) || __GNUC__ >= 12
 #define KI_SHUFFLE4(a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
 #define KI_SHUFFLE16(a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)

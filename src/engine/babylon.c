@@ -1,9 +1,12 @@
-// Babylon.js: level lod = log2(W (r^2 + 0.0005)) * scale of a cube of W texels, and all the way down to
-// one texel. An .env states its scale, a .dds cannot: then it is 0.8. That is also the better choice: with
-// 1 there would be 2 x 2 texels at r = 0.7, which show three times the error. Toward r = 1 the shader goes over
-// to irradiance / pi from harmonics, which an .env brings as a polynomial; for a .dds Babylon computes it.
+// Babylon.js: a cube of W texels whose shader reads level log2(W (r^2 + 0.0005)) * scale at
+// roughness r, down to the level of a single texel. An .env file states the scale. A .dds file
+// cannot, and Babylon.js then takes 0.8. kiln uses 0.8 for both: with a scale of 1, the level for r
+// = 0.7 would have 2 x 2 texels and three times the error. Near r = 1 the shader blends to
+// irradiance / pi from harmonics, which an .env file stores as a polynomial and which Babylon.js
+// computes itself for a .dds file.
 //
-// Its world is left-handed. Its panoramas have +Z in the centre and +X to the right of it.
+// Babylon.js has a left-handed world. Its panoramas have +Z in the centre and +X to the right of
+// the centre.
 #include "engine/engine.h"
 
 #include "codec/env.h"

@@ -1,8 +1,10 @@
-// Bevy's EnvironmentMapLight: NAME_specular.ktx2, whose level k of n holds r = k / (n - 1), and
-// NAME_diffuse.ktx2, irradiance / pi, which is what GGX gives at roughness 1: the last level. Cubes of
-// rgb9e5, as Bevy's own, where nothing else is asked for.
+// Bevy's EnvironmentMapLight: NAME_specular.ktx2, whose level k of n has roughness k / (n - 1), and
+// NAME_diffuse.ktx2, irradiance / pi. The GGX lobe of roughness 1 is the cosine lobe, so the
+// diffuse cube is a copy of the last specular level. The default format is rgb9e5, as in Bevy's own
+// files.
 //
-// Its world is right-handed with -Z ahead, as kiln's; it looks cubes up in (x, y, -z).
+// Bevy's world is right-handed with -Z ahead, as kiln's; its shader samples cubes in the direction
+// (x, y, -z).
 #include "engine/engine.h"
 
 #include "codec/codec.h"

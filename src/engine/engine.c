@@ -1,4 +1,7 @@
-// The table of recipes, and a cube turned to an engine's axes.
+// The list of recipes, and what all engines share. In: a cube of prefiltered levels in kiln's
+// directions and harmonics of radiance. Out: the cube and the harmonics turned to the axes of an
+// engine, passed to the engine's recipe, which adds its files to a set. Also the checks of sizes,
+// levels and formats, and kiln_engine_show, which computes what an engine's shader reads.
 #include "engine/engine.h"
 
 #include "codec/codec.h"
@@ -91,7 +94,9 @@ void ki_turn_cube(const kiln_map *source, const ki_axes *axes, kiln_map *turned)
     }
 }
 
-// Products of two harmonics of degree 2 are integrated exactly by 4 Gauss nodes times 8 angles.
+// Turns harmonics by evaluating the series in the turned directions and projecting it again. The
+// quadrature of 4 Gauss nodes times 8 angles integrates products of two harmonics of degree 2
+// exactly.
 void ki_turn_sh(const kiln_sh *source, const ki_axes *axes, kiln_sh *turned)
 {
     double nodes[4], weights[4];
@@ -234,7 +239,8 @@ kiln_result kiln_engine_format(const kiln_engine *engine, kiln_format *format, k
                    known ? ki_format_names[*format] : "none of kiln's", names);
 }
 
-// What is shown at some roughness.
+// The levels and directions for kiln_engine_show: level `level` and the next level are mixed by
+// `mix`.
 typedef struct view {
     const kiln_map *map;
     int level;
@@ -246,7 +252,7 @@ typedef struct view {
 
 enum { VIEW_CHUNK = 1024 };
 
-// Task: one chunk of directions.
+// Task of one thread: computes the values of one chunk of directions.
 static void show(void *data, int index)
 {
     const view *v = data;
@@ -283,7 +289,7 @@ kiln_result kiln_engine_show(kiln_context *context, const kiln_engine *engine, c
     return KILN_OK;
 }
 
-// The path must end as the recipe says.
+// Fails unless the path has the ending that the recipe writes.
 static kiln_result check_path(const ki_recipe *recipe, const char *path, kiln_error *error)
 {
     const char *ending = kiln_path_ending(path), *wanted = recipe->about.ending;
@@ -313,7 +319,7 @@ static kiln_result check_map(const ki_recipe *recipe, const kiln_map *map, const
     return check_levels(recipe, map->size, map->level_count, error);
 }
 
-// A cube and harmonics in the engine's directions, and the files made of them.
+// Turns a cube and harmonics to the engine's directions and calls the recipe to write the files.
 static kiln_result write_turned(ki_export *to, const ki_recipe *recipe, const kiln_map *map,
                                 const kiln_sh *sh, kiln_error *error)
 {
@@ -357,7 +363,7 @@ kiln_result ki_engine_write(ki_file_set *set, kiln_context *context, const kiln_
     return result;
 }
 
-// To files, or to memory where `files` is not NULL.
+// Writes an engine's files to disk, or to memory if `files` is not NULL.
 static kiln_result write_engine(kiln_context *context, const kiln_engine *engine,
                                 const kiln_map *map, const kiln_sh *sh, kiln_format format,
                                 const char *path, kiln_files *files, kiln_save_report *report,

@@ -1,9 +1,10 @@
-// Filament, as cmgen --deploy writes: NAME_ibl.ktx, NAME_skybox.ktx and sh.txt. Level l of 0 to M holds
-// r = 1 - sqrt(1 - l / M), 256 texels down to 16, as halves or, as cmgen has it, in 11, 11 and 10 bits.
-// Diffuse light comes from the harmonics, which also stand in the .ktx, or where an application leaves
-// them out from the last level.
+// Filament, with the files of cmgen --deploy: NAME_ibl.ktx, NAME_skybox.ktx and sh.txt. Level l of
+// 0 to M has roughness 1 - sqrt(1 - l / M); sizes go from 256 texels down to 16. Texels are halves,
+// or floats of 11, 11 and 10 bits as in cmgen. Diffuse light comes from the harmonics, which are
+// also stored in the .ktx file; if an application does not pass the harmonics, Filament takes
+// diffuse light from the last level.
 //
-// Its panoramas have +Z in the centre and -X to the right of it.
+// Filament's panoramas have +Z in the centre and -X to the right of the centre.
 #include "engine/engine.h"
 
 #include "codec/filament_sh.h"
@@ -12,7 +13,8 @@
 
 #include <string.h>
 
-// PATH_ibl.ktx, PATH_skybox.ktx and sh.txt in the same folder.
+// Writes the name of a file to `w`: PATH followed by `ending`, or sh.txt in the same folder if
+// `ending` is NULL.
 static void write_name(ki_writer *w, const char *path, const char *ending)
 {
     const char *slash = strrchr(path, '/');

@@ -1,6 +1,6 @@
-// Binary glTF with the extension EXT_lights_image_based: level k of n holds r = k / (n - 1), 256 texels
-// down to 16, and faces lie as in the extension's figure, which is OpenGL's and kiln's own order, in
-// glTF's axes, which are kiln's too.
+// Binary glTF with the extension EXT_lights_image_based. Level k of n has roughness k / (n - 1),
+// with sizes from 256 texels down to 16. The faces have the order and orientation of the
+// extension's figure, which are those of OpenGL and kiln. The axes of glTF are kiln's axes.
 #include "engine/engine.h"
 
 #include "codec/gltf.h"

@@ -1,6 +1,6 @@
-// Engines that take nothing but a panorama and filter it by themselves: Godot's PanoramaSkyMaterial and
-// Unreal's sky light. A cube of w texels becomes a panorama of 4w x 2w, in kiln's own directions, so that
-// it lies as the one that was read.
+// Engines that load only a panorama and filter it themselves: Godot's PanoramaSkyMaterial and
+// Unreal's sky light. A cube of w texels becomes a panorama of 4w x 2w in kiln's own directions,
+// which is the orientation of the panorama that kiln read.
 #include "engine/engine.h"
 
 #include "codec/codec.h"

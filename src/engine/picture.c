@@ -5,7 +5,8 @@
 
 #include <math.h>
 
-enum { WANTED = 4, REST = 3 }; // numbers of a sample: RGB and weight, RGB
+// Floats of a sample: wanted RGB and weight in the first array, remaining RGB in the second.
+enum { WANTED = 4, REST = 3 };
 
 static ptrdiff_t samples_across(const ki_picture *p)
 {
@@ -33,7 +34,7 @@ static double to_stored(const ki_picture *p, double radiance)
     return p->roots ? sqrt(radiance) : radiance;
 }
 
-// Means of radiance.
+// Sets the texels of a row to the mean radiance over each texel.
 static void average_row(void *data, int row)
 {
     const ki_picture *p = data;
@@ -68,7 +69,8 @@ static void read_row(void *data, int row)
     }
 }
 
-// What is wanted less what is shown, weighted.
+// Sets the remainder of each sample of a row: the wanted value minus the value that the shader
+// interpolates there, times the sample's weight.
 static void compare_row(void *data, int row)
 {
     const ki_picture *p = data;
@@ -88,7 +90,8 @@ static void compare_row(void *data, int row)
     }
 }
 
-// The mean of what is left around a texel, weighted as it is read from there.
+// Corrects the texels of a row by the mean remainder of the samples around each texel, weighted by
+// the share with which bilinear interpolation reads the texel at the sample.
 static void correct_row(void *data, int row)
 {
     const ki_picture *p = data;

@@ -1,10 +1,16 @@
-// PlayCanvas: an atlas of 512 x 512 texels that holds equirectangular pictures, each inside a border:
-// six sharp ones down the diagonal, 512 x 256 to 16 x 8; below the first, along the left edge, those
-// of roughness k / 5, 256 x 128 to 16 x 8; and 64 x 32 of irradiance / pi at (128, 384). The border is a
-// texel; larger atlases scale all of it. The shader reads level 5 r; PlayCanvas itself bakes other
-// roughnesses than it reads.
+// PlayCanvas: a cube and its levels go in, an atlas of 512 x 512 texels comes out, as a PNG with
+// RGBP or as a DDS of halves. The atlas holds equirectangular pictures, each with a border of one
+// texel:
+//   six unfiltered pictures down the diagonal, from 512 x 256 to 16 x 8;
+//   below the first, along the left edge, the pictures of roughness k / 5, from 256 x 128 to 16 x
+//   8;
+//   irradiance / pi, 64 x 32, at (128, 384).
+// Larger atlases scale all sizes, the border too. The shader reads level 5 r at roughness r.
+// PlayCanvas' own baker filters by roughnesses other than those its shader reads, kiln by the
+// shader's. The filtered pictures are drawn so that their bilinear interpolation has the least
+// error (picture.h).
 //
-// Its panoramas have +Z in the centre and -X to the right of it.
+// PlayCanvas' panoramas have +Z in the centre and -X to the right of the centre.
 #include "engine/engine.h"
 
 #include "codec/codec.h"
@@ -21,7 +27,7 @@
 
 enum { ATLAS = 512, LEVELS = 6, STEPS = 12 };
 
-// An equirectangular picture of a level.
+// The level of a cube that an equirectangular picture shows.
 typedef struct view {
     const kiln_map *map;
     int level;
@@ -31,25 +37,27 @@ static double read_picture(const void *data, double u, double v, double rgb[3])
 {
     const view *w = data;
     double d[3];
-    if (v < 0 || v > 1) { // over a pole
+    if (v < 0 || v > 1) { // the point lies across a pole
         v = v < 0 ? -v : 2 - v;
         u += 0.5;
     }
-    // +Z in the centre and -X to the right: a panorama of kiln's turned by half.
+    // The picture has +Z in the centre and -X to its right: a panorama of kiln turned by 180
+    // degrees.
     ki_panorama_direction(u - floor(u), v, d);
     const double at[3] = {-d[0], d[1], -d[2]};
     ki_cube_read(w->map, w->level, at, rgb);
     return sqrt(d[0] * d[0] + d[2] * d[2]);
 }
 
-// What the atlas holds, and room for one picture of it.
+// The atlas that is being drawn, and memory for one of its pictures.
 typedef struct atlas {
     ki_export *to;
     bool roots;
-    float *pixels;   // size x size x 4
-    float *texels;   // of a picture
-    float *room;     // for it
-    kiln_map halves; // level 0 halved: level k is 2 << k times smaller
+    float *pixels; // the atlas: size x size x 4 floats
+    float *texels; // texels of the picture that is being drawn
+    float *room;   // scratch memory of the picture, see ki_picture
+    // Level 0 of the cube halved repeatedly: level k is 2 << k times smaller than the cube.
+    kiln_map halves;
 } atlas;
 
 static void halve(const kiln_map *map, int level, float *to)
@@ -62,8 +70,8 @@ static void halve(const kiln_map *map, int level, float *to)
     }
 }
 
-// A rectangle at (x, y), `width` wide and half as high, its border included. Sharp pictures are means
-// over their texels.
+// Draws a picture of a level into the rectangle at (x, y), `width` wide and half as high, which
+// includes the border. The texels of `sharp` pictures are means over their areas.
 static bool draw(const atlas *a, const kiln_map *map, int level, int x, int y, int width,
                  bool sharp)
 {
@@ -105,7 +113,7 @@ static bool draw_all(const atlas *a)
                draw(a, map, k, 0, size - width, width, false);
         at += width / 2;
     }
-    // What GGX shows at roughness 1 is irradiance / pi.
+    // The GGX lobe of roughness 1 is the cosine lobe, so the last level is irradiance / pi.
     return good && draw(a, map, LEVELS - 1, 128 * unit, 384 * unit, 64 * unit, false);
 }
 
@@ -140,7 +148,8 @@ static kiln_result write_atlas(ki_export *to, bool roots, kiln_error *error)
     if (result != KILN_OK)
         return result;
     a.pixels = ki_alloc(to->context, count, 4 * sizeof *a.pixels);
-    // The sharpest picture is half of the atlas; the largest that is refined an eighth, by 4 samples.
+    // The largest unfiltered picture covers half of the atlas. The largest picture that is refined
+    // covers an eighth, with 4 samples for each texel.
     a.texels = ki_alloc_raw(to->context, count / 2, 3 * sizeof *a.texels);
     a.room = ki_alloc_raw(to->context, count / 2, 7 * sizeof *a.room);
     if (!a.pixels || !a.texels || !a.room)

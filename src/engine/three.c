@@ -1,8 +1,9 @@
-// three.js from r187 on: a cube whose level l of 0 to M holds the roughness that
-// PMREMGenerator.lodToRoughness gives, r = 1 - sqrt(1 - l / M); the shader inverts it. Diffuse light is
-// the last level, which should not be so coarse that its few texels show.
+// three.js from r187 on: a cube whose level l of 0 to M has the roughness that
+// PMREMGenerator.lodToRoughness gives, r = 1 - sqrt(1 - l / M); the shader inverts this formula.
+// three.js takes diffuse light from the last level, which therefore must not be so coarse that its
+// texels are visible.
 //
-// Its panoramas have +X in the centre and +Z to the right of it.
+// three.js' panoramas have +X in the centre and +Z to the right of the centre.
 #include "engine/engine.h"
 
 #include "codec/codec.h"

@@ -1,10 +1,11 @@
-// three.js r181 to r186, model-viewer: "CubeUV", one picture of six faces a level, as
-// cube_uv_reflection_fragment.glsl.js reads it. Mip m of M to 4 has faces of 2^m texels, +X +Y +Z in a row
-// and -X -Y -Z above it, from 4 (2^M - 2^m) texels above the bottom; mips 3 to -2 have faces of 16 and
-// stand to the right of mip 4. Each face has a border of one texel of its own. At the base size of 256 the
-// whole is 768 by 1024.
+// three.js r181 to r186 and model-viewer: a cube and its levels go in, an atlas called CubeUV comes
+// out as an EXR picture. cube_uv_reflection_fragment.glsl.js is the shader that reads the atlas.
+// Each level ("mip" m of M) has six faces with a border of one texel each: +X +Y +Z in a row, and
+// -X -Y -Z in the row above. Mips M to 4 have faces of 2^m texels and lie 4 (2^M - 2^m) texels
+// above the bottom. Mips 3 to -2 have faces of 16 texels and lie to the right of mip 4. At the base
+// size of 256 the atlas has 768 x 1024 texels.
 //
-// Its panoramas have +X in the centre and +Z to the right of it.
+// three.js' panoramas have +X in the centre and +Z to the right of the centre.
 #include "engine/engine.h"
 
 #include "codec/codec.h"
@@ -17,13 +18,15 @@
 #include <math.h>
 #include <string.h>
 
-// Faces are read from a cube of twice their size.
+// FINER: each face of the atlas is read from a cube of twice the face's size. LAST: size of the
+// smallest faces. EXTRA: number of mips below 4. STEPS: steps of refinement of a picture.
 enum { FINER = 2, LAST = 16, EXTRA = 6, STEPS = 12 };
 
-// From mip 4 on in steps of roughness, below by 2^(-m / 2) / 1.16: roughnessToMip.
+// Roughness of the mips 4 to -2. The mips m above 4 have roughness 2^(-m / 2) / 1.16. Both are from
+// the shader's function roughnessToMip.
 static const double coarse[] = {0.21, 0.305, 0.4, 0.4 + 0.4 / 3, 0.4 + 0.8 / 3, 0.8, 1};
 
-// The largest mip, M.
+// Returns the largest mip, M.
 static int largest_mip(int size)
 {
     int mip = 4;
@@ -41,13 +44,14 @@ static double roughness(int level, int level_count, int size)
     return mip > 4 ? ki_exp(-mip * ki_log(2) / 2) / 1.16 : coarse[4 - mip];
 }
 
-// Its materials are no smoother than 0.0525.
+// Returns the level that the shader reads. three.js clamps the roughness of materials to at least
+// 0.0525.
 static double level(double roughness, int level_count, int size)
 {
     (void)level_count;
     int most = largest_mip(size);
     double r = fmax(roughness, 0.0525);
-    if ((float)r < (float)coarse[0]) // as the shader compares
+    if ((float)r < (float)coarse[0]) // the shader compares in single precision
         return most - ki_clamp(-2 * ki_log(1.16 * r) / ki_log(2), -2, most);
     int k = 0;
     while (k < EXTRA - 1 && r >= coarse[k + 1])
@@ -60,7 +64,8 @@ typedef struct face {
     int level, face;
 } face;
 
-// getUV, inverted: face +X +Y +Z -X -Y -Z, v upwards.
+// Inverts the shader's function getUV: the faces are in the order +X +Y +Z -X -Y -Z, and v grows
+// upwards.
 static double read_picture(const void *data, double u, double v, double rgb[3])
 {
     const face *f = data;
@@ -75,7 +80,7 @@ static double read_picture(const void *data, double u, double v, double rgb[3])
 typedef struct sheet {
     const kiln_map *map;
     int width, height;
-    float *pixels; // height x width x 3, the last row first
+    float *pixels; // the atlas: height x width x 3 floats, the last row first
     float *texels, *room;
 } sheet;
 
@@ -110,8 +115,8 @@ static kiln_result write_files(ki_export *to, kiln_error *error)
     kiln_result result = KILN_OK;
     s.pixels = ki_alloc(to->context, count, 3 * sizeof *s.pixels);
     s.texels = ki_alloc_raw(to->context, face_count, 3 * sizeof *s.texels);
-    // Of the faces that are refined the largest has a quarter of the texels, and 4 samples for each; 16
-    // texels a side have 16 for each.
+    // Of the faces that are refined, the largest has a quarter of face_count texels, with 4 samples
+    // for each texel. Faces of 16 texels have 16 samples for each texel.
     s.room = ki_alloc_raw(to->context, face_count + (size_t)16 * LAST * LAST, 7 * sizeof *s.room);
     bool good = s.pixels && s.texels && s.room;
     if (!good)

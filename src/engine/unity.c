@@ -1,8 +1,10 @@
-// Unity: a cube as .dds whose level 6 holds r = 1, whatever its size: its shaders read level
-// 6 r (1.7 - 0.7 r), PerceptualRoughnessToMipmapLevel. Levels behind the sixth are never read; they are
-// there because a DDS cube is best whole.
+// Unity: a cube as .dds whose level 6 has roughness 1, whatever the size of the cube. Unity's
+// shaders read level 6 r (1.7 - 0.7 r) at roughness r (PerceptualRoughnessToMipmapLevel). Levels
+// after the sixth are never read; they are written because loaders expect a DDS cube to have all
+// its levels.
 //
-// Its world is left-handed. Its panoramas (Skybox/Panoramic) have +X in the centre and -Z to the right.
+// Unity's world is left-handed. Its panoramas (Skybox/Panoramic) have +X in the centre and -Z to
+// the right of the centre.
 #include "engine/engine.h"
 
 #include "image/pack.h"
