@@ -1,5 +1,5 @@
-// An environment to files or to memory: its levels as kiln or an engine has them, its irradiance and its
-// harmonics, all together or none.
+// Saves an environment to files or to memory: its levels in the files of kiln or of an engine, its
+// irradiance and its harmonics. Either all files appear or none.
 #include "codec/save.h"
 #include "codec/sh_text.h"
 #include "engine/engine.h"
@@ -59,7 +59,7 @@ static kiln_result write_all(ki_file_set *set, kiln_context *context,
     return result;
 }
 
-// To files, or to memory where `files` is not NULL.
+// Writes an environment to files, or to memory if `files` is not NULL.
 static kiln_result write_environment(kiln_context *context, const kiln_environment *environment,
                                      const char *path, const kiln_environment_save_def *def,
                                      kiln_files *files, kiln_environment_report *report,

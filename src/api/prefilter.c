@@ -1,10 +1,11 @@
-// Environments, plans and levels as the caller asks for them: which engine's reads tuned levels are
-// for is looked up here.
+// The public functions for environments, plans and levels. They look up the engine for whose shader
+// levels are tuned, and pass how that shader reads levels to src/bake.
 #include "bake/environment.h"
 #include "engine/engine.h"
 #include "image/image.h"
 
-// How the engine that levels are tuned for reads them; `reading` is NULL for exact levels.
+// Sets *reading to how the engine that levels are tuned for reads them, stored in `room`, or to
+// NULL for exact levels.
 static kiln_result find_reading(const kiln_prefilter_def *def, ki_reading *room,
                                 const ki_reading **reading, kiln_error *error)
 {
@@ -29,7 +30,8 @@ static bool decides_itself(const kiln_prefilter_def *levels)
            levels->tune_for || levels->tune_soft;
 }
 
-// The levels that a definition asks for: its own, or the engine's of the size that it names.
+// Sets *levels to the definition of the levels: the caller's own, or that of the engine for the
+// caller's size.
 static kiln_result find_levels(const kiln_bake_def *def, float roughness[KILN_MAX_LEVELS],
                                kiln_prefilter_def *levels, kiln_error *error)
 {
@@ -90,7 +92,7 @@ kiln_result kiln_plan_create(kiln_context *context, kiln_shape source_shape, int
     return ki_plan_create(context, &full, plan, error);
 }
 
-// An environment of a plan that serves once.
+// Computes an environment by a plan that is used once and destroyed.
 static kiln_result execute_once(kiln_plan *plan, const kiln_map *source,
                                 kiln_environment *environment, kiln_error *error)
 {

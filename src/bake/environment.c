@@ -1,14 +1,15 @@
-// From a source to what a scene is lit by. In goes a map of any shape, out come levels, irradiance and
-// spherical harmonics, always by this one sequence:
+// Baking of an environment. In: a map of any shape. Out: prefiltered levels, irradiance and
+// spherical harmonics. Every bake runs this sequence:
 //
 //   source -> mirrored, exposed -> panorama -> spectrum -> levels      (bake/prefilter.c)
 //                                                       -> harmonics   (sphere/sh.c)
 //                                                       -> irradiance  (a level of the cosine lobe)
 //
-// A plan holds all that depends on sizes only, and all memory that an execution needs. A panorama is
-// analysed once where that analysis reaches the degree that the irradiance needs. The panorama made of
-// another shape is analysed again for harmonics and irradiance, to their own low degree, which costs
-// little: so their bits do not depend on which levels are asked for.
+// A plan holds everything that depends only on sizes, and all memory that an execution needs. A
+// source panorama is analysed once if the analysis reaches the degree that the irradiance needs. A
+// panorama made from another shape is analysed again, to a low degree, for harmonics and
+// irradiance. That costs little, and the bits of harmonics and irradiance then do not depend on
+// which levels are computed.
 #include "bake/environment.h"
 
 #include "image/image.h"
@@ -20,17 +21,18 @@
 #include <string.h>
 
 enum {
-    // The cosine lobe is filtered up to degree 303, where its terms are below 1e-7 of the whole.
+    // Degree for irradiance. The cosine lobe is cut off at degree 303, where its terms are below
+    // 1e-7 of the sum.
     IRRADIANCE_DEGREE = 320,
-    // The least that an analysis has; harmonics need KILN_MAX_BANDS - 1.
+    // Smallest degree of an analysis; the harmonics need degree KILN_MAX_BANDS - 1.
     SH_DEGREE = 8
 };
 
-// A spectrum of its own.
+// An analysis of the panorama that is separate from the analysis for the levels.
 typedef struct analyzer {
     ki_analysis *analysis;
     ki_intake *intake;
-    kiln_spectrum *spectrum; // of the last execution
+    kiln_spectrum *spectrum; // spectrum of the last execution
 } analyzer;
 
 struct kiln_plan {
@@ -39,13 +41,16 @@ struct kiln_plan {
     int source_size;
     bool mirror;
     double exposure, rotation;
-    int irradiance_size, sh_bands; // 0 for none
-    kiln_map changed; // the source mirrored and exposed; empty where neither is asked for
-    ki_resample_plan *to_panorama; // NULL where the source is a panorama
+    // Size of the irradiance map and number of bands; 0 for none of either.
+    int irradiance_size, sh_bands;
+    // The source mirrored and exposed; empty if it is neither mirrored nor exposed.
+    kiln_map changed;
+    // Converts the source to a panorama; NULL if the source is a panorama.
+    ki_resample_plan *to_panorama;
     kiln_map panorama;
     ki_prefilter *prefilter;
-    analyzer for_sh, for_irradiance; // empty where the prefilter's spectrum serves
-    ki_level *irradiance;            // the cosine lobe's level
+    analyzer for_sh, for_irradiance; // empty where the spectrum of `prefilter` is used
+    ki_level *irradiance;            // the level that is filtered by the cosine lobe
 };
 
 // ---------------------------------------------------------------------------------------- analysis
@@ -74,7 +79,8 @@ static kiln_result analyzer_create(kiln_context *context, int size, int degree, 
     return result;
 }
 
-// The analyzer's own spectrum of the panorama, or the prefilter's where there is no analyzer.
+// Sets *spectrum to the spectrum of the analyzer, computed from the panorama, or to that of the
+// prefilter if the analyzer is empty.
 static kiln_result find_spectrum(const kiln_plan *p, const analyzer *a, const kiln_map *panorama,
                                  const kiln_spectrum **spectrum, kiln_error *error)
 {
@@ -85,7 +91,8 @@ static kiln_result find_spectrum(const kiln_plan *p, const analyzer *a, const ki
 
 // -------------------------------------------------------------------------------------------- plan
 
-// Rows of the panorama that a source is analysed as: as many as a cube has texels around a half turn.
+// Returns the number of rows of the panorama for a source. A cube of n texels gets 2 n rows, since
+// half a turn crosses two faces.
 static int panorama_rows(kiln_shape shape, int size)
 {
     return shape == KILN_SHAPE_PANORAMA ? size : ki_min(2 * size, KILN_MAX_SIZE / 2);
@@ -112,7 +119,7 @@ static kiln_result check_def(const ki_plan_def *def, kiln_error *error)
     return KILN_OK;
 }
 
-// Memory for what a source becomes before it is analysed.
+// Allocates memory for the mirrored and exposed source and for the panorama made from it.
 static kiln_result plan_source(kiln_plan *p, kiln_error *error)
 {
     kiln_result result = KILN_OK;
@@ -274,7 +281,8 @@ static kiln_result check_target(const kiln_plan *p, const kiln_environment *envi
     return KILN_OK;
 }
 
-// The source as it is analysed, mirrored and exposed, and as a panorama.
+// Mirrors and exposes the source and converts it to a panorama, as far as the plan says. *source
+// then points to the changed map.
 static kiln_result take_source(kiln_plan *p, const kiln_map **source, const kiln_map **panorama,
                                kiln_error *error)
 {

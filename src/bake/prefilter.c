@@ -1,3 +1,9 @@
+// The prefiltered levels of an environment (docs/theory/spectral.md). In: a panorama, or the map of
+// another shape that the panorama was made from, and a kiln_prefilter_def. Out: the levels of a
+// map, each filtered by its lobe. Method: one spherical-harmonic spectrum of the panorama is
+// multiplied by the spectrum of each lobe and evaluated at the texels of the level. Mirror levels
+// (GGX of roughness 0) are resampled by area. Tuned levels are fitted to how an engine interpolates
+// (tune/tune.h).
 #include "bake/prefilter.h"
 
 #include "math/math.h"
@@ -79,9 +85,9 @@ kiln_result ki_prefilter_resolve(const kiln_prefilter_def *def, kiln_prefilter_d
     return KILN_OK;
 }
 
-// A mirror shows the source itself, so that what was a cube stays as sharp, or the same; where its
-// texels are much finer than the mirror's, the way by the panorama, which adds all of them up, is
-// better and as sharp.
+// Plans a mirror level. A mirror is resampled directly from the source, which keeps a source cube
+// as sharp as it was. If the texels of the source are much finer than those of the level, the
+// panorama is used instead: it contains every texel of the source, and the level is as sharp.
 static kiln_result plan_mirror(ki_prefilter *p, int level, const kiln_map *source,
                                kiln_error *error)
 {
@@ -137,7 +143,8 @@ kiln_result ki_prefilter_create(kiln_context *context, int panorama_size, const 
     if (result != KILN_OK)
         goto done;
 
-    // Short spectra cost little, and with more rings a constant is kept to the last float.
+    // Least degree of the analysis. Short spectra cost little, and with the larger number of
+    // latitude rings a constant environment stays constant to the last bit of a float.
     int degree = p->def.tolerance < 1e-3 ? 192 : 64;
     if (reading) {
         result = plan_tuning(p, reading, &lobes[0], error);
@@ -194,13 +201,15 @@ kiln_result ki_prefilter_execute(ki_prefilter *p, const kiln_map *panorama, cons
     if (!ki_progress(p->context, stage, 0))
         return ki_fail_cancelled(error, stage);
     result = ki_intake_whole(p->intake, panorama->level[0], p->spectrum, error);
-    // The first level has four times the texels of the next and so on: progress goes by that.
+    // Progress is reported in proportion to texels: each level has four times the texels of the
+    // next.
     double done = 0.25;
     for (int i = 0; i < p->def.level_count && result == KILN_OK; i++) {
         if (!ki_progress(p->context, stage, done))
             return ki_fail_cancelled(error, stage);
         ki_stage part = {stage, done, done + (1 - done) / 2};
-        // A tuned level has neither: it is made when all others are there.
+        // A tuned level has neither a level nor a mirror in the plan: tuned levels are computed
+        // after all others.
         if (p->levels[i])
             result = ki_level_execute(p->levels[i], p->spectrum, panorama, p->def.rotation, map, i,
                                       &part, error);

@@ -1,4 +1,5 @@
-// The levels of an environment: one analysis of a panorama, and every level from its spectrum.
+// The levels of an environment: a panorama is analysed once, and every level is computed from its
+// spectrum.
 #ifndef KI_PREFILTER_H
 #define KI_PREFILTER_H
 
@@ -8,40 +9,44 @@
 #include "sphere/zonal.h"
 #include "tune/tune.h"
 
-/// Fills in the defaults and checks. `levels` receives the lobe of each level.
+/// Fills in the defaults of a definition and checks its values. `lobes` receives the lobe of each
+/// level, `roughness` its roughness.
 kiln_result ki_prefilter_resolve(const kiln_prefilter_def *def, kiln_prefilter_def *resolved,
                                  float roughness[KILN_MAX_LEVELS], kiln_lobe lobes[KILN_MAX_LEVELS],
                                  kiln_error *error);
-/// Whether a lobe is a perfect mirror: such levels are resampled by area.
+/// Returns whether a lobe is a perfect mirror. Mirror levels are resampled by area instead of
+/// filtered.
 bool ki_is_mirror(const kiln_lobe *lobe);
 
-/// All that the levels of one size need, from panoramas of one size.
+/// Everything that the levels need and that depends only on their sizes and the panorama's size.
 typedef struct ki_prefilter {
     kiln_context *context;
-    kiln_prefilter_def def; // resolved
-    int source_size;        // rows of the panorama
+    kiln_prefilter_def def; // definition with each default replaced by its value
+    int source_size;        // number of rows of the panorama
     float roughness[KILN_MAX_LEVELS];
     ki_analysis *analysis;
     ki_intake *intake;
-    kiln_spectrum *spectrum; // of the last execution
-    // Each level has a mirror, or a level, or is one of the tuned levels. A mirror may show the
-    // source itself, of another shape than a panorama.
+    kiln_spectrum *spectrum; // spectrum of the panorama in the last execution
+    // Each level either is a mirror (`mirrors`), is filtered (`levels`) or is tuned (`tune`).
+    // `direct` says that a mirror is resampled from the source itself, whose shape need not be a
+    // panorama.
     ki_resample_plan *mirrors[KILN_MAX_LEVELS];
     bool direct[KILN_MAX_LEVELS];
     ki_level *levels[KILN_MAX_LEVELS];
-    ki_tune *tune; // of the tuned levels, or NULL
+    ki_tune *tune; // plan of the tuned levels, or NULL
 } ki_prefilter;
 
-/// `source` (its shape and size are used) is what `panorama_size` rows of panorama will be made from,
-/// or NULL where the panorama itself is the source. `reading`, for tuned levels, or NULL.
+/// Prepares levels from panoramas of `panorama_size` rows. `source` has the shape and size of the
+/// map that the panoramas are made from, or is NULL if the panorama itself is the source. `reading`
+/// says how an engine reads tuned levels, or is NULL for exact levels.
 kiln_result ki_prefilter_create(kiln_context *context, int panorama_size, const kiln_map *source,
                                 const kiln_prefilter_def *def, const ki_reading *reading,
                                 ki_prefilter **prefilter, kiln_error *error);
-/// `panorama` has the prefilter's size; `source` is as it was created with. The spectrum stays in the
-/// prefilter.
+/// Computes the levels. `panorama` has the size that the plan was made for, `source` the shape and
+/// size. The spectrum stays in the prefilter until the next execution.
 kiln_result ki_prefilter_execute(ki_prefilter *prefilter, const kiln_map *panorama,
                                  const kiln_map *source, kiln_map *map, kiln_error *error);
-/// May be NULL.
+/// Frees a prefilter. `prefilter` may be NULL.
 void ki_prefilter_destroy(ki_prefilter *prefilter);
 
 #endif

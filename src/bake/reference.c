@@ -1,14 +1,16 @@
-// Brute force with its error under control.
+// Filtering by brute force with a controlled error. In: a panorama, a lobe and directions. Out: the
+// filtered radiance in each direction.
 //
 // For a direction d the wanted value is
 //
-//     sum over texels t of  L_t I_t  /  sum of I_t,     I_t = integral over t of k(d . w) dw.
+//     sum over texels t of  L_t I_t  /  sum of I_t,     I_t = integral over t of k(d . w) dw,
 //
-// I_t is a product Gauss-Legendre rule in (theta, phi), with as many nodes as the lobe needs at the
-// texel's distance from its peak: GGX falls over the length sqrt(width^2 + distance^2), since its
-// nearest complex poles lie that far away. Most texels are done a row at a time with 1 or 2 x 2
-// nodes; those near the peak, and those that the horizon crosses, one by one: cut into four as often
-// as needed, then 4 x 4 nodes.
+// where L_t is the radiance of texel t and k the lobe. I_t is computed by a product Gauss-Legendre
+// rule in (theta, phi). The number of nodes depends on the distance of the texel from the peak of
+// the lobe: GGX changes over the length sqrt(width^2 + distance^2), because its nearest complex
+// poles lie at that distance. Most texels are computed a row at a time with 1 or 2 x 2 nodes.
+// Texels near the peak or crossed by the lobe's horizon are computed singly: each is cut into four
+// as often as needed, and each cell gets 4 x 4 nodes.
 #include "bake/reference.h"
 
 #include "image/image.h"
@@ -19,12 +21,13 @@
 #include <string.h>
 
 enum {
-    GROUP = 8,      // directions that share a pass over the rows
-    BATCH = 16,     // groups between two reports of progress
-    MAX_DEPTH = 48, // of the cutting: a texel's 2^48th part is below a double's resolution
+    GROUP = 8,  // number of directions that are summed in one pass over the rows
+    BATCH = 16, // number of groups of directions between two progress reports
+    // Deepest level of cutting: the 2^48th part of a texel is smaller than a double resolves.
+    MAX_DEPTH = 48,
 };
 
-// Gauss-Legendre nodes on [-1, 1] and weights that add to 1.
+// Gauss-Legendre nodes on [-1, 1] and weights whose sum is 1.
 static const double pair_node = 0.57735026918962576451;
 static const double quad_node[4] = {-0.86113631159405257522, -0.33998104358485626480,
                                     0.33998104358485626480, 0.86113631159405257522};
@@ -35,15 +38,17 @@ static const double quad_weight[4] = {0.17392742256872692869, 0.3260725774312730
 
 typedef struct row_geometry {
     double cos_centre, sin_centre;
-    double cos_mean, sin_mean; // mean over the row's texels of cos and sin theta
+    // Means of cos theta and sin theta over the solid angle of the row's texels.
+    double cos_mean, sin_mean;
     double cos_pair[2], sin_pair[2];
-    double area; // of one texel in steradians
+    double area; // solid angle of one texel of the row in steradians
 } row_geometry;
 
-// What the cells of one depth have in common: texels are depth 0.
+// Geometry that is the same for all cells of one depth of cutting. A texel has depth 0.
 typedef struct cell_geometry {
     double theta_size, phi_size;
-    double theta_cos[4], theta_sin[4], phi_cos[4], phi_sin[4]; // of the nodes' offsets
+    // Cosine and sine of the nodes' offsets from the centre of a cell.
+    double theta_cos[4], theta_sin[4], phi_cos[4], phi_sin[4];
     double theta_quarter_cos, theta_quarter_sin, phi_quarter_cos, phi_quarter_sin;
 } cell_geometry;
 
@@ -51,24 +56,26 @@ typedef struct reference {
     const float *texels;
     int width, height;
     row_geometry *rows;
-    double
-        *columns[6]; // means of sin phi and cos phi over each column, sine and cosine at its nodes
+    // Means of sin phi and cos phi over each column, then sine and cosine of phi at its two
+    // nodes.
+    double *columns[6];
     cell_geometry cells[MAX_DEPTH + 1];
 
     kiln_lobe lobe;
-    bool rational; // GGX, and Lambert, which is its alpha = 1
-    bool linear;   // in cos theta: the mean direction is exact
-    double a2;     // alpha^2 of a rational lobe
-    double cut;    // cos theta below which the lobe is nothing
-    bool kink;     // the lobe has an edge there
+    bool rational; // true: GGX, or Lambert, which is GGX with alpha = 1
+    // True: the lobe is linear in cos theta, so that one value at the mean direction is exact.
+    bool linear;
+    double a2;  // alpha^2 of a GGX lobe
+    double cut; // cos theta below which the lobe is 0 or negligible
+    bool kink;  // true: the lobe has an edge at cos theta = `cut`
     double lobe_width;
     int depth_limit;
     ki_reference_rule rule;
 
-    const double (*directions)[3]; // turned, unit
+    const double (*directions)[3]; // unit directions, turned by the rotation
     double (*values)[3];
     int count;
-    double *scratch; // of a batch
+    double *scratch; // scratch memory of a batch of groups
     size_t scratch_size;
 } reference;
 
@@ -81,10 +88,11 @@ static void set_rows(reference *r)
         ki_sincos(step * y, &s0, &c0);
         ki_sincos(step * (y + 1), &s1, &c1);
         ki_sincos(centre, &row->sin_centre, &row->cos_centre);
-        // cos a - cos b = 2 sin((a + b) / 2) sin((b - a) / 2), without the cancellation.
+        // By cos a - cos b = 2 sin((a + b) / 2) sin((b - a) / 2), which avoids the cancellation of
+        // the difference.
         double height = 2 * row->sin_centre * ki_sin(step / 2);
         row->area = height * (2 * KI_PI / r->width);
-        // Means weighted by sin theta.
+        // Means over theta, weighted by sin theta.
         row->cos_mean = row->cos_centre * ki_cos(step / 2);
         row->sin_mean = (step - (s1 * c1 - s0 * c0)) / (2 * height);
         for (int k = 0; k < 2; k++)
@@ -138,7 +146,7 @@ static void set_lobe(reference *r, const kiln_lobe *lobe)
         r->lobe_width = 2 * alpha;
         r->linear = alpha == 1;
     } else if (lobe->kind == KILN_LOBE_PHONG) {
-        // cos^n below e^-60 of its peak is left out: 1e-26.
+        // Where cos^n theta is below e^-60 = 1e-26 of its peak, the lobe is left out.
         double cut = ki_exp(-60 / lobe->parameter);
         if (cut > 0.01) {
             r->cut = cut;
@@ -154,8 +162,8 @@ static void set_rule(reference *r, const ki_reference_rule *rule)
     r->rule.quads = rule->quads > 0 ? rule->quads : 0.5;
     r->rule.edge = rule->edge;
     if (!(rule->edge > 0)) {
-        // GGX at the horizon, compared with its integral, weighs 4 alpha^2 / (1 + alpha^2)^2 of
-        // what Lambert does at most.
+        // Relative to the integral of the lobe, GGX at the horizon has at most 4 alpha^2 / (1 +
+        // alpha^2)^2 times the weight of Lambert.
         r->rule.edge = 0.0025;
         if (r->rational)
             r->rule.edge = ki_clamp(0.0025 * (1 + r->a2) / (2 * sqrt(r->a2)), 0, 0.01);
@@ -164,19 +172,20 @@ static void set_rule(reference *r, const ki_reference_rule *rule)
 
 // ---------------------------------------------------------------------------------- texel by texel
 
-// The length over which the lobe changes at a distance from its peak.
+// Returns the length over which the lobe changes at a distance from its peak.
 static double lobe_scale(const reference *r, double distance)
 {
     if (r->rational)
         return sqrt(r->lobe_width * r->lobe_width + distance * distance);
     if (r->lobe.kind == KILN_LOBE_CHARLIE && distance < r->lobe_width)
-        return distance; // a power of the distance, not always a smooth one
+        return distance; // Charlie is a power of the distance, and not always a smooth one
     if (r->lobe.kind == KILN_LOBE_CUSTOM && distance > 4 * r->lobe_width)
         return distance / 4;
     return r->lobe_width;
 }
 
-// Mean over a cell's (theta, phi) rectangle of k sin theta.
+// Returns the mean over a cell's rectangle in (theta, phi) of k sin theta, k being the lobe, by 4 x
+// 4 nodes.
 static double cell_nodes(const reference *r, const double d[3], const cell_geometry *cell,
                          double sin_theta, double cos_theta, double sin_phi, double cos_phi)
 {
@@ -191,7 +200,8 @@ static double cell_nodes(const reference *r, const double d[3], const cell_geome
         double ct = cos_theta * cell->theta_cos[i] - sin_theta * cell->theta_sin[i];
         double dy = d[1] - ct;
         sines[i] = st;
-        // 1 - cos theta = |d - l|^2 / 2, exact where it is small.
+        // 1 - cos of the angle between the directions d and l is |d - l|^2 / 2, which is precise
+        // for small angles.
         for (int k = 0; k < 4; k++) {
             double dx = d[0] - st * px[k], dz = d[2] - st * pz[k];
             far[i][k] = 0.5 * (dx * dx + dy * dy + dz * dz);
@@ -218,7 +228,8 @@ static double cell_nodes(const reference *r, const double d[3], const cell_geome
     return total;
 }
 
-// The same, cut as often as the lobe asks for.
+// Returns the mean that cell_nodes computes, but cuts the cell into four as long as the lobe
+// changes too fast across the cell.
 static double cell_mean(const reference *r, const double d[3], int depth, double sin_theta,
                         double cos_theta, double sin_phi, double cos_phi)
 {
@@ -253,21 +264,24 @@ static double cell_mean(const reference *r, const double d[3], int depth, double
 
 // -------------------------------------------------------------------------------------- row by row
 
-// A direction looked in, on its way through the rows. The part of d . l that varies along a row is
-// sin theta times `along`.
+// A direction in which the lobe looks, while the rows are summed. The part of the cosine between
+// that direction and a texel that varies along a row is sin theta of the row times `along`.
 typedef struct look {
     double d[3], sin_theta;
-    double column;    // of its azimuth, in texels; centres are whole numbers
-    double *along[3]; // mean, node, node
-    double sum[4];    // three channels and the weights
+    // Column of the direction's azimuth, in texels; texel centres are whole numbers.
+    double column;
+    double *along[3]; // `along` at the columns' means and at their two nodes
+    double sum[4];    // weighted sums of the three channels, and the sum of the weights
 } look;
 
-// Columns are counted from the ray's azimuth and may run over the picture's edge.
+// A range of columns, counted from the azimuth of the direction; the range may extend over the
+// picture's edge.
 typedef struct span {
     int first, last;
 } span;
 
-// The columns whose centres have d . l > threshold in a row.
+// Returns the range of columns of one row whose centres have a cosine above `threshold` to the
+// direction of `ray`.
 static span columns_above(const reference *r, const look *ray, const row_geometry *row,
                           double threshold)
 {
@@ -292,7 +306,7 @@ static int wrap(const reference *r, int x)
     return x < 0 ? x + r->width : x >= r->width ? x - r->width : x;
 }
 
-// k at 2 x 2 nodes, averaged.
+// Sets weight[x] to the mean of the lobe over 2 x 2 nodes of the texel in column x.
 static void fill_pairs(const reference *r, const look *ray, const row_geometry *row, int first,
                        int last, double *restrict weight)
 {
@@ -315,7 +329,7 @@ static void fill_pairs(const reference *r, const look *ray, const row_geometry *
         double cc = p1 + q1 * ea[x], cd = p1 + q1 * eb[x];
         double da = high - slope * ca, db = high - slope * cb;
         double dc = high - slope * cc, dd = high - slope * cd;
-        double rest = a2 / ((da * db) * (dc * dd)); // one division for four
+        double rest = a2 / ((da * db) * (dc * dd)); // one division for four quotients
         double ra = rest * db * (dc * dd), rb = rest * da * (dc * dd);
         double rc = rest * (da * db) * dd, rd = rest * (da * db) * dc;
         ca = ca > 0 ? ca : 0;
@@ -326,7 +340,8 @@ static void fill_pairs(const reference *r, const look *ray, const row_geometry *
     }
 }
 
-// k at the texels' mean directions: right to first order in cos theta.
+// Sets weight[x] to the lobe at the mean direction of the texel in column x, which is exact for a
+// lobe linear in cos theta.
 static void fill_means(const reference *r, const look *ray, const row_geometry *row, int first,
                        int last, double *restrict weight)
 {
@@ -346,7 +361,7 @@ static void fill_means(const reference *r, const look *ray, const row_geometry *
 
 typedef double lanes __attribute__((vector_size(32), aligned(8)));
 
-// Adds weight times texel for the columns first .. last, in four lanes that start at `first`.
+// Adds weight times radiance for the columns first .. last, in four lanes that start at `first`.
 static void gather(look *ray, const double *weight, const double *const plane[3], int first,
                    int last, double area)
 {
@@ -379,7 +394,7 @@ static void refine(const reference *r, const look *ray, const row_geometry *row,
                    double *weight)
 {
     double step = 2 * KI_PI / r->width, step_theta = KI_PI / r->height;
-    // From the mean over (theta, phi) to the mean over the solid angle.
+    // Factor from the mean over (theta, phi) to the mean over the solid angle.
     double scale = step * step_theta / row->area;
     for (int i = s.first; i <= s.last; i++) {
         int x = wrap(r, i);
@@ -389,8 +404,9 @@ static void refine(const reference *r, const look *ray, const row_geometry *row,
     }
 }
 
-// Means or pairs: which rule a row's texels need where they are nearest to the lobe's peak; `near`
-// is the cosine of the distance inside which pairs do not suffice either.
+// Returns whether one value a texel suffices in a row, where the row is nearest to the lobe's peak;
+// otherwise texels need 2 x 2 nodes. *near receives the cosine of the distance from the peak within
+// which 2 x 2 nodes do not suffice either.
 static bool means_suffice(const reference *r, const look *ray, const row_geometry *row,
                           double *near)
 {
@@ -400,7 +416,7 @@ static bool means_suffice(const reference *r, const look *ray, const row_geometr
     double c = ray->d[1] * row->cos_centre + ray->sin_theta * row->sin_centre;
     double nearest = ki_acos(ki_clamp(c, -1, 1)) - 0.5 * theta_size;
 
-    double length = size / r->rule.pairs; // the scale that pairs need
+    double length = size / r->rule.pairs; // the length of change that 2 x 2 nodes need
     *near = 2;
     if (r->rational) {
         double rest = length * length - r->lobe_width * r->lobe_width;
@@ -428,7 +444,8 @@ static void row_of_ray(const reference *r, look *ray, const row_geometry *row,
 
     double near;
     bool means = means_suffice(r, ray, row, &near);
-    // The part left of the picture's edge, the part in it, and the part right of it.
+    // The range of columns in three pieces: left of the picture's edge, inside the picture, and
+    // right of its edge.
     int w = r->width;
     span piece[3] = {{outer.first + w, ki_min(outer.last, -1) + w},
                      {ki_max(outer.first, 0), ki_min(outer.last, w - 1)},
@@ -510,7 +527,7 @@ static void mirror(const kiln_map *panorama, const double direction[3], double v
         value[c] = (double)texel[c];
 }
 
-// Turns the directions and makes them unit.
+// Normalises the directions and turns them.
 static void set_directions(double (*to)[3], const double (*from)[3], int count, double rotation)
 {
     for (int i = 0; i < count; i++) {

@@ -1,23 +1,28 @@
-// The ground truth: an environment seen through a lobe, integrated texel by texel.
+// Reference values by brute force: an environment filtered by a lobe, integrated texel by texel.
 #ifndef KI_REFERENCE_H
 #define KI_REFERENCE_H
 
 #include "base/base.h"
 
-/// How fine a texel is cut, as ratios of its size to the length over which the lobe changes there.
-/// {0} stands for the defaults.
+/// How finely texels are cut, as ratios of a cell's size to the length over which the lobe changes
+/// there. {0} stands for the defaults.
 typedef struct ki_reference_rule {
-    double centre; ///< below it one value at the texel's mean direction; default 1/300
-    double pairs;  ///< below it 2 x 2 Gauss-Legendre nodes; default 1/20
-    double quads;  ///< below it 4 x 4, else the cell is cut into four; default 1/2
-    double edge; ///< radians: larger cells that the lobe's horizon crosses are cut; default 0.0025
+    double centre; ///< below this ratio one value at the texel's mean direction; default 1/300
+    double pairs;  ///< below this ratio 2 x 2 Gauss-Legendre nodes; default 1/20
+    /// Below this ratio 4 x 4 Gauss-Legendre nodes, above it the cell is cut into four; default
+    /// 1/2.
+    double quads;
+    /// Size in radians above which cells are cut where the lobe's horizon crosses them; default
+    /// 0.0025.
+    double edge;
 } ki_reference_rule;
 
-/// For each direction (any length but 0): the sum over the texels of a panorama of radiance times
-/// the integral of the lobe over the texel, divided by the sum of those integrals. The panorama is
-/// its texels, each uniformly bright over its exact solid angle. `rule` may be NULL; with the
-/// defaults the integrals are right to 1e-5 relative or better wherever they matter.
-/// `rotation` as in ki_turn. GGX with alpha < 1e-9 is a mirror: the texel that the direction hits.
+/// Computes for each direction (of any length but 0) the sum over a panorama's texels of radiance
+/// times the integral of the lobe over the texel, divided by the sum of these integrals. Texels are
+/// constant over their exact solid angle. `rule` may be NULL for the defaults, with which the
+/// integrals have a relative error of at most 1e-5 wherever they matter. `rotation` is in degrees
+/// as in ki_turn. GGX with alpha < 1e-9 is a mirror: the value is the texel that the direction
+/// hits.
 kiln_result ki_reference_integrate(kiln_context *context, const kiln_map *panorama,
                                    const kiln_lobe *lobe, double rotation,
                                    const double (*directions)[3], int count,

@@ -1,5 +1,8 @@
-// Preetham, Shirley and Smits, A practical analytic model for daylight, SIGGRAPH 1999. Numbers of
-// tables and equations are theirs.
+// An analytic daylight sky (docs/theory/sky.md). In: elevation and azimuth of the sun, turbidity
+// and the ground's albedo. Out: a panorama of sky, sun disc and ground in kcd/m^2. Method:
+// Preetham, Shirley and Smits, "A Practical Analytic Model for Daylight", SIGGRAPH 1999, whose
+// tables and equations are cited by number below. The disc of the sun is integrated over each
+// texel, so that its irradiance is exact at every size.
 #include "bake/sky.h"
 
 #include "math/math.h"
@@ -10,7 +13,7 @@ const double ki_sun_radius = 0.533 / 2 * (KI_PI / 180);
 
 // ------------------------------------------------------------------------------------------ colour
 
-// IEC 61966-2-1: XYZ to linear Rec. 709 with the white point D65.
+// Converts XYZ to linear Rec. 709 with the white point D65 by IEC 61966-2-1.
 static void rgb_from_xyz(const double xyz[3], double rgb[3])
 {
     static const double m[3][3] = {
@@ -19,7 +22,7 @@ static void rgb_from_xyz(const double xyz[3], double rgb[3])
         rgb[i] = m[i][0] * xyz[0] + m[i][1] * xyz[1] + m[i][2] * xyz[2];
 }
 
-// Colours outside Rec. 709 are mixed with grey of the same luminance until no channel is negative.
+// Mixes a colour outside Rec. 709 with grey of the same luminance until no channel is negative.
 static void into_gamut(double luminance, double rgb[3])
 {
     double lowest = rgb[0] < rgb[1] ? rgb[0] : rgb[1];
@@ -39,7 +42,8 @@ static double lobe(double x, double mean, double left, double right)
     return ki_exp(-0.5 * t * t);
 }
 
-// The CIE 1931 observer. Wyman, Sloan and Shirley 2013, multi-lobe fits, table 1; wavelength in nm.
+// Computes the colour matching functions of the CIE 1931 observer by the multi-lobe fits of Wyman,
+// Sloan and Shirley 2013, table 1. The wavelength w is in nm.
 static void colour_matching(double w, double xyz[3])
 {
     xyz[0] = 1.056 * lobe(w, 599.8, 37.9, 31.0) + 0.362 * lobe(w, 442.0, 16.0, 26.7) -
@@ -50,8 +54,8 @@ static void colour_matching(double w, double xyz[3])
 
 // --------------------------------------------------------------------------------------------- sun
 
-// From 380 to 750 nm by 10: radiance of the sun above the atmosphere in 100 W / (m^2 sr nm), and
-// absorption of ozone (1/cm), water vapour (1/cm) and mixed gases. Table 2.
+// Spectra from 380 to 750 nm in steps of 10, from table 2: radiance of the sun above the atmosphere
+// in 100 W / (m^2 sr nm), and absorption of ozone (1/cm) and water vapour (1/cm).
 enum { BANDS = 38 };
 static const double sun_above[BANDS] = {
     165.5, 162.3, 211.2, 258.8, 258.2, 242.3, 267.6, 296.6, 305.4, 300.6, 306.6, 288.3, 287.1,
@@ -64,8 +68,8 @@ static const double ozone[BANDS] = {
 static const double water[BANDS] = {
     [31] = 0.016, [32] = 0.024, [33] = 0.0125, [34] = 1.0, [35] = 0.87, [36] = 0.061, [37] = 0.001};
 
-// The sun's radiance through the atmosphere: appendix, "Sun Spectral Radiance". Mixed gases absorb
-// from 760 nm on and drop out.
+// Computes the radiance of the sun through the atmosphere by the appendix "Sun Spectral Radiance".
+// Mixed gases absorb only from 760 nm on and are therefore left out.
 static void sun_radiance(double theta, double turbidity, double rgb[3])
 {
     double degrees = theta * (180 / KI_PI);
@@ -74,24 +78,25 @@ static void sun_radiance(double theta, double turbidity, double rgb[3])
     double xyz[3] = {0};
     for (int i = 0; i < BANDS; i++) {
         double nm = 380 + 10 * i, um = nm / 1000, match[3];
-        double depth = 0.008735 * ki_pow(um, -4.08) * mass; // Rayleigh
-        depth += aerosols * ki_pow(um, -1.3) * mass;        // Angstrom
-        depth += ozone[i] * 0.35 * mass;                    // 0.35 cm of ozone
-        double w = water[i] * 2 * mass;                     // 2 cm of water
+        double depth = 0.008735 * ki_pow(um, -4.08) * mass; // Rayleigh scattering
+        depth += aerosols * ki_pow(um, -1.3) * mass;        // aerosols, by Angstrom's formula
+        depth += ozone[i] * 0.35 * mass;                    // absorption by 0.35 cm of ozone
+        double w = water[i] * 2 * mass;                     // amount of water: 2 cm
         depth += 0.2385 * w / ki_pow(1 + 20.07 * w, 0.45);
         double radiance = sun_above[i] * 100 * ki_exp(-depth);
         colour_matching(nm, match);
         for (int k = 0; k < 3; k++)
             xyz[k] += radiance * match[k];
     }
-    // 10 nm a band, 683 lm/W, thousands of candelas.
+    // The factors are 10 nm per sample of the spectrum, 683 lm/W, and 1e-3 for kcd.
     for (int k = 0; k < 3; k++)
         xyz[k] *= 10 * 683 * 1e-3;
     rgb_from_xyz(xyz, rgb);
     into_gamut(xyz[1], rgb);
 }
 
-// The disc meets the circle at `theta` in the azimuths within this of its own.
+// Returns half the width in azimuth of the sun's disc on the circle at angle `theta` from the
+// zenith.
 static double disc_half_width(double sun_theta, double theta)
 {
     double s = ki_sin(theta) * ki_sin(sun_theta), rest;
@@ -101,8 +106,9 @@ static double disc_half_width(double sun_theta, double theta)
     return ki_acos(ki_clamp(rest / s, -1, 1));
 }
 
-// Circles across the part of the disc between two angles from the zenith, evenly in the arcsine of
-// their distance from the disc's centre: the chords' ends do no harm then.
+// Circles of constant theta across the part of the disc between two angles from the zenith. They
+// are evenly spaced in the arcsine of their distance from the disc's centre, so that the square
+// root of the chord's length at the disc's edge does not slow the convergence of the sum.
 enum { CIRCLES = 128 };
 
 static bool disc_circles(double sun_theta, double low, double high, double theta[CIRCLES],
@@ -122,8 +128,9 @@ static bool disc_circles(double sun_theta, double low, double high, double theta
     return true;
 }
 
-// Adds the disc's part of a row to its texels: radiance times the share of each texel that the disc
-// covers, which is the overlap of the circles' arcs with the columns.
+// Adds the part of the disc within a row to the row's texels: radiance times the share of each
+// texel that the disc covers. The share is found from the overlap of the circles' arcs with the
+// texel's columns.
 static void paint_disc(const ki_sky *sky, double low, double high, double area, int width,
                        float *texel)
 {
@@ -147,8 +154,8 @@ static void paint_disc(const ki_sky *sky, double low, double high, double area, 
     }
 }
 
-// What one unit of the disc's radiance gives the ground: the integral of cos theta over the part of
-// the disc above the horizon.
+// Returns the irradiance of the ground from a disc of radiance 1: the integral of cos theta over
+// the part of the disc above the horizon.
 static double disc_on_ground(double sun_theta)
 {
     double theta[CIRCLES], step[CIRCLES], sum = 0;
@@ -162,7 +169,8 @@ static double disc_on_ground(double sun_theta)
 
 // --------------------------------------------------------------------------------------------- sky
 
-// Perez's function, eq. 2, in two factors.
+// Perez's function, eq. 2, is the product of a factor of the angle from the zenith and a factor of
+// the angle gamma from the sun.
 static double perez_height(const double p[5], double cos_theta)
 {
     double f = 1 + p[0] * ki_exp(p[1] / (cos_theta > 1e-3 ? cos_theta : 1e-3));
@@ -180,7 +188,8 @@ static double cubic(const double c[4], double x)
     return ((c[0] * x + c[1]) * x + c[2]) * x + c[3];
 }
 
-// Appendix: the coefficients of Y, x and y, and the zenith's luminance and chromaticity.
+// Sets the coefficients of Perez's function for Y, x and y and the luminance and chromaticity of
+// the zenith, from the appendix.
 static void set_perez(ki_sky *sky, double t, double sun_theta)
 {
     static const double slope[3][5] = {{0.1787, -0.3554, -0.0227, 0.1206, -0.0670},
@@ -212,7 +221,8 @@ static void set_perez(ki_sky *sky, double t, double sun_theta)
     }
 }
 
-// The factors that depend on the height alone are the same along a row.
+// Computes the radiance of the sky. `height` holds the factors that depend only on the angle from
+// the zenith, which are constant along a row.
 static void radiance(const ki_sky *sky, const double height[3], const double direction[3],
                      double rgb[3])
 {
@@ -236,7 +246,7 @@ void ki_sky_radiance(const ki_sky *sky, const double direction[3], double rgb[3]
     radiance(sky, height, direction, rgb);
 }
 
-// Irradiance of the ground by the sky alone.
+// Computes the irradiance of the ground from the sky without the sun's disc.
 static void sky_on_ground(const ki_sky *sky, double irradiance[3])
 {
     enum { HEIGHTS = 48, AZIMUTHS = 96 };
@@ -244,7 +254,7 @@ static void sky_on_ground(const ki_sky *sky, double irradiance[3])
     ki_gauss_legendre(HEIGHTS, node, weight);
     irradiance[0] = irradiance[1] = irradiance[2] = 0;
     for (int j = 0; j < HEIGHTS; j++) {
-        // In cos^2 theta, whose differential is 2 cos theta sin theta dtheta.
+        // The quadrature is in cos^2 theta, whose differential is 2 cos theta sin theta dtheta.
         double square = 0.5 * (1 + node[j]), cos_theta = sqrt(square), sin_theta = sqrt(1 - square);
         for (int i = 0; i < AZIMUTHS; i++) {
             double sine, cosine, rgb[3];
@@ -272,7 +282,8 @@ void ki_sky_prepare(ki_sky *sky, double elevation, double azimuth, double turbid
     sky->sun[1] = ki_cos(sky->sun_theta);
     sky->sun[2] = -ki_sin(sky->sun_theta) * cosine;
 
-    // The model ends with the sun on the horizon and, for the sky, with turbidity 2.
+    // The model ends where the sun is on the horizon; the sky's part of the model also ends at
+    // turbidity 2.
     double theta = sky->sun_theta < KI_PI / 2 ? sky->sun_theta : KI_PI / 2;
     set_perez(sky, turbidity > 2 ? turbidity : 2, theta);
     if (elevation < 0)
@@ -301,7 +312,7 @@ static void paint_row(void *data, int index)
     float *texel = p->map->level[0] + 3 * (size_t)row * (size_t)width;
     double low = KI_PI * row / size, high = KI_PI * (row + 1) / size;
 
-    // Of a row that the horizon crosses, the part above is sky.
+    // In a row that the horizon crosses, the share `above` of the texel is sky.
     double top = ki_cos(low), bottom = ki_cos(high), above = 1;
     if (2 * (row + 1) > size)
         above = 2 * row >= size ? 0 : top / (top - bottom);
@@ -347,7 +358,7 @@ static kiln_result check_range(const char *name, double value, double low, doubl
     return KILN_OK;
 }
 
-// An option whose 0 stands for a default and whose KILN_ZERO for 0.
+// Returns the value of an option for which 0 stands for a default and KILN_ZERO for 0.
 static double or_default(double value, double standard)
 {
     if (value == KILN_ZERO)

@@ -1,30 +1,33 @@
-// An analytic daylight sky: docs/theory/sky.md.
+// An analytic daylight sky. Source: docs/theory/sky.md.
 #ifndef KI_SKY_H
 #define KI_SKY_H
 
 #include "base/base.h"
 
-/// Everything about a sky that does not depend on the direction looked in. Angles in radians,
-/// radiance in linear Rec. 709, kcd/m^2 by channel.
+/// Everything about a sky that does not depend on the viewing direction. Angles are in radians,
+/// radiance is linear Rec. 709 in kcd/m^2 per channel.
 typedef struct ki_sky {
-    double sun[3];          // direction
-    double sun_theta;       // from the zenith
-    double sun_azimuth;     // from -Z toward +X
-    double sun_radiance[3]; // of the whole disc
-    double ground[3];       // radiance
-    double perez[3][5];     // A to E for Y, x, y
-    double zenith[3];       // Y, x, y over Perez's function there
-    double fade;            // of the twilight, 1 by day
+    double sun[3];          // unit direction of the sun
+    double sun_theta;       // angle of the sun from the zenith
+    double sun_azimuth;     // azimuth of the sun from -Z toward +X
+    double sun_radiance[3]; // radiance of the sun's disc
+    double ground[3];       // radiance of the ground
+    double perez[3][5];     // coefficients A to E of Perez's function for Y, x and y
+    // Y, x and y of the zenith, each divided by Perez's function at the zenith.
+    double zenith[3];
+    double fade; // factor for twilight; 1 by day
 } ki_sky;
 
-/// Radius of the sun's disc: half of 0.533 degrees.
+/// Angular radius of the sun's disc in radians: half of 0.533 degrees.
 extern const double ki_sun_radius;
 
-/// Degrees; the ranges of kiln_sky_def.
+/// Prepares a sky from the angles in degrees, the turbidity and the albedo of the ground, each
+/// within the range that kiln_sky_def states.
 void ki_sky_prepare(ki_sky *sky, double elevation, double azimuth, double turbidity, double albedo);
-/// The sky without the sun's disc in a unit direction at or above the horizon.
+/// Computes the radiance of the sky, without the sun's disc, in a unit direction at or above the
+/// horizon.
 void ki_sky_radiance(const ki_sky *sky, const double direction[3], double rgb[3]);
-/// Sky, sun and ground onto level 0 of a panorama.
+/// Writes sky, sun and ground to level 0 of a panorama.
 kiln_result ki_sky_paint(kiln_context *context, const ki_sky *sky, kiln_map *map,
                          kiln_error *error);
 

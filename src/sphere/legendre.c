@@ -24,9 +24,10 @@ bool ki_legendre_create(kiln_context *context, int degree, ki_legendre *legendre
         ki_legendre_destroy(legendre);
         return false;
     }
-    // P_mm = sqrt((2m+1)!! / (2m)!! / 4 pi) sin^m theta. With
-    // a_l = sqrt((4 l^2 - 1) / (l^2 - m^2)), P_l = a_l (x P_{l-1} - P_{l-2} / a_{l-1}). The factorisation P_l = scale_l q_l
-    // therefore has scale_l = a_l scale_{l-1} / 2 and f_l = 4 / a_{l-1}^2.
+    // P_mm = sqrt((2m+1)!! / (2m)!! / 4 pi) sin^m theta. For l > m,
+    // P_l = a_l (x P_{l-1} - P_{l-2} / a_{l-1}) with a_l = sqrt((4 l^2 - 1) / (l^2 - m^2)).
+    // The factorisation P_l = scale_l q_l therefore has scale_l = a_l scale_{l-1} / 2 and
+    // f_l = 4 / a_{l-1}^2.
     double start = sqrt(1 / (4 * KI_PI));
     for (int m = 0; m <= degree; m++) {
         double *f = legendre->f + ki_legendre_row(legendre, m);
