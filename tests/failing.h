@@ -1,12 +1,14 @@
-// A context whose n-th allocation fails.
+// A context whose n-th allocation fails, with a count of the blocks that are held.
 #ifndef KILN_TEST_FAILING_H
 #define KILN_TEST_FAILING_H
 
 #include "check.h"
 
 typedef struct failing {
-    long calls, fail_at; // 0 for never
-    long held;           // blocks
+    long calls;   // allocations asked for
+    long fail_at; // number of the allocation that fails, from 1; 0 for none
+    long held;    // blocks that are allocated now
+    long idle;    // blocks that the new context held before any call
 } failing;
 
 static void *failing_allocate(void *user, size_t size)
@@ -35,6 +37,7 @@ static kiln_context *failing_context(failing *f)
                             .memory_limit = (size_t)512 << 20,
                             .thread_count = 1};
     assert_int_equal(kiln_context_create(&def, &context, NULL), KILN_OK);
+    f->idle = f->held;
     return context;
 }
 
