@@ -263,8 +263,9 @@ typedef struct kiln_file_info {
     /// "harmonics", or an atlas of levels side by side, "cubeuv" (three.js) or "atlas"
     /// (PlayCanvas).
     char layout[24];
-    int width, height; ///< size of a cube face, of a picture, or of one slice of a table
-    int depth;         ///< number of slices of a table, else 1
+    /// Size of a cube face, of a picture, or of one slice of a table; of harmonics their number and 1.
+    int width, height;
+    int depth; ///< number of slices of a table, else 1
     int face_count, level_count;
     int channel_count;
     uint64_t byte_count;
@@ -281,9 +282,8 @@ typedef struct kiln_file_info {
     float sh[KILN_MAX_BANDS * KILN_MAX_BANDS][3];
 } kiln_file_info;
 
-/// Describes any file that kiln can read, and also the files that kiln only writes: KTX 1
-/// (Filament), .env (Babylon.js), .glb with EXT_lights_image_based, atlases, spherical harmonics,
-/// and tables as source code.
+/// Describes any file that kiln can read, and of the files that kiln only writes KTX 1 (Filament),
+/// .env (Babylon.js), .glb with EXT_lights_image_based, atlases, and spherical harmonics as text.
 KILN_API KILN_CHECKED kiln_result kiln_file_describe(kiln_context *context, const char *path,
                                                      kiln_file_info *info, kiln_error *error);
 

@@ -11,6 +11,7 @@
 #include "codec/pixel_format.h"
 #include "codec/png_text.h"
 #include "codec/rgbx_png.h"
+#include "codec/sh_describe.h"
 #include "image/pack.h"
 
 #include <stdio.h>
@@ -135,8 +136,16 @@ static const ki_file_format formats[] = {
      .first = "glTF",
      .first_count = 4,
      .describe = ki_gltf_describe},
-    {.name = "json", .endings = {".json"}, .holds = KI_HOLDS_SH},
-    {.name = "text", .endings = {".txt"}, .holds = KI_HOLDS_SH},
+    {.name = "json",
+     .endings = {".json"},
+     .begins = ki_sh_json_begins,
+     .holds = KI_HOLDS_SH,
+     .describe = ki_sh_json_describe},
+    {.name = "text",
+     .endings = {".txt"},
+     .begins = ki_sh_lines_begin,
+     .holds = KI_HOLDS_SH,
+     .describe = ki_sh_lines_describe},
     {.name = "raw",
      .endings = {".raw", ".bin"},
      .holds = KI_HOLDS_TABLE,
@@ -144,6 +153,8 @@ static const ki_file_format formats[] = {
      .table_format = KILN_TABLE_FORMAT_F32},
     {.name = "c",
      .endings = {".h"},
+     .begins = ki_sh_array_begins,
+     .describe = ki_sh_array_describe,
      .holds = KI_HOLDS_TABLE | KI_HOLDS_SH | KI_HOLDS_CODE,
      .table_formats = TABLES(F32),
      .table_format = KILN_TABLE_FORMAT_F32},
@@ -225,11 +236,18 @@ const char *ki_list_endings_of_format(kiln_format format, char text[KI_ENDINGS_T
 
 // ------------------------------------------------------------------------------------------ reading
 
+static bool begins(const ki_file_format *format, const uint8_t *bytes, size_t size)
+{
+    size_t count = (size_t)format->first_count;
+    if (format->begins)
+        return format->begins(bytes, size);
+    return format->first && size >= count && !memcmp(bytes, format->first, count);
+}
+
 static const ki_file_format *find_bytes(const uint8_t *bytes, size_t size)
 {
     for (int i = 0; i < FORMATS; i++)
-        if (formats[i].first && size >= (size_t)formats[i].first_count &&
-            !memcmp(bytes, formats[i].first, (size_t)formats[i].first_count))
+        if (begins(&formats[i], bytes, size))
             return &formats[i];
     return NULL;
 }

@@ -38,15 +38,16 @@ typedef kiln_result ki_write_cube(const kiln_map *map, const kiln_save_def *def,
 typedef struct ki_file_format {
     const char *name;       ///< as in kiln_file_info, "ktx2"
     const char *endings[3]; ///< of paths, in small letters with the dot; NULL behind the last
-    const char *first; ///< the bytes that files begin with; NULL where no bytes tell the format
+    const char *first;      ///< the bytes that files begin with, or NULL
     int first_count;
-    unsigned holds;                 ///< KI_HOLDS_...
+    bool (*begins)(const uint8_t *bytes, size_t size); ///< tells text, which has no such bytes
+    unsigned holds;                                    ///< KI_HOLDS_...
     unsigned pixel_formats;         ///< of maps: bits 1 << kiln_format besides KILN_FORMAT_AUTO
     unsigned table_formats;         ///< of tables: bits 1 << kiln_table_format
     kiln_table_format table_format; ///< what KILN_TABLE_FORMAT_AUTO means
     bool zstd;
     double limit;                  ///< the largest radiance by KILN_FORMAT_AUTO; 0 for none
-    ki_read_picture *read_picture; ///< one of the three, where `first` is not NULL
+    ki_read_picture *read_picture; ///< one of the three, where the bytes tell the format
     ki_read_file *read;
     ki_describe_file *describe; ///< of files that are not read, but described
     ki_write_picture *write_picture;

@@ -162,6 +162,18 @@ static void every_engines_files_are_described(void **state)
     }
 }
 
+// Filament's harmonics stand beside its cube as text too.
+static void filaments_text_is_described(void **state)
+{
+    (void)state;
+    kiln_file_info info;
+    CHECK_OK(kiln_file_describe(context, in_folder("sh.txt"), &info, &error));
+    assert_string_equal(info.format, "text");
+    assert_string_equal(info.layout, "harmonics");
+    assert_string_equal(info.engine, "filament");
+    check_harmonics("filament", &info);
+}
+
 // Files that are described alone, and atlases, whose sides look like a cross, are no environments.
 static void what_is_not_read_says_what_it_is(void **state)
 {
@@ -186,6 +198,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_engines_files_are_described),
+        cmocka_unit_test(filaments_text_is_described),
         cmocka_unit_test(what_is_not_read_says_what_it_is),
     };
     return cmocka_run_group_tests(tests, set_up_folder, tear_down_folder);

@@ -7,6 +7,8 @@
 #include "codec/ktx1.h"
 #include "codec/png_text.h"
 
+#include <unistd.h>
+
 #include "context.h"
 
 static kiln_error error;
@@ -360,6 +362,64 @@ static void irradiance_is_not_called_radiance(void **state)
     kiln_map_free(&map);
 }
 
+// Every text that kiln writes harmonics as, with each number of bands: what was saved is what is said.
+static void harmonics_in_text_are_described(void **state)
+{
+    (void)state;
+    static const char *const endings[3][2] = {{"json", "json"}, {"txt", "text"}, {"h", "c"}};
+    char folder[] = "/tmp/kiln-described-XXXXXX";
+    assert_non_null(mkdtemp(folder));
+    for (int e = 0; e < 3; e++)
+        for (int bands = 1; bands <= KILN_MAX_BANDS; bands++)
+            for (int irradiance = 0; irradiance < 2; irradiance++) {
+                char path[64];
+                kiln_sh sh = {.bands = bands, .irradiance = irradiance, .window = 1.5 * irradiance};
+                for (int i = 0; i < 3 * bands * bands; i++)
+                    sh.c[i / 3][i % 3] = (i % 2 ? -1 : 1) * pow(10, i % 13 - 8) / 3;
+                kiln_file_info info;
+                snprintf(path, sizeof path, "%s/sh.%s", folder, endings[e][0]);
+                CHECK_OK(kiln_sh_save(context, &sh, path, &error));
+                CHECK_OK(kiln_file_describe(context, path, &info, &error));
+                assert_string_equal(info.format, endings[e][1]);
+                assert_string_equal(info.layout, "harmonics");
+                assert_int_equal(info.width, bands * bands);
+                assert_int_equal(info.sh_bands, bands);
+                // Lines do not say what they are of.
+                assert_int_equal(info.sh_irradiance, e == 1 ? 0 : irradiance);
+                for (int i = 0; i < bands * bands; i++)
+                    for (int c = 0; c < 3; c++)
+                        CHECK_NEAR((double)info.sh[i][c], sh.c[i][c], 1e-7 * fabs(sh.c[i][c]));
+                unlink(path);
+            }
+    rmdir(folder);
+}
+
+static void harmonics_in_text_are_checked(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *sentence;
+    } cases[] = {
+        {"{\"bands\": 2, \"coefficients\": [[1,2,3],[1,2,3]]}", "holds 2 whole coefficients"},
+        {"{\"bands\": 1, \"coefficients\": [[1,2]]}", "damaged at byte 35"},
+        {"{\"bands\": 1", "damaged at byte 11"},
+        {"{\"bands\": 1}", "holds 0 whole coefficients"},
+        {"1 2 3 ; Y0,0\n1 2\n", "holds 0 whole coefficients"},
+        {"1 2 ; Y0,0\n", "holds 0 whole coefficients"},
+        {"(1, 2, 3); // L00, irradiance, pre-scaled base\n(1, 2, 3)\n", "holds 0 whole"},
+        {"// Spherical harmonics of radiance, 1 bands", "holds 0 whole coefficients"},
+        {"// Spherical harmonics of radiance\nx = {\n{1, 2, x},", "holds 0 whole coefficients"},
+        {"{\"json\": 1}", "do not begin as"},
+        {"// other", "do not begin as"},
+    };
+    kiln_file_info info;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        kiln_result result = describe(cases[i].text, strlen(cases[i].text), "m.txt", &info);
+        if (result != KILN_ERROR_FORMAT || !strstr(error.message, cases[i].sentence))
+            fail_msg("%s gives %d: %s", cases[i].text, (int)result, error.message);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -371,6 +431,8 @@ int main(void)
         cmocka_unit_test(lines_are_taken_as_far_as_they_make_sense),
         cmocka_unit_test(texts_stand_in_a_png),
         cmocka_unit_test(irradiance_is_not_called_radiance),
+        cmocka_unit_test(harmonics_in_text_are_described),
+        cmocka_unit_test(harmonics_in_text_are_checked),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
