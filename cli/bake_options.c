@@ -143,7 +143,7 @@ const cli_option bake_options[OPTIONS + 1] = {
                   .help = "multiply by 2^STOPS"},
     [MIRROR] = {"mirror", CLI_FLAG, AT(mirror), .help = "swap left and right, before turning"},
     [THREADS] = {"threads", CLI_INTEGER, AT(threads), 1, 256, 0, "N",
-                 .help = "threads to work on; their number never changes the result",
+                 .help = "threads to work on; their number never changes the result", .letter = 'j',
                  .unset = "one a core", .group = "Work and report"},
     [JSON] = {"json", CLI_FLAG, AT(json),
               .help = "report as JSON on standard output: what was read and written, the levels, "

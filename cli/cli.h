@@ -127,7 +127,8 @@ int cli_check_source_name(const cli_arguments *arguments, int option);
 #define CLI_THREADS_ROW(type)                                                                      \
     {                                                                                              \
         "threads", CLI_INTEGER, offsetof(type, threads), 1, 256, 0, "N",                           \
-            "threads to work on; their number never changes the result", .unset = "one a core"     \
+            "threads to work on; their number never changes the result", .letter = 'j',            \
+                                                                         .unset = "one a core"     \
     }
 #define CLI_D_ROW(type, field)                                                                     \
     {                                                                                              \

@@ -22,9 +22,10 @@ static void print_blanks(int count)
     printf("%*s", count > 0 ? count : 0, "");
 }
 
+// Words go on until one would reach the width.
 void cli_print_wrapped(const char *text, int column, int indent, int width)
 {
-    bool first = true; // of its line
+    bool first = true; // the word is the first of its line
     while (*text) {
         int length = (int)strcspn(text, " \n");
         if (!first && column + 1 + length >= width) {
@@ -92,9 +93,8 @@ static void print_usage(const cli_command *command, int width)
     const char *at = command->arguments, *before = "Usage:";
     do {
         char way[256];
-        int length = (int)strcspn(at, "|");
         at += strspn(at, " ");
-        length = (int)strcspn(at, "|");
+        int length = (int)strcspn(at, "|");
         snprintf(way, sizeof way, "%s kiln %s %.*s", before, command->name, length, at);
         cli_print_wrapped(way, 0, 12, width);
         at += length;

@@ -169,6 +169,8 @@ static void print_command(const cli_command *command)
         }
         puts(".El");
     }
+    if (command->list && command->options)
+        puts(".Pp\nOptions:");
     if (command->options)
         print_options(command->options);
 }

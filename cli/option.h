@@ -20,18 +20,18 @@ typedef enum cli_kind {
 typedef struct cli_option {
     const char *name; ///< "size", for --size
     cli_kind kind;
-    size_t at;         ///< offset of the value in the command's structure
+    unsigned at;       ///< offset of the value in the command's structure
     double low, high;  ///< the range of CLI_INTEGER and CLI_NUMBER
     double initial;    ///< the value where the option is not given; for CLI_CHOICE an index or -1
     const char *value; ///< what stands for the value in the help: "N"
     const char *help;  ///< a phrase without a capital and a full stop
-    char letter;       ///< 'o', for -o; 0 for none
     const char *alone; ///< the value of the option without one; then another is given by = only
     const char *const *words;       ///< of CLI_CHOICE, NULL behind the last
     const char *(*word)(int index); ///< or as a function, NULL behind the last
     const char *unset;              ///< in words, what holds where the option is not given
     const char *group;              ///< the heading of this option and those that follow
     const char *more;               ///< further sentences, for the manual
+    char letter;                    ///< 'o', for -o; 0 for none
     bool keep;                      ///< not given, the option leaves the value as it is
     bool hidden;                    ///< in no help
 } cli_option;

@@ -23,6 +23,12 @@ expect 0 "" sky --size 16 -qo sky.exr
 [ ! -s log/out ] || die "-qo is not -q -o"
 expect 0 "" sky --size 16 -qosky.exr
 [ ! -s log/out ] || die "-qosky.exr is not -q -o sky.exr"
+# -j is --threads.
+expect 0 "" bake sky.exr -o one.ktx2 --size 8 --exposure -8 -q -j1
+expect 0 "" bake sky.exr -o two.ktx2 --size 8 --exposure -8 -q -j 2
+same one.ktx2 two.ktx2
+expect 2 "threads is 0, it must be from 1 to 256" bake sky.exr -o one.ktx2 -j0
+rm one.ktx2 two.ktx2
 # Options may follow other words; after -- there are none.
 expect 0 "" info sky.exr --json
 cp sky.exr -- --json
