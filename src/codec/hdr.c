@@ -23,6 +23,8 @@ typedef struct hdr_file {
     bool flip_line, flip_order;  // along the line; from line to line
     double exposure;
     size_t *line_start;
+    int task_count;
+    uint8_t *texels; // of each task, the line that it decodes
     float *pixels;
     float scale[256];
 } hdr_file;
@@ -176,10 +178,8 @@ static size_t read_line(const hdr_file *f, size_t start, uint8_t *texels)
                                      : read_old_runs(f, at, left, texels);
 }
 
-static void decode_line(void *data, int index)
+static void decode_line(const hdr_file *f, int index, uint8_t *texels)
 {
-    const hdr_file *f = data;
-    uint8_t texels[4 * (NEW_RUNS_MOST + 1)];
     memset(texels, 0, 4 * (size_t)f->line_length);
     read_line(f, f->line_start[index], texels);
     int order = f->flip_order ? f->line_count - 1 - index : index;
@@ -198,6 +198,33 @@ static void decode_line(void *data, int index)
             to[c] = value < FLT_MAX ? value : FLT_MAX;
         }
     }
+}
+
+// A task decodes a share of the lines, into texels of its own: a line of 32767 of them is too much for
+// the stack of a thread of WebAssembly.
+static void decode_lines(void *data, int task)
+{
+    const hdr_file *f = data;
+    uint8_t *texels = f->texels + 4 * (size_t)f->line_length * (size_t)task;
+    int end = (int)((int64_t)f->line_count * (task + 1) / f->task_count);
+    for (int i = (int)((int64_t)f->line_count * task / f->task_count); i < end; i++)
+        decode_line(f, i, texels);
+}
+
+static kiln_result decode_all(kiln_context *context, hdr_file *f, kiln_error *error)
+{
+    enum { TASKS = 64 };
+    for (int e = 1; e < 256; e++) {
+        double scale = ldexp(1, e - 136) / f->exposure;
+        f->scale[e] = scale < (double)FLT_MAX ? (float)scale : FLT_MAX;
+    }
+    f->task_count = ki_min(TASKS, f->line_count);
+    f->texels = ki_alloc_raw(context, (size_t)f->task_count, 4 * (size_t)f->line_length);
+    if (!f->texels)
+        return ki_fail_memory(context, error, f->name,
+                              4 * (size_t)f->task_count * (size_t)f->line_length);
+    ki_parallel_for(context, f->task_count, decode_lines, f);
+    return KILN_OK;
 }
 
 kiln_result ki_hdr_decode(kiln_context *context, const uint8_t *bytes, size_t size,
@@ -250,15 +277,14 @@ kiln_result ki_hdr_decode(kiln_context *context, const uint8_t *bytes, size_t si
         result = ki_fail_memory(context, error, name, count * sizeof(float));
         goto done;
     }
-    for (int e = 1; e < 256; e++) {
-        double scale = ldexp(1, e - 136) / f.exposure;
-        f.scale[e] = scale < (double)FLT_MAX ? (float)scale : FLT_MAX;
-    }
-    ki_parallel_for(context, f.line_count, decode_line, &f);
+    result = decode_all(context, &f, error);
+    if (result != KILN_OK)
+        goto done;
     *image = (kiln_image){f.width, f.height, 3, f.pixels, f.pixels};
     f.pixels = NULL;
 done:
     ki_free(f.line_start);
+    ki_free(f.texels);
     ki_free(f.pixels);
     return result;
 }
