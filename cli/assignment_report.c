@@ -162,7 +162,7 @@ int assignment_write_report(const assignment *a)
     snprintf(path, sizeof path, "%s/report.md", a->def->folder);
     snprintf(part, sizeof part, "%s/.report.md.part", a->def->folder);
     errno = 0;
-    FILE *f = fopen(part, "wb");
+    FILE *f = os_create_file(part);
     bool failed = !f;
     if (f) {
         write_text(a, f);
@@ -174,7 +174,7 @@ int assignment_write_report(const assignment *a)
         return CLI_DONE;
     int reason = errno;
     if (f)
-        remove(part);
+        os_remove_file(part);
     cli_clear_progress(a->work);
     return cli_fail("%s: cannot be written: %s", path, reason ? strerror(reason) : "no reason");
 }

@@ -8,6 +8,13 @@
 
 #include <stdbool.h>
 
+/// Lets the compiler check a function's arguments against its format, printf's as C17 has it.
+#if defined(__MINGW32__) && !defined(__clang__)
+#define CLI_PRINTF(format_at, first) __attribute__((format(gnu_printf, format_at, first)))
+#else
+#define CLI_PRINTF(format_at, first) __attribute__((format(printf, format_at, first)))
+#endif
+
 enum {
     CLI_DONE = 0,   ///< the work is done
     CLI_FAILED = 1, ///< bad input, or the work could not be done
@@ -82,10 +89,9 @@ int cli_find_word(const cli_command *command, const char *what, const char *text
 // --------------------------------------------------------------------------------------- sentences
 
 /// Prints "kiln: SENTENCE" and a hint to --help; returns CLI_WRONG. `command` may be NULL.
-int cli_wrong(const cli_command *command, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
+int cli_wrong(const cli_command *command, const char *format, ...) CLI_PRINTF(2, 3);
 /// Prints "kiln: SENTENCE"; returns CLI_FAILED.
-int cli_fail(const char *format, ...) __attribute__((format(printf, 1, 2)));
+int cli_fail(const char *format, ...) CLI_PRINTF(1, 2);
 /// "4.2 MB".
 const char *cli_bytes(double bytes, char text[32]);
 /// Empties standard output; the exit code, `code` unless nothing could be written.

@@ -1,6 +1,7 @@
 // kiln: the command. Finds the command of a name and hands over to it.
 #include "cli.h"
 #include "manual.h"
+#include "os.h"
 #include "suggest.h"
 
 #include <stdio.h>
@@ -150,5 +151,7 @@ static int run(int argc, char **argv)
 
 int main(int argc, char **argv)
 {
+    if (!os_begin(&argc, &argv))
+        return cli_fail("out of memory");
     return cli_close_output(run(argc, argv));
 }

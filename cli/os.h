@@ -6,6 +6,11 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
+
+/// Called first. Makes the arguments UTF-8 and slashes the only separator of paths, and standard output a
+/// stream of bytes, where they are not; false where memory runs out.
+bool os_begin(int *argc, char ***argv);
 
 typedef enum os_stream { OS_INPUT, OS_OUTPUT, OS_ERRORS } os_stream;
 
@@ -43,6 +48,9 @@ bool os_is_writable(const char *folder);
 bool os_make_folder(const char *path);
 /// Removes a folder if nothing is in it.
 void os_remove_folder(const char *path);
+/// Creates a file or empties the one that is there; NULL with errno.
+FILE *os_create_file(const char *path);
+void os_remove_file(const char *path);
 /// Gives a file another name, in place of a file that has that name; false with errno.
 bool os_replace(const char *from, const char *to);
 

@@ -1,4 +1,5 @@
 // The operating system of the command: POSIX.1-2008.
+#define _DEFAULT_SOURCE // TIOCGWINSZ
 #include "os.h"
 
 #include <errno.h>
@@ -9,6 +10,13 @@
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
+
+bool os_begin(int *argc, char ***argv)
+{
+    (void)argc;
+    (void)argv;
+    return true;
+}
 
 bool os_is_terminal(os_stream stream)
 {
@@ -118,6 +126,16 @@ bool os_make_folder(const char *path)
 void os_remove_folder(const char *path)
 {
     rmdir(path);
+}
+
+FILE *os_create_file(const char *path)
+{
+    return fopen(path, "wb");
+}
+
+void os_remove_file(const char *path)
+{
+    unlink(path);
 }
 
 bool os_replace(const char *from, const char *to)

@@ -28,7 +28,7 @@ void cli_clear_progress(cli_work *work);
 /// Draws the progress line of `user`, a cli_work; false where a signal asks to stop.
 bool cli_progress(void *user, const char *stage, double fraction);
 /// "kiln: warning: SENTENCE" on standard error.
-void cli_warn(cli_work *work, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void cli_warn(cli_work *work, const char *format, ...) CLI_PRINTF(2, 3);
 
 // ------------------------------------------------------------------------------------------- input
 

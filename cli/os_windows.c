@@ -1,0 +1,214 @@
+// The operating system of the command: Windows 7 and later. Names are UTF-8 in kiln and UTF-16 here.
+#define WIN32_LEAN_AND_MEAN
+#define _WIN32_WINNT 0x0601
+#define PSAPI_VERSION 2 // GetProcessMemoryInfo out of kernel32
+#include "os.h"
+
+#include <windows.h>
+
+#include <errno.h>
+#include <fcntl.h>
+#include <io.h>
+#include <psapi.h>
+#include <shellapi.h>
+#include <stdlib.h>
+
+enum { ROOM = 4096 }; // UTF-16 units of a path, its zero included
+
+static bool widen(const char *path, wchar_t wide[ROOM])
+{
+    if (MultiByteToWideChar(CP_UTF8, MB_ERR_INVALID_CHARS, path, -1, wide, ROOM))
+        return true;
+    errno = GetLastError() == ERROR_INSUFFICIENT_BUFFER ? ENAMETOOLONG : EILSEQ;
+    return false;
+}
+
+// --------------------------------------------------------------------------------------- arguments
+
+// One argument in UTF-8, its backslashes turned to the slashes that Windows reads as well: so only one
+// separator is known to the rest of the command. Names that begin with \\?\ are not read so.
+static char *narrow(const wchar_t *wide)
+{
+    int size = WideCharToMultiByte(CP_UTF8, 0, wide, -1, NULL, 0, NULL, NULL);
+    char *text = size > 0 ? malloc((size_t)size) : NULL;
+    if (!text || !WideCharToMultiByte(CP_UTF8, 0, wide, -1, text, size, NULL, NULL))
+        return NULL;
+    bool verbatim = text[0] == '\\' && text[1] == '\\' && text[2] == '?';
+    for (char *c = text; *c && !verbatim; c++)
+        if (*c == '\\')
+            *c = '/';
+    return text;
+}
+
+static UINT code_page_before;
+
+static void restore_code_page(void)
+{
+    SetConsoleOutputCP(code_page_before);
+}
+
+// The arguments live as long as the process.
+bool os_begin(int *argc, char ***argv)
+{
+    code_page_before = GetConsoleOutputCP();
+    if (code_page_before && SetConsoleOutputCP(CP_UTF8))
+        atexit(restore_code_page);
+    _setmode(_fileno(stdout), _O_BINARY); // lines end alike everywhere
+    wchar_t **wide = CommandLineToArgvW(GetCommandLineW(), argc);
+    char **words = wide ? calloc((size_t)*argc + 1, sizeof *words) : NULL;
+    bool good = words != NULL;
+    for (int i = 0; good && i < *argc; i++) {
+        words[i] = narrow(wide[i]);
+        good = words[i] != NULL;
+    }
+    LocalFree(wide);
+    *argv = words;
+    return good;
+}
+
+// ---------------------------------------------------------------------------------------- terminal
+
+bool os_is_terminal(os_stream stream)
+{
+    return _isatty((int)stream) != 0; // descriptors 0, 1 and 2
+}
+
+int os_columns(void)
+{
+    CONSOLE_SCREEN_BUFFER_INFO info;
+    HANDLE console = GetStdHandle(STD_OUTPUT_HANDLE);
+    return GetConsoleScreenBufferInfo(console, &info) ? info.srWindow.Right - info.srWindow.Left + 1
+                                                      : 0;
+}
+
+double os_seconds(void)
+{
+    LARGE_INTEGER now, frequency;
+    QueryPerformanceCounter(&now);
+    QueryPerformanceFrequency(&frequency);
+    return (double)now.QuadPart / (double)frequency.QuadPart;
+}
+
+// ----------------------------------------------------------------------------------------- signals
+
+enum { INTERRUPT = 2, BROKEN_PIPE = 13 }; // as POSIX counts signals
+
+static volatile LONG caught;
+
+// Runs in a thread of its own. The second time, Windows ends the process.
+static BOOL WINAPI on_event(DWORD event)
+{
+    (void)event;
+    return InterlockedExchange(&caught, INTERRUPT) == 0;
+}
+
+void os_catch_signals(void)
+{
+    SetConsoleCtrlHandler(on_event, TRUE);
+}
+
+int os_signal(void)
+{
+    return (int)caught;
+}
+
+void os_without_signals(void (*work)(void *user), void *user)
+{
+    work(user);
+}
+
+int os_reader_gone(int error)
+{
+    return error == EPIPE ? 128 + BROKEN_PIPE : 0;
+}
+
+// ------------------------------------------------------------------------------------------ memory
+
+size_t os_physical_memory(void)
+{
+    MEMORYSTATUSEX status = {.dwLength = sizeof status};
+    return GlobalMemoryStatusEx(&status) && status.ullTotalPhys <= SIZE_MAX
+               ? (size_t)status.ullTotalPhys
+               : 0;
+}
+
+double os_peak_memory(void)
+{
+    PROCESS_MEMORY_COUNTERS counters;
+    return GetProcessMemoryInfo(GetCurrentProcess(), &counters, sizeof counters)
+               ? (double)counters.PeakWorkingSetSize
+               : 0;
+}
+
+// ------------------------------------------------------------------------------- files and folders
+
+// Sets errno from Windows' last error; false.
+static bool failed(void)
+{
+    switch (GetLastError()) {
+    case ERROR_FILE_NOT_FOUND:
+    case ERROR_PATH_NOT_FOUND:
+        errno = ENOENT;
+        break;
+    case ERROR_ALREADY_EXISTS:
+    case ERROR_FILE_EXISTS:
+        errno = EEXIST;
+        break;
+    default:
+        errno = EACCES;
+        break;
+    }
+    return false;
+}
+
+os_kind os_kind_of(const char *path)
+{
+    wchar_t wide[ROOM];
+    if (!widen(path, wide))
+        return OS_UNREACHABLE;
+    DWORD attributes = GetFileAttributesW(wide);
+    if (attributes != INVALID_FILE_ATTRIBUTES)
+        return attributes & FILE_ATTRIBUTE_DIRECTORY ? OS_FOLDER : OS_FILE;
+    failed();
+    return errno == ENOENT ? OS_NOTHING : OS_UNREACHABLE;
+}
+
+// What Windows would allow is a matter of lists that only an attempt tells.
+bool os_is_writable(const char *folder)
+{
+    return os_kind_of(folder) == OS_FOLDER;
+}
+
+bool os_make_folder(const char *path)
+{
+    wchar_t wide[ROOM];
+    return widen(path, wide) && (CreateDirectoryW(wide, NULL) || failed());
+}
+
+void os_remove_folder(const char *path)
+{
+    wchar_t wide[ROOM];
+    if (widen(path, wide))
+        RemoveDirectoryW(wide);
+}
+
+FILE *os_create_file(const char *path)
+{
+    wchar_t wide[ROOM];
+    return widen(path, wide) ? _wfopen(wide, L"wb") : NULL;
+}
+
+void os_remove_file(const char *path)
+{
+    wchar_t wide[ROOM];
+    if (widen(path, wide))
+        DeleteFileW(wide);
+}
+
+bool os_replace(const char *from, const char *to)
+{
+    wchar_t wide_from[ROOM], wide_to[ROOM];
+    if (!widen(from, wide_from) || !widen(to, wide_to))
+        return false;
+    return MoveFileExW(wide_from, wide_to, MOVEFILE_REPLACE_EXISTING) || failed();
+}
