@@ -30,6 +30,7 @@ is_there() {
     pkg:*) pkg-config --exists "${1#pkg:}" 2>/dev/null ;;
     lib:*) { ldconfig -p || /sbin/ldconfig -p; } 2>/dev/null | grep -qF "${1#lib:}" ;;
     @swrast) [ -n "$(find /usr/lib* -maxdepth 3 -name swrast_dri.so 2>/dev/null)" ] ;;
+    @wine) [ -x /usr/lib/wine/wine64 ] || command -v wine64 wine >/dev/null 2>&1 ;;
     @fuzzer) [ -n "$(find "$(clang -print-resource-dir 2>/dev/null || echo /none)" -name '*fuzzer*.a' 2>/dev/null)" ] ;;
     /*) [ -e "$1" ] ;;
     *) command -v "$1" >/dev/null 2>&1 ;;

@@ -1,0 +1,22 @@
+#!/bin/sh
+# Builds kiln for another machine or by another compiler and holds it to the golden hashes.
+#   cross.sh SOURCE PRESET [COMPILER]
+set -eu
+source=$1
+preset=$2
+compiler=${3:-}
+here=$(cd "$(dirname "$0")" && pwd)
+build=$source/build/$preset${compiler:+-$compiler}
+log=$build.log
+[ -z "$compiler" ] || export CC="$compiler"
+
+cd "$source"
+{ cmake --preset "$preset" -B "$build" && cmake --build "$build" -j 1; } >"$log" 2>&1 ||
+    { tail -n 60 "$log"; exit 1; }
+if [ "$preset" = mingw ]; then
+    # Windows' registry and drives, in the build's folder.
+    export WINEPREFIX="$build/wine" WINEDEBUG=-all LC_ALL=C.UTF-8
+    trap '"$(command -v wineserver64 || command -v wineserver || echo /usr/lib/wine/wineserver64)" -k 2>/dev/null || true' EXIT
+fi
+ctest --test-dir "$build" --output-on-failure -R '^golden$' --no-tests=error
+[ ! -e "$here/$preset.sh" ] || sh "$here/$preset.sh" "$build"

@@ -1,0 +1,31 @@
+// Synthetic environments, the same numbers on every machine. Needs no test framework.
+#ifndef KILN_SCENE_H
+#define KILN_SCENE_H
+
+#include <kiln/kiln.h>
+
+static inline double scene_random(uint32_t *state)
+{
+    *state = *state * 1664525u + 1013904223u;
+    return (double)(*state >> 8) / 16777216.0;
+}
+
+/// A sky, a ground, noise of a factor of four from texel to texel, and a sun of 5000 times the mean.
+static inline void scene_fill(kiln_map *map, uint32_t seed)
+{
+    int size = map->size;
+    for (int y = 0; y < size; y++)
+        for (int x = 0; x < 2 * size; x++) {
+            float *rgb = map->level[0] + 3 * ((size_t)y * 2 * (size_t)size + (size_t)x);
+            double noise = 0.5 + 1.5 * scene_random(&seed);
+            double sky = y < size / 2 ? 1 : 0.2;
+            rgb[0] = (float)(0.6 * sky * noise);
+            rgb[1] = (float)(0.8 * sky * noise);
+            rgb[2] = (float)(1.2 * sky * noise);
+        }
+    size_t sun = (size_t)(size / 3) * 2 * (size_t)size + (size_t)(size / 5);
+    for (int c = 0; c < 3; c++)
+        map->level[0][3 * sun + (size_t)c] = 5000;
+}
+
+#endif
