@@ -2,29 +2,20 @@
 # Checks that includes go one way through the layers. Prints file:line of every one that does not.
 #   scripts/layers.sh [ROOT]
 set -eu
+table=$(cd "$(dirname "$0")" && pwd)/layers.txt
 cd "${1:-$(dirname "$0")/..}"
 
 # shellcheck disable=SC2016 # the dollars are awk's
 status=$(
     find src cli bench examples viewer web -name '*.[ch]' -o -name '*.inl' 2>/dev/null | sort |
-        xargs awk '
+        xargs awk -v table="$table" '
     BEGIN {
-        # Each folder of src and those it may include.
-        may["base"] = "base"
-        may["math"] = "base math"
-        may["image"] = "base math image"
-        may["codec"] = "base math image codec"
-        may["sphere"] = "base math image sphere"
-        may["brdf"] = "base math brdf"
-        may["tune"] = "base math image sphere tune"
-        may["table"] = "base math image codec brdf table"
-        may["course"] = "base math image brdf course"
-        may["bake"] = "base math image sphere brdf tune bake"
-        may["engine"] = "base math image codec sphere brdf tune table course bake engine"
+        while ((getline line < table) > 0)
+            if (line !~ /^#/ && split(line, half, ": ") == 2)
+                may[half[1]] = half[2]
         public["kiln/kiln.h"]
         public["kiln/brdf.h"]
         public["kiln/course.h"]
-        may["api"] = may["engine"] " api"
     }
     /^[ \t]*#[ \t]*include/ {
         name = $0

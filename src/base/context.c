@@ -1,5 +1,5 @@
 // The context: in goes its definition (allocator, limit, threads, progress callback), out come
-// memory blocks, error messages and progress reports. Every allocation is counted against the limit
+// memory blocks. Every allocation is counted against the limit
 // with atomic operations, so that any thread may allocate.
 #include "base/context.h"
 #include "base/base.h"
@@ -14,17 +14,6 @@
 const char *kiln_version(void)
 {
     return KI_STR(KILN_VERSION_MAJOR) "." KI_STR(KILN_VERSION_MINOR) "." KI_STR(KILN_VERSION_PATCH);
-}
-
-void ki_describe(kiln_error *error, kiln_result result, const char *format, ...)
-{
-    if (error) {
-        error->result = result;
-        va_list list;
-        va_start(list, format);
-        vsnprintf(error->message, sizeof error->message, format, list);
-        va_end(list);
-    }
 }
 
 // A header of 64 bytes before every memory block, which records the block's heap and size.
@@ -204,22 +193,4 @@ enum kiln_cpu ki_context_cpu(const kiln_context *context)
 int ki_context_threads(const kiln_context *context)
 {
     return context->def.thread_count;
-}
-
-bool ki_progress(kiln_context *context, const char *stage, double fraction)
-{
-    context->said = (ki_stage){stage, fraction, fraction};
-    return !context->def.progress ||
-           context->def.progress(context->def.progress_user, stage, fraction);
-}
-
-bool ki_go_on(kiln_context *context)
-{
-    const ki_stage *said = &context->said;
-    return ki_progress(context, said->name ? said->name : "working", said->from);
-}
-
-kiln_result ki_fail_cancelled(kiln_error *error, const char *stage)
-{
-    return ki_fail(error, KILN_ERROR_CANCELLED, "stopped while %s", stage);
 }

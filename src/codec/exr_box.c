@@ -1,7 +1,13 @@
-// Boxes of samples as EXR files hold them: how many samples, how many bytes, in which order.
+// Channels and boxes of samples as EXR files hold them: how many samples, how many bytes, in which order.
 #include "codec/exr.h"
 
 #include <string.h>
+
+const char *ki_exr_suffix(const char *name)
+{
+    const char *dot = strrchr(name, '.');
+    return dot ? dot + 1 : name;
+}
 
 static int floor_divide(int a, int b)
 {

@@ -13,12 +13,6 @@
 
 enum { TILED = 0x200, DEEP = 0x800, MULTIPART = 0x1000 }; // flags beside the version
 
-const char *ki_exr_suffix(const char *name)
-{
-    const char *dot = strrchr(name, '.');
-    return dot ? dot + 1 : name;
-}
-
 // -------------------------------------------------------------------------------------- attributes
 
 // Text up to its NUL, or NULL.

@@ -1,0 +1,15 @@
+// Sentences of errors.
+#include "base/base.h"
+
+#include <stdio.h>
+
+void ki_describe(kiln_error *error, kiln_result result, const char *format, ...)
+{
+    if (error) {
+        error->result = result;
+        va_list list;
+        va_start(list, format);
+        vsnprintf(error->message, sizeof error->message, format, list);
+        va_end(list);
+    }
+}

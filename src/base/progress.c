@@ -1,0 +1,20 @@
+// Progress: what the caller is told of it, and its wish to cancel.
+#include "base/context.h"
+
+bool ki_progress(kiln_context *context, const char *stage, double fraction)
+{
+    context->said = (ki_stage){stage, fraction, fraction};
+    return !context->def.progress ||
+           context->def.progress(context->def.progress_user, stage, fraction);
+}
+
+bool ki_go_on(kiln_context *context)
+{
+    const ki_stage *said = &context->said;
+    return ki_progress(context, said->name ? said->name : "working", said->from);
+}
+
+kiln_result ki_fail_cancelled(kiln_error *error, const char *stage)
+{
+    return ki_fail(error, KILN_ERROR_CANCELLED, "stopped while %s", stage);
+}

@@ -1,0 +1,29 @@
+// Which roughness a level holds, where several engines agree, and its inverse.
+#include "engine/engine.h"
+
+#include <math.h>
+
+double ki_even_roughness(int level, int level_count, int size)
+{
+    (void)size;
+    return level_count > 1 ? (double)level / (level_count - 1) : 0;
+}
+
+double ki_even_level(double roughness, int level_count, int size)
+{
+    (void)size;
+    return (level_count - 1) * roughness;
+}
+
+double ki_quadratic_roughness(int level, int level_count, int size)
+{
+    (void)size;
+    return level_count > 1 ? 1 - sqrt(1 - (double)level / (level_count - 1)) : 0;
+}
+
+double ki_quadratic_level(double roughness, int level_count, int size)
+{
+    (void)size;
+    double r = fmax(roughness, 0.045);
+    return (level_count - 1) * r * (2 - r);
+}
