@@ -142,6 +142,23 @@ static void print_zsh_option(const cli_option *option)
     puts("' \\");
 }
 
+static void print_zsh_command(const cli_command *command)
+{
+    printf("    %s)\n        _arguments -s -S \\\n", command->name);
+    for (int k = 0; command->options && command->options[k].name; k++)
+        if (is_shown(&command->options[k]))
+            print_zsh_option(&command->options[k]);
+    fputs("            '(-h --help)'{-h,--help}'[print the help]' '", stdout);
+    if (command->word) {
+        fputs("1:argument:(", stdout);
+        print_words(command->word, NULL);
+        puts(")'");
+    } else {
+        puts("*:file:_files'");
+    }
+    puts("        ;;");
+}
+
 static void print_zsh(const cli_call *call)
 {
     fputs("#compdef kiln\n"
@@ -165,22 +182,8 @@ static void print_zsh(const cli_call *call)
           "    ((CURRENT--))\n"
           "    case $command in\n",
           stdout);
-    for (int i = 0; call->commands[i]; i++) {
-        const cli_command *command = call->commands[i];
-        printf("    %s)\n        _arguments -s -S \\\n", command->name);
-        for (int k = 0; command->options && command->options[k].name; k++)
-            if (is_shown(&command->options[k]))
-                print_zsh_option(&command->options[k]);
-        fputs("            '(-h --help)'{-h,--help}'[print the help]' '", stdout);
-        if (command->word) {
-            fputs("1:argument:(", stdout);
-            print_words(command->word, NULL);
-            puts(")'");
-        } else {
-            puts("*:file:_files'");
-        }
-        puts("        ;;");
-    }
+    for (int i = 0; call->commands[i]; i++)
+        print_zsh_command(call->commands[i]);
     fputs("    esac\n}\n_kiln \"$@\"\n", stdout);
 }
 

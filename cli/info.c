@@ -58,6 +58,27 @@ static void print_text(const char *path, const kiln_file_info *info)
         printf("  writer       %s\n", info->writer);
 }
 
+static void print_roughness_json(json *j, const kiln_file_info *info)
+{
+    json_array(j, "roughness");
+    for (int k = 0; k < info->level_count && k < KILN_MAX_LEVELS; k++)
+        json_float(j, NULL, info->roughness[k]);
+    json_end(j);
+}
+
+// Three numbers for each coefficient.
+static void print_sh_json(json *j, const kiln_file_info *info)
+{
+    json_array(j, info->sh_irradiance ? "sh_irradiance" : "sh_radiance");
+    for (int i = 0; i < info->sh_bands * info->sh_bands; i++) {
+        json_array(j, NULL);
+        for (int c = 0; c < 3; c++)
+            json_float(j, NULL, info->sh[i][c]);
+        json_end(j);
+    }
+    json_end(j);
+}
+
 static void print_json(json *j, const char *path, const kiln_file_info *info)
 {
     json_object(j, NULL);
@@ -72,12 +93,8 @@ static void print_json(json *j, const char *path, const kiln_file_info *info)
     json_number(j, "level_count", info->level_count);
     json_number(j, "channel_count", info->channel_count);
     json_number(j, "byte_count", (double)info->byte_count);
-    if (info->roughness[0] >= 0) {
-        json_array(j, "roughness");
-        for (int k = 0; k < info->level_count && k < KILN_MAX_LEVELS; k++)
-            json_float(j, NULL, info->roughness[k]);
-        json_end(j);
-    }
+    if (info->roughness[0] >= 0)
+        print_roughness_json(j, info);
     const kiln_engine *engine = kiln_engine_find(info->engine);
     if (info->engine[0])
         json_text(j, "engine", info->engine);
@@ -89,16 +106,8 @@ static void print_json(json *j, const char *path, const kiln_file_info *info)
         json_text(j, "orientation", info->orientation);
     if (info->writer[0])
         json_text(j, "writer", info->writer);
-    if (info->sh_bands) {
-        json_array(j, info->sh_irradiance ? "sh_irradiance" : "sh_radiance");
-        for (int i = 0; i < info->sh_bands * info->sh_bands; i++) {
-            json_array(j, NULL);
-            for (int c = 0; c < 3; c++)
-                json_float(j, NULL, info->sh[i][c]);
-            json_end(j);
-        }
-        json_end(j);
-    }
+    if (info->sh_bands)
+        print_sh_json(j, info);
     json_end(j);
 }
 
