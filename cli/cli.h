@@ -102,7 +102,7 @@ int cli_close_output(int code);
 /// Whether a name ends in a dot and `ending`, in small letters or capitals; "/" asks for a folder, which
 /// a slash at the end or one that is there makes of the name.
 bool cli_ends_in(const char *path, const char *ending);
-/// The ending without its dot, "" where there is none, "/" for a folder.
+/// The ending in small letters without its dot, "" where kiln has no such ending, "/" for a folder.
 const char *cli_ending(const char *path);
 /// Fails early, before the work, where the folder of an output file does not exist.
 int cli_check_folder(const char *path);

@@ -2,27 +2,19 @@
 #include "cli.h"
 #include "os.h"
 
-#include <ctype.h>
 #include <string.h>
 
 const char *cli_ending(const char *path)
 {
-    size_t length = strlen(path);
-    if ((length && path[length - 1] == '/') || os_kind_of(path) == OS_FOLDER)
+    const char *ending = kiln_path_ending(path);
+    if (os_kind_of(path) == OS_FOLDER)
         return "/";
-    const char *slash = strrchr(path, '/'), *dot = strrchr(path, '.');
-    bool has_ending = dot && dot > path && (!slash || dot > slash + 1);
-    return has_ending ? dot + 1 : "";
+    return ending[0] == '.' ? ending + 1 : ending;
 }
 
 bool cli_ends_in(const char *path, const char *ending)
 {
-    const char *has = cli_ending(path);
-    while (*has && tolower((unsigned char)*has) == *ending) {
-        has++;
-        ending++;
-    }
-    return !*has && !*ending;
+    return !strcmp(cli_ending(path), ending);
 }
 
 int cli_check_folder(const char *path)

@@ -196,6 +196,44 @@ static kiln_result search_folder(kiln_context *context, const char *path, face_p
     return result;
 }
 
+// Fails where a picture cannot be a face of the map; the first face gives the map its size.
+static kiln_result check_face(const char *path, const kiln_image *image, const kiln_map *map,
+                              kiln_error *error)
+{
+    if (image->channels != 3)
+        return ki_fail(error, KILN_ERROR_UNSUPPORTED, "%s: holds a table, not a face", path);
+    if (image->width != image->height)
+        return ki_fail(error, KILN_ERROR_FORMAT, "%s: is %d x %d, a face must be square", path,
+                       image->width, image->height);
+    if (map->size && image->width != map->size)
+        return ki_fail(error, KILN_ERROR_FORMAT, "%s: is %d x %d, the first face %d x %d", path,
+                       image->width, image->height, map->size, map->size);
+    return KILN_OK;
+}
+
+static kiln_result load_face(kiln_context *context, const char *path, int face, kiln_map *map,
+                             kiln_error *error)
+{
+    kiln_image image;
+    kiln_file_info info;
+    kiln_result result = load_image(context, path, &image, &info, error);
+    if (result != KILN_OK)
+        return result;
+    result = check_face(path, &image, map, error);
+    int size = image.width;
+    if (result == KILN_OK && !map->size) {
+        *map = (kiln_map){.shape = KILN_SHAPE_CUBE, .size = size, .level_count = 1};
+        result = ki_map_allocate(context, map, error);
+        if (result == KILN_OK && info.roughness[0] >= 0)
+            map->roughness[0] = info.roughness[0];
+    }
+    if (result == KILN_OK)
+        ki_cut_face(&image, 0, 0, size, false,
+                    map->level[0] + 3 * (size_t)size * (size_t)size * (size_t)face);
+    kiln_image_free(&image);
+    return result;
+}
+
 static kiln_result load_faces(kiln_context *context, const face_paths *paths, kiln_map *map,
                               kiln_error *error)
 {
@@ -206,30 +244,7 @@ static kiln_result load_faces(kiln_context *context, const face_paths *paths, ki
     kiln_result result = KILN_OK;
     for (int face = 0; face < 6 && result == KILN_OK; face++) {
         snprintf(path, room, "%s%s%s", paths->before, ki_face_names[face], paths->after);
-        kiln_image image;
-        kiln_file_info info;
-        result = load_image(context, path, &image, &info, error);
-        if (result != KILN_OK)
-            break;
-        int size = image.width;
-        if (image.channels != 3) {
-            result = ki_fail(error, KILN_ERROR_UNSUPPORTED, "%s: holds a table, not a face", path);
-        } else if (image.width != image.height) {
-            result = ki_fail(error, KILN_ERROR_FORMAT, "%s: is %d x %d, a face must be square",
-                             path, image.width, image.height);
-        } else if (face == 0) {
-            *map = (kiln_map){.shape = KILN_SHAPE_CUBE, .size = size, .level_count = 1};
-            result = ki_map_allocate(context, map, error);
-            if (result == KILN_OK && info.roughness[0] >= 0)
-                map->roughness[0] = info.roughness[0];
-        } else if (size != map->size) {
-            result = ki_fail(error, KILN_ERROR_FORMAT, "%s: is %d x %d, the first face %d x %d",
-                             path, size, size, map->size, map->size);
-        }
-        if (result == KILN_OK)
-            ki_cut_face(&image, 0, 0, size, false,
-                        map->level[0] + 3 * (size_t)size * (size_t)size * (size_t)face);
-        kiln_image_free(&image);
+        result = load_face(context, path, face, map, error);
     }
     ki_free(path);
     if (result != KILN_OK)
