@@ -293,9 +293,8 @@ static void put_stored(ki_deflater *d, const uint8_t *bytes, size_t size, bool l
     } while (size);
 }
 
-// Writes the first `count` items, which stand for the bytes from `start` to `end`, as a block, and
-// keeps the others.
-static void write_block(ki_deflater *d, int count, int32_t end, bool last)
+// The items, which stand for the bytes from `start` to `end`, as a block in its shortest form, if it fits.
+static void put_block(ki_deflater *d, int count, int32_t end, bool last)
 {
     size_t size = (size_t)(end - d->start);
     header h;
@@ -310,14 +309,21 @@ static void write_block(ki_deflater *d, int count, int32_t end, bool last)
         return;
     if (stored < least + 3) {
         put_stored(d, d->bytes + d->start, size, last);
-    } else {
-        put_flush(d, (uint32_t)last | (own < fixed ? 2U : 1U) << 1, 3);
-        if (own < fixed)
-            put_header(d, &h);
-        else
-            make_fixed_codes(d);
-        put_items(d, count);
+        return;
     }
+    put_flush(d, (uint32_t)last | (own < fixed ? 2U : 1U) << 1, 3);
+    if (own < fixed)
+        put_header(d, &h);
+    else
+        make_fixed_codes(d);
+    put_items(d, count);
+}
+
+// Makes the first `count` items a block, and keeps the others.
+static void write_block(ki_deflater *d, int count, int32_t end, bool last)
+{
+    if (!d->full)
+        put_block(d, count, end, last);
     d->count -= count;
     memmove(d->items, d->items + count, (size_t)d->count * sizeof *d->items);
     d->start = end;
