@@ -1,4 +1,4 @@
-// Pictures of BC6H blocks.
+// Encodes and decodes pictures as blocks of BC6H.
 #include "codec/bc6h.h"
 
 #include "base/vector.h"
@@ -36,7 +36,7 @@ bool ki_bc6h_encode(kiln_context *context, const float *rgb, int width, int heig
     return ki_parallel_steps(context, NULL, j.rows * picture_count, encode_row, &j);
 }
 
-// A block of a reserved mode is black.
+// Decodes a block to 16 texels. Blocks of a reserved mode are black.
 static void decode_block(const uint8_t *bytes, uint16_t halfs[16][3])
 {
     ki_bc6h_block b;

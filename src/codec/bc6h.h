@@ -1,6 +1,6 @@
-// BC6H, unsigned: 4 x 4 texels in 16 bytes, by the Khronos Data Format Specification 1.4, chapter
-// "BPTC Compressed Texture Image Formats". Colours lie on one line or two in the space of half floats'
-// bits, which is nearly that of logarithms.
+// Unsigned BC6H: 4 x 4 texels in 16 bytes, by the Khronos Data Format Specification 1.4, chapter
+// "BPTC Compressed Texture Image Formats". The colours of a block lie on one or two lines between
+// endpoints, in the space of the bits of half floats, which is nearly logarithmic.
 #ifndef KI_BC6H_H
 #define KI_BC6H_H
 
@@ -8,26 +8,30 @@
 
 enum { KI_BC6H_MODES = 14, KI_BC6H_PARTITIONS = 32, KI_BC6H_BYTES = 16 };
 
-/// Endpoints 1 to 3 are differences from endpoint 0 in `delta_bits` where the mode is `relative`.
+/// A mode of BC6H. In a `relative` mode endpoints 1 to 3 are stored as differences from endpoint 0,
+/// in `delta_bits` bits for each channel.
 typedef struct ki_bc6h_mode {
     uint8_t number, subsets, bits, delta_bits[3];
     bool relative;
-    const char *runs; ///< of bits, behind the mode's number up to the partition's or the indices
+    /// Runs of endpoint bits in the order of the block, after the mode's number.
+    const char *runs;
 } ki_bc6h_mode;
 
-/// What a block says. Endpoints are whole, not differences: [subset][end][channel].
+/// The content of a block. endpoint[subset][end][channel] holds whole endpoints, not differences.
 typedef struct ki_bc6h_block {
-    int mode, partition; ///< which of ki_bc6h_modes, not its number
+    /// Index in ki_bc6h_modes (not the mode's number), and index of the partition.
+    int mode, partition;
     int endpoint[2][2][3];
     int index[16];
 } ki_bc6h_block;
 
 extern const ki_bc6h_mode ki_bc6h_modes[KI_BC6H_MODES];
-/// Bit 4 y + x: the subset of a texel, and the texel of subset 1 whose index lacks its highest bit.
+/// Bit 4 y + x of a partition is the subset of texel (x, y). An anchor is the texel of subset 1
+/// whose index is stored without its highest bit.
 extern const uint16_t ki_bc6h_partitions[KI_BC6H_PARTITIONS];
 extern const uint8_t ki_bc6h_anchors[KI_BC6H_PARTITIONS];
 
-/// An endpoint of `bits` bits as a number of 0 to 65535.
+/// Converts an endpoint of `bits` bits to a number of 0 to 65535.
 static inline int ki_bc6h_unquantize(int value, int bits)
 {
     if (bits >= 15 || value == 0)
@@ -35,26 +39,30 @@ static inline int ki_bc6h_unquantize(int value, int bits)
     return value == (1 << bits) - 1 ? 0xffff : ((value << 15) + 0x4000) >> (bits - 1);
 }
 
-/// Of 64, by index of 3 bits (two subsets) or 4 (one).
+/// Returns the interpolation weight, out of 64, for an index of 3 bits (two subsets) or 4 bits (one
+/// subset).
 static inline int ki_bc6h_weight(int index, int subsets)
 {
     return subsets == 2 ? index * 9 + (index >> 2) : (index << 2) + (index >> 2) + (index >> 1 & 1);
 }
 
-/// Differences must fit, and the anchors' indices be below half.
+/// Writes a block. Differences must fit in the mode's bits, and the indices of the anchors must be
+/// below half of their range.
 void ki_bc6h_pack(const ki_bc6h_block *block, uint8_t bytes[KI_BC6H_BYTES]);
-/// False for the four modes that are reserved.
+/// Reads a block. Returns false for the four reserved modes.
 bool ki_bc6h_unpack(const uint8_t bytes[KI_BC6H_BYTES], ki_bc6h_block *block);
 
-/// Blocks of a picture of any size, row by row; texels outside repeat the edge's.
+/// Returns the number of bytes of a picture of any size in blocks, row by row. Texels of a block
+/// outside the picture repeat the picture's edge.
 size_t ki_bc6h_size(int width, int height);
-/// On all threads, `picture_count` pictures of RGB one after the other. False where a report of progress
-/// asks to stop.
+/// Encodes `picture_count` RGB pictures, stored one after the other, on all threads. Returns false
+/// if a progress report asks to stop.
 bool ki_bc6h_encode(kiln_context *context, const float *rgb, int width, int height,
                     int picture_count, uint8_t *bytes);
 void ki_bc6h_decode(const uint8_t *bytes, int width, int height, float *rgb);
 
-/// Encodes the blocks of rows 4 y to 4 y + 3. One a set of instructions, with the same bits.
+/// Encodes the blocks of the texel rows 4 y to 4 y + 3. There is one variant for each instruction
+/// set, all with the same bits.
 typedef void ki_bc6h_row(const float *rgb, int width, int height, int y, uint8_t *bytes);
 extern ki_bc6h_row ki_bc6h_row_scalar, ki_bc6h_row_simd128, ki_bc6h_row_avx2, ki_bc6h_row_avx512;
 

@@ -1,9 +1,13 @@
-// The body of ki_bc6h_row, compiled once an instruction set. Before inclusion: KI_BC6H_ROW, its name.
-// Plain loops over a block's sixteen texels or over the partitions, which compilers turn into vectors;
-// sums are folded in one order.
+// Encoding of a row of BC6H blocks, compiled once for each instruction set. In: RGB floats. Out: 16
+// bytes for each block of 4 x 4 texels. The including file defines KI_BC6H_ROW, the name of the
+// function. Method: a line of least squares is fitted to the colours of the block, and two lines
+// for the most promising partitions; endpoints are quantised, indices chosen, and both refined by
+// least squares. The loops run over the sixteen texels or over the partitions, so that compilers
+// vectorise them, and sums are folded in one fixed order.
 //
-// Errors are squared differences of half floats' bits ("codes", 1024 to an octave): relative errors, but
-// for the darkest. A code is read as its middle, since decoding rounds down.
+// Errors are squared differences between the bits of half floats ("codes", 1024 of them for each
+// factor of two), which are nearly relative errors except for the darkest colours. A code counts as
+// the middle of its interval, since decoding rounds down.
 #include "codec/bc6h.h"
 #include "image/pack.h"
 
@@ -12,20 +16,22 @@
 
 enum { TEXELS = 16, VALUES = 3 * TEXELS, PARTITIONS = KI_BC6H_PARTITIONS };
 
-// Codes are 31/64 of the numbers that endpoints stand for.
+// The decoder multiplies a number between endpoints by 31/64 to get a code.
 #define CODE (31.0f / 64)
 
-// Partitions that are tried, modes of each that reach, and rounds of least squares.
+// Number of partitions that are tried, of modes that are tried for each partition, and of rounds of
+// least squares for each mode.
 enum { TRIED = 3, MODES = 2, ROUNDS = 2 };
 
-// How far beyond its differences a mode is tried: its ends are then pulled in.
+// A relative mode is also tried if the differences exceed its range by this factor; its endpoints
+// are then moved into range.
 #define REACH 1.2f
 
 typedef struct texels {
     float code[3][TEXELS];
 } texels;
 
-// The ends of each subset's line, in codes.
+// The two ends of each subset's line, in codes.
 typedef struct lines {
     float end[2][2][3];
 } lines;
@@ -45,7 +51,7 @@ static float fold(const float v[TEXELS])
     return b[0] + b[2] + (b[1] + b[3]);
 }
 
-// 1 where the texel is of subset 1.
+// Sets mask[i] to 1 where texel i belongs to subset 1, else to 0.
 static void read_mask(int partition, float mask[TEXELS])
 {
     for (int i = 0; i < TEXELS; i++)
@@ -54,7 +60,8 @@ static void read_mask(int partition, float mask[TEXELS])
 
 // --------------------------------------------------------------------------------- real endpoints
 
-// The axis of a symmetric matrix's largest eigenvalue, xx xy xz yy yz zz, by powers of it.
+// Finds the eigenvector of the largest eigenvalue of the symmetric matrix xx xy xz yy yz zz by
+// power iteration.
 static void find_axis(const float m[6], float axis[3])
 {
     const float columns[3][3] = {{m[0], m[1], m[2]}, {m[1], m[3], m[4]}, {m[2], m[4], m[5]}};
@@ -80,7 +87,7 @@ static void find_axis(const float m[6], float axis[3])
     axis[2] = z * scale;
 }
 
-// The ends of the line of least squares through the texels whose weight is 1.
+// Finds the ends of the least-squares line through the texels whose weight is 1.
 static void find_line(const texels *t, const float weight[TEXELS], float end[2][3])
 {
     float centered[3][TEXELS], product[TEXELS], mean[3], m[6], axis[3];
@@ -111,7 +118,8 @@ static void find_line(const texels *t, const float weight[TEXELS], float end[2][
     }
 }
 
-// What is left of each partition's variance beside its two lines: one a lane.
+// Sets left[p] to the variance that remains when the two subsets of partition p are approximated by
+// their lines. The loops run over partitions, one in each vector lane.
 static void rank(const texels *t, float left[PARTITIONS])
 {
     float mean[3], x[3][TEXELS], total[10] = {0};
@@ -120,7 +128,7 @@ static void rank(const texels *t, float left[PARTITIONS])
         for (int i = 0; i < TEXELS; i++)
             x[c][i] = t->code[c][i] - mean[c];
     }
-    // Of subset 1, then of both: count, sums, products.
+    // Count, sums and products of the colours, first of subset 1, then of all texels.
     float sum[10][PARTITIONS] = {{0}};
     for (int i = 0; i < TEXELS; i++) {
         const float a = x[0][i], b = x[1][i], d = x[2][i];
@@ -145,7 +153,8 @@ static void rank(const texels *t, float left[PARTITIONS])
             float xx = s[4] - s[1] * s[1] * share, xy = s[5] - s[1] * s[2] * share;
             float xz = s[6] - s[1] * s[3] * share, yy = s[7] - s[2] * s[2] * share;
             float yz = s[8] - s[2] * s[3] * share, zz = s[9] - s[3] * s[3] * share;
-            // From the largest column: the Rayleigh quotient after three products.
+            // The largest eigenvalue by its Rayleigh quotient after three multiplications by the
+            // matrix, from the matrix's largest column.
             bool first = xx >= yy && xx >= zz, second = yy >= zz;
             float a = first ? xx : second ? xy : xz;
             float b = first ? xy : second ? yy : yz;
@@ -174,7 +183,7 @@ static float code_of(int value, int bits)
     return (float)ki_bc6h_unquantize(value, bits) * CODE;
 }
 
-// The nearest endpoint to a code.
+// Returns the endpoint whose code is nearest to `code`.
 static int quantize(float code, int bits)
 {
     float step = (float)(65536 >> bits) * CODE;
@@ -183,7 +192,7 @@ static int quantize(float code, int bits)
     return at < 0.25f ? 0 : at > (float)last + 0.75f ? last : ki_min((int)at, last);
 }
 
-// A difference is kept within the mode's bits.
+// Moves an endpoint into the range that the bits of the mode's differences allow.
 static int keep(int value, int base, const ki_bc6h_mode *mode, int channel)
 {
     if (mode->relative) {
@@ -204,7 +213,7 @@ static void quantize_lines(const lines *from, candidate *k)
         }
 }
 
-// Whether differences fit.
+// Returns whether all differences from endpoint 0 fit in the mode's bits.
 static bool fits(const ki_bc6h_block *b)
 {
     const ki_bc6h_mode *mode = &ki_bc6h_modes[b->mode];
@@ -226,8 +235,8 @@ static void swap_ends(int end[2][3])
     }
 }
 
-// An anchor's index must be below half: its subset's ends change places, or where the differences then
-// fit no more, the index gives way.
+// Makes the index of each anchor less than half of its range. The ends of the subset's line are
+// swapped, or if the differences then no longer fit, the index is changed instead.
 static void obey_anchors(ki_bc6h_block *b, int index[TEXELS])
 {
     int subsets = ki_bc6h_modes[b->mode].subsets, count = subsets == 2 ? 8 : 16;
@@ -247,7 +256,8 @@ static void obey_anchors(ki_bc6h_block *b, int index[TEXELS])
     }
 }
 
-// Chooses each texel's index, makes the anchors' valid, and measures what is decoded.
+// Chooses the index of each texel, makes the indices of the anchors valid, and measures the error
+// of the decoded block.
 static void choose_indices(const texels *t, const float mask[TEXELS], candidate *k)
 {
     ki_bc6h_block *b = &k->block;
@@ -277,7 +287,7 @@ static void choose_indices(const texels *t, const float mask[TEXELS], candidate 
         b->index[i] = index[i];
         weight[i] = (float)ki_bc6h_weight(index[i], mode->subsets);
     }
-    // All of it is whole and below 2^24.
+    // All values here are integers below 2^24, which floats represent exactly.
     for (int c = 0; c < 3; c++) {
         float end[4];
         for (int e = 0; e < 4; e++)
@@ -292,19 +302,22 @@ static void choose_indices(const texels *t, const float mask[TEXELS], candidate 
     k->error = fold(error);
 }
 
-// The squared error of a channel by the codes a and b of the ends, up to a constant:
-//     xx a^2 + 2 xy a b + yy b^2 - 2 x a - 2 y b.
+// The squared error of a channel as a function of the codes a and b of the two ends, up to a
+// constant: xx a^2 + 2 xy a b + yy b^2 - 2 x a - 2 y b.
 typedef struct parabola {
     float xx, xy, yy, x, y;
 } parabola;
 
-// Three ends near the minimum, each with the best other one.
+// Tries three values of the low end near the minimum of the error, each with the best high end for
+// it, and keeps the best pair.
 static void descend(const parabola *p, const ki_bc6h_mode *mode, int channel, int base,
                     bool is_base, int *low, int *high)
 {
     float determinant = p->xx * p->yy - p->xy * p->xy;
     if (!(determinant > 1e-4f * p->xx * p->yy))
-        return; // all texels have one index: the ends stay
+        // All texels have the same index, so that the ends are not determined; they stay as they
+        // are.
+        return;
     float a = (p->x * p->yy - p->y * p->xy) / determinant, best = INFINITY;
     int first = quantize(a, mode->bits);
     for (int i = -1; i <= 1; i++) {
@@ -323,7 +336,7 @@ static void descend(const parabola *p, const ki_bc6h_mode *mode, int channel, in
     }
 }
 
-// The ends that are best for the indices.
+// Sets the ends of each subset's line to those with the least squared error for the given indices.
 static void refine(const texels *t, const float mask[TEXELS], candidate *k)
 {
     ki_bc6h_block *b = &k->block;
@@ -359,7 +372,8 @@ static void refine(const texels *t, const float mask[TEXELS], candidate *k)
     }
 }
 
-// Subset 1 must stay within reach of a base that moved.
+// Endpoint 0 has moved, so the other endpoints are moved into the range of the mode's differences
+// from it.
 static void keep_all(ki_bc6h_block *b)
 {
     const ki_bc6h_mode *mode = &ki_bc6h_modes[b->mode];
@@ -389,7 +403,8 @@ static void try_mode(const texels *t, const float mask[TEXELS], const lines *end
     }
 }
 
-// Whether a mode's differences reach, or nearly, from the first end to the others.
+// Returns whether the differences from the first end to the others fit in a mode's bits, or exceed
+// them by less than the factor REACH.
 static bool reaches(const lines *ends, const ki_bc6h_mode *mode)
 {
     float step = (float)(65536 >> mode->bits) * CODE;
@@ -402,7 +417,7 @@ static bool reaches(const lines *ends, const ki_bc6h_mode *mode)
     return true;
 }
 
-// Modes in the order of their precision: the first that reach are tried.
+// Tries the first MODES modes whose differences fit, from the most precise mode on.
 static void try_modes(const texels *t, const float mask[TEXELS], const lines *ends,
                       const uint8_t *modes, int count, int partition, candidate *best)
 {

@@ -1,8 +1,10 @@
-// The modes of BC6H and the bits of a block.
+// The modes and partitions of BC6H, and the reading and writing of a block's bits. In and out: a
+// ki_bc6h_block and its 16 bytes. Each mode's runs of bits are text that a small parser reads.
 #include "codec/bc6h.h"
 
-// Khronos Data Format Specification 1.4, "Endpoint and partition parameters for BPTC block modes" and
-// "Block descriptions for BC6H block modes". Of each run of bits channel, endpoint, lowest bit and count.
+// From the Khronos Data Format Specification 1.4, "Endpoint and partition parameters for BPTC block
+// modes" and "Block descriptions for BC6H block modes". A run of bits is written as its channel,
+// endpoint, lowest bit and number of bits.
 const ki_bc6h_mode ki_bc6h_modes[KI_BC6H_MODES] = {
     {0,
      2,
@@ -86,8 +88,8 @@ const ki_bc6h_mode ki_bc6h_modes[KI_BC6H_MODES] = {
      "G0d1 G0c1 G0b1 G0a1 B104 B0f1 B0e1 B0d1 B0c1 B0b1 B0a1"},
 };
 
-// Ibid., "Partition table for 2-subset BPTC" (the first half) and "BPTC anchor index values for the
-// second subset of two-subset partitioning".
+// From the same specification, "Partition table for 2-subset BPTC" (first half) and "BPTC anchor
+// index values for the second subset of two-subset partitioning".
 const uint16_t ki_bc6h_partitions[KI_BC6H_PARTITIONS] = {
     0xcccc, 0x8888, 0xeeee, 0xecc8, 0xc880, 0xfeec, 0xfec8, 0xec80, 0xc800, 0xffec, 0xfe80,
     0xe800, 0xffe8, 0xff00, 0xfff0, 0xf000, 0xf710, 0x008e, 0x7100, 0x08ce, 0x008c, 0x7310,
@@ -132,7 +134,7 @@ static int hexadecimal(char digit)
     return digit <= '9' ? digit - '0' : digit - 'a' + 10;
 }
 
-// The next run, or false behind the last.
+// Parses the next run of bits. Returns false after the last run.
 static bool next_run(const char **at, run *r)
 {
     const char *t = *at;
@@ -151,7 +153,7 @@ static int number_bits(int number)
     return number < 2 ? 2 : 5;
 }
 
-// How many bits of a texel's index are stored.
+// Returns the number of bits that store a texel's index.
 static int index_bits(const ki_bc6h_mode *mode, int partition, int texel)
 {
     bool anchor = texel == 0 || (mode->subsets == 2 && texel == ki_bc6h_anchors[partition]);

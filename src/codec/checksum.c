@@ -1,11 +1,12 @@
-// Adler-32 (RFC 1950) and CRC-32 (PNG, annex D).
+// The checksums Adler-32 (RFC 1950) and CRC-32 (PNG, annex D).
 #include "codec/deflate.h"
 
-// a is 1 plus the sum of all bytes, b the sum of a after each byte; both modulo 65521. Sixteen bytes
-// at a time, of which the first counts sixteen times in b.
+// In Adler-32, a is 1 plus the sum of all bytes, and b the sum of the values of a after each byte,
+// both modulo 65521. Sixteen bytes are added at a time; the first of the sixteen counts sixteen
+// times in b.
 uint32_t ki_adler32(uint32_t sum, const uint8_t *bytes, size_t size)
 {
-    enum { AT_ONCE = 5552 }; // as many bytes as keep b below 2^32
+    enum { AT_ONCE = 5552 }; // number of bytes for which b stays below 2^32
     uint32_t a = sum & 0xffff, b = sum >> 16;
     while (size) {
         size_t count = size < AT_ONCE ? size : AT_ONCE, i = 0;
@@ -38,7 +39,7 @@ void ki_crc32_fill(ki_crc32_table *table)
             sum = sum >> 1 ^ (sum & 1 ? 0xedb88320 : 0);
         table->sums[0][i] = sum;
     }
-    for (int k = 1; k < 8; k++) // a byte that zeros follow, k of them
+    for (int k = 1; k < 8; k++) // sums[k] holds the sum of a byte that is followed by k zero bytes
         for (uint32_t i = 0; i < 256; i++)
             table->sums[k][i] =
                 table->sums[k - 1][i] >> 8 ^ table->sums[0][table->sums[k - 1][i] & 255];

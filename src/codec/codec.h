@@ -1,5 +1,5 @@
-// Files to texels and back, one file a format. Decoders take any bytes at all: they are the
-// security boundary, and everything here is fuzzed.
+// Decoders and encoders of picture files, each format in a file of its own. Decoders accept
+// arbitrary bytes: they are the security boundary of the library, and all of them are fuzzed.
 #ifndef KI_CODEC_H
 #define KI_CODEC_H
 
@@ -9,16 +9,17 @@
 
 #include <kiln/brdf.h>
 
-/// What a decoder finds: a flat picture of three channels, or (KTX2, DDS) a cube with its levels, or
-/// (KTX2) a table in `image`, its slices one below the other, of 1, 2 or 4 channels that may be negative.
+/// The content of a decoded file: a flat picture of three channels; or a cube with its levels
+/// (KTX2, DDS); or a table in `image` (KTX2), whose slices lie one below the other and whose 1, 2
+/// or 4 channels may be negative.
 typedef struct ki_decoded {
     bool is_map, is_table;
     kiln_image image;
     kiln_map map;
 } ki_decoded;
 
-/// Reads any file kiln can read, told by its first bytes. `name` stands in messages. With `info`
-/// not NULL it is filled, and with `decoded` NULL the texels are not read.
+/// Decodes any file that kiln can read; the first bytes decide the format. `name` appears in error
+/// messages. `info`, if not NULL, is filled in. If `decoded` is NULL, the texels are not read.
 kiln_result ki_decode(kiln_context *context, const uint8_t *bytes, size_t size, const char *name,
                       ki_decoded *decoded, kiln_file_info *info, kiln_error *error);
 void ki_decoded_free(ki_decoded *decoded);
@@ -32,8 +33,8 @@ kiln_result ki_hdr_decode(kiln_context *context, const uint8_t *bytes, size_t si
 kiln_result ki_png_decode(kiln_context *context, const uint8_t *bytes, size_t size,
                           const char *name, kiln_image *image, kiln_file_info *info,
                           kiln_error *error);
-/// KTX2 is a cube or a table, DDS a cube; an atlas in DDS is described alone. `decoded` may be NULL, `info`
-/// not.
+/// Decode a KTX2 file, which is a cube or a table, and a DDS file, which is a cube. An atlas in a
+/// DDS file is only described. `decoded` may be NULL, `info` must not be.
 kiln_result ki_ktx2_decode(kiln_context *context, const uint8_t *bytes, size_t size,
                            const char *name, ki_decoded *decoded, kiln_file_info *info,
                            kiln_error *error);
@@ -41,32 +42,38 @@ kiln_result ki_dds_decode(kiln_context *context, const uint8_t *bytes, size_t si
                           const char *name, ki_decoded *decoded, kiln_file_info *info,
                           kiln_error *error);
 
-/// Encoders append a whole file. KTX2 and DDS take cubes with all levels.
+/// Append a whole file to `writer`: a cube with all its levels.
 kiln_result ki_ktx2_encode(const kiln_map *map, const kiln_save_def *def, ki_writer *writer,
                            kiln_error *error);
 kiln_result ki_dds_encode(const kiln_map *map, const kiln_save_def *def, ki_writer *writer,
                           kiln_error *error);
-/// A square picture of four channels as halves, with the name of an engine.
+/// Appends a DDS file with a square picture of four channels as halves and the name of the engine
+/// that reads the picture.
 kiln_result ki_dds_encode_atlas(const kiln_image *image, const char *engine, ki_writer *writer,
                                 kiln_error *error);
-/// A table of `depth` slices one below the other, 3-D where there are several. `text` says what it is.
+/// Appends a KTX2 file with a table, whose `depth` slices lie one below the other in `image`.
+/// Several slices become a 3-D texture. `text` describes the table.
 kiln_result ki_ktx2_encode_table(const kiln_image *image, int depth, const char *text,
                                  kiln_table_format format, int zstd, ki_writer *writer,
                                  kiln_error *error);
-/// `width` * `height` texels of `channels` (1 to 4) floats, ZIP.
+/// Options of an EXR file of `width` * `height` texels of `channels` (1 to 4) floats, compressed by
+/// ZIP.
 typedef struct ki_exr_options {
-    bool half;          ///< false: 32-bit floats
-    bool panorama;      ///< says so in the attribute "envmap"
-    bool octahedron;    ///< says so in the attribute "kilnShape"
-    float roughness;    ///< the attribute "kilnRoughness"; negative for none
-    const char *table;  ///< the attribute "kilnTable"; may be NULL
-    const char *engine; ///< the attribute "kilnEngine", by ki_engine_text_write; may be NULL
+    bool half; ///< true: 16-bit floats; false: 32-bit floats
+    /// True: writes the attribute "envmap", which says that the picture is a panorama.
+    bool panorama;
+    /// True: writes the attribute "kilnShape", which says that the picture is an octahedron.
+    bool octahedron;
+    float roughness;   ///< value of the attribute "kilnRoughness"; negative for no attribute
+    const char *table; ///< value of the attribute "kilnTable"; NULL for no attribute
+    /// Value of the attribute "kilnEngine", by ki_engine_text_write; NULL for none.
+    const char *engine;
 } ki_exr_options;
 kiln_result ki_exr_encode(const float *pixels, int width, int height, int channels,
                           const ki_exr_options *options, ki_writer *writer, kiln_error *error);
 kiln_result ki_hdr_encode(const float *pixels, int width, int height, ki_writer *writer,
                           kiln_error *error);
-/// How a PNG holds values of 0 to 1: by the sRGB curve, or as they are.
+/// How a PNG file stores values of 0 to 1: by the sRGB curve, or linearly.
 typedef enum ki_png_coding { KI_PNG_SRGB8, KI_PNG_PLAIN8, KI_PNG_PLAIN16 } ki_png_coding;
 kiln_result ki_png_encode(const float *pixels, int width, int height, int channels,
                           ki_png_coding coding, ki_writer *writer, kiln_error *error);

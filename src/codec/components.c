@@ -12,7 +12,8 @@ int ki_component_bytes(kiln_table_format format)
     return format == KILN_TABLE_FORMAT_F32 ? 4 : format == KILN_TABLE_FORMAT_U8 ? 1 : 2;
 }
 
-// 0 to `most`; exact products, so that ties alone depend on the rounding.
+// Converts a value in [0, 1] to an integer of 0 to `most`. The product is exact in double
+// precision, so that only ties depend on the direction of rounding.
 static uint32_t whole(float value, double most)
 {
     if (!(value > 0))

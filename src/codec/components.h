@@ -1,4 +1,4 @@
-// The numbers of tables as files hold them: floats, halves, or whole numbers for 0 to 1.
+// The numbers of tables as files store them: floats, halves, or integers that stand for 0 to 1.
 #ifndef KI_COMPONENTS_H
 #define KI_COMPONENTS_H
 
@@ -6,16 +6,17 @@
 
 #include <kiln/brdf.h>
 
-/// Bytes of a number: 4, 2, 2 or 1. Not for KILN_TABLE_FORMAT_AUTO.
+/// Returns the number of bytes of a stored number: 4, 2, 2 or 1. `format` is not
+/// KILN_TABLE_FORMAT_AUTO.
 int ki_component_bytes(kiln_table_format format);
 
-/// `count` texels of `channels` floats to texels of `stored` numbers, little-endian: colours that
-/// are missing become 0, a missing fourth channel 1. Whole numbers are rounded to nearest and clamped
-/// to 0 and 1, halves to the largest finite ones.
+/// Converts `count` texels of `channels` floats to texels of `stored` little-endian numbers.
+/// Missing colour channels become 0, a missing fourth channel becomes 1. Integers are rounded to
+/// nearest and clamped to 0 to 1, halves are clamped to the largest finite half.
 void ki_components_pack(kiln_table_format format, const float *texels, size_t count, int channels,
                         int stored, uint8_t *bytes);
-/// The inverse, for count numbers; not-a-number becomes 0 and infinities the largest finite value.
-/// Bytes need no alignment.
+/// Converts `count` stored numbers to floats. Not-a-number becomes 0, and infinities become the
+/// largest finite value. `bytes` needs no alignment.
 void ki_components_unpack(kiln_table_format format, const uint8_t *bytes, size_t count,
                           float *values);
 

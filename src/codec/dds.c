@@ -1,5 +1,7 @@
-// DDS cubes, and the atlas of an engine. Cubes are written with the DX10 header, read with it or with the two older codes of float
-// formats. The file has no place for metadata. Each face is followed by its smaller levels.
+// DDS files. In: a cube with its levels, or an engine's atlas. Out: bytes of a file; or of a file
+// that is read, the cube. Cubes are written with the DX10 header, and read with that header or with
+// the two older codes of float formats. DDS has no place for metadata. Each face is followed by its
+// smaller levels.
 #include "codec/codec.h"
 #include "codec/file_info.h"
 #include "codec/pixel_format.h"
@@ -10,19 +12,21 @@
 
 enum {
     HEADER_SIZE = 124,
-    FLAGS = 0x1 | 0x2 | 0x4 | 0x1000 | 0x20000, // caps, sizes, format, levels
-    FLAG_PITCH = 0x8,                           // bytes of a row
-    FLAG_LINEAR = 0x80000,                      // bytes of a face, for blocks
+    // The fields caps, size, format and levels are present.
+    FLAGS = 0x1 | 0x2 | 0x4 | 0x1000 | 0x20000,
+    FLAG_PITCH = 0x8, // the pitch field holds the bytes of a row
+    // The pitch field holds the bytes of a face, for formats of blocks.
+    FLAG_LINEAR = 0x80000,
     FORMAT_SIZE = 32,
     FORMAT_FOURCC = 0x4,
-    CAPS = 0x8 | 0x1000 | 0x400000, // complex, texture, levels
+    CAPS = 0x8 | 0x1000 | 0x400000, // the picture is complex, a texture, with levels
     CAPS2_CUBE = 0x200,
     CAPS2_ALL_FACES = 0xfc00,
     DIMENSION_2D = 3,
     MISC_CUBE = 0x4,
     LEGACY_RGBA16F = 113,
     LEGACY_RGBA32F = 116,
-    RESERVED_AT = 32, // eleven words that mean nothing
+    RESERVED_AT = 32, // offset of eleven words without meaning
     RESERVED = 11,
 };
 
@@ -56,14 +60,14 @@ kiln_result ki_dds_encode(const kiln_map *map, const kiln_save_def *def, ki_writ
     ki_write_u32(w, (uint32_t)map->size);
     int rows = pixel->block > 1 ? map->size : 1;
     ki_write_u32(w, (uint32_t)ki_pixels_size(pixel, map->size, rows));
-    ki_write_u32(w, 0); // depth
+    ki_write_u32(w, 0); // depth of a volume
     ki_write_u32(w, (uint32_t)map->level_count);
     for (int i = 0; i < 11; i++)
         ki_write_u32(w, 0);
     ki_write_u32(w, FORMAT_SIZE);
     ki_write_u32(w, FORMAT_FOURCC);
     ki_write(w, "DX10", 4);
-    for (int i = 0; i < 5; i++) // bits and masks
+    for (int i = 0; i < 5; i++) // bits and masks of the older header
         ki_write_u32(w, 0);
     ki_write_u32(w, CAPS);
     ki_write_u32(w, CAPS2_CUBE | CAPS2_ALL_FACES);
@@ -72,8 +76,8 @@ kiln_result ki_dds_encode(const kiln_map *map, const kiln_save_def *def, ki_writ
     ki_write_u32(w, pixel->dxgi);
     ki_write_u32(w, DIMENSION_2D);
     ki_write_u32(w, MISC_CUBE);
-    ki_write_u32(w, 1); // cubes
-    ki_write_u32(w, 0); // alpha mode not stated
+    ki_write_u32(w, 1); // number of cubes
+    ki_write_u32(w, 0); // alpha mode "not stated"
     for (int face = 0; face < 6; face++) {
         for (int k = 0; k < map->level_count; k++) {
             int n = kiln_map_level_size(map, k);
@@ -89,8 +93,9 @@ kiln_result ki_dds_encode(const kiln_map *map, const kiln_save_def *def, ki_writ
     return KILN_OK;
 }
 
-// The older header, whose code 113 says four halves. Among its reserved words, which readers pass over,
-// stand the writer and the engine: "kiln 0.2.0 playcanvas-dds".
+// Writes an atlas with the older header, whose code 113 stands for four halves. Readers ignore the
+// header's reserved words, in which kiln stores its version and the name of the engine, for example
+// "kiln 0.2.0 playcanvas-dds".
 kiln_result ki_dds_encode_atlas(const kiln_image *image, const char *engine, ki_writer *w,
                                 kiln_error *error)
 {
@@ -116,7 +121,9 @@ kiln_result ki_dds_encode_atlas(const kiln_image *image, const char *engine, ki_
 
 typedef struct dds_header {
     uint32_t width, height, levels;
-    bool describing; // a single picture is let through, which is not read
+    // True: the file is only described, and a flat picture, which kiln does not decode, is
+    // accepted.
+    bool describing;
     bool flat;
     char said[4 * RESERVED + 1];
     const ki_pixel_format *pixel;
@@ -126,11 +133,11 @@ static kiln_result read_header(ki_reader *r, const char *name, dds_header *h, ki
 {
     ki_read_bytes(r, 4);
     uint32_t header_size = ki_read_u32(r);
-    ki_read_u32(r); // flags, which writers get wrong
+    ki_read_u32(r); // flags, which many writers set wrongly
     h->height = ki_read_u32(r);
     h->width = ki_read_u32(r);
-    ki_read_u32(r); // pitch
-    ki_read_u32(r); // depth
+    ki_read_u32(r); // pitch of a row or face
+    ki_read_u32(r); // depth of a volume
     h->levels = ki_read_u32(r);
     const uint8_t *said = ki_read_bytes(r, sizeof h->said - 1);
     if (said)
@@ -183,7 +190,7 @@ static kiln_result read_header(ki_reader *r, const char *name, dds_header *h, ki
     return KILN_OK;
 }
 
-// "kiln VERSION ENGINE", where kiln wrote an atlas.
+// Fills in `info` from the text "kiln VERSION ENGINE" in an atlas that kiln wrote.
 static void describe_atlas(const dds_header *h, kiln_file_info *info)
 {
     const char *engine = strrchr(h->said, ' ');

@@ -42,7 +42,7 @@ const char *ki_parse_number(const char *text, double *value)
     return text;
 }
 
-// Whatever the program's locale is.
+// Writes a number with a decimal point, even if the program's locale has a decimal comma.
 static void write_with_point(ki_writer *writer, char *text)
 {
     char *comma = strchr(text, ',');

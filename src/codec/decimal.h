@@ -1,16 +1,16 @@
-// Numbers as decimal text, with a point whatever the program's locale is.
+// Numbers as decimal text, with a decimal point in every locale.
 #ifndef KI_DECIMAL_H
 #define KI_DECIMAL_H
 
 #include "base/bytes.h"
 
-/// Reads a number after spaces and tabs, right to about 15 digits. Returns what follows the number, or
-/// NULL where there is none.
+/// Reads a number after spaces and tabs, precise to about 15 digits. Returns a pointer to the text
+/// after the number, or NULL if there is no number.
 const char *ki_parse_number(const char *text, double *value);
-/// Writes nine digits: enough for a float to come back as it was.
+/// Writes a number with nine digits, from which reading gives the same float.
 void ki_write_number(ki_writer *writer, double value);
-/// Writes the shortest of six to nine digits that is this float again, with a point or an exponent,
-/// which C and GLSL want.
+/// Writes a float with the fewest of six to nine digits from which reading gives the same float.
+/// The text has a point or an exponent, as C and GLSL require of a floating-point constant.
 void ki_write_float(ki_writer *writer, float value);
 
 #endif

@@ -19,7 +19,8 @@ void ki_engine_text_write(ki_writer *w, const char *engine, const char *words, c
     ki_write_u8(w, 0);
 }
 
-// A word of the line, "KEY=VALUE", to `value`; "" where the line has none.
+// Copies the value of the word "KEY=VALUE" in a line to `value`, or "" if the line has no such
+// word.
 static void find_word(const char *text, const char *key, char *value, size_t room)
 {
     size_t length = strlen(key);

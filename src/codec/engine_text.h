@@ -1,19 +1,21 @@
-// What a file that was written for an engine says of itself, in one line of text:
+// The line of text by which a file for a rendering engine describes itself:
 //   engine=playcanvas layout=atlas format=rgbp roughness=0,0.2,0.4,0.6,0.8,1
-// Such files hold cubes in an engine's own axes, or atlases, so that neither their sides nor their texels
-// say what they are. The line stands in an attribute of EXR, a text of PNG, a pair of KTX 1.
+// Such files hold cubes in an engine's own axes, or atlases, so that neither their sizes nor their
+// texels show what they are. The line is stored in an attribute of EXR, a text chunk of PNG or a
+// key-value pair of KTX 1.
 #ifndef KI_ENGINE_TEXT_H
 #define KI_ENGINE_TEXT_H
 
 #include "base/bytes.h"
 
-/// Appends the line for the levels of a map, and its NUL. `words` is what stands in between, each word
-/// with a space before it.
+/// Appends the line for the levels of a map, with its NUL. `words` are further words between the
+/// engine and the roughness, each with a space before it.
 void ki_engine_text_write(ki_writer *writer, const char *engine, const char *words,
                           const kiln_map *map);
-/// Takes from a line what it says; `text` ends in NUL. The format is that of bytes in a PNG.
+/// Fills in `info` from a line that ends in NUL. The format is that of the texels in a PNG file.
 void ki_engine_text_read(const char *text, kiln_file_info *info);
-/// Whether a file was said to be an atlas, which is a picture of no layout that kiln reads.
+/// Returns whether a file's description says that the file is an atlas. kiln cannot lay an atlas
+/// out on the sphere.
 bool ki_is_atlas(const kiln_file_info *info);
 
 #endif

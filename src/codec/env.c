@@ -1,6 +1,7 @@
-// Babylon.js' environments: eight bytes, a JSON manifest that ends in NUL, and the images of a cube one
-// after the other, level by level, face by face. Images are PNG in RGBD, their rows from the bottom up.
-// A cube and harmonics go in; of a file, the manifest comes out and is checked against the file's size.
+// Babylon.js' .env files. In: a cube and harmonics. Out: bytes of a file; or of a file that is
+// read, its description, after a check of the file's size. A file is eight bytes, a JSON manifest
+// that ends in NUL, and the images of the cube one after the other, level by level, face by face.
+// Images are PNG files in RGBD with the bottom row first.
 #include "codec/env.h"
 
 #include "codec/decimal.h"
@@ -23,10 +24,11 @@ double ki_env_roughness(int level, double lod_scale, int size)
 
 // --------------------------------------------------------------------------------------- harmonics
 
-// Irradiance / pi in harmonics is that of radiance times 1, 2/3 or 1/4 by band. As a polynomial Babylon
-// multiplies by these and by the constant of the basis function once more, which the shader's harmonics
-// take back: SphericalPolynomial.updateFromHarmonics and SphericalHarmonics.FromPolynomial. 1 is written
-// as x^2 + y^2 + z^2.
+// Factors of the coefficients of Babylon.js' polynomial. Irradiance / pi has the harmonics of
+// radiance times 1, 2/3 or 1/4 by band. Babylon.js multiplies the polynomial's coefficients once
+// more by these factors and by the constants of the basis functions, and the shader undoes that
+// (SphericalPolynomial.updateFromHarmonics and SphericalHarmonics.FromPolynomial). The constant 1
+// is written as x^2 + y^2 + z^2.
 static void find_factors(double *k0, double *k1, double *k2, double *k3)
 {
     *k0 = sqrt(1 / (4 * KI_PI));
@@ -53,7 +55,9 @@ static void make_polynomial(const kiln_sh *sh, double polynomial[9][3])
     }
 }
 
-// The inverse: x^2, y^2 and z^2 are one - z2 + x2_y2, one - z2 - x2_y2 and one + 2 z2.
+// Computes harmonics from the polynomial. Its coefficients of x^2, y^2 and z^2 are, for the
+// coefficients c, z2 and x2_y2 of the harmonics 1, 3z^2 - 1 and x^2 - y^2: c - z2 + x2_y2, c - z2 -
+// x2_y2 and c + 2 z2.
 static void make_harmonics(double polynomial[9][3], kiln_file_info *info)
 {
     double k0, k1, k2, k3;
@@ -120,10 +124,12 @@ kiln_result ki_env_encode(const kiln_map *map, double lod_scale, const kiln_sh *
 
 // ------------------------------------------------------------------------------------------ reading
 
-// What the manifest says. Images lie `images` bytes and more behind it.
+// The values of a manifest. The images follow the manifest in the file and take at least
+// `image_bytes` bytes.
 typedef struct manifest {
     int version, width, image_count;
-    uint64_t image_bytes; // up to the end of the last image
+    // Number of bytes from the end of the manifest to the end of the last image.
+    uint64_t image_bytes;
     double lod_scale;
     char type[32];
     bool has_polynomial;
@@ -248,7 +254,7 @@ kiln_result ki_env_describe(const uint8_t *bytes, size_t size, const char *name,
     if (!end)
         return ki_fail(error, KILN_ERROR_FORMAT, "%s: the manifest has no end in %zu bytes", name,
                        size);
-    manifest m = {.lod_scale = 0.8}; // as Babylon.js takes it where a file says none
+    manifest m = {.lod_scale = 0.8}; // the value that Babylon.js uses if a file states none
     ki_json json = ki_json_make(from, (size_t)(end - from));
     read_manifest(&json, &m);
     if (json.failed)

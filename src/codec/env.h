@@ -1,12 +1,14 @@
-// Babylon.js' .env.
+// Babylon.js' .env files.
 #ifndef KI_ENV_H
 #define KI_ENV_H
 
 #include "codec/codec.h"
 
-/// The roughness of a level: Babylon.js reads level log2(size (r^2 + 0.0005)) lod_scale.
+/// Returns the roughness of a level. Babylon.js reads level log2(size (r^2 + 0.0005)) lod_scale at
+/// roughness r.
 double ki_env_roughness(int level, double lod_scale, int size);
-/// A cube with all levels down to 1, and the first three bands of radiance.
+/// Appends a .env file with a cube, which has all levels down to size 1, and the first three bands
+/// of radiance.
 kiln_result ki_env_encode(const kiln_map *map, double lod_scale, const kiln_sh *sh,
                           ki_writer *writer, kiln_error *error);
 kiln_result ki_env_describe(const uint8_t *bytes, size_t size, const char *name,

@@ -7,8 +7,8 @@
 #include <math.h>
 #include <string.h>
 
-// A coefficient of radiance is multiplied by the cosine's factor of its band, over pi, and by the
-// constant of its basis function.
+// Filament's factor of a basis function is the coefficient of radiance, times the cosine lobe's
+// factor of the band over pi, times the constant of the basis function.
 static const double cosine[9] = {1, 2.0 / 3, 2.0 / 3, 2.0 / 3, 0.25, 0.25, 0.25, 0.25, 0.25};
 
 static double basis(int i)
@@ -43,7 +43,7 @@ bool ki_filament_sh_read(const char *text, kiln_file_info *info)
         if (!text)
             return false;
         sh[i / 3][i % 3] = ki_info_number(value / (cosine[i / 3] * basis(i / 3)));
-        if (i % 3 == 2 && *text == ')') // its name
+        if (i % 3 == 2 && *text == ')') // the name of the factor, in parentheses
             text += strcspn(text, "\n");
     }
     memcpy(info->sh, sh, sizeof sh);

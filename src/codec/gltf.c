@@ -1,6 +1,8 @@
-// Binary glTF 2.0: 12 bytes of header, a chunk of JSON that ends in spaces, a chunk of bytes that ends in
-// zeros. The images of a light of EXT_lights_image_based are PNG in RGBD, level by level, face by face.
-// The extension's figure has v upward and glTF has it downward: rows are from the bottom up.
+// Binary glTF 2.0 with the extension EXT_lights_image_based. In: a cube and harmonics. Out: bytes
+// of a file; or of a file that is read, the description of its first light. A file is 12 bytes of
+// header, a chunk of JSON padded with spaces, and a chunk of bytes padded with zeros. The images of
+// a light are PNG files in RGBD, level by level, face by face. The extension's figure has v upward
+// while glTF has v downward, so images are stored with the bottom row first.
 #include "codec/gltf.h"
 
 #include "codec/decimal.h"
@@ -20,9 +22,9 @@ enum {
     CHUNK_BIN = 0x4e4942
 };
 
-// The extension says "spherical harmonics coefficients for irradiance": radiance times pi, 2 pi / 3 and
-// pi / 4 by band. It leaves their signs open; these are Sloan's (Stupid Spherical Harmonics Tricks 2008,
-// appendix A2), which Babylon.js, the first to load it, reads.
+// The extension asks for "spherical harmonics coefficients for irradiance": those of radiance times
+// pi, 2 pi / 3 and pi / 4 by band. It leaves their signs open. kiln uses Sloan's signs ("Stupid
+// Spherical Harmonics Tricks", 2008, appendix A2), which Babylon.js reads.
 static const double irradiance_factor[9] = {
     KI_PI,         KI_PI *(-2.0 / 3), KI_PI *(2.0 / 3), KI_PI *(-2.0 / 3), KI_PI * 0.25,
     KI_PI * -0.25, KI_PI * 0.25,      KI_PI * -0.25,    KI_PI * 0.25};
@@ -98,14 +100,14 @@ kiln_result ki_gltf_encode(const kiln_map *map, const kiln_sh *sh, ki_writer *w,
 
 // ------------------------------------------------------------------------------------------ reading
 
-// What the JSON says of the first light.
+// The values of the first light in the JSON.
 typedef struct light {
     char generator[64];
     int width, level_count;
-    bool found, uneven; // uneven: a level of other than six images
+    bool found, uneven; // `uneven`: a level has other than six images
     int sh_count;
     double sh[9][3];
-    uint64_t image_bytes; // up to the end of the last view of the buffer
+    uint64_t image_bytes; // end of the last view within the buffer, in bytes
 } light;
 
 static void read_asset(ki_json *j, light *l)
@@ -174,7 +176,7 @@ static void read_light(ki_json *j, light *l)
     }
 }
 
-// { "EXT_lights_image_based": { "lights": [ ... ] } }
+// Reads the object { "EXT_lights_image_based": { "lights": [ ... ] } }.
 static void read_extensions(ki_json *j, light *l, bool inside)
 {
     char key[32];
@@ -248,7 +250,7 @@ static void describe(const light *l, kiln_file_info *info)
             info->sh[i][c] = ki_info_number(l->sh[i][c] / irradiance_factor[i]);
 }
 
-// The next chunk of this type, which must be there.
+// Returns the bytes of the next chunk, or NULL if its type is not `type` or the file ends.
 static const uint8_t *read_chunk(ki_reader *r, uint32_t type, uint32_t *size)
 {
     *size = ki_read_u32(r);

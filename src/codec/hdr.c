@@ -1,8 +1,10 @@
-// Radiance HDR (RGBE): flat, run-length encoded in the old and the new way, in any of the eight
-// orientations.
+// Radiance HDR files (RGBE). In: the bytes of a file, flat or run-length encoded in the old or the
+// new way, in any of the eight orientations. Out: RGB floats, rows from top to bottom; or from such
+// floats, a file with new run-length encoding. Lines are found first and then decoded on all
+// threads.
 //
-// A texel is mantissa / 256 * 2^(exponent - 128), divided by the product of the header's EXPOSURE
-// lines, so that the numbers are radiance again.
+// A value is mantissa / 256 * 2^(exponent - 128), divided by the product of the header's EXPOSURE
+// lines, which gives the original radiance.
 #include "codec/codec.h"
 #include "codec/decimal.h"
 
@@ -17,10 +19,10 @@ typedef struct hdr_file {
     const char *name;
     const uint8_t *bytes;
     size_t size;
-    int width, height;           // of the picture, upright
-    int line_count, line_length; // as stored
-    bool columns;                // lines run along y
-    bool flip_line, flip_order;  // along the line; from line to line
+    int width, height;           // size of the upright picture
+    int line_count, line_length; // number and length of lines as stored
+    bool columns;                // true: a stored line is a column of the picture
+    bool flip_line, flip_order;  // true: reversed along each line; reversed order of the lines
     double exposure;
     size_t *line_start;
     int task_count;
@@ -31,8 +33,8 @@ typedef struct hdr_file {
 
 // ------------------------------------------------------------------------------------------ header
 
-// The next line without its end, or false at the end of the file. `line` receives at most
-// `room` - 1 characters of it.
+// Reads the next line without its end into `line`, at most `room` - 1 characters. Returns false at
+// the end of the file.
 static bool next_line(ki_reader *r, char *line, size_t room)
 {
     size_t length = 0;
@@ -50,7 +52,7 @@ static bool next_line(ki_reader *r, char *line, size_t room)
     return false;
 }
 
-// "-Y 512 +X 1024": the slower axis first.
+// Reads the resolution, for example "-Y 512 +X 1024", which names the slower axis first.
 static kiln_result read_resolution(hdr_file *f, const char *line, kiln_error *error)
 {
     char sign[2], axis[2];
@@ -72,7 +74,7 @@ static kiln_result read_resolution(hdr_file *f, const char *line, kiln_error *er
                        f->width < 1 || f->height < 1 ? KILN_ERROR_FORMAT : KILN_ERROR_UNSUPPORTED,
                        "%s: the picture is %d x %d, the limit is %d", f->name, f->width, f->height,
                        KILN_MAX_SIZE);
-    // Y grows upwards in this format, X to the right.
+    // In this format Y grows upwards and X to the right.
     f->flip_order = f->columns ? sign[0] == '-' : sign[0] == '+';
     f->flip_line = f->columns ? sign[1] == '+' : sign[1] == '-';
     return KILN_OK;
@@ -118,8 +120,8 @@ static bool has_new_runs(const hdr_file *f, const uint8_t *at, size_t left)
            at[0] == 2 && at[1] == 2 && (at[2] << 8 | at[3]) == f->line_length;
 }
 
-// Reads one line of `line_length` texels to four bytes each; with `texels` NULL it only finds the
-// end. Returns the bytes it took, 0 where the data is damaged.
+// Decodes one line of `line_length` texels to four bytes each, or only finds the end of the line if
+// `texels` is NULL. Returns the number of bytes read, 0 if the data are damaged.
 static size_t read_new_runs(const hdr_file *f, const uint8_t *at, size_t left, uint8_t *texels)
 {
     size_t in = 4;
@@ -141,8 +143,9 @@ static size_t read_new_runs(const hdr_file *f, const uint8_t *at, size_t left, u
     return in;
 }
 
-// Four bytes a texel; (1, 1, 1, n) repeats the texel before n times, and directly after such a one,
-// n * 256 times, and so on.
+// Decodes a line of the old encoding, four bytes for each texel. The texel (1, 1, 1, n) repeats the
+// previous texel n times. If several such texels follow one another, the second counts n * 256
+// times, and so on.
 static size_t read_old_runs(const hdr_file *f, const uint8_t *at, size_t left, uint8_t *texels)
 {
     size_t in = 0;
@@ -255,7 +258,7 @@ kiln_result ki_hdr_decode(kiln_context *context, const uint8_t *bytes, size_t si
     if (!image)
         return KILN_OK;
 
-    // Where the lines begin, before memory for them is asked for.
+    // Finds where the lines begin before memory for the texels is allocated.
     size_t count = 3 * (size_t)f.width * (size_t)f.height;
     f.line_start = ki_alloc_raw(context, (size_t)f.line_count, sizeof *f.line_start);
     if (!f.line_start) {
@@ -291,13 +294,15 @@ done:
 
 // ----------------------------------------------------------------------------------------- writing
 
-// The exponent of the largest channel, for which the mantissas are rounded to the nearest byte.
+// Converts a texel. The exponent is that of the largest channel; mantissas are rounded to the
+// nearest byte.
 static void to_rgbe(const float rgb[3], uint8_t rgbe[4])
 {
     float c[3], most = 0;
     for (int i = 0; i < 3; i++) {
         c[i] = rgb[i] > 0 ? rgb[i] : 0;
-        c[i] = c[i] < 0x1.fep126F ? c[i] : 0x1.fep126F; // 255 / 256 * 2^127
+        // 255 / 256 * 2^127, the largest value of RGBE.
+        c[i] = c[i] < 0x1.fep126F ? c[i] : 0x1.fep126F;
         most = c[i] > most ? c[i] : most;
     }
     int e = 0;
@@ -316,7 +321,7 @@ static void to_rgbe(const float rgb[3], uint8_t rgbe[4])
     rgbe[3] = (uint8_t)(e + 128);
 }
 
-// Runs of four and more equal bytes, other bytes as they are.
+// Writes runs of four or more equal bytes as runs, and other bytes literally.
 static void write_runs(ki_writer *w, const uint8_t *bytes, int count)
 {
     for (int x = 0; x < count;) {

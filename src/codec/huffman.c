@@ -1,14 +1,16 @@
-// Huffman codes for deflate's blocks, from how often each symbol occurs, none longer than a limit.
+// Builds Huffman codes of limited length for deflate's blocks from the counts of the symbols.
 #include "codec/huffman.h"
 
 #include <string.h>
 
-// Symbols that occur, rarest first, then by number; returns how many.
+// Sorts the symbols that occur, the rarest first and equal counts by number. Returns how many
+// symbols occur.
 static int sort_symbols(const uint32_t *counts, int count, uint16_t *sorted)
 {
     uint16_t by_low[KI_HUFFMAN_SYMBOLS];
     int used = 0;
-    for (int pass = 0; pass < 2; pass++) { // by the low byte of the count, then by the high one
+    // Radix sort: by the low byte of the count, then by the high byte.
+    for (int pass = 0; pass < 2; pass++) {
         int place[257] = {0};
         int n = pass ? used : count;
         for (int i = 0; i < n; i++) {
@@ -29,7 +31,8 @@ static int sort_symbols(const uint32_t *counts, int count, uint16_t *sorted)
     return used;
 }
 
-// Huffman's code: the number of codes of each length, from the counts of sorted symbols.
+// Finds the number of codes of each length in a Huffman code without a limit, from the counts of
+// the sorted symbols.
 static void count_lengths(const uint32_t *counts, const uint16_t *sorted, int used, int *with)
 {
     uint32_t weight[2 * KI_HUFFMAN_SYMBOLS];
@@ -37,7 +40,8 @@ static void count_lengths(const uint32_t *counts, const uint16_t *sorted, int us
     uint8_t depth[2 * KI_HUFFMAN_SYMBOLS];
     for (int i = 0; i < used; i++)
         weight[i] = counts[sorted[i]];
-    // Leaves lie in order, and so do the nodes that are made: the lightest two are at their heads.
+    // Leaves are sorted by weight, and new inner nodes are made in the order of their weight. The
+    // two lightest nodes are therefore at the heads of these two queues.
     int leaf = 0, node = used, made = used;
     for (; made < 2 * used - 1; made++) {
         weight[made] = 0;
@@ -56,10 +60,11 @@ static void count_lengths(const uint32_t *counts, const uint16_t *sorted, int us
     }
 }
 
-// Makes codes no longer than `longest`: those that are become as long, and others longer in exchange.
+// Limits the code lengths to `longest`. Longer codes are shortened, and other codes are lengthened
+// until the code is valid.
 static void limit_lengths(int *with, int deepest, int longest)
 {
-    uint32_t used = 0; // of 2^longest
+    uint32_t used = 0; // used part of the code space, in units of 2^-longest
     for (int length = deepest; length > longest; length--) {
         with[longest] += with[length];
         with[length] = 0;
@@ -70,7 +75,8 @@ static void limit_lengths(int *with, int deepest, int longest)
         int length = longest - 1;
         while (!with[length])
             length--;
-        with[length]--; // its code becomes two of one bit more, one of them for a longest code
+        // This code becomes two codes of one more bit, one of which replaces a longest code.
+        with[length]--;
         with[length + 1] += 2;
         with[longest]--;
     }
@@ -94,7 +100,7 @@ void ki_huffman_assign(ki_huffman_code *c, int count, const int *with, int longe
 
 void ki_huffman_make(ki_huffman_code *c, const uint32_t *counts, int count, int longest)
 {
-    enum { DEEPEST = 32 }; // counts below 2^16 make no deeper tree
+    enum { DEEPEST = 32 }; // depth that a tree of counts below 2^16 cannot exceed
     uint16_t sorted[KI_HUFFMAN_SYMBOLS];
     int with[DEEPEST + 1] = {0};
     int used = sort_symbols(counts, count, sorted);

@@ -4,19 +4,20 @@
 
 #include "base/base.h"
 
-/// As many symbols as deflate's largest code has.
+/// Number of symbols of deflate's largest code.
 enum { KI_HUFFMAN_SYMBOLS = 288 };
 
-/// Lengths in bits, 0 for symbols that do not occur, and the codes in the order in which they are written,
-/// lowest bit first.
+/// A code: the length of each symbol in bits, 0 for symbols that do not occur, and the bits of each
+/// symbol in the order in which they are written, lowest bit first.
 typedef struct ki_huffman_code {
     uint8_t length[KI_HUFFMAN_SYMBOLS];
     uint16_t bits[KI_HUFFMAN_SYMBOLS];
 } ki_huffman_code;
 
-/// The code of `count` symbols that occur `counts` times, each below 2^16; `longest` is 15 at most.
+/// Builds the code of `count` symbols from how often each occurs. Each count is below 2^16, and no
+/// code is longer than `longest`, at most 15.
 void ki_huffman_make(ki_huffman_code *code, const uint32_t *counts, int count, int longest);
-/// The bits from the lengths of `count` symbols; `with` has the number of codes of each length.
+/// Assigns bits to the lengths of `count` symbols. `with` holds the number of codes of each length.
 void ki_huffman_assign(ki_huffman_code *code, int count, const int *with, int longest);
 
 #endif

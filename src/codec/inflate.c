@@ -1,11 +1,11 @@
-// zlib's format (RFC 1950, RFC 1951) unpacked into a buffer of known size, which EXR and PNG files
-// need. kiln has code of its own for this so that it builds from nothing but a C compiler; with
-// libdeflate (KILN_DEFLATE) whole buffers go through that library, which is faster and gives the same
-// bytes.
+// Decompression of zlib's format (RFC 1950, RFC 1951) into a buffer of known size, for EXR and PNG
+// files. The code here lets kiln be built with nothing but a C compiler. If kiln is built with
+// libdeflate (KILN_DEFLATE), whole buffers are decompressed by that library, which is faster and
+// gives the same bytes.
 //
-// A code's next bits look up a table whose entries say what the symbol means; codes longer than the
-// table's index go on in a second table. While input and output have room to spare, eight bytes are
-// read and copied at a time; the last bytes are handled one by one.
+// The next bits of the input are the index of a table, whose entry gives the symbol. Codes longer
+// than that index continue in a second table. While both input and output have room to spare, eight
+// bytes are read and copied at a time; the last bytes are handled singly.
 #include "codec/deflate.h"
 
 #include <string.h>
@@ -15,16 +15,18 @@ enum {
     LITERALS = 288,
     DISTANCES = 32,
     LENGTH_CODES = 19,
-    LITERAL_BITS = 11, // index of the first table
+    LITERAL_BITS = 11, // number of index bits of the first table for each code
     DISTANCE_BITS = 8,
     LENGTH_BITS = 7,
-    // A second table of 2^k entries holds k + 1 codes at least, k being 4 and 7 at most.
+    // A second table of 2^k entries holds at least k + 1 codes, and k is at most 4 (literals) and 7
+    // (distances). This bounds the room for all second tables.
     LITERAL_ROOM = (1 << LITERAL_BITS) + LITERALS * 16 / 5,
     DISTANCE_ROOM = (1 << DISTANCE_BITS) + DISTANCES * 128 / 8,
 };
 
-// A table's entry: bits 0 to 3 the length of the code (in a second table: of its rest), bits 4 to 7
-// the number of extra bits, bits 8 to 10 the kind, from bit 16 on a value.
+// An entry of a table. Bits 0 to 3 are the length of the code (in a second table: of its part
+// beyond the first index), bits 4 to 7 the number of extra bits, bits 8 to 10 the kind, and the
+// bits from 16 on a value.
 enum { KIND_BAD, KIND_LITERAL, KIND_RANGE, KIND_END, KIND_TABLE };
 #define ENTRY(kind, value, extra)                                                                  \
     ((uint32_t)(value) << 16 | (uint32_t)(kind) << 8 | (uint32_t)(extra) << 4)
@@ -34,23 +36,24 @@ static inline uint32_t kind_of(uint32_t entry)
     return entry >> 8 & 7;
 }
 
-// Bits of the input, the first the lowest.
+// The bits of the input, the first in the lowest place.
 typedef struct stream {
     const uint8_t *in, *in_end;
     uint64_t bits;
-    int held, missing; // bits held; zeros held that the input does not have
+    // Number of bits in `bits`, and how many of these are zeros added after the end of the input.
+    int held, missing;
 } stream;
 
 typedef struct state {
     stream s;
     uint8_t *out, *begin, *end;
-    bool full; // the output has no room for what follows
+    bool full; // true: the output has no room for the next symbol
     uint32_t literals[LITERAL_ROOM], distances[DISTANCE_ROOM];
 } state;
 
 // -------------------------------------------------------------------------------------------- bits
 
-// Holds 57 bits at least.
+// Reads bytes until at least 57 bits are held.
 static inline void fill(stream *s)
 {
     while (s->held <= 56) {
@@ -60,8 +63,8 @@ static inline void fill(stream *s)
     }
 }
 
-// Holds 56 bits at least; eight bytes of input must be left. What lies in `bits` above those that are
-// held is what will be read there.
+// Reads bytes until at least 56 bits are held; at least eight bytes of input must be left. Bits of
+// `bits` above those held are already the input's next bits.
 static inline void fill_fast(stream *s)
 {
     uint64_t next;
@@ -71,7 +74,7 @@ static inline void fill_fast(stream *s)
     s->held |= 56;
 }
 
-// More was used than the input holds.
+// Returns whether more bits were used than the input holds.
 static inline bool overdrawn(const stream *s)
 {
     return s->missing > s->held;
@@ -85,7 +88,7 @@ static inline uint32_t drop(stream *s, uint32_t count)
     return value;
 }
 
-// Up to 32 bits.
+// Returns the next `count` bits, at most 32.
 static inline uint32_t take(stream *s, uint32_t count)
 {
     fill(s);
@@ -94,7 +97,7 @@ static inline uint32_t take(stream *s, uint32_t count)
 
 // ------------------------------------------------------------------------------------------- codes
 
-// What a symbol means, as an entry without its length.
+// Returns what a symbol means, as an entry without a code length.
 typedef uint32_t meaning(int symbol);
 
 static uint32_t plain_meaning(int symbol)
@@ -134,15 +137,17 @@ static uint32_t reverse(uint32_t code, int length)
     return reversed;
 }
 
-// A table being built: codes sorted by length, then by symbol, with how many have each length.
+// A table that is being built. `with` holds the number of codes of each length, `sorted` the
+// symbols by length and then by number.
 typedef struct table {
     uint32_t *entries;
     size_t room, size;
-    int bits; // of the first table's index
+    int bits; // number of index bits of the first table
     uint16_t with[LONGEST + 1], sorted[LITERALS];
 } table;
 
-// False where there are more codes than bits allow, or fewer, but for a single one.
+// Sorts the symbols. Returns false if the code is over-subscribed, or incomplete with more than one
+// symbol.
 static bool sort(table *t, const uint8_t *lengths, int count)
 {
     uint16_t place[LONGEST + 2] = {0};
@@ -163,9 +168,9 @@ static bool sort(table *t, const uint8_t *lengths, int count)
     return true;
 }
 
-// Adds a second table for the codes that begin with `prefix`, of which the k-th one of `length` bits is
-// the first: as large as the codes behind that one need, the longest last, until they fill it. Returns
-// the bits of its index; 0 where there is no room.
+// Adds a second table for the codes that begin with `prefix`; the k-th code of `length` bits is the
+// first of these codes. The table is as large as the longest of the codes needs. Returns the number
+// of its index bits, or 0 if there is no room.
 static int add_second(table *t, uint32_t prefix, int length, int k)
 {
     int bits = length - t->bits, left = (1 << bits) - (t->with[length] - k);
@@ -181,8 +186,8 @@ static int add_second(table *t, uint32_t prefix, int length, int k)
     return bits;
 }
 
-// The table of `count` codes by their lengths, 0 for symbols that do not occur; false where those are
-// no code.
+// Builds the table of `count` codes from their lengths, which are 0 for symbols that do not occur.
+// Returns false if the lengths are not a valid code.
 static bool build(uint32_t *entries, size_t room, int bits, const uint8_t *lengths, int count,
                   meaning *mean)
 {
@@ -214,7 +219,7 @@ static bool build(uint32_t *entries, size_t room, int bits, const uint8_t *lengt
     return true;
 }
 
-// The next symbol's entry, its code dropped; 15 bits at least must be held.
+// Returns the entry of the next symbol and consumes its code. At least 15 bits must be held.
 static inline uint32_t next_entry(stream *s, const uint32_t *entries, int bits)
 {
     uint32_t entry = entries[s->bits & ((1U << bits) - 1)];
@@ -226,7 +231,7 @@ static inline uint32_t next_entry(stream *s, const uint32_t *entries, int bits)
     return entry;
 }
 
-// The value of an entry and its extra bits.
+// Returns the value of an entry plus the value of its extra bits.
 static inline size_t value_of(stream *s, uint32_t entry)
 {
     return (entry >> 16) + drop(s, entry >> 4 & 15);
@@ -237,7 +242,7 @@ static inline size_t value_of(stream *s, uint32_t entry)
 static bool stored(state *st)
 {
     stream *s = &st->s;
-    drop(s, (uint32_t)s->held & 7); // to the next byte
+    drop(s, (uint32_t)s->held & 7); // skips to the next byte boundary
     size_t count = take(s, 16), inverse = take(s, 16), left = (size_t)(st->end - st->out);
     if (count != (~inverse & 0xffff))
         return false;
@@ -257,11 +262,12 @@ static bool stored(state *st)
     return !st->full;
 }
 
-// While this much is left, nothing needs to be checked: eight bytes are read at a time, and a match of
-// 258 bytes and two literals before it are written, with up to seven bytes behind.
+// While this many bytes of input and output remain, no checks are needed: eight bytes are read at a
+// time, and two literals and a match of 258 bytes are written, with up to seven bytes after the
+// match.
 enum { SPARE_IN = 16, SPARE_OUT = 258 + 2 + 7 };
 
-// Up to seven bytes behind the match may be written.
+// Copies a match, and may write up to seven bytes after it.
 static inline void copy_match(uint8_t *out, size_t distance, size_t length)
 {
     const uint8_t *from = out - distance;
@@ -314,7 +320,7 @@ static step fast_symbols(state *st)
     return result;
 }
 
-// One symbol, and for a match its distance, near the end of the input or of the output.
+// Decodes one symbol, and for a match also its distance, near the end of the input or the output.
 static step careful_symbol(state *st)
 {
     stream *s = &st->s;
@@ -347,7 +353,7 @@ static bool compressed(state *st)
     step result = fast_symbols(st);
     while (result == GO_ON) {
         result = careful_symbol(st);
-        // A block's end may leave enough for another one to be read fast.
+        // The end of a block may leave enough room to read the next symbols without checks.
         if (result == GO_ON && st->end - st->out >= SPARE_OUT &&
             st->s.in_end - st->s.in >= SPARE_IN)
             result = fast_symbols(st);
@@ -371,7 +377,8 @@ static bool fixed_codes(state *st)
     return build_both(st, lengths, LITERALS, DISTANCES);
 }
 
-// The code lengths of a block's symbols, themselves coded: lengths, and runs of the last one or of 0.
+// Reads the code lengths of a block's symbols. They are coded as lengths and as runs of the
+// previous length or of 0.
 static bool read_lengths(state *st, uint8_t *lengths, int total)
 {
     stream *s = &st->s;
@@ -419,7 +426,8 @@ static bool own_codes(state *st)
 
 // --------------------------------------------------------------------------------------------- all
 
-// All blocks. False where the data is damaged, is cut off, or has more than the output takes.
+// Decompresses all blocks. Returns false if the data are damaged, are cut off, or exceed the
+// output.
 static bool unpack(state *st)
 {
     bool last = false, good = true;
@@ -434,7 +442,7 @@ static bool unpack(state *st)
     return good;
 }
 
-// Whether the two bytes of zlib's header come first.
+// Prepares decompression. Returns false unless the data begin with zlib's header of two bytes.
 static bool begin(state *st, const uint8_t *packed, size_t packed_size, uint8_t *plain, size_t size)
 {
     if (packed_size < 6 || (packed[0] & 15) != 8 || (packed[0] << 8 | packed[1]) % 31 ||

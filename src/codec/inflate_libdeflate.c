@@ -1,4 +1,5 @@
-// zlib data unpacked by libdeflate, which is faster than kiln's own code and gives the same bytes.
+// Decompression of zlib data by libdeflate, which is faster than kiln's own code and gives the same
+// bytes.
 #include "codec/deflate.h"
 
 #include <libdeflate.h>

@@ -1,4 +1,4 @@
-// Where libdeflate is left out.
+// Decompression by kiln's own code, for builds without libdeflate.
 #include "codec/deflate.h"
 
 bool ki_inflate(const uint8_t *packed, size_t packed_size, uint8_t *plain, size_t size)

@@ -10,7 +10,7 @@ ki_json ki_json_make(const void *bytes, size_t size)
     return (ki_json){bytes, (const char *)bytes + size, false};
 }
 
-// The next byte that is no space, 0 at the end.
+// Returns the next byte that is not white space, without consuming it; 0 at the end.
 static char peek(ki_json *j)
 {
     while (j->at < j->end && (*j->at == ' ' || *j->at == '\t' || *j->at == '\n' || *j->at == '\r'))
@@ -84,7 +84,8 @@ void ki_json_string(ki_json *j, char *text, size_t room)
         expect(j, '"');
 }
 
-// The parser wants a NUL behind the number, which the bytes need not have.
+// Reads a number. The parser of numbers expects a NUL after the number, which the bytes need not
+// have, so the number is copied.
 double ki_json_number(ki_json *j)
 {
     char text[64];
@@ -133,14 +134,14 @@ void ki_json_triple(ki_json *j, double triple[3])
     ki_json_enter_array(j);
     for (int c = 0; c < 3; c++) {
         if (!j->failed && !ki_json_item(j))
-            j->failed = true; // too few
+            j->failed = true; // too few numbers
         triple[c] = ki_json_number(j);
     }
     if (!j->failed && ki_json_item(j))
-        j->failed = true; // too many
+        j->failed = true; // too many numbers
 }
 
-// A number, or a word such as null.
+// Skips a number, or a word such as null.
 static void skip_word(ki_json *j)
 {
     const char *from = j->at;

@@ -1,6 +1,7 @@
-// KTX version 1 cubes of halves, or of 11, 11 and 10 bits: a header of 64 bytes, pairs of text, the levels,
-// largest first. What the pairs say of engine, roughness and harmonics comes out of a file again; its
-// texels are not read.
+// KTX version 1. In: a cube to be stored as halves or as floats of 11, 11 and 10 bits. Out: bytes
+// of a file; or of a file that is read, the engine, roughness and harmonics in its key-value pairs,
+// while its texels are not read. A file is a header of 64 bytes, pairs of text, and the levels,
+// largest first.
 #include "codec/ktx1.h"
 
 #include "codec/engine_text.h"
@@ -20,8 +21,9 @@ enum {
     GL_R11F_G11F_B10F = 0x8c3a,
 };
 
-// glType, glTypeSize, glFormat, glInternalFormat, glBaseInternalFormat. The packed one is as Filament's
-// cmgen writes it, which its reader insists on; KTX means 0x8c3b, 4 and RGB by the first two and the last.
+// The fields glType, glTypeSize, glFormat, glInternalFormat and glBaseInternalFormat. The packed
+// format has the values that Filament's cmgen writes and Filament's reader requires. By the KTX
+// specification glType would be 0x8c3b, glTypeSize 4 and glBaseInternalFormat RGB.
 static const uint32_t half_types[5] = {GL_HALF_FLOAT, 2, GL_RGBA, GL_RGBA16F, GL_RGBA};
 static const uint32_t packed_types[5] = {GL_R11F_G11F_B10F, 1, GL_RGB, GL_R11F_G11F_B10F,
                                          GL_R11F_G11F_B10F};
@@ -36,16 +38,16 @@ static void write_header(ki_writer *w, const uint32_t types[5], int size, int le
         ki_write_u32(w, types[i]);
     ki_write_u32(w, (uint32_t)size);
     ki_write_u32(w, (uint32_t)size);
-    ki_write_u32(w, 0); // depth
-    ki_write_u32(w, 0); // no array
+    ki_write_u32(w, 0); // depth of a volume: none
+    ki_write_u32(w, 0); // number of array elements: not an array
     ki_write_u32(w, 6);
     ki_write_u32(w, (uint32_t)level_count);
 }
 
 // ----------------------------------------------------------------------------------------- writing
 
-// A pair is its size, key and value, each of which ends in NUL, and zeros up to 4 bytes. The value is
-// what is written in between.
+// A pair is its size, its key and value, each with a terminating NUL, and zeros up to a multiple of
+// 4 bytes. The value is what the caller writes after begin_pair.
 static size_t begin_pair(ki_writer *w, const char *key)
 {
     size_t pair = w->size;
@@ -88,7 +90,8 @@ kiln_result ki_ktx1_encode(const kiln_map *map, const kiln_sh *sh, const char *e
     write_header(writer, packed ? packed_types : half_types, map->size, map->level_count);
     write_pairs(writer, map, sh, engine);
     for (int k = 0; k < map->level_count; k++) {
-        // The size of a level of a cube is that of one face. Faces of 4 and 8 bytes a texel need no padding.
+        // The stated size of a cube's level is that of one face. Faces with 4 or 8 bytes a texel
+        // need no padding.
         int n = kiln_map_level_size(map, k);
         size_t size = (size_t)ki_pixels_size(pixel, n, n);
         ki_write_u32(writer, (uint32_t)size);
@@ -117,7 +120,7 @@ static kiln_result read_header(ki_reader *r, const char *name, header *h, kiln_e
         types[i] = ki_read_u32(r);
     h->width = ki_read_u32(r);
     h->height = ki_read_u32(r);
-    for (int i = 0; i < 3; i++) // depth, array, faces
+    for (int i = 0; i < 3; i++) // the fields depth, array elements and faces
         rest[i] = ki_read_u32(r);
     h->level_count = ki_read_u32(r);
     h->pair_bytes = ki_read_u32(r);
@@ -152,7 +155,8 @@ static void read_pair(const char *key, const char *value, kiln_file_info *info)
         ki_engine_text_read(value, info);
 }
 
-// False where the pairs do not fill their bytes. One whose value is no text is passed over.
+// Reads the key-value pairs. Returns false if they do not fill their bytes. Pairs whose value is
+// not text are skipped.
 static bool read_pairs(const uint8_t *bytes, size_t size, kiln_file_info *info)
 {
     ki_reader r = ki_reader_make(bytes, size);

@@ -1,11 +1,11 @@
-// KTX version 1, as Filament reads it.
+// KTX version 1 files in the form that Filament reads.
 #ifndef KI_KTX1_H
 #define KI_KTX1_H
 
 #include "codec/codec.h"
 
-/// A cube as RGBA16F or B10G11R11 for an engine, whose name is stored. `sh`, of radiance, may be NULL; it
-/// is stored as Filament has it.
+/// Appends a file with a cube as RGBA16F or B10G11R11 and the name of the engine that reads the
+/// file. `sh`, of radiance, may be NULL and is stored in Filament's form.
 kiln_result ki_ktx1_encode(const kiln_map *map, const kiln_sh *sh, const char *engine,
                            kiln_format format, ki_writer *writer, kiln_error *error);
 kiln_result ki_ktx1_describe(const uint8_t *bytes, size_t size, const char *name,

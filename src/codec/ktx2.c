@@ -1,4 +1,4 @@
-// KTX2 files that kiln reads: a cube or a table, told apart by the number of faces.
+// Reads a KTX2 file as a cube (six faces) or as a table (one face).
 #include "codec/ktx2.h"
 
 kiln_result ki_ktx2_decode(kiln_context *context, const uint8_t *bytes, size_t size,

@@ -1,5 +1,6 @@
-// The container that KTX2 files are, by the Khronos specification 2.0.4, for cubes and tables alike:
-// level index largest first, levels stored smallest first, zstd for each level where asked for.
+// The container format of KTX2, by the Khronos specification 2.0.4, for cubes and tables. The index
+// lists the levels with the largest first, the texels are stored with the smallest level first, and
+// each level may be compressed by zstd.
 #ifndef KI_KTX2_H
 #define KI_KTX2_H
 
@@ -7,7 +8,8 @@
 
 // ----------------------------------------------------------------------------------------- writing
 
-/// Channels of the Khronos Data Format's model RGBSDA, and what may be added to them.
+/// Channel numbers of the model RGBSDA in the Khronos Data Format, and flags that are added to
+/// them.
 enum {
     KI_KTX2_ALPHA = 15,
     KI_KTX2_EXPONENT = 0x20,
@@ -20,14 +22,16 @@ typedef struct ki_ktx2_sample {
     uint32_t lower, upper;
 } ki_ktx2_sample;
 
-/// What the header and the data format descriptor say.
+/// The values of the header and of the data format descriptor.
 typedef struct ki_ktx2_file {
     uint32_t vk;
-    int type_size, texel_size; // bytes of what is swapped for byte order, and of a texel or block
-    int block;                 // edge of a block of BC6H, 0 or 1 for texels
-    int width, height, depth;  // depth 0: not a 3-D texture
+    // Size in bytes of the unit that is swapped for byte order, and of a texel or block.
+    int type_size, texel_size;
+    // Side of a BC6H block in texels; 0 or 1 for formats of single texels.
+    int block;
+    int width, height, depth; // size in texels; depth 0 for a texture that is not 3-D
     int face_count, level_count;
-    int zstd; // level, 0 for none
+    int zstd; // zstd compression level, 0 for no compression
     int sample_count;
     ki_ktx2_sample samples[6];
 } ki_ktx2_file;
@@ -38,24 +42,24 @@ typedef struct ki_ktx2_writer {
     size_t start, index, levels, metadata;
 } ki_ktx2_writer;
 
-/// Header and descriptor. Then entries in the order of their keys' bytes, the end of the metadata,
-/// and the levels, smallest first.
+/// Writes the header and the descriptor. The caller then writes the metadata entries in the byte
+/// order of their keys, the end of the metadata, and the levels, smallest first.
 kiln_result ki_ktx2_begin(ki_writer *writer, const ki_ktx2_file *file, ki_ktx2_writer *k,
                           kiln_error *error);
-/// An entry whose value is the text written in between.
+/// Begin and end a metadata entry. Its value is the text that the caller writes in between.
 size_t ki_ktx2_begin_entry(ki_writer *w, const char *key);
 void ki_ktx2_end_entry(ki_writer *w, size_t entry);
-/// KTXorientation and KTXwriter.
+/// Writes the entries KTXorientation and KTXwriter.
 void ki_ktx2_write_common(ki_writer *w, const char *orientation);
 kiln_result ki_ktx2_end_metadata(ki_ktx2_writer *k, kiln_error *error);
-/// Puts a level's texels into `bytes`; false where a report of progress asks to stop.
+/// Packs the texels of a level into `bytes`. Returns false if a progress report asks to stop.
 typedef bool ki_ktx2_pack(kiln_context *context, const void *data, int level, uint8_t *bytes);
 kiln_result ki_ktx2_write_level(ki_ktx2_writer *k, int level, size_t size, ki_ktx2_pack *pack,
                                 const void *data, kiln_error *error);
 
 // ----------------------------------------------------------------------------------------- reading
 
-/// A file being read. `reader` stands at the level index once the header is read.
+/// A file that is being read. Once the header is read, `reader` is at the level index.
 typedef struct ki_ktx2_source {
     const uint8_t *bytes;
     size_t size;
@@ -74,16 +78,17 @@ typedef struct ki_ktx2_level {
 /// Reads the header, and the metadata into `info`.
 kiln_result ki_ktx2_open(ki_ktx2_source *source, const uint8_t *bytes, size_t size,
                          const char *name, kiln_file_info *info, kiln_error *error);
-/// The next level of the index, whose texels take `wanted` bytes: its place and size are checked
-/// before memory is asked for.
+/// Reads the next level of the index, whose texels take `wanted` bytes. Its offset and size are
+/// checked before any memory is allocated.
 kiln_result ki_ktx2_find_level(ki_ktx2_source *source, uint32_t k, uint64_t wanted,
                                ki_ktx2_level *level, kiln_error *error);
-/// Its plain bytes, within the file or, unpacked, in `unpacked`, which the caller frees.
+/// Sets *plain to the uncompressed bytes of a level: within the file, or decompressed into
+/// *unpacked, which the caller frees.
 kiln_result ki_ktx2_unpack(kiln_context *context, const ki_ktx2_source *source, int k,
                            const ki_ktx2_level *level, const uint8_t **plain, uint8_t **unpacked,
                            kiln_error *error);
 
-/// A source with six faces, and one with a single one.
+/// Decode a source with six faces as a cube, and a source with one face as a table.
 kiln_result ki_ktx2_decode_cube(kiln_context *context, ki_ktx2_source *source, kiln_map *map,
                                 kiln_file_info *info, kiln_error *error);
 kiln_result ki_ktx2_decode_table(kiln_context *context, ki_ktx2_source *source, kiln_image *image,

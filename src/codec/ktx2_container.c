@@ -1,3 +1,7 @@
+// The container format of KTX2 (Khronos specification 2.0.4). In: the values of the header,
+// metadata entries and packed levels. Out: bytes of a file; or of a file that is read, the values
+// of its header, its metadata, and the checked place and bytes of each level, decompressed by zstd
+// if needed.
 #include "codec/decimal.h"
 #include "codec/file_info.h"
 #include "codec/ktx2.h"
@@ -13,27 +17,28 @@ enum { INDEX_ENTRY = 24, SCHEME_NONE = 0, SCHEME_ZSTD = 2 };
 
 // ----------------------------------------------------------------------------------------- writing
 
-// Khronos Data Format 1.3, basic descriptor block.
+// Writes the data format descriptor: a basic descriptor block of the Khronos Data Format 1.3.
 static void write_format(ki_writer *w, const ki_ktx2_file *file)
 {
     enum { MODEL_RGBSDA = 1, MODEL_BC6H = 133, PRIMARIES_BT709 = 1, TRANSFER_LINEAR = 1 };
     uint32_t block = 24 + 16 * (uint32_t)file->sample_count;
     ki_write_u32(w, 4 + block);
-    ki_write_u32(w, 0);               // vendor Khronos, basic format
-    ki_write_u32(w, 2 | block << 16); // version 1.3
+    ki_write_u32(w, 0);               // vendor Khronos, type basic format
+    ki_write_u32(w, 2 | block << 16); // version 1.3, and size of the block
     ki_write_u8(w, file->block > 1 ? MODEL_BC6H : MODEL_RGBSDA);
     ki_write_u8(w, PRIMARIES_BT709);
     ki_write_u8(w, TRANSFER_LINEAR);
     ki_write_u8(w, 0); // straight alpha
     uint32_t less = (uint32_t)ki_max(file->block, 1) - 1;
-    ki_write_u32(w, less | less << 8); // texel blocks of so many and one, by 1 by 1
+    // Dimensions of a texel block, each less 1: `less` x `less` x 0 x 0.
+    ki_write_u32(w, less | less << 8);
     ki_write_u32(w, (uint32_t)file->texel_size);
     ki_write_u32(w, 0);
     for (int i = 0; i < file->sample_count; i++) {
         const ki_ktx2_sample *s = &file->samples[i];
         ki_write_u32(w, (uint32_t)s->offset | (uint32_t)(s->bits - 1) << 16 |
                             (uint32_t)s->channel << 24);
-        ki_write_u32(w, 0); // position
+        ki_write_u32(w, 0); // sample position
         ki_write_u32(w, s->lower);
         ki_write_u32(w, s->upper);
     }
@@ -54,12 +59,12 @@ kiln_result ki_ktx2_begin(ki_writer *w, const ki_ktx2_file *file, ki_ktx2_writer
     ki_write_u32(w, (uint32_t)file->width);
     ki_write_u32(w, (uint32_t)file->height);
     ki_write_u32(w, (uint32_t)file->depth);
-    ki_write_u32(w, 0); // layers
+    ki_write_u32(w, 0); // number of array layers: not an array
     ki_write_u32(w, (uint32_t)file->face_count);
     ki_write_u32(w, (uint32_t)file->level_count);
     ki_write_u32(w, file->zstd ? SCHEME_ZSTD : SCHEME_NONE);
     k->index = w->size;
-    for (int i = 0; i < 4; i++) // offsets and lengths of format and metadata
+    for (int i = 0; i < 4; i++) // offsets and lengths of descriptor and metadata, filled in later
         ki_write_u32(w, 0);
     ki_write_u64(w, 0); // no global data of the compression
     ki_write_u64(w, 0);
@@ -74,7 +79,8 @@ kiln_result ki_ktx2_begin(ki_writer *w, const ki_ktx2_file *file, ki_ktx2_writer
     return KILN_OK;
 }
 
-// `entry` is where its length is patched in.
+// Begins a metadata entry. The returned position is where ki_ktx2_end_entry stores the entry's
+// length.
 size_t ki_ktx2_begin_entry(ki_writer *w, const char *key)
 {
     size_t entry = w->size;
@@ -113,7 +119,7 @@ kiln_result ki_ktx2_write_level(ki_ktx2_writer *k, int level, size_t size, ki_kt
 {
     ki_writer *w = k->w;
     int zstd = k->file->zstd;
-    // The alignment is the least common multiple of the texel's bytes and 4.
+    // The alignment of a level is the least common multiple of 4 and the size of a texel.
     if (!zstd)
         ki_write_align(w, (size_t)ki_max(4, k->file->texel_size));
     uint64_t start = w->size;
@@ -154,7 +160,7 @@ static kiln_result read_header(ki_ktx2_source *s, kiln_error *error)
     s->face_count = ki_read_u32(r);
     s->level_count = ki_read_u32(r);
     uint32_t scheme = ki_read_u32(r);
-    ki_read_u32(r); // the format's descriptor; vkFormat says the same
+    ki_read_u32(r); // the data format descriptor, which repeats what vkFormat says
     ki_read_u32(r);
     s->metadata_offset = ki_read_u32(r);
     s->metadata_size = ki_read_u32(r);
@@ -196,7 +202,7 @@ kiln_result ki_ktx2_find_level(ki_ktx2_source *s, uint32_t k, uint64_t wanted, k
                        s->name, k, (unsigned long long)(plain != wanted ? plain : stated),
                        s->face_count == 6 ? "six faces need" : "texels need",
                        (unsigned long long)wanted);
-    // zstd makes a byte into 43691 at most, a block of 128 KiB from three.
+    // zstd expands a byte to at most 43691 bytes: a block of 128 KiB takes at least three bytes.
     if (wanted / 43691 > length)
         return ki_fail(error, KILN_ERROR_FORMAT, "%s: level %u is damaged", s->name, k);
     return KILN_OK;
@@ -231,7 +237,7 @@ static void read_sh(const char *text, kiln_file_info *info)
         bands > KILN_MAX_BANDS)
         return;
     info->sh_irradiance = strstr(text, "\nirradiance 1\n") != NULL;
-    for (int line = 0; line < 3 && text; line++) { // past the line of the window
+    for (int line = 0; line < 3 && text; line++) { // skips the line of the window
         text = strchr(text, '\n');
         text = text ? text + 1 : NULL;
     }
@@ -241,7 +247,7 @@ static void read_sh(const char *text, kiln_file_info *info)
         text = text ? ki_parse_number(text + (*text == '\n'), &value) : NULL;
         info->sh[i / 3][i % 3] = ki_info_number(value);
     }
-    if (text) // all were there
+    if (text) // all coefficients were present
         info->sh_bands = (int)bands;
     else
         memset(info->sh, 0, sizeof info->sh);
@@ -268,7 +274,7 @@ static void read_entry(const char *key, const char *value, kiln_file_info *info)
     }
 }
 
-// Entries whose value is not text that ends within the entry are passed over.
+// Reads the metadata. Entries whose value is not text that ends within the entry are skipped.
 static void read_metadata(const uint8_t *bytes, size_t size, kiln_file_info *info)
 {
     ki_reader r = ki_reader_make(bytes, size);

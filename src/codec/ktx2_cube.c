@@ -1,4 +1,5 @@
-// KTX2 cubes with all their levels.
+// KTX2 cubes. In: a cube with all its levels and its metadata. Out: bytes of a file; or of a file
+// that is read, the cube.
 #include "codec/decimal.h"
 #include "codec/ktx2.h"
 #include "codec/pixel_format.h"
@@ -8,13 +9,14 @@
 
 // ----------------------------------------------------------------------------------------- writing
 
-// One sample for each channel (and, for the shared exponent, one more).
+// Finds the samples of the data format descriptor: one for each channel, and for the shared
+// exponent another for each channel.
 static int find_samples(const ki_pixel_format *pixel, ki_ktx2_sample samples[6])
 {
     const uint32_t minus_one = 0xbf800000, one = 0x3f800000;
     switch (pixel->format) {
     case KILN_FORMAT_RGB9E5:
-        // Upper and lower as the specification's table of this format states them.
+        // The upper and lower limits are those in the specification's table for this format.
         for (int c = 0; c < 3; c++) {
             samples[2 * (size_t)c] = (ki_ktx2_sample){9 * c, 9, c, 0, 8448};
             samples[2 * (size_t)c + 1] = (ki_ktx2_sample){27, 5, c | KI_KTX2_EXPONENT, 15, 31};
@@ -39,7 +41,7 @@ static int find_samples(const ki_pixel_format *pixel, ki_ktx2_sample samples[6])
     return 4;
 }
 
-// Keys in the order of their bytes.
+// Writes the metadata entries in the byte order of their keys.
 static void write_metadata(ki_writer *w, const kiln_map *map, const kiln_save_def *def)
 {
     ki_ktx2_write_common(w, "rd");

@@ -1,5 +1,6 @@
-// KTX2 tables: one 2-D or 3-D texture of one level. Three channels are stored as four, which every
-// device can sample.
+// KTX2 tables. In: an image whose slices lie one below the other. Out: bytes of a file with one 2-D
+// or 3-D texture of one level; or of a file that is read, the image. Three channels are stored as
+// four, because every device can sample four.
 #include "codec/components.h"
 #include "codec/ktx2.h"
 
@@ -59,7 +60,8 @@ static bool pack_rows(kiln_context *context, const void *data, int level, uint8_
     return true;
 }
 
-// One sample a channel; what a float's 0 and 1 mean is stated as -1 and 1.
+// Finds the samples of the data format descriptor, one for each channel. The limits of floats are
+// stated as -1 and 1.
 static void find_samples(const table_texel *texel, ki_ktx2_file *file)
 {
     int bits = 8 * ki_component_bytes(texel->format);

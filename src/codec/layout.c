@@ -1,5 +1,5 @@
-// How flat pictures lie on the sphere: panoramas, crosses, strips and octahedra, told by the sides'
-// ratio or said by the caller. A cross or strip is cut into the six faces of a cube.
+// Places flat pictures on the sphere: panoramas, crosses, strips and octahedra, by the ratio of the
+// sides or by the caller's choice. A cross or strip is cut into the six faces of a cube.
 #include "codec/layout.h"
 
 #include "image/image.h"
@@ -33,12 +33,12 @@ void ki_cut_face(const kiln_image *image, int x, int y, int size, bool turned, f
     }
 }
 
-// Column and row of a face, in faces.
+// Column and row of a face in a cross or strip, counted in faces.
 typedef struct face_place {
     int x, y;
 } face_place;
 
-// +X -X +Y -Y +Z -Z. In the upright cross -Z hangs below -Y, upside down.
+// Places of the faces +X -X +Y -Y +Z -Z. In the tall cross -Z lies below -Y, upside down.
 static const face_place wide_cross[6] = {{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {3, 1}};
 static const face_place tall_cross[6] = {{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {1, 3}};
 
@@ -55,7 +55,7 @@ static kiln_result make_cube(kiln_context *context, const kiln_image *image, int
     return result;
 }
 
-// The picture's memory becomes the map's.
+// Makes a map that takes over the memory of the picture.
 static kiln_result take_over(kiln_image *image, kiln_shape shape, int size, kiln_map *map)
 {
     *map = (kiln_map){.shape = shape, .size = size, .level_count = 1, .owner = image->owner};

@@ -1,4 +1,6 @@
-// Loading: what a file or a set of files holds, laid out on the sphere.
+// Loading of maps and pictures. In: a path to a file, a folder, or a pattern for six face files; or
+// bytes in memory. Out: a map on the sphere, or a flat picture. The content of a file decides its
+// format, and the ratio of its sides its layout unless the caller names a layout.
 #include "base/file.h"
 #include "base/os.h"
 #include "codec/engine_text.h"
@@ -100,7 +102,7 @@ kiln_result kiln_file_describe(kiln_context *context, const char *path, kiln_fil
 
 // -------------------------------------------------------------------------------------- six files
 
-// A face's path: what stands before and after its two letters.
+// The path of a face: the parts before and after the two letters of the face.
 typedef struct face_paths {
     char *before, *after;
 } face_paths;
@@ -128,8 +130,8 @@ static kiln_result split_path(kiln_context *context, const char *path, const cha
                                          : ki_fail_memory(context, error, path, strlen(path) + 2);
 }
 
-// Where a file's name holds "px" as a face: px.exr, NAME_px.exr, px_0.exr or NAME_px_0.exr; NULL
-// where it does not. The level's number, if any, is 0.
+// Finds "px" as the name of a face in a file name: px.exr, NAME_px.exr, px_0.exr or NAME_px_0.exr.
+// Only level 0 is accepted. Returns NULL if the name has no such part.
 static const char *face_in(const char *name)
 {
     if (!ki_file_holds(ki_file_format_of_path(name), KI_HOLDS_PICTURE))
@@ -141,7 +143,8 @@ static const char *face_in(const char *name)
     return at >= name && !strncmp(at, "px", 2) && (at == name || at[-1] == '_') ? at : NULL;
 }
 
-// A name that is nothing but the face comes first, then the order of the bytes.
+// Orders face files: a name that is only the face comes first, then the byte order of the names
+// decides.
 static bool goes_before(const char *a, const char *b)
 {
     size_t before_a = (size_t)(face_in(a) - a), before_b = (size_t)(face_in(b) - b);
@@ -150,7 +153,7 @@ static bool goes_before(const char *a, const char *b)
     return strcmp(a, b) < 0;
 }
 
-// The two names of a folder that go before all others.
+// The two names of a folder that come first in the order of goes_before.
 typedef struct face_search {
     char best[256], other[256];
 } face_search;

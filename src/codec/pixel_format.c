@@ -1,3 +1,6 @@
+// Texels of the formats in kiln_format. In: RGB floats of a level. Out: the bytes that KTX2, DDS
+// and graphics processors hold; or from such bytes, RGB floats. Also the names, limits and numbers
+// of the formats, one row of a table for each. Rows are converted on all threads.
 #include "codec/pixel_format.h"
 
 #include "codec/bc6h.h"
@@ -16,7 +19,8 @@ const char *const *kiln_format_names(void)
     return ki_format_names;
 }
 
-// By their own enum; the first row, for KILN_FORMAT_AUTO, is that of RGBA16F. The last three are for PNG and have no number of Vulkan's or DXGI's.
+// One row for each kiln_format, in the order of the enum; the first row, for KILN_FORMAT_AUTO, is
+// that of RGBA16F. The last three formats are for PNG and have no Vulkan or DXGI number.
 static const ki_pixel_format formats[] = {
     {KILN_FORMAT_RGBA16F, KI_HALF_MAX, 97, 10, 8, 2, 1, 4, NULL},
     {KILN_FORMAT_RGBA16F, KI_HALF_MAX, 97, 10, 8, 2, 1, 4, NULL},
@@ -127,7 +131,7 @@ bool ki_pixels_pack(kiln_context *context, const ki_pixel_format *pixel, const f
                              &job);
 }
 
-// Infinities, which these 11 and 10 bits may be, become the largest finite value.
+// Unpacks a texel of b10g11r11. Infinities become the largest finite value.
 static void unpack_b10g11r11(uint32_t word, float rgb[3])
 {
     static const float largest[3] = {65024, 65024, KI_B10G11R11_MAX};
@@ -174,7 +178,8 @@ void ki_pixels_unpack(const ki_pixel_format *pixel, const uint8_t *bytes, int wi
 
 // ------------------------------------------------------------------------------------- packed levels
 
-// Rows of texels or blocks of a level, faces one below the other, and the bytes of one row.
+// Finds the number of rows of texels or blocks of a level, its faces one below the other, and the
+// bytes of a row. Returns false for a format or level that cannot be packed.
 static bool packed_rows(const kiln_map *map, int level, kiln_format format, size_t *rows,
                         size_t *row_bytes)
 {

@@ -1,38 +1,41 @@
-// What kiln_format means: one row a format with its name, its largest radiance, its numbers in Vulkan's
-// and DXGI's lists, and texels packed to bytes and back.
+// The table of formats behind kiln_format: one row for each format with its name, its largest
+// radiance and its Vulkan and DXGI numbers; and the packing of texels to bytes and back.
 #ifndef KI_PIXEL_FORMAT_H
 #define KI_PIXEL_FORMAT_H
 
 #include "codec/rgbx.h"
 
-/// In the order of kiln_format, NULL behind the last.
+/// Names of the formats in the order of kiln_format, with NULL after the last name.
 extern const char *const ki_format_names[];
 
 typedef struct ki_pixel_format {
     kiln_format format;
-    double limit;      ///< the largest radiance, 0 where floats hold all
-    uint32_t vk, dxgi; ///< 0 where KTX2 and DDS have no such format
-    int bytes;         ///< of a texel, or of a block
-    int type_size;     ///< bytes of what is swapped for byte order
-    int block;         ///< edge of a block in texels: 1 or 4
+    double limit;      ///< largest radiance; 0 if floats hold every radiance
+    uint32_t vk, dxgi; ///< Vulkan and DXGI number; 0 if KTX2 and DDS cannot hold the format
+    int bytes;         ///< bytes of a texel, or of a block
+    int type_size;     ///< bytes of the unit that is swapped for byte order
+    int block;         ///< side of a block in texels: 1 or 4
     int channels;
-    ki_rgbx *rgbx; ///< a texel to four numbers for PNG, or NULL
+    ki_rgbx *rgbx; ///< converts a texel to four numbers for PNG, or NULL
 } ki_pixel_format;
 
-/// NULL where the number is no format. KILN_FORMAT_AUTO is as RGBA16F.
+/// Returns the row of a format, or NULL if `format` is not in the enum. KILN_FORMAT_AUTO gives the
+/// row of RGBA16F.
 const ki_pixel_format *ki_pixel_format_of(kiln_format format);
-/// NULL where kiln reads no such format.
+/// Return the row with a Vulkan or DXGI number, or NULL if kiln reads no such format.
 const ki_pixel_format *ki_pixel_format_of_vk(uint32_t vk);
 const ki_pixel_format *ki_pixel_format_of_dxgi(uint32_t dxgi);
 
-/// Bytes of a picture of any size; a block at its edge may reach beyond it.
+/// Returns the number of bytes of a picture of any size. A block at the picture's edge may extend
+/// beyond it.
 uint64_t ki_pixels_size(const ki_pixel_format *pixel, int width, int height);
-/// RGB floats of `count` pictures, one after the other, to texels of a KTX2 or DDS format, on all
-/// threads. False where a report of progress asks to stop. Bytes need no alignment.
+/// Converts `count` pictures of RGB floats, stored one after the other, to texels of a KTX2 or DDS
+/// format, on all threads. Returns false if a progress report asks to stop. `bytes` needs no
+/// alignment.
 bool ki_pixels_pack(kiln_context *context, const ki_pixel_format *pixel, const float *rgb,
                     int width, int height, int count, uint8_t *bytes);
-/// The inverse, for one picture. Not-a-number and negatives become 0, infinities the largest finite
-/// value.
+/// Converts the texels of one picture to RGB floats. Not-a-number and negative values become 0,
+/// infinities the largest finite value.
 void ki_pixels_unpack(const ki_pixel_format *pixel, const uint8_t *bytes, int width, int height,
                       float *rgb);
 

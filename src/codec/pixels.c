@@ -1,5 +1,5 @@
-// Pixels in the caller's memory to a map: converted to floats as the readers of files convert theirs,
-// then laid out on the sphere as pictures from files are.
+// Makes a map from pixels in the caller's memory. Values are converted to floats and placed on the
+// sphere in the same way as those of files.
 #include "codec/layout.h"
 #include "image/image.h"
 #include "image/pack.h"
@@ -36,7 +36,7 @@ typedef struct convert_job {
     float *rgb;
 } convert_job;
 
-// Task: one row.
+// Task of one thread: converts one row.
 static void convert_row(void *data, int row)
 {
     enum { STRETCH = 64 };

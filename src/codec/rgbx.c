@@ -9,14 +9,15 @@ static float largest_of(const float rgb[3])
     return fmaxf(rgb[0], fmaxf(rgb[1], rgb[2]));
 }
 
-// Square roots over a scale, of which the largest is 1 at most.
+// Sets the colours to the square roots of the channels divided by a scale, clamped to [0, 1].
 static void put_roots(const float rgb[3], double scale, float color[3])
 {
     for (int c = 0; c < 3; c++)
         color[c] = rgb[c] > 0 ? (float)ki_clamp(sqrt((double)rgb[c]) / scale, 0, 1) : 0;
 }
 
-// Alpha is rounded up, so that no colour is above 1, to 255 at most and 1 at least.
+// In steps of 1/255, the alpha of RGBM is rounded up, so that no colour exceeds 1, and clamped to 1
+// to 255 steps.
 void ki_rgbm_from_float(const float rgb[3], float rgbm[4])
 {
     double root = sqrt(fmax((double)largest_of(rgb), 0));
@@ -25,7 +26,8 @@ void ki_rgbm_from_float(const float rgb[3], float rgbm[4])
     rgbm[3] = (float)(steps / 255);
 }
 
-// The scale is 8 - 7 a, so alpha is rounded down.
+// RGBP multiplies colours by 8 - 7 alpha, which must not be too small for the largest colour. The
+// alpha is therefore rounded down.
 void ki_rgbp_from_float(const float rgb[3], float rgbp[4])
 {
     double root = sqrt(fmax((double)largest_of(rgb), 0));
@@ -34,7 +36,8 @@ void ki_rgbp_from_float(const float rgb[3], float rgbp[4])
     rgbp[3] = (float)(steps / 255);
 }
 
-// A quotient of 1 to 255, over 255, brings the largest channel to 1 at most.
+// The alpha of RGBD is an integer of 1 to 255, over 255, with which the largest channel is at most
+// 1.
 void ki_rgbd_from_float(const float rgb[3], float rgbd[4])
 {
     float largest = largest_of(rgb);

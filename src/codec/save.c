@@ -1,5 +1,7 @@
-// Saving maps and pictures by path: what an ending may hold, the names of a set of files, and the set
-// written whole or not at all. The writers are those of the table of formats.
+// Saving of maps, pictures and harmonics by path. In: a map and a path, whose ending decides the
+// format. Out: a set of files that appear together, or the same files in memory. Checks what each
+// format can hold, makes the names of the faces and levels, and calls the encoders of the table of
+// formats.
 #include "codec/save.h"
 #include "base/file.h"
 #include "codec/formats.h"
@@ -29,7 +31,7 @@ static kiln_result check_def(kiln_shape shape, const kiln_save_def *def, kiln_er
     return ki_sh_check(def->sh, error);
 }
 
-// A folder's files are EXR.
+// Returns the format of a path; files in a folder are EXR.
 static const ki_file_format *format_of(const char *path)
 {
     return ki_file_format_of_path(ki_ends_with(path, "/") ? "a.exr" : path);
@@ -85,8 +87,8 @@ double kiln_map_save_limit(const char *path, kiln_format format)
 
 // ------------------------------------------------------------------------------------------- names
 
-// A template of all files' names, with {face} and {level} where they go: what the caller wrote, or
-// the places for what is missing.
+// Writes a template for the names of all files, with {face} and {level} where these belong: the
+// caller's path, with places added for what it lacks.
 static kiln_result make_template(const char *path, const kiln_map *map, ki_writer *w,
                                  kiln_error *error)
 {
@@ -111,7 +113,7 @@ static kiln_result make_template(const char *path, const kiln_map *map, ki_write
     return w->failed ? ki_fail_memory(w->context, error, path, length + 32) : KILN_OK;
 }
 
-// The path of one file.
+// Writes the path of one file to `w`.
 static bool expand(const char *template, int face, int level, ki_writer *w)
 {
     w->size = 0;
@@ -132,7 +134,7 @@ static bool expand(const char *template, int face, int level, ki_writer *w)
 
 // ------------------------------------------------------------------------------------------- files
 
-// The file of one face of one level; `bytes` is written over.
+// Adds the file of one face of one level to the set; `bytes` is overwritten.
 static kiln_result add_picture(ki_file_set *set, const ki_file_format *file, const kiln_map *map,
                                int level, int face, kiln_format format, const char *path,
                                ki_writer *bytes, kiln_error *error)
@@ -154,7 +156,7 @@ static kiln_result add_picture(ki_file_set *set, const ki_file_format *file, con
                              : result;
 }
 
-// All faces and levels; `template` names them.
+// Adds the files of all faces and levels to the set, with names from `template`.
 static kiln_result add_pictures(ki_file_set *set, kiln_context *context, const kiln_map *map,
                                 const char *template, const kiln_save_def *def, int *file_count,
                                 kiln_error *error)
@@ -254,7 +256,7 @@ kiln_result ki_map_write(ki_file_set *set, kiln_context *context, const kiln_map
                : write_pictures(set, context, map, path, def, &report->file_count, error);
 }
 
-// To files, or to memory where `files` is not NULL.
+// Writes a map to files, or to memory if `files` is not NULL.
 static kiln_result write_map(kiln_context *context, const kiln_map *map, const char *path,
                              const kiln_save_def *def, kiln_files *files, kiln_save_report *report,
                              kiln_error *error)

@@ -1,15 +1,16 @@
-// Maps into a set of files, which is written together or stays in memory.
+// Adds the files of a map to a set of files, which is written together or kept in memory.
 #ifndef KI_SAVE_H
 #define KI_SAVE_H
 
 #include "base/file.h"
 
-/// Adds the files of a map to a set, as kiln_map_save names and writes them. `def` and `report` may be
-/// NULL.
+/// Adds the files of a map to a set, with the names and contents of kiln_map_save. `def` and
+/// `report` may be NULL.
 kiln_result ki_map_write(ki_file_set *set, kiln_context *context, const kiln_map *map,
                          const char *path, const kiln_save_def *def, kiln_save_report *report,
                          kiln_error *error);
-/// Fills in the report but for `file_count`: which of a map's values are above a limit, 0 for none.
+/// Fills in a report except for `file_count`: how many of the map's values are above a limit, where
+/// 0 stands for no limit.
 void ki_count_cut(const kiln_map *map, double limit, kiln_save_report *report);
 
 #endif

@@ -1,4 +1,4 @@
-// Spherical harmonics as text: JSON, one line a coefficient, or a C array.
+// Writes spherical harmonics as text: JSON, one line for each coefficient, or a C array.
 #include "codec/sh_text.h"
 
 #include "base/file.h"

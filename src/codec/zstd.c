@@ -11,7 +11,7 @@ kiln_result ki_zstd_known(const char *name, kiln_error *error)
     return KILN_OK;
 }
 
-// What zstd makes has room for one byte more than it may need.
+// Returns the room for compressed data: zstd's own bound and one byte more.
 size_t ki_zstd_bound(size_t size)
 {
     return ZSTD_compressBound(size) + 1;

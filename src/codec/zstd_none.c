@@ -1,4 +1,4 @@
-// A build without zstd's library.
+// The functions of zstd.h for a build without the zstd library.
 #include "codec/zstd.h"
 
 kiln_result ki_zstd_known(const char *name, kiln_error *error)

@@ -2,8 +2,7 @@
 // RGBP or as a DDS of halves. The atlas holds equirectangular pictures, each with a border of one
 // texel:
 //   six unfiltered pictures down the diagonal, from 512 x 256 to 16 x 8;
-//   below the first, along the left edge, the pictures of roughness k / 5, from 256 x 128 to 16 x
-//   8;
+//   filtered pictures of roughness k / 5 along the left edge, from 256 x 128 to 16 x 8;
 //   irradiance / pi, 64 x 32, at (128, 384).
 // Larger atlases scale all sizes, the border too. The shader reads level 5 r at roughness r.
 // PlayCanvas' own baker filters by roughnesses other than those its shader reads, kiln by the
