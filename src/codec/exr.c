@@ -1,10 +1,12 @@
-// EXR files, read: bytes go in, a picture of three floats a pixel comes out. exr_header.c parses the
-// header, exr_chunk.c finds the chunks and has them unpacked by their method, exr_pixels.c converts the
-// samples; here is which part and channels are read. Chunks are independent and unpacked in parallel.
+// Reading of EXR files. In: the bytes of a file. Out: a picture of three floats a pixel.
+// exr_header.c parses the header, exr_chunk.c finds and decompresses the chunks, exr_pixels.c
+// converts the samples, and this file chooses the part and the channels. Chunks are independent and
+// are decompressed in parallel.
 //
-// The picture is the display window; what the data window does not cover is 0. The first part with
-// colour is read, level 0 where there are several, and of its channels R, G and B (without a layer's
-// name before those with one), or Y as grey. The attribute "chromaticities" is not applied.
+// The picture is the display window; pixels outside the data window are 0. Read are the first part
+// with colour, level 0 of a part with several levels, and the channels R, G and B, or Y as grey.
+// Channels without a layer's name are preferred to those with one. The attribute "chromaticities"
+// is not applied.
 #include "codec/exr.h"
 #include "codec/codec.h"
 #include "codec/engine_text.h"
@@ -19,15 +21,15 @@ typedef struct exr_file {
     kiln_context *context;
     const char *name;
     ki_exr_header header;
-    const ki_exr_part *part; // the one that is read
+    const ki_exr_part *part; // the part that is read
     int part_index;
     ki_exr_picture picture;
     ki_exr_chunk *chunks;
     int chunk_count;
     uint16_t *dwa_table;
     int task_count, first_task;
-    uint8_t results[TASKS]; // kiln_result of each task
-    int damaged[TASKS];     // the chunk at which a task stopped
+    uint8_t results[TASKS]; // the kiln_result of each task
+    int damaged[TASKS];     // the chunk at which each task failed
 } exr_file;
 
 // ------------------------------------------------------------------------------- part and channels
@@ -43,7 +45,8 @@ static int find_channel(const ki_exr_part *p, const char *layer, size_t layer_le
     return -1;
 }
 
-// The channels of one layer: R, G and B, else Y.
+// Chooses the channels of one layer: R, G and B, or else Y. Returns false if the layer has none of
+// these.
 static bool choose_in_layer(const ki_exr_part *p, const char *layer, size_t length, int source[3])
 {
     static const char *const colours[3] = {"R", "G", "B"};
@@ -57,7 +60,7 @@ static bool choose_in_layer(const ki_exr_part *p, const char *layer, size_t leng
     return source[0] >= 0 || any;
 }
 
-// Channels without a layer; else those of the first layer that has one of them.
+// Chooses channels without a layer, or else those of the first layer that has R, G, B or Y.
 static bool choose_channels(const ki_exr_part *p, int source[3])
 {
     if (choose_in_layer(p, "", 0, source))
@@ -82,7 +85,7 @@ static void list_channels(const ki_exr_part *p, char *text, size_t room)
 
 static kiln_result choose_part(exr_file *f, kiln_error *error)
 {
-    const ki_exr_part *first = NULL; // that is not deep
+    const ki_exr_part *first = NULL; // first part that is not deep
     for (int i = 0; i < f->header.part_count; i++) {
         const ki_exr_part *p = &f->header.parts[i];
         if (p->deep || p->channel_count > KI_EXR_MAX_CHANNELS)
@@ -107,7 +110,7 @@ static kiln_result choose_part(exr_file *f, kiln_error *error)
                    "%s: has no channel R, G, B or Y, its channels are %s", f->name, names);
 }
 
-// Whether the chosen channels are what red, green and blue are made of as they are.
+// Fails unless the chosen channels hold red, green and blue without subsampling.
 static kiln_result check_channels(const exr_file *f, kiln_error *error)
 {
     const ki_exr_part *p = f->part;
@@ -174,7 +177,7 @@ static kiln_result open_file(exr_file *f, const uint8_t *bytes, size_t size, kil
 
 // ------------------------------------------------------------------------------------- description
 
-// The text of a string attribute, "" where there is none; cut off at what `text` has room for.
+// Copies the text of a string attribute, truncated to `room`; "" if the part has no such attribute.
 static void read_string(const ki_exr_part *p, const char *name, char *text, size_t room)
 {
     size_t size = 0;
@@ -185,7 +188,7 @@ static void read_string(const ki_exr_part *p, const char *name, char *text, size
     text[size] = 0;
 }
 
-// What kiln's own attributes say.
+// Fills in `info` from kiln's own attributes.
 static void describe_attributes(const exr_file *f, kiln_file_info *info)
 {
     char text[sizeof info->table];
@@ -233,7 +236,8 @@ static void describe(const exr_file *f, kiln_file_info *info)
 
 // ------------------------------------------------------------------------------------------ pixels
 
-// A task takes neighbouring chunks, and allocates the memory for the largest of them.
+// Task of one thread: decodes neighbouring chunks. The task allocates memory for the largest of its
+// chunks.
 static void decode_chunks(void *data, int index)
 {
     exr_file *f = data;
@@ -277,7 +281,7 @@ static kiln_result decode_all(exr_file *f, kiln_error *error)
             return ki_fail_memory(f->context, error, f->name, 65536 * sizeof *f->dwa_table);
         ki_exr_dwa_table(f->context, f->dwa_table);
     }
-    // A large picture in rounds, between which the caller may stop.
+    // A large picture is decoded in rounds, between which the caller may stop the work.
     int rounds =
         (size_t)f->picture.width * (size_t)f->picture.height < (size_t)1 << 23 ? 1 : ROUNDS;
     for (int r = 0; r < rounds; r++) {

@@ -1,5 +1,6 @@
-// EXR's B44 and B44A: halfs in blocks of 4 x 4, each a first value and 15 differences of 6 bits with
-// a common shift, 14 bytes; B44A stores a block of one value in 3. Floats and integers are as they are.
+// EXR's B44 and B44A: half floats in blocks of 4 x 4. A block of 14 bytes holds a first value and
+// 15 differences of 6 bits with a common shift. B44A stores a block of equal values in 3 bytes.
+// Floats and integers are not compressed.
 #include "base/bytes.h"
 #include "codec/exr.h"
 #include "image/pack.h"
@@ -7,12 +8,12 @@
 
 #include <string.h>
 
-// A channel that is "perceptually linear" was stored as exp(x / 8): back to x.
+// Returns x for a stored half exp(x / 8), the form of channels that are "perceptually linear".
 static uint16_t logarithm(uint16_t half)
 {
     if (half == 0)
         return 0xfc00;
-    if (half >= 0x7c00) // negative, infinite, not a number
+    if (half >= 0x7c00) // negative, infinite or not-a-number
         return 0;
     return ki_half_from_float((float)(8 * ki_log((double)ki_float_from_half(half))));
 }
@@ -24,17 +25,18 @@ static uint64_t load_high_first(const uint8_t *bytes)
     return __builtin_bswap64(value);
 }
 
-// Stored numbers are in the order of the halfs' values: negative halfs had all bits inverted, others the
-// highest one.
+// Stored numbers have the order of the halfs' values: negative halfs had all bits inverted, other
+// halfs had the highest bit inverted.
 static void halfs_from_ordered(const uint16_t ordered[16], uint16_t halfs[16])
 {
     for (int i = 0; i < 16; i++)
         halfs[i] = (uint16_t)(ordered[i] ^ (ordered[i] >> 15 ? 0x8000 : 0xffff));
 }
 
-// Sixteen halfs, row after row: 16 bits of the first, 6 bits of a shift, then 15 differences of 6 bits,
-// down the first column and to the right from there; or three bytes where all are the same, which a shift
-// of 13 and more says. Returns the number of bytes, 0 where there are too few.
+// Decodes a block to sixteen halfs, row by row. The block is 16 bits of the first value, 6 bits of
+// a shift, then 15 differences of 6 bits, down the first column and from there to the right. A
+// shift of 13 or more stands for three bytes with sixteen equal values. Returns the number of
+// bytes, or 0 if fewer are left.
 static size_t undo_block(const uint8_t *bytes, size_t left, uint16_t halfs[16])
 {
     if (left < 3)
@@ -65,7 +67,7 @@ static size_t undo_block(const uint8_t *bytes, size_t left, uint16_t halfs[16])
     return flat ? 3 : 14;
 }
 
-// A plane of halfs, `width` x `height` of them.
+// Decodes a plane of `width` x `height` halfs.
 static bool undo_plane(ki_reader *r, bool linear, int width, int height, uint8_t *plane)
 {
     for (int y = 0; y < height; y += 4)
@@ -78,7 +80,7 @@ static bool undo_plane(ki_reader *r, bool linear, int width, int height, uint8_t
                 block[i] = logarithm(block[i]);
             uint8_t *to = plane + 2 * ((size_t)y * (size_t)width + (size_t)x);
             for (int j = 0; j < ki_min(4, height - y); j++, to += 2 * (size_t)width) {
-                if (width - x >= 4) // a size that the compiler knows
+                if (width - x >= 4) // a copy of constant size, which compilers make fast
                     memcpy(to, block + (ptrdiff_t)4 * j, 8);
                 else
                     memcpy(to, block + (ptrdiff_t)4 * j, 2 * (size_t)(width - x));

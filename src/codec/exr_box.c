@@ -1,4 +1,5 @@
-// Channels and boxes of samples as EXR files hold them: how many samples, how many bytes, in which order.
+// Channels and boxes of samples as EXR files store them: the number of samples and bytes, and the
+// order of the samples.
 #include "codec/exr.h"
 
 #include <string.h>
@@ -14,7 +15,8 @@ static int floor_divide(int a, int b)
     return a >= 0 ? a / b : -((-a + b - 1) / b);
 }
 
-// Multiples of `sampling` among `count` numbers from `start`, which may be negative.
+// Returns the number of multiples of `sampling` among the `count` integers from `start` on; `start`
+// may be negative.
 static int multiples(int start, int count, int sampling)
 {
     if (sampling == 1)

@@ -1,14 +1,16 @@
-// The chunks of an EXR file: where they lie, how many bytes they may have, and which method unpacks
-// them. A chunk is a tile, or as many scan lines as the method takes at a time.
+// The chunks of an EXR file. In: a parsed header and the bytes of the file. Out: the place, size
+// and box of each chunk, and its samples, decompressed by the file's method. A chunk is a tile, or
+// as many scan lines as the method compresses together. All sizes are checked against the file's.
 #include "base/bytes.h"
 #include "codec/exr.h"
 
 typedef struct method {
     const char *name;
-    int lines; // of a chunk of scan lines
-    /// A byte of packed data becomes this many at most, so that a short file cannot ask for a huge
-    /// picture: RLE makes 2 bytes into 128, deflate 1 into 1032, PIZ 9 bits into 255 samples, B44
-    /// 3 bytes into 16 samples; DWA a byte of deflated block means into 516, each a block of 256 bytes.
+    int lines; // lines in a chunk of scan lines
+    /// Greatest number of bytes that a packed byte can become, so that a short file cannot ask for
+    /// a huge picture. RLE makes at most 128 bytes of 2, deflate 1032 of 1, PIZ 255 samples of 9
+    /// bits, B44 16 samples of 3 bytes. DWA makes at most 516 bytes of block means of a deflated
+    /// byte, and each mean a block of 256 bytes.
     size_t growth;
     ki_exr_decompress *decompress;
 } method;
@@ -31,7 +33,7 @@ const char *ki_exr_compression_name(int compression)
     return methods[compression].name;
 }
 
-// Lines of a chunk of scan lines; 0 for an unknown compression.
+// Returns the number of lines in a chunk of scan lines; 0 for an unknown compression.
 static int chunk_lines(int compression)
 {
     return compression < KI_EXR_COMPRESSIONS ? methods[compression].lines : 0;
@@ -39,9 +41,9 @@ static int chunk_lines(int compression)
 
 // ----------------------------------------------------------------------------------------- finding
 
-// Sizes of the data window and of what it is cut into.
+// The size of the data window and of the chunks into which it is cut.
 typedef struct grid {
-    int64_t width, height, chunk_width, chunk_height; // 0: the header is wrong
+    int64_t width, height, chunk_width, chunk_height; // sizes in pixels; 0 if the header is wrong
     int64_t across, down;
 } grid;
 
@@ -58,8 +60,8 @@ static grid make_grid(const ki_exr_part *p)
     return g;
 }
 
-// The number of entries in a part's table of chunks, of one with mip levels those of level 0, which
-// come first; 0 where the header is wrong.
+// Returns the number of entries in a part's table of chunks; in a part with mip levels only those
+// of level 0, which come first. Returns 0 if the header is wrong.
 static int32_t chunk_count(const ki_exr_part *part)
 {
     grid g = make_grid(part);
@@ -80,12 +82,12 @@ typedef struct search {
     const ki_exr_part *part;
     int part_index, entry_count;
     grid grid;
-    uint64_t table; // where the part's offsets begin
-    size_t left;    // bytes of the file that no chunk has taken
+    uint64_t table; // position of the part's offsets
+    size_t left;    // bytes of the file that belong to no chunk so far
 } search;
 
-// A reader at chunk `index` of the table, behind what says which chunk it is; failed where the table
-// or the chunk says something else.
+// Returns a reader of chunk `index` of the table, after the numbers that identify the chunk. The
+// reader has failed if the table or the chunk contradicts `column` and `row`.
 static ki_reader open_chunk(const search *s, int64_t index, int column, int row)
 {
     const ki_exr_header *h = s->header;
@@ -99,7 +101,7 @@ static ki_reader open_chunk(const search *s, int64_t index, int column, int row)
         return nowhere;
     r = ki_reader_make(h->bytes + offset, h->size - (size_t)offset);
     bool same = !h->multipart || ki_read_u32(&r) == (uint32_t)s->part_index;
-    if (s->part->tiled) { // column, row and twice the number of the mip level
+    if (s->part->tiled) { // column, row, and the mip level in x and y
         same = same && ki_read_u32(&r) == (uint32_t)column && ki_read_u32(&r) == (uint32_t)row &&
                ki_read_u32(&r) == 0 && ki_read_u32(&r) == 0;
     } else {
@@ -120,7 +122,8 @@ static kiln_result find_chunk(search *s, const char *name, int column, int row, 
     ki_reader r = open_chunk(s, index, column, row);
     c->packed_size = ki_read_u32(&r);
     c->packed = ki_read_bytes(&r, c->packed_size);
-    if (!c->packed || c->packed_size > s->left) // more: chunks overlap
+    // A size above the rest of the file means that chunks overlap.
+    if (!c->packed || c->packed_size > s->left)
         return ki_fail(error, KILN_ERROR_FORMAT, "%s: chunk %lld is missing or damaged", name,
                        (long long)index);
     s->left -= c->packed_size;
@@ -174,7 +177,8 @@ const uint8_t *ki_exr_chunk_samples(const ki_exr_workspace *work, int compressio
                                     const ki_exr_chunk *chunk, uint8_t *raw, kiln_result *result)
 {
     *result = KILN_OK;
-    if (chunk->packed_size == chunk->size) // what does not become smaller is stored as it is
+    // A chunk that compression would not make smaller is stored uncompressed.
+    if (chunk->packed_size == chunk->size)
         return chunk->packed;
     const method *m = &methods[compression];
     *result = m->decompress ? m->decompress(work, &chunk->box, chunk->packed, chunk->packed_size,

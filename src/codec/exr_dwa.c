@@ -1,6 +1,7 @@
-// DWAA and DWAB: 8 x 8 blocks of a discrete cosine transform of half floats in a perceptual scale,
-// for the channels that its rules name; runs or zlib for the others. The format is described in
-// "DreamWorks Animation Lossy Compression" (OpenEXR 2.2); here is its decoder.
+// Decompression of EXR's DWAA and DWAB. In: the packed bytes of a chunk. Out: the lines of its box.
+// Channels that the chunk's rules name are stored as 8 x 8 blocks of a discrete cosine transform of
+// half floats in a perceptual scale; other channels are compressed as runs or by zlib. The format
+// is described in "DreamWorks Animation Lossy Compression" (OpenEXR 2.2).
 #include "base/bytes.h"
 #include "codec/deflate.h"
 #include "codec/exr.h"
@@ -17,7 +18,8 @@ enum { MAX_RULES = 256, AC_HUFFMAN = 0, AC_DEFLATE = 1, END_OF_BLOCK = 0xff00 };
 
 enum { TABLE_TASKS = 64, TABLE_STRETCH = 0x7c00 / TABLE_TASKS };
 
-// x^2.2 up to 1, e^(2.2 (x - 1)) above; infinities and not-a-number were never stored and give 0.
+// Fills a stretch of the table: x^2.2 up to 1, e^(2.2 (x - 1)) above. Infinities and not-a-number
+// are never stored and give 0.
 static void linear_stretch(void *data, int index)
 {
     uint16_t *table = data;
@@ -25,10 +27,11 @@ static void linear_stretch(void *data, int index)
         double x = (double)ki_float_from_half((uint16_t)i);
         double y = 0;
         if (x > 8)
-            y = 65536; // larger than any half
+            y = 65536; // a value larger than any half
         else if (x > 1)
             y = ki_exp(2.2 * (x - 1));
-        else if (x > 0x1p-12) // below, less than half of the smallest
+        // Smaller x give less than half of the smallest half, which rounds to 0.
+        else if (x > 0x1p-12)
             y = ki_pow(x, 2.2);
         uint16_t half = ki_half_from_float((float)y);
         table[i] = half;
@@ -51,15 +54,15 @@ typedef struct counts {
 
 typedef struct dwa_rule {
     char suffix[32];
-    int scheme, place, type; // place of a channel in a colour triple, -1 for none
+    int scheme, place, type; // position of the channel in a colour triple, -1 for none
     bool any_case;
 } dwa_rule;
 
-// What becomes of a channel.
+// How one channel is stored.
 typedef struct dwa_plan {
     int scheme;
-    int width, height;   // in samples
-    const uint8_t *from; // its raw bytes where it is not transformed
+    int width, height;   // size of the channel in samples
+    const uint8_t *from; // the channel's raw bytes, if it is not stored by the transform
     bool done;
 } dwa_plan;
 
@@ -96,7 +99,7 @@ static void add_rule(dwa *d, const char *suffix, int scheme, int place, int type
     added->any_case = any_case;
 }
 
-// Files before version 2 do not carry their rules.
+// Adds the fixed rules of files before version 2, which do not store their rules.
 static void add_old_rules(dwa *d)
 {
     static const struct {
@@ -111,8 +114,8 @@ static void add_old_rules(dwa *d)
         add_rule(d, "a", SCHEME_RUNS, -1, type, true);
 }
 
-// A rule: suffix with its NUL; a byte of place + 1 (4 bits), scheme (2 bits) and, in the last bit,
-// whether case does not matter; the pixel type.
+// Reads the rules of a chunk. A rule is a suffix with its NUL; a byte with the position + 1 (4
+// bits), the scheme (2 bits) and, in the last bit, whether case is ignored; and the pixel type.
 static bool read_rules(dwa *d, ki_reader *r)
 {
     const uint8_t *head = ki_read_bytes(r, 2);
@@ -158,7 +161,7 @@ static bool rule_fits(const dwa_rule *rule, const char *suffix, int type)
     return *wanted == *suffix;
 }
 
-// The order of the layers of two channels, which is that of their names before the last dot.
+// Compares the layers of two channels by their names before the last dot.
 static int compare_layers(const char *a, const char *b)
 {
     size_t length_a = (size_t)(ki_exr_suffix(a) - a), length_b = (size_t)(ki_exr_suffix(b) - b);
@@ -170,12 +173,13 @@ static int compare_layers(const char *a, const char *b)
 
 // --------------------------------------------------------------------------------------- transform
 
-// One of the two passes of the inverse transform, along k, for eight columns at once:
-// the even coefficients give a part that is the same at both ends, the odd ones its difference.
+// One of the two passes of the inverse transform, for eight columns at once. The even coefficients
+// give the part that is equal at mirrored positions, the odd coefficients the part that changes
+// sign.
 static void inverse_pass(float v[8][8])
 {
-    // cos(pi / 4), cos(pi / 16), cos(pi / 8), cos(3 pi / 16), cos(5 pi / 16), cos(3 pi / 8) and
-    // cos(7 pi / 16), halved.
+    // Halves of cos(pi / 4), cos(pi / 16), cos(pi / 8), cos(3 pi / 16), cos(5 pi / 16), cos(3 pi /
+    // 8) and cos(7 pi / 16).
     static const float a = 0.35355339F, b = 0.49039264F, c = 0.46193977F, d = 0.41573481F,
                        e = 0.27778512F, f = 0.19134172F, g = 0.09754516F;
     for (int i = 0; i < 8; i++) {
@@ -198,13 +202,13 @@ static void inverse_pass(float v[8][8])
     }
 }
 
-// Place of each coefficient in the zigzag order, column * 8 + row.
+// Position, as column * 8 + row, of each coefficient in zigzag order.
 static const uint8_t zigzag[64] = {0,  8,  1,  2,  9,  16, 24, 17, 10, 3,  4,  11, 18, 25, 32, 40,
                                    33, 26, 19, 12, 5,  6,  13, 20, 27, 34, 41, 48, 56, 49, 42, 35,
                                    28, 21, 14, 7,  15, 22, 29, 36, 43, 50, 57, 58, 51, 44, 37, 30,
                                    23, 31, 38, 45, 52, 59, 60, 53, 46, 39, 47, 54, 61, 62, 55, 63};
 
-// Coefficients, half floats in zigzag order, to the samples of a block, row by row.
+// Transforms coefficients, half floats in zigzag order, to the samples of a block, row by row.
 static void inverse_transform(const uint16_t coefficients[64], float samples[64])
 {
     float values[64], columns[8][8], rows[8][8];
@@ -219,8 +223,9 @@ static void inverse_transform(const uint16_t coefficients[64], float samples[64]
     memcpy(samples, rows, sizeof rows);
 }
 
-// The coefficients of a block behind its first: values, runs of zeros (0xff01 to 0xff3f) and an
-// end. Returns the last place that is not zero, or -1.
+// Reads the coefficients of a block after its first one: values, runs of zeros (0xff01 to 0xff3f)
+// and an end mark. Returns the position of the last coefficient that is not zero, or -1 if the data
+// are damaged.
 static int read_block(dwa *d, uint16_t block[64])
 {
     int last = 0;
@@ -256,7 +261,8 @@ static void put_row(const dwa *d, int bytes, bool linear, const uint16_t *halfs,
     }
 }
 
-// Where the samples of a channel on line `line` of the box begin, counted in lines that have any.
+// Finds the byte at which each line of a channel begins in the box, for the lines that have samples
+// of the channel.
 static void find_lines(const dwa *d, int index, size_t *offset)
 {
     const ki_exr_box *box = d->box;
@@ -273,7 +279,7 @@ static void find_lines(const dwa *d, int index, size_t *offset)
         }
 }
 
-// One channel, or three that were stored as luma and two differences.
+// Decodes one channel, or three channels that were stored as luma and two colour differences.
 static bool transform(dwa *d, const int *members, int count, size_t *const offset[3])
 {
     int width = d->plans[members[0]].width, height = d->plans[members[0]].height;
@@ -327,13 +333,14 @@ static bool transform(dwa *d, const int *members, int count, size_t *const offse
 
 // ------------------------------------------------------------------------------------------- chunk
 
-// Three channels of one layer, by place, -1 where missing.
+// Three channels of one layer by their position in a colour triple; -1 for a missing channel.
 typedef struct triple {
-    const char *name; // of one of them
+    const char *name; // name of one of the channels
     int member[3];
 } triple;
 
-// Finds every channel's scheme, and the triples in the order of their layers.
+// Finds the scheme of every channel, and the colour triples in the order of their layers. Returns
+// the number of triples.
 static int make_plan(dwa *d, triple *triples)
 {
     const ki_exr_box *box = d->box;
@@ -389,7 +396,7 @@ static size_t plane_size(const dwa *d, int scheme)
     return size;
 }
 
-// Blocks of all transformed channels.
+// Returns the number of 8 x 8 blocks of all channels that are stored by the cosine transform.
 static size_t block_count(const dwa *d)
 {
     size_t count = 0;
@@ -399,7 +406,8 @@ static size_t block_count(const dwa *d)
     return count;
 }
 
-// Copies what was not transformed: lines as they are, or bytes of equal rank together.
+// Copies a channel that was not transformed: its lines, or for runs its planes of bytes of equal
+// significance.
 static void copy_plain(dwa *d, int index, const size_t *offset)
 {
     const dwa_plan *plan = &d->plans[index];
@@ -417,13 +425,13 @@ static void copy_plain(dwa *d, int index, const size_t *offset)
     }
 }
 
-// The packed sections of a chunk, and what they unpack to.
+// The packed sections of a chunk, and the memory for their unpacked content.
 typedef struct sections {
-    const uint8_t *zlib, *ac, *dc, *runs; // packed
-    uint8_t *plain;                       // of zlib's channels, then of those coded by runs
-    uint8_t *run_bytes;                   // between the two steps of unpacking runs
+    const uint8_t *zlib, *ac, *dc, *runs; // the packed sections
+    uint8_t *plain;                       // unpacked channels of zlib, then those of runs
+    uint8_t *run_bytes;                   // runs after the first of two steps of unpacking
     uint16_t *ac_values, *dc_values, *scratch;
-    size_t *offset; // where lines begin, of three channels
+    size_t *offset; // byte offsets of the lines of three channels
     triple *triples;
     size_t zlib_size, runs_size, blocks;
 } sections;
@@ -446,7 +454,7 @@ static bool read_sections(dwa *d, const uint8_t *packed, size_t packed_size, sec
     return !r.failed;
 }
 
-// Every count must be what the box needs; coefficients may be fewer than 64 a block.
+// Checks that every count is what the box requires. A block may have fewer than 64 coefficients.
 static bool check_counts(const dwa *d, sections *s)
 {
     const counts *n = &d->counts;
@@ -500,7 +508,7 @@ static kiln_result unpack_sections(kiln_context *context, dwa *d, const sections
     return unpack_ac(context, n, s);
 }
 
-// Colour triples come first, in the order of their layers.
+// Decodes the colour triples, which are stored first, in the order of their layers.
 static bool transform_triples(dwa *d, const triple *triples, int count, size_t *const lines[3])
 {
     for (int t = 0; t < count; t++) {

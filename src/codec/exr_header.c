@@ -1,21 +1,21 @@
-// EXR headers: the attributes of every part of a file, by the format's description ("Reading and
-// Writing OpenEXR Image Files", "OpenEXR File Layout"). In go the bytes of a file, out come the parts
-// with their channels, windows and compression. Nothing here is trusted: every size is checked
-// against what is left of the file, and names point into the file's bytes.
+// EXR headers. In: the bytes of a file. Out: its parts with their channels, windows and
+// compression. The format is described in "Reading and Writing OpenEXR Image Files" and "OpenEXR
+// File Layout". Input is not trusted: every size is checked against the rest of the file, and names
+// point into the file's bytes.
 //
-// kiln reads EXR by code of its own because OpenEXRCore is not there on every machine that kiln runs
-// on (Windows, static musl, WebAssembly), and because that library's versions differ in what they
-// read: Debian 12's knows no DWA. The tests compare this reader with OpenEXRCore's.
+// kiln has its own EXR reader because OpenEXRCore is not available on every system that kiln
+// supports (Windows, static musl, WebAssembly), and because versions of that library differ in what
+// they read: the one of Debian 12 cannot read DWA. The tests compare this reader with OpenEXRCore.
 #include "base/bytes.h"
 #include "codec/exr.h"
 
 #include <string.h>
 
-enum { TILED = 0x200, DEEP = 0x800, MULTIPART = 0x1000 }; // flags beside the version
+enum { TILED = 0x200, DEEP = 0x800, MULTIPART = 0x1000 }; // flags stored together with the version
 
 // -------------------------------------------------------------------------------------- attributes
 
-// Text up to its NUL, or NULL.
+// Returns text up to its NUL, or NULL if there is no NUL.
 static const char *read_text(ki_reader *r)
 {
     size_t left = ki_reader_left(r);
@@ -29,7 +29,8 @@ typedef struct attribute {
     size_t size;
 } attribute;
 
-// False at the NUL that ends a header, where name is "", and behind the end of the file, where it is NULL.
+// Reads the next attribute. Returns false at the NUL that ends a header, with the name "", and
+// after the end of the file, with the name NULL.
 static bool next_attribute(ki_reader *r, attribute *a)
 {
     *a = (attribute){.name = read_text(r)};
@@ -63,7 +64,7 @@ static bool read_channel(ki_reader *r, ki_exr_channel *c)
 {
     *c = (ki_exr_channel){.name = read_text(r)};
     uint32_t type = ki_read_u32(r);
-    c->linear = (ki_read_u32(r) & 0xff) != 0; // one byte and three that are reserved
+    c->linear = (ki_read_u32(r) & 0xff) != 0; // one byte, and three reserved bytes
     uint32_t x = ki_read_u32(r), y = ki_read_u32(r);
     if (!c->name || !c->name[0] || r->failed || type >= KI_EXR_TYPES || x < 1 || y < 1 ||
         x > KILN_MAX_SIZE || y > KILN_MAX_SIZE)
@@ -75,7 +76,8 @@ static bool read_channel(ki_reader *r, ki_exr_channel *c)
     return true;
 }
 
-// A list of channels, which ends with a NUL. NULL where all is well, else what is wrong.
+// Reads a list of channels, which ends with a NUL. Returns NULL on success, else a text that says
+// what is wrong.
 static const char *read_channels(kiln_context *context, const attribute *a, ki_exr_part *p,
                                  bool *starved)
 {
@@ -133,7 +135,7 @@ static void read_storage(const attribute *a, ki_exr_part *p)
 
 enum { HAS_COMPRESSION = 1, HAS_DATA = 2, HAS_DISPLAY = 4 };
 
-// Returns which of the three required attributes this one is.
+// Reads an attribute. Returns the flag of the required attribute that it is, or 0.
 static int read_attribute(const attribute *a, ki_exr_part *p)
 {
     ki_reader r = ki_reader_make(a->bytes, a->size);
@@ -160,7 +162,8 @@ static int read_attribute(const attribute *a, ki_exr_part *p)
     return 0;
 }
 
-// One header, up to the NUL that ends it. NULL where all is well, else what is wrong.
+// Reads one header, up to the NUL that ends it. Returns NULL on success, else a text that says what
+// is wrong.
 static const char *read_part(kiln_context *context, ki_reader *r, uint32_t flags, ki_exr_part *p,
                              bool *starved)
 {
@@ -188,7 +191,7 @@ static const char *read_part(kiln_context *context, ki_reader *r, uint32_t flags
                                         : NULL;
 }
 
-// Makes room for one part more.
+// Makes room for one more part.
 static bool grow(kiln_context *context, ki_exr_header *h)
 {
     size_t count = (size_t)h->part_count;
@@ -207,7 +210,7 @@ static bool grow(kiln_context *context, ki_exr_header *h)
 static const char *read_parts(kiln_context *context, ki_exr_header *h, bool *starved)
 {
     ki_reader r = ki_reader_make(h->bytes, h->size);
-    ki_read_u32(&r); // the first bytes, which are known
+    ki_read_u32(&r); // the magic number, which is already checked
     uint32_t version = ki_read_u32(&r);
     if (r.failed || (version & 0xff) != 2)
         return "its version is not 2";

@@ -1,6 +1,7 @@
-// The Huffman coding of PIZ and DWA: canonical codes of up to 58 bits for 65536 symbols and one
-// more, which stands for a run. In canonical order longer codes come first, so that among the codes
-// filled up with zeros to 64 bits every shorter length begins above the longer ones.
+// The Huffman codes of PIZ and DWA. In: packed bytes. Out: symbols of 16 bits. The codes are
+// canonical, with up to 58 bits, for 65536 symbols and one more that stands for a run. In canonical
+// order longer codes come first: if codes are padded with zeros to 64 bits, all codes of a shorter
+// length are above those of a longer one.
 #include "base/bytes.h"
 #include "codec/exr.h"
 
@@ -8,29 +9,31 @@
 
 enum {
     SYMBOLS = 65537,
-    LONGEST = 56,     // the format knows 58, for which no chunk is long enough
-    SHORT_ZEROS = 59, // lengths 59 to 62: 2 to 5 symbols that do not occur
-    LONG_ZEROS = 63,  // 8 more bits: 6 to 261 of them
+    // Longest code; the format allows 58 bits, which no chunk is long enough to need.
+    LONGEST = 56,
+    SHORT_ZEROS = 59, // lengths 59 to 62 stand for 2 to 5 symbols that do not occur
+    LONG_ZEROS = 63,  // length 63 and 8 more bits stand for 6 to 261 symbols that do not occur
     TABLE_BITS = 13,
 };
 
 typedef struct decoder {
     uint8_t length[SYMBOLS];
-    uint32_t symbol[SYMBOLS];        // by length, then by value
+    uint32_t symbol[SYMBOLS];        // symbols by code length, then by value
     uint32_t table[1 << TABLE_BITS]; // symbol << 6 | length for short codes, else 0
-    uint64_t first[LONGEST + 1];     // the lowest code of each length
+    uint64_t first[LONGEST + 1];     // lowest code of each length
     uint32_t count[LONGEST + 1], start[LONGEST + 1];
 } decoder;
 
-// Bits, most significant first. Behind the end come zeros, which are counted.
+// The bits of the input, most significant first. After the end of the input zeros are read, which
+// are counted.
 typedef struct bits {
     const uint8_t *at, *end;
-    uint64_t held; // from the top
+    uint64_t held; // bits that are held, from the top
     int held_count;
     uint64_t spent;
 } bits;
 
-// Holds 57 bits at least.
+// Reads bytes until at least 57 bits are held.
 static inline void fill(bits *b)
 {
     if (b->held_count > 56)
@@ -67,7 +70,7 @@ static inline uint32_t take(bits *b, int count)
     return value;
 }
 
-// Code lengths of the symbols low to high.
+// Reads the code lengths of the symbols low .. high.
 static bool read_lengths(bits *b, uint32_t low, uint32_t high, decoder *d)
 {
     memset(d->length, 0, sizeof d->length);
@@ -87,7 +90,7 @@ static bool read_lengths(bits *b, uint32_t low, uint32_t high, decoder *d)
     return true;
 }
 
-// Gives every length its lowest code, sorts the symbols and fills the table of short codes.
+// Computes the lowest code of each length, sorts the symbols and fills the table of short codes.
 static bool build(decoder *d, uint32_t low, uint32_t high)
 {
     memset(d->count, 0, sizeof d->count);
@@ -146,7 +149,7 @@ static bool decode(decoder *d, const uint8_t *packed, size_t packed_size, uint16
 {
     ki_reader r = ki_reader_make(packed, packed_size);
     uint32_t low = ki_read_u32(&r), high = ki_read_u32(&r);
-    ki_read_u32(&r); // size of the table, which ends by itself
+    ki_read_u32(&r); // size of the table, which is not needed
     uint64_t bit_count = ki_read_u32(&r);
     ki_read_u32(&r);
     if (r.failed || low >= SYMBOLS || high >= SYMBOLS || low > high)

@@ -1,15 +1,15 @@
-// EXR's PIZ: samples as 16-bit numbers are replaced by their rank among the values that occur, go
-// through a Haar wavelet, plane by plane, and are coded by Huffman's codes (exr_huffman.c). In goes a
-// chunk's packed bytes, out come its lines; by the description in "Reading and Writing OpenEXR Image
-// Files" and the original's behaviour.
+// EXR's PIZ. In: the packed bytes of a chunk. Out: the lines of its box. Samples, as 16-bit
+// numbers, were replaced by their rank among the values that occur, transformed by a Haar wavelet
+// plane by plane, and Huffman-coded (exr_huffman.c). The format is described in "Reading and
+// Writing OpenEXR Image Files" and defined by the original implementation.
 #include "codec/exr.h"
 
 #include "base/bytes.h"
 
 #include <string.h>
 
-// A pair of Haar's coefficients, mean and difference, back to its values: of 14 bits, or of 16 modulo
-// 2^16.
+// Recover two values from their mean and difference, the Haar coefficients: of 14 bits, or of 16
+// bits modulo 2^16.
 static inline void pair14(uint16_t mean, uint16_t difference, uint16_t *a, uint16_t *b)
 {
     int m = (int16_t)mean, d = (int16_t)difference;
@@ -68,8 +68,8 @@ static void undo_wavelet(uint16_t *plane, int width, ptrdiff_t step, int height,
     }
 }
 
-// The values that occur, as a bitmap from byte `first` to `last`; table[i] is the i-th. Returns the
-// greatest i.
+// Reads the values that occur, a bitmap from byte `first` to `last`. table[i] is the i-th value.
+// Returns the greatest i, or -1 if the data are damaged.
 static int read_values(ki_reader *r, uint16_t *table)
 {
     uint8_t bitmap[8192] = {0};

@@ -1,5 +1,5 @@
-// EXR's PXR24: of each line and channel the samples' differences, their highest bytes first, then the
-// next ones, deflated; a float has lost its lowest byte.
+// EXR's PXR24: for each line and channel the differences of the samples, deflated; all highest
+// bytes come first, then all next bytes. A float is stored without its lowest byte.
 #include "codec/deflate.h"
 #include "codec/exr.h"
 
@@ -10,7 +10,8 @@ static size_t stored_bytes(const ki_exr_channel *channel)
     return channel->type == KI_EXR_FLOAT ? 3 : (size_t)channel->bytes;
 }
 
-// One line of one channel, `width` samples; `from` has their bytes, rank after rank.
+// Decodes one line of one channel with `width` samples. `from` holds the bytes in order of
+// significance, the highest of all samples first.
 static void undo_line(const uint8_t *from, size_t width, const ki_exr_channel *channel,
                       uint8_t *raw)
 {

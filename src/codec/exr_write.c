@@ -1,4 +1,5 @@
-// EXR, written: scan lines, ZIP, half or float.
+// Writing of EXR files. In: floats of one to four channels and the file's options. Out: a file of
+// scan lines, half or float, compressed by ZIP in chunks of 16 lines.
 #include "codec/codec.h"
 #include "codec/deflate.h"
 #include "image/pack.h"
@@ -35,14 +36,15 @@ static void window(ki_writer *w, const char *name, int width, int height)
     ki_write_u32(w, (uint32_t)height - 1);
 }
 
-// Names in the order of the file, which is alphabetical, and the channel of the pixels each is.
+// Names of the channels in the file, which are in alphabetical order, and the index of each channel
+// in a pixel.
 static const char *const names[4][4] = {{"Y"}, {"G", "R"}, {"B", "G", "R"}, {"A", "B", "G", "R"}};
 static const int places[4][4] = {{0}, {1, 0}, {2, 1, 0}, {3, 2, 1, 0}};
 
 static void header(ki_writer *w, int width, int height, int channels, const ki_exr_options *options)
 {
-    ki_write_u32(w, 20000630); // magic number
-    ki_write_u32(w, 2);        // version, one part of scan lines
+    ki_write_u32(w, 20000630); // magic number of EXR
+    ki_write_u32(w, 2);        // version 2; one part, of scan lines
     uint32_t size = 1;
     for (int c = 0; c < channels; c++)
         size += (uint32_t)strlen(names[channels - 1][c]) + 17;
@@ -50,8 +52,8 @@ static void header(ki_writer *w, int width, int height, int channels, const ki_e
     for (int c = 0; c < channels; c++) {
         text(w, names[channels - 1][c]);
         ki_write_u32(w, options->half ? 1 : 2);
-        ki_write_u32(w, 0); // not perceptually linear
-        ki_write_u32(w, 1); // sampling
+        ki_write_u32(w, 0); // not "perceptually linear"
+        ki_write_u32(w, 1); // no subsampling
         ki_write_u32(w, 1);
     }
     ki_write_u8(w, 0);
@@ -93,7 +95,7 @@ static void header(ki_writer *w, int width, int height, int channels, const ki_e
     ki_write_text(w, "kiln %s", version);
 }
 
-// Lines as they lie in the file: of each line, channel after channel.
+// Reorders lines of pixels as the file stores them: in each line, channel by channel.
 static void gather(const float *pixels, int width, int lines, int channels, bool half, float *plane,
                    uint8_t *raw)
 {
@@ -113,7 +115,8 @@ static void gather(const float *pixels, int width, int lines, int channels, bool
     }
 }
 
-// Even bytes first, then odd ones; each but the first as its difference from the one before.
+// Stores the even bytes first, then the odd bytes, and replaces each byte after the first by its
+// difference from the byte before.
 static void predict(const uint8_t *raw, size_t size, uint8_t *restrict bytes)
 {
     size_t half = (size + 1) / 2;
@@ -154,7 +157,8 @@ kiln_result ki_exr_encode(const float *pixels, int width, int height, int channe
         gather(pixels + (size_t)y * (size_t)width * (size_t)channels, width, lines, channels,
                options->half, plane, raw);
         predict(raw, size, raw + most);
-        // Room for less than `size`: what does not become smaller is stored as it is.
+        // The room is less than `size`, because a chunk that does not become smaller is stored
+        // uncompressed.
         size_t packed = ki_deflate(deflater, raw + most, size, raw + 2 * most, size - 1);
         ki_patch_u64(writer, table + 8 * i, writer->size - file_start);
         ki_write_u32(writer, (uint32_t)y);

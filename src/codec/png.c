@@ -1,13 +1,14 @@
-// PNG files, read: bytes go in, a picture of three linear floats a pixel comes out. Every colour type,
-// depth and filter, interlaced or not, by the specification (W3C, "Portable Network Graphics", second
-// edition). Values are sRGB whatever the chunks gAMA, cHRM, iCCP and cICP say; alpha and tRNS are left
-// out.
+// Reading of PNG files. In: the bytes of a file. Out: a picture of three linear floats a pixel.
+// Every colour type, depth and filter is read, interlaced or not, by the specification (W3C,
+// "Portable Network Graphics", second edition). Values are taken as sRGB whatever the chunks gAMA,
+// cHRM, iCCP and cICP say. Alpha and tRNS are ignored.
 //
-// kiln reads and writes PNG by code of its own so that it builds where libpng is not, and so that its
-// files are the same bytes everywhere. The tests compare it with libpng, oiiotool and a browser.
+// kiln has its own PNG code so that kiln can be built without libpng and writes the same bytes on
+// every system. The tests compare the code with libpng, oiiotool and a browser.
 //
-// The chunks IDAT are joined and inflated at once, the rows' filters are undone in place, and every
-// sample looks up its linear value. Sizes are checked against the file's before memory is asked for.
+// The IDAT chunks are joined and decompressed at once, the filters of the rows are undone in place,
+// and a table gives the linear value of every sample. Sizes are checked against the file's before
+// memory is allocated.
 #include "codec/png.h"
 #include "codec/codec.h"
 #include "codec/deflate.h"
@@ -16,11 +17,11 @@
 #include <stdio.h>
 #include <string.h>
 
-// A picture, or one of the seven that an interlaced one is cut into: pixels from (x, y), every
-// x_step-th and y_step-th.
+// A picture, or one of the seven passes of an interlaced picture: the pixels from (x, y) on, every
+// x_step-th column and every y_step-th row.
 typedef struct pass {
     int x, y, x_step, y_step;
-    size_t width, height, row; // row: bytes, without the one that names the filter
+    size_t width, height, row; // size in pixels; bytes of a row without its filter byte
 } pass;
 
 enum { PASSES = 7 };
@@ -35,10 +36,10 @@ typedef struct png_file {
     uint8_t palette[256][3];
     pass passes[PASSES];
     int pass_count;
-    const uint8_t *packed; // all IDAT, one after the other
-    uint8_t *joined;       // the same where there are several
+    const uint8_t *packed; // content of all IDAT chunks, joined
+    uint8_t *joined;       // memory of the joined content if there are several IDAT chunks
     size_t packed_size;
-    uint64_t raw_size; // what the data must inflate to
+    uint64_t raw_size; // size that the data must decompress to
     uint8_t *raw;
     float *table, *pixels; // table: the linear value of every sample
 } png_file;
@@ -59,7 +60,7 @@ typedef struct chunk {
     char type[5];
     const uint8_t *bytes;
     size_t size;
-    bool intact; // its sum is right
+    bool intact; // true: its CRC is right
 } chunk;
 
 static bool next_chunk(png_file *f, chunk *c)
@@ -127,7 +128,7 @@ static kiln_result read_head(png_file *f, kiln_error *error)
     return KILN_OK;
 }
 
-// Entries that the file does not have stay black.
+// Reads the palette. Entries that the file does not have stay black.
 static bool read_palette(png_file *f, const chunk *c)
 {
     if (!(f->color & KI_PNG_PALETTE))
@@ -140,7 +141,7 @@ static bool read_palette(png_file *f, const chunk *c)
     return true;
 }
 
-// The chunks IDAT from the first one on, which `c` is; they follow each other.
+// Joins the consecutive IDAT chunks, of which `c` is the first.
 static kiln_result join_data(png_file *f, chunk *c, kiln_error *error)
 {
     ki_reader first = f->reader;
@@ -170,14 +171,14 @@ static kiln_result join_data(png_file *f, chunk *c, kiln_error *error)
     return KILN_OK;
 }
 
-// Everything up to the last chunk IDAT.
+// Reads all chunks up to the last IDAT chunk.
 static kiln_result read_chunks(png_file *f, kiln_error *error)
 {
     chunk c;
     for (;;) {
         if (!next_chunk(f, &c))
             return damaged(f, error, "the file ends too early");
-        bool critical = !(c.type[0] & 32); // a capital letter
+        bool critical = !(c.type[0] & 32); // a capital letter marks a critical chunk
         if (!critical)
             continue;
         if (!c.intact)
@@ -218,7 +219,7 @@ static void find_passes(png_file *f)
         add_pass(f, 0, 0, 1, 1);
         return;
     }
-    // Adam7: the pixels of squares of eight, a sixty-fourth of them first.
+    // Passes of Adam7: the pixels of each 8 x 8 square, one of the sixty-four in the first pass.
     static const uint8_t from[PASSES][4] = {{0, 0, 8, 8}, {4, 0, 8, 8}, {0, 4, 4, 8}, {2, 0, 4, 4},
                                             {0, 2, 2, 4}, {1, 0, 2, 2}, {0, 1, 1, 2}};
     for (int i = 0; i < PASSES; i++)
@@ -227,8 +228,8 @@ static void find_passes(png_file *f)
 
 // ----------------------------------------------------------------------------------------- filters
 
-// The four filters that differ, of a row of `size` bytes whose pixels have `step` of them. With a
-// constant step the compiler keeps a pixel's bytes apart.
+// Undo the four filters of a row of `size` bytes with `step` bytes a pixel. With a constant step
+// the compiler keeps the bytes of a pixel in separate registers.
 static inline void undo_sub(uint8_t *row, size_t size, size_t step)
 {
     for (size_t i = step; i < size; i++)
@@ -273,7 +274,8 @@ static inline bool undo_filter(int filter, uint8_t *row, const uint8_t *above, s
     return filter < KI_PNG_FILTERS;
 }
 
-// A pass's rows, each behind the byte that names its filter. `zeros` is what lies above the first.
+// Undoes the filters of a pass's rows, each of which follows its filter byte. `zeros` stands for
+// the row above the first.
 static bool undo_filters(uint8_t *raw, const pass *p, size_t step, const uint8_t *zeros)
 {
     const uint8_t *above = zeros;
@@ -292,7 +294,7 @@ static bool undo_filters(uint8_t *raw, const pass *p, size_t step, const uint8_t
 
 // ------------------------------------------------------------------------------------------ pixels
 
-// Every value a sample can have, linear.
+// Fills the table with the linear value of every possible sample.
 static bool make_table(png_file *f)
 {
     int count = f->color & KI_PNG_PALETTE ? 256 : 1 << f->depth;
@@ -302,7 +304,7 @@ static bool make_table(png_file *f)
     return f->table != NULL;
 }
 
-// Sample i of a row, whose bits lie highest first.
+// Returns sample i of a row, whose bits are stored highest first.
 static inline unsigned sample(const uint8_t *row, size_t i, int depth)
 {
     if (depth == 8)
@@ -313,7 +315,7 @@ static inline unsigned sample(const uint8_t *row, size_t i, int depth)
     return (unsigned)(row[bit / 8] >> (8 - depth - (int)(bit % 8))) & ((1U << depth) - 1);
 }
 
-// A row of a pass to its pixels, each `step` floats behind the one before.
+// Converts a row of a pass to pixels that are `step` floats apart.
 static inline void put_row(const png_file *f, const uint8_t *row, size_t width, int depth,
                            float *rgb, size_t step)
 {
@@ -347,7 +349,7 @@ static void put_pass(const png_file *f, const pass *p, const uint8_t *raw, size_
 
 static kiln_result put_all(png_file *f, kiln_error *error)
 {
-    enum { ROUND = 1 << 22 }; // pixels after which the caller may stop
+    enum { ROUND = 1 << 22 }; // number of pixels between two progress reports
     const uint8_t *raw = f->raw;
     for (int i = 0; i < f->pass_count; i++) {
         const pass *p = &f->passes[i];

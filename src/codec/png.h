@@ -1,24 +1,24 @@
-// What the PNG reader and writer share.
+// Declarations shared by the PNG reader and writer.
 #ifndef KI_PNG_H
 #define KI_PNG_H
 
 #include <stdint.h>
 
-/// Colour types: bits of PALETTE, COLOR and ALPHA.
+/// Bits of a colour type.
 enum { KI_PNG_PALETTE = 1, KI_PNG_COLOR = 2, KI_PNG_ALPHA = 4 };
 
-/// Filters of a row: its bytes are stored as differences from a prediction.
+/// Filters of a row, whose bytes are stored as differences from a prediction.
 typedef enum ki_png_filter {
     KI_PNG_NONE,
-    KI_PNG_SUB,     ///< from the byte one pixel to the left
-    KI_PNG_UP,      ///< from the byte above
-    KI_PNG_AVERAGE, ///< from the mean of both, rounded down
-    KI_PNG_PAETH,   ///< from the left, upper or upper left byte, by ki_png_paeth
+    KI_PNG_SUB,     ///< predicts the byte one pixel to the left
+    KI_PNG_UP,      ///< predicts the byte above
+    KI_PNG_AVERAGE, ///< predicts the mean of left and above, rounded down
+    KI_PNG_PAETH,   ///< predicts the left, upper or upper left byte, by ki_png_paeth
     KI_PNG_FILTERS
 } ki_png_filter;
 
-/// The one of three bytes that is nearest to left + above - corner; the first of them in this order
-/// where several are.
+/// Returns that of the three bytes which is nearest to left + above - corner. Ties are decided in
+/// the order left, above, corner.
 static inline uint8_t ki_png_paeth(int left, int above, int corner)
 {
     int to_left = above - corner, to_above = left - corner, to_corner = to_left + to_above;

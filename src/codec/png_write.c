@@ -1,6 +1,6 @@
-// PNG files, written: 8 or 16 bits, one to four channels, not interlaced. Each row gets the filter whose
-// differences are smallest in sum, which the specification proposes; rows are packed in parts of about
-// a quarter of a megabyte, each a chunk IDAT.
+// Writing of PNG files. In: floats of one to four channels. Out: a file of 8 or 16 bits, not
+// interlaced. Each row gets the filter with the smallest sum of differences, as the specification
+// proposes. Rows are compressed in parts of about a quarter of a megabyte, each an IDAT chunk.
 #include "codec/codec.h"
 #include "codec/components.h"
 #include "codec/deflate.h"
@@ -16,12 +16,13 @@ typedef struct png_writer {
     ki_crc32_table crc;
     ki_deflater *deflater;
     size_t row, step;  // bytes of a row and of a pixel
-    uint8_t *above;    // the row before, zeros at first
-    uint8_t *current;  // behind it
-    uint8_t *filtered; // a row by each filter
-    uint8_t *rows;     // HISTORY bytes that were packed already, then those to be packed
+    uint8_t *above;    // the row above, zeros for the first row
+    uint8_t *current;  // the row that is filtered next
+    uint8_t *filtered; // the current row after each of the filters
+    // HISTORY bytes that were already compressed, then the bytes that are to be compressed.
+    uint8_t *rows;
     size_t history, waiting;
-    int place; // of the next part
+    int place; // flags of the next part, KI_DEFLATE_FIRST or 0
 } png_writer;
 
 // ------------------------------------------------------------------------------------------ chunks
@@ -31,7 +32,7 @@ static void write_u32_high_first(ki_writer *w, uint32_t value)
     ki_write_u32(w, __builtin_bswap32(value));
 }
 
-// Where the data of a chunk begins; end_chunk() writes its size and sum.
+// Begins a chunk and returns the position of its data; end_chunk writes its size and CRC.
 static size_t begin_chunk(ki_writer *w, const char *type)
 {
     ki_write_u32(w, 0);
@@ -58,16 +59,17 @@ static void write_head(png_writer *p, int width, int height, int channels, ki_pn
     write_u32_high_first(p->out, (uint32_t)height);
     ki_write_u8(p->out, coding == KI_PNG_PLAIN16 ? 16 : 8);
     ki_write_u8(p->out, colors[channels - 1]);
-    ki_write(p->out, "\0\0", 3); // deflate, the five filters, not interlaced
+    ki_write(p->out, "\0\0", 3); // compression deflate, the five filters, not interlaced
     end_chunk(p, start);
     if (coding == KI_PNG_SRGB8) {
         start = begin_chunk(p->out, "sRGB");
-        ki_write_u8(p->out, 1); // relative colorimetric
+        ki_write_u8(p->out, 1); // rendering intent "relative colorimetric"
         end_chunk(p, start);
     }
 }
 
-// Packs the rows that wait, and keeps the last ones as what the next part may refer to.
+// Compresses the waiting rows as one part, and keeps the last bytes, to which the next part may
+// refer.
 static void write_part(png_writer *p, bool last)
 {
     uint8_t *rows = p->rows + p->history;
@@ -121,7 +123,7 @@ static void filter_row(const png_writer *p, ki_png_filter filter, uint8_t *restr
     }
 }
 
-// Differences count as numbers from -128 to 127.
+// Sums the differences as absolute values of numbers from -128 to 127.
 static uint32_t sum_of(const uint8_t *bytes, size_t size)
 {
     uint32_t sum = 0;
@@ -130,7 +132,8 @@ static uint32_t sum_of(const uint8_t *bytes, size_t size)
     return sum;
 }
 
-// The row in `current` goes to those that wait, and becomes the one above.
+// Adds the row in `current`, with its best filter, to the waiting rows. The row becomes the row
+// above.
 static void add_row(png_writer *p)
 {
     int best = 0;
@@ -168,7 +171,7 @@ static uint8_t to_byte(float value, const float *thresholds)
         return 255;
     if (!thresholds)
         return (uint8_t)(value * 255 + 0.5f);
-    int low = 0, high = 255; // how many thresholds are reached
+    int low = 0, high = 255; // number of thresholds that the value reaches
     while (low < high) {
         int middle = (low + high) / 2;
         if (value >= thresholds[middle])
@@ -179,7 +182,7 @@ static uint8_t to_byte(float value, const float *thresholds)
     return (uint8_t)low;
 }
 
-// One row of `count` values; 16 bits are stored with the high byte first.
+// Converts one row of `count` values; 16-bit values are stored with the high byte first.
 static void to_row(const float *values, size_t count, ki_png_coding coding, const float *thresholds,
                    uint8_t *row)
 {

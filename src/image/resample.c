@@ -1,13 +1,16 @@
-// Plans for resampling by area, and their execution.
+// Resampling of maps by area. In: the texels of a panorama, cube or octahedron. Out: the texels of
+// another such map, each the mean of the source over the texel's solid angle. The method depends on
+// the two shapes:
 //
-//   panorama -> cube, octahedron   exact: stencils (stencil.h), gathered
-//   cube, octahedron -> panorama   exact: the same stencils the other way, scattered
-//   panorama -> panorama           exact: separable
+//   panorama -> cube, octahedron   exact: each texel sums its stencil (stencil.h)
+//   cube, octahedron -> panorama   exact: each texel distributes its light by its stencil
+//   panorama -> panorama           exact: separable in rows and columns
 //   cube -> cube                   exact for quarter turns: rectangles on faces
-//   all else among these two       16 x 16 or more sub-samples a texel, each weighted by its solid
-//                                  angle; permutations (same size, quarter turns) are exact
+//   other cubes and octahedra      16 x 16 or more samples in each texel, weighted by solid angle;
+//                                  exact for the same size and quarter turns
 //
-// Exact means up to rounding of weights and sums to float.
+// Exact means up to rounding of weights and sums to float. A plan holds everything that depends on
+// shapes, sizes and rotation.
 #include "image/resample.h"
 
 #include "base/vector.h"
@@ -19,22 +22,22 @@
 
 enum {
     MAX_GRIDS = 8,
-    FEWEST = 32, // texels along a face below which a finer map is made first
-    BANDS = 8,   // of rows that are scattered into at once
-    AHEAD = 192, // stencils from asking for texels to reading them
-    FLUSH = 64   // blocks of 4 texels that are added up in float
+    FEWEST = 32, // number of texels along a face below which a finer map is computed first
+    BANDS = 8,   // number of row bands to which threads distribute light at the same time
+    AHEAD = 192, // number of stencils between the prefetch of texels and their use
+    FLUSH = 64   // number of blocks of 4 texels that are summed in single precision
 };
 
-// Loops that are wanted once with `mirror` and once without. (GCC drops calls to functions that do
-// nothing but prefetch, so that one too.)
+// For loops that are compiled once with `mirror` true and once with `mirror` false. The function
+// that only prefetches needs it too, because GCC removes calls to such a function.
 #define ALWAYS_INLINE __attribute__((always_inline)) static inline
 
 typedef enum plan_kind { GATHER, SCATTER, SEPARABLE, FACES, SUBSAMPLE } plan_kind;
 
-// A target column or row as source columns or rows.
+// The range of source columns or rows that a target column or row overlaps.
 typedef struct span {
     int first, count;
-    size_t weight; // index
+    size_t weight; // index of the first weight
 } span;
 
 struct ki_resample_plan {
@@ -44,24 +47,26 @@ struct ki_resample_plan {
     int source_size, size;
     double rotation;
 
-    // Gather and scatter. The cube or octahedron is made `factor` times finer than asked for.
+    // For gathering and scattering. The cube or octahedron is computed `factor` times finer than
+    // its size.
     ki_stencil_grid grid[MAX_GRIDS];
     int grid_count;
     int factor;
-    float *fine;      // the finer map
-    float *fine_area; // solid angles of its first face's texels
-    double *bands;    // sums of a band of rows of a panorama
+    float *fine;      // texels of the finer map
+    float *fine_area; // solid angles of the texels in the first face of the finer map
+    double *bands;    // sums for a band of rows of a panorama
     int band_rows;
 
-    // Separable.
+    // For panoramas to panoramas, which are separable.
     span *columns, *rows;
     float *weights;
 
-    // Sub-samples along a texel's side.
+    // Number of samples along each side of a texel.
     int sub;
 };
 
-// For columns that are not far outside: no division.
+// Wraps a column into the range 0 .. width - 1, without a division. The column must not be far
+// outside the range.
 static inline int wrap(int column, int width)
 {
     while (column < 0)
@@ -73,25 +78,27 @@ static inline int wrap(int column, int width)
 
 // --------------------------------------------------------------------------------------- plan, grids
 
-// Texel `k` steps from the middle, towards larger or smaller coordinates.
+// Returns the coordinate of the texel `k` steps from the middle, towards larger or smaller
+// coordinates.
 static int from_middle(int sign, int k, int half)
 {
     return sign > 0 ? half + k : half - 1 - k;
 }
 
-// The map's texel for texel (p, q) of quarter `quarter`, p along its first direction.
+// Returns the map's texel for texel (p, q) of quarter `quarter` of a grid, where p runs along the
+// quarter's first direction.
 static ptrdiff_t quarter_texel(ki_stencil_kind kind, int quarter, bool flip, int p, int q, int half)
 {
     if (flip && kind != KI_STENCIL_TOP) {
-        // An octahedron's lower sides are folded outwards.
+        // The lower half of an octahedron is folded outwards.
         int swap = p;
         p = half - 1 - q;
         q = half - 1 - swap;
     }
-    // Forwards is -Z and right is +X: (forward, right) = (p, q) turned by the quarters.
+    // Forward is -Z and right is +X: (forward, right) is (p, q) turned by the number of quarters.
     static const int forward_sign[4] = {1, -1, -1, 1}, right_sign[4] = {1, 1, -1, -1};
     int forward = quarter & 1 ? q : p, right = quarter & 1 ? p : q;
-    bool bottom = flip && kind == KI_STENCIL_TOP; // t runs the other way on -Y
+    bool bottom = flip && kind == KI_STENCIL_TOP; // On -Y the coordinate t runs the other way
     int x = from_middle(right_sign[quarter], right, half);
     int y = from_middle(bottom ? forward_sign[quarter] : -forward_sign[quarter], forward, half);
     ptrdiff_t n = 2 * (ptrdiff_t)half;
@@ -108,7 +115,8 @@ static void add_place(ki_stencil_grid *grid, int quarter, bool mirror, bool flip
     int half = grid->half;
     ptrdiff_t n = 2 * (ptrdiff_t)half;
     if (grid->kind == KI_STENCIL_SIDE) {
-        // Faces in the order of the columns; their s runs against the columns.
+        // The faces in the order of the panorama's columns. The coordinate s of a face runs against
+        // the columns.
         static const int faces[4] = {5, 0, 4, 1};
         int x = mirror ? half : half - 1, y = flip ? half : half - 1;
         place->base = (faces[quarter] * n + y) * n + x;
@@ -128,8 +136,8 @@ static bool whole(double x)
     return fabs(x - floor(x + 0.5)) < 1e-9;
 }
 
-// Grids of one kind: quarters whose first direction lies at the same place within its column share
-// one.
+// Adds the grids of one kind. Quarters whose first directions lie at the same position within a
+// column share a grid.
 static kiln_result add_grids(ki_resample_plan *plan, ki_stencil_kind kind, int half, int height,
                              double turn, kiln_error *error)
 {
@@ -143,7 +151,8 @@ static kiln_result add_grids(ki_resample_plan *plan, ki_stencil_kind kind, int h
         for (int k = 0; k < plan->grid_count; k++)
             if (plan->grid[k].kind == kind && fabs(plan->grid[k].offset - offset) < 1e-9)
                 grid = &plan->grid[k];
-        // Where mirroring takes the columns to: about the middle of a side, or of a quarter.
+        // Mirroring maps column c to about - c: about the middle of a side of the cube, or of a
+        // quarter.
         double about = kind == KI_STENCIL_SIDE ? 2 * offset : 2 * offset + width / 4;
         if (!grid) {
             grid = &plan->grid[plan->grid_count++];
@@ -175,8 +184,9 @@ static kiln_result add_grids(ki_resample_plan *plan, ki_stencil_kind kind, int h
 static kiln_result add_all_grids(ki_resample_plan *plan, kiln_shape shape, int n, int height,
                                  double rotation, kiln_error *error)
 {
-    // An even number of texels along a face, so that its middle lies between texels; and not too
-    // few, so that stencils stay small. What is finer than asked for is averaged afterwards.
+    // The number of texels along a face must be even, so that the middle of the face lies between
+    // texels. It must not be too small, so that stencils stay small. A finer map is averaged
+    // afterwards.
     plan->factor = 1;
     while ((n * plan->factor) % 2 || n * plan->factor < FEWEST)
         plan->factor++;
@@ -197,13 +207,13 @@ static kiln_result add_all_grids(ki_resample_plan *plan, kiln_shape shape, int n
     return result;
 }
 
-// Goes through the stencils of a chunk at one place.
+// A position in the stencils of a chunk at one place of the map.
 typedef struct cursor {
     const ki_stencil_grid *grid;
     const ki_stencil_place *place;
     const ki_stencil *stencil;
     const float *weights;
-    ptrdiff_t texel; // of the map
+    ptrdiff_t texel; // index of the texel in the map
     int i, end, j, stop;
 } cursor;
 
@@ -225,7 +235,7 @@ static cursor cursor_start(const ki_stencil_grid *grid, int chunk, const ki_sten
     return c;
 }
 
-// False at the end. Rows are never empty.
+// Moves to the next stencil. Returns false after the last. Rows of a grid are never empty.
 static inline bool cursor_next(cursor *c)
 {
     c->weights += (size_t)c->stencil->rows * c->stencil->blocks * 4;
@@ -239,7 +249,7 @@ static inline bool cursor_next(cursor *c)
     return true;
 }
 
-// The leftmost column a stencil covers at a place.
+// Returns the leftmost column that a stencil covers at a place.
 static inline int first_column(const ki_stencil *stencil, const ki_stencil_place *place, int width)
 {
     int column = place->mirror ? place->mirror_column - (stencil->column + 4 * stencil->blocks - 1)
@@ -249,7 +259,7 @@ static inline int first_column(const ki_stencil *stencil, const ki_stencil_place
 
 // -------------------------------------------------------------------------------------------- gather
 
-// Four RGB texels at a time, as three vectors: rgbr gbrg brgb.
+// Four RGB texels as three vectors with the channels rgbr gbrg brgb.
 typedef ki_float4 lanes;
 
 typedef struct sums {
@@ -287,7 +297,7 @@ ALWAYS_INLINE void add_blocks(sums *sum, const float *texels, const float *weigh
     }
 }
 
-// Red, green and blue in the first three lanes.
+// Returns the sums of red, green and blue in the first three lanes.
 static inline lanes total(const sums *sum)
 {
     lanes a = sum->a, b = sum->b, c = sum->c;
@@ -303,8 +313,8 @@ static inline void flush(sums *sum, double rgb[3])
     *sum = (sums){0};
 }
 
-// A stencil that is large or runs over the panorama's edge. Small ones give the same bits here as
-// in gather_places.
+// Sums a stencil that is large or extends across the panorama's edge. For a small stencil the
+// result has the same bits as in gather_place.
 static void gather_slowly(const float *source, int width, ptrdiff_t stride,
                           const ki_stencil *stencil, const float *weights, int column, bool mirror,
                           double rgb[3])
@@ -335,7 +345,8 @@ static void gather_slowly(const float *source, int width, ptrdiff_t stride,
     flush(&sum, rgb);
 }
 
-// Asks for the texels of a stencil that comes soon: what a grid reads lies in many short pieces.
+// Prefetches the texels of a stencil that is used soon, because a grid reads many short, scattered
+// pieces of memory.
 ALWAYS_INLINE void prefetch(const ki_stencil_grid *grid, const ki_stencil_place *place,
                             const ki_stencil *s, const float *source)
 {
@@ -388,10 +399,10 @@ typedef struct resample_job {
     const ki_resample_plan *plan;
     const float *source;
     float *target;
-    int first; // scatter: the first band
+    int first; // index of the first band, for scattering
 } resample_job;
 
-// A chunk of a grid at all its places.
+// Task of one thread: a chunk of a grid at all its places.
 static void gather_task(void *data, int index)
 {
     const resample_job *job = data;
@@ -408,7 +419,7 @@ static void gather_task(void *data, int index)
     }
 }
 
-// One row of a map from `factor` rows of the finer one.
+// Task of one thread: averages `factor` rows of the finer map to one row of the map.
 static void coarsen_task(void *data, int index)
 {
     const resample_job *job = data;
@@ -436,7 +447,8 @@ static void coarsen_task(void *data, int index)
 
 // ------------------------------------------------------------------------------------------- scatter
 
-// A band of rows of a panorama: every stencil gives its texel's light to the texels under it.
+// Task of one thread: a band of rows of a panorama. Every stencil adds the light of its texel to
+// the panorama texels that it covers.
 static void scatter_task(void *data, int index)
 {
     const resample_job *job = data;
@@ -466,7 +478,7 @@ static void scatter_task(void *data, int index)
                     const ki_stencil *s = c.stencil;
                     int row = place->flip ? height - s->row - s->rows : s->row;
                     int from = ki_max(row, first), to = ki_min(row + s->rows, end);
-                    // On the middle of a quarter, mirroring gives the same texel again.
+                    // On the diagonal of a quarter, mirroring gives the same texel again.
                     bool again = place->mirror && grid->kind != KI_STENCIL_SIDE && c.i == c.j;
                     if (from >= to || again)
                         continue;
@@ -534,8 +546,8 @@ static void separable_task(void *data, int y)
     }
 }
 
-// Fills a span from [low, high] in units of source rows or columns. Rows weigh by the difference of
-// cos theta.
+// Fills a span with the weights for the range [low, high], in units of source rows or columns. Rows
+// are weighted by the difference of cos theta.
 static span make_span(double low, double high, int count, bool rows, float *weights, size_t at)
 {
     double first = floor(low + 1e-9), last = ceil(high - 1e-9);
@@ -589,13 +601,15 @@ static kiln_result plan_separable(ki_resample_plan *plan, kiln_error *error)
 
 // ------------------------------------------------------------------------------- faces, sub-samples
 
-// Four times the solid angle from a face's centre to (s, t) is this function's; it is odd in both.
+// Returns a quarter of the solid angle between the rectangles from a face's centre to (s, t): the
+// solid angle of [0, s] x [0, t]. The function is odd in s and in t.
 static double corner_angle(double s, double t)
 {
     return ki_atan2(s * t, sqrt(s * s + t * t + 1));
 }
 
-// One row of a cube from rectangles on the faces of another. Quarter turns map squares on squares.
+// Task of one thread: one row of a cube from rectangles on the faces of another cube. Quarter turns
+// map squares to squares.
 static void faces_task(void *data, int index)
 {
     const resample_job *job = data;
@@ -633,7 +647,7 @@ static void faces_task(void *data, int index)
     }
 }
 
-// The source's texel in a direction.
+// Returns the index of the source's texel in a direction.
 static size_t texel_towards(kiln_shape shape, int n, const double direction[3])
 {
     double u, v;
@@ -649,8 +663,9 @@ static size_t texel_towards(kiln_shape shape, int n, const double direction[3])
     return ((size_t)face * (size_t)n + (size_t)y) * (size_t)n + (size_t)x;
 }
 
-// One row by sub-samples. On texels without likeness, some ten times brighter than the others, the
-// root mean square error is 3 % of the mean with 16 sub-samples a side; it falls with likeness.
+// Task of one thread: one row by samples. For independent random texels, some of them ten times
+// brighter than the others, the root mean square error is 3 % of the mean with 16 samples along
+// each side. The error is smaller where neighbouring texels are similar.
 static void subsample_task(void *data, int index)
 {
     const resample_job *job = data;
@@ -670,7 +685,8 @@ static void subsample_task(void *data, int index)
                     double r2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
                     area = 1 / (r2 * sqrt(r2));
                 } else {
-                    // On the octahedron itself the length is 1 / (|x| + |y| + |z|).
+                    // Before normalisation, the octahedron's point has the length 1 / (|x| + |y| +
+                    // |z|), with x, y, z the unit direction.
                     ki_octahedron_direction(u, v, d);
                     double sum = fabs(d[0]) + fabs(d[1]) + fabs(d[2]);
                     area = sum * sum * sum;
@@ -709,7 +725,7 @@ static kiln_result plan_fine(ki_resample_plan *plan, kiln_error *error)
     if (!plan->fine || !plan->fine_area)
         return ki_fail_memory(plan->context, error, "resampling",
                               fits ? (texels + area) * sizeof(float) : SIZE_MAX);
-    // All faces of a cube are alike: +Y's will do.
+    // All faces of a cube have the same solid angles, so those of +Y are used.
     ptrdiff_t before = plan->shape == KILN_SHAPE_CUBE ? 2 * (ptrdiff_t)area : 0;
     for (int g = 0; g < plan->grid_count; g++) {
         const ki_stencil_grid *grid = &plan->grid[g];

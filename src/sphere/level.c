@@ -1,3 +1,8 @@
+// Synthesis of one level (docs/theory/spectral.md). In: a spectrum, a lobe, and the shape and size
+// of the level. Out: the texels of the level, RGB floats. Method: the coefficients are multiplied
+// by the lobe's and summed on latitude rings. A small level is evaluated directly at its texels.
+// For other levels the rings are Fourier-synthesised to a regular grid in (theta, phi), from which
+// texels are interpolated with eight weights along each axis. The suns are added as points.
 #include "sphere/level.h"
 
 #include "image/image.h"
@@ -9,12 +14,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Rows and columns around the grid that repeat its other side, for the taps.
+// PAD: rows and columns around the grid that repeat its opposite side, so that the interpolation
+// needs no wrapping. TAP_OFFSET: index of the weight of the grid point left of a texel.
 enum { PAD = 4, TAP_OFFSET = KI_TAPS / 2 - 1 };
 
-// A small level is evaluated at its texels: each is a point on one of a few rings.
+// A texel of a small level. Such a level is evaluated at its texels, whose centres lie on few
+// circles of latitude.
 typedef struct place {
-    double theta, cosine, sine, sign; // theta of the northern ring of its pair; of phi; 1 or -1
+    // theta of the northern ring of the pair, cosine and sine of phi, and the sign of the
+    // hemisphere: 1 north, -1 south.
+    double theta, cosine, sine, sign;
     int texel, ring;
 } place;
 
@@ -31,19 +40,21 @@ struct ki_level {
     double *scratch;
     size_t scratch_size;
 
-    // Small levels.
-    place *places; // by ring
+    // The fields up to ring_start are for small levels.
+    place *places; // texels, sorted by ring
     int place_count;
-    int *ring_start; // [lanes + 1], into places
+    int *ring_start; // index of each ring's first texel in places, [lanes + 1]
 
-    // Others: a grid to interpolate on.
+    // The fields up to `positions` are for other levels, which are interpolated on a grid.
     ki_fft fft;
     float *ring_taps, *column_taps;
     size_t pitch, plane;
-    float *grid;       // [3][PAD + rings + PAD][pitch]
-    double *positions; // of faces +X and +Y, or of all texels: ring, column
+    float *grid; // [3][PAD + rings + PAD][pitch]
+    // Position of each texel on the grid as {ring, column}: of the faces +X and +Y of a cube, or of
+    // all texels.
+    double *positions;
 
-    // During an execution.
+    // The fields from here on are set during an execution.
     const kiln_spectrum *spectrum;
     const kiln_map *panorama;
     double rotation;
@@ -56,7 +67,7 @@ static bool design_taps(ki_level *level)
 {
     double *density = ki_alloc_raw(level->context, (size_t)level->degree + 1, sizeof *density);
     double *taps = ki_alloc_raw(level->context, KI_TAP_TABLE, sizeof *taps);
-    size_t count = KI_TAP_TABLE + KI_TAPS; // one row more: a fraction may round up to 1
+    size_t count = KI_TAP_TABLE + KI_TAPS; // one entry more, since a fraction may round up to 1
     level->ring_taps = ki_alloc(level->context, count, sizeof(float));
     level->column_taps = ki_alloc(level->context, count, sizeof(float));
     bool good = density && taps && level->ring_taps && level->column_taps;
@@ -74,8 +85,9 @@ static bool design_taps(ki_level *level)
     return good;
 }
 
-// Task: where a row of texels lies on the grid. Faces of the same kind differ by a quarter turn or a
-// reflection: of a cube, the first `size` rows are +X's, as many more +Y's.
+// Task of one thread: finds the positions of a row of texels on the grid. For a cube the first
+// `size` rows are those of +X, the next `size` rows those of +Y; the other faces differ from these
+// by a quarter turn or a reflection.
 static void place_row(void *data, int row)
 {
     ki_level *level = data;
@@ -93,7 +105,7 @@ static void place_row(void *data, int row)
     }
 }
 
-// Levels of up to this many texels are evaluated at them.
+// Greatest number of texels of a level that is evaluated directly at its texels.
 enum { SMALL = 6 * 16 * 16 };
 
 static int by_theta(const void *a, const void *b)
@@ -104,7 +116,8 @@ static int by_theta(const void *a, const void *b)
     return x->texel - y->texel;
 }
 
-// Sorts the texels onto rings. Those that symmetry puts on one ring differ by rounding only.
+// Sorts the texels by latitude. Texels that lie on one ring by symmetry have theta that differ only
+// by rounding.
 static bool plan_places(ki_level *v, const kiln_map *map)
 {
     int count = v->place_count = (int)kiln_map_texels(map, 0), ring = -1;
@@ -118,7 +131,7 @@ static bool plan_places(ki_level *v, const kiln_map *map)
         sine = sqrt(d[0] * d[0] + d[2] * d[2]);
         p->theta = ki_atan2(sine, fabs(d[1]));
         p->sign = d[1] < 0 ? -1 : 1;
-        p->cosine = sine > 0 ? d[2] / sine : 1; // phi as in ki_panorama_direction
+        p->cosine = sine > 0 ? d[2] / sine : 1; // phi is that of ki_panorama_direction
         p->sine = sine > 0 ? -d[0] / sine : 0;
         p->texel = i;
     }
@@ -216,7 +229,8 @@ void ki_level_destroy(ki_level *level)
     ki_free(level);
 }
 
-// Task: one order's coefficients times the lobe's, turned, scaled for the recurrence.
+// Task of one thread: multiplies one order of the spectrum by the lobe's coefficients, turns it,
+// and scales it for the recurrence.
 static void weigh_order(void *data, int m)
 {
     ki_level *v = data;
@@ -234,8 +248,9 @@ static void weigh_order(void *data, int m)
     }
 }
 
-// Puts a channel of a vector's orders into a buffer for the transform: northern ring as real part,
-// southern as imaginary, real and imaginary parts swapped, which makes the transform the inverse.
+// Copies one channel of a vector's orders to a buffer for the Fourier transform: the northern ring
+// as real part, the southern ring as imaginary part. Real and imaginary parts are swapped, which
+// makes the forward transform an inverse transform.
 static void place_orders(const ki_level *v, const double *orders, int vector, int channel,
                          double *buffer)
 {
@@ -262,7 +277,7 @@ static void place_orders(const ki_level *v, const double *orders, int vector, in
     }
 }
 
-// All orders of vectors 2 index and 2 index + 1: [m][2][12][8].
+// Synthesises all orders of the vectors 2 index and 2 index + 1, as [m][2][12][8].
 static const double *synthesize_orders(const ki_level *v, int worker, int index)
 {
     double *orders = v->scratch + (size_t)worker * v->scratch_size;
@@ -282,7 +297,7 @@ static const double *synthesize_orders(const ki_level *v, int worker, int index)
     return orders;
 }
 
-// Task: the rings of two vectors, onto the grid.
+// Task of one thread: Fourier-synthesises the rings of two vectors and stores them in the grid.
 static void fill_grid(void *data, int worker, int index)
 {
     ki_level *v = data;
@@ -294,7 +309,7 @@ static void fill_grid(void *data, int worker, int index)
             int vector = 2 * index + half;
             place_orders(v, orders + 96 * (size_t)half, vector, c, buffer);
             const double *z = v->kernels->fft(&v->fft, buffer, buffer + 16 * (size_t)length);
-            // Transposed in blocks that stay in the first cache.
+            // The values are transposed in blocks that fit in the first-level cache.
             float *plane = v->grid + (size_t)c * v->plane + TAP_OFFSET;
             for (int from = 0; from < length; from += 32)
                 for (int j = 0; j < KI_LANES; j++) {
@@ -309,7 +324,7 @@ static void fill_grid(void *data, int worker, int index)
         }
 }
 
-// Task: the texels on the rings of two vectors.
+// Task of one thread: evaluates the texels on the rings of two vectors.
 static void fill_places(void *data, int worker, int index)
 {
     ki_level *v = data;
@@ -324,7 +339,8 @@ static void fill_places(void *data, int worker, int index)
         for (int n = 0; n < most; n++) {
             double cosine[KI_LANES], sine[KI_LANES], sign[KI_LANES], rgb[3 * KI_LANES];
             for (int j = 0; j < KI_LANES; j++) {
-                // A ring with fewer texels repeats some texel, to no effect.
+                // In place of missing texels, a ring with fewer texels computes some texel again,
+                // whose value is not used.
                 const place *p = &v->places[start[j] + n < start[j + 1] ? start[j] + n : 0];
                 cosine[j] = p->cosine;
                 sine[j] = p->sine;
@@ -339,7 +355,8 @@ static void fill_places(void *data, int worker, int index)
     }
 }
 
-// Continues the grid across the poles, where the other side is half a turn away, and around.
+// Copies rows beyond the poles, where the grid continues half a turn away, and columns around the
+// ends of each row.
 static void pad_grid(ki_level *v)
 {
     int length = v->fft.length, rings = 2 * v->rings.pair_count;
@@ -366,9 +383,10 @@ static void pad_grid(ki_level *v)
     }
 }
 
-enum { CHUNK = 32 }; // texels at once, a multiple of the lanes
+enum { CHUNK = 32 }; // number of texels that are interpolated at once, a multiple of KI_LANES
 
-// Positions on the grid of texels first .. first + count - 1, all of one row of one face.
+// Finds the grid positions of the texels first .. first + count - 1, which lie in one row of one
+// face.
 static void find_positions(const ki_level *v, size_t first, int count, double *positions)
 {
     size_t n = (size_t)v->size, face = first / (n * n), at = first % (n * n);
@@ -377,7 +395,8 @@ static void find_positions(const ki_level *v, size_t first, int count, double *p
         memcpy(positions, v->positions + 2 * first, 2 * (size_t)count * sizeof *positions);
         return;
     }
-    // Of +X -X +Y -Y +Z -Z: a side face is another one turned; -Y is +Y turned upside down.
+    // Quarter turns for +X -X +Y -Y +Z -Z: every side face is +X turned, and -Y is +Y turned upside
+    // down.
     static const int quarters[6] = {0, 2, 0, 0, 1, 3};
     bool side = face < 2 || face > 3, bottom = face == 3;
     size_t y = at / n, x = at % n, from = (bottom ? n - 1 - y : y) * n + x + (side ? 0 : n * n);
@@ -391,7 +410,7 @@ static void find_positions(const ki_level *v, size_t first, int count, double *p
     }
 }
 
-// kiln_map_direction with less ado for cubes.
+// Finds the direction of a texel as kiln_map_direction does, but faster for cubes.
 static void find_direction(const ki_level *v, size_t texel, double d[3])
 {
     if (v->shape != KILN_SHAPE_CUBE) {
@@ -435,7 +454,8 @@ static void add_surroundings(const ki_level *v, size_t first, int count, float *
     }
 }
 
-// Task: a row of texels, from the grid or as it is, and what is not in the spectrum.
+// Task of one thread: computes a row of texels from the grid, unless the level is small and the row
+// is already there, and adds the suns and the surroundings.
 static void fill_row(void *data, int index)
 {
     ki_level *v = data;
@@ -457,7 +477,7 @@ static void fill_row(void *data, int index)
             add_suns(v, first, count, rgb);
         if (v->zonal.outer > 0)
             add_surroundings(v, first, count, rgb);
-        // A mixture may be negative.
+        // Only a mixture of lobes may be negative.
         for (int i = 0; i < 3 * count; i++)
             out[i] = rgb[i] < 0 && !v->zonal.mixture ? 0 : rgb[i];
     }

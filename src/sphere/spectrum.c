@@ -1,3 +1,8 @@
+// The analysis of a panorama (docs/theory/spectral.md). In: the rows of a panorama as RGB floats, a
+// whole one or row by row. Out: its spherical-harmonic coefficients up to a degree, and the list of
+// suns left out of them. Method: rows are distributed onto latitude rings by the transpose of an
+// interpolation with eight weights, the suns are subtracted, each ring is Fourier-transformed, and
+// each order is summed over the rings with the Legendre functions.
 #include "sphere/spectrum.h"
 
 #include "math/math.h"
@@ -6,22 +11,22 @@
 #include <math.h>
 #include <string.h>
 
-// A sun holds at least this much of the panorama's light in one channel ...
+// Least share of the panorama's light, in one channel, of a texel that is a sun.
 static const double sun_share = 1e-3;
-// ... and is at least this much brighter than the mean.
+// Least ratio of a sun's radiance to the mean radiance of the panorama.
 static const double sun_contrast = 200;
 
 // ---------------------------------------------------------------------------------------- the plan
 
 enum { ROW_NODES = 6 };
 
-// The integral over the row from theta0 to theta1 of each ring's interpolating function, times sin
-// theta. Rings k < 0 or k >= count lie beyond a pole. Returns the number of weights; with
-// `weights` NULL only counts.
+// Integrates the interpolating function of each ring, times sin theta, over the row from theta0 to
+// theta1. Rings k < 0 or k >= ring_count lie beyond a pole. Returns the number of weights; with
+// `weights` NULL the weights are only counted.
 static int spread_row(double theta0, double theta1, int ring_count, const double *taps,
                       const double rule[2][ROW_NODES], int *first, double *weights)
 {
-    double scale = ring_count / KI_PI; // ring k is at scale theta = k + 1/2
+    double scale = ring_count / KI_PI; // ring k lies at scale * theta = k + 1/2
     int low = (int)floor(theta0 * scale - 0.5), high = (int)floor(theta1 * scale - 0.5);
     *first = low - 3;
     int count = high - low + KI_TAPS;
@@ -41,7 +46,8 @@ static int spread_row(double theta0, double theta1, int ring_count, const double
     return count;
 }
 
-// Where a ring that may lie beyond a pole really is, and whether half a turn away.
+// Returns the real index of a ring that may lie beyond a pole. *turned says whether the ring then
+// lies half a turn away.
 static int real_ring(int ring, int count, bool *turned)
 {
     *turned = ring < 0 || ring >= count;
@@ -54,7 +60,8 @@ static bool plan_shares(ki_analysis *a, const double *taps)
     double rule[2][ROW_NODES];
     ki_gauss_legendre(ROW_NODES, rule[0], rule[1]);
     const double(*nodes)[ROW_NODES] = (const double(*)[ROW_NODES])rule;
-    // No row reaches more rings than its height and the taps.
+    // A row contributes to at most as many rings as its height covers, plus the weights at both
+    // ends.
     int most = rings / size + KI_TAPS + 2;
     double *weights = ki_alloc_raw(a->context, (size_t)most, sizeof *weights);
     int *filled = ki_alloc(a->context, (size_t)rings, sizeof *filled);
@@ -102,8 +109,8 @@ kiln_result ki_analysis_create(kiln_context *context, int size, int degree, cons
         !ki_fft_create(context, 2 * size, &a->fft))
         goto failed;
 
-    // The integral of exp(-i m phi) over column x is exp(-i m (x + 1/2) d) d sinc(m d / 2), d its
-    // width; the Fourier transform supplies exp(-i m x d).
+    // With d the width of a column, the integral of exp(-i m phi) over column x is exp(-i m (x +
+    // 1/2) d) d sinc(m d / 2). The Fourier transform supplies the factor exp(-i m x d).
     double d = KI_PI / size;
     for (int m = 0; m <= degree; m++) {
         double sine, cosine, width = m ? ki_sin(m * d / 2) * 2 / m : d;
@@ -174,26 +181,27 @@ int kiln_spectrum_degree(const kiln_spectrum *spectrum)
 
 struct ki_intake {
     const ki_analysis *analysis;
-    int row_count;      // taken so far
-    double *rings;      // [ring][2 size][3]; only where rows come one after the other
-    double *row_sums;   // [size][3], radiance summed over each row
-    float *row_peaks;   // [size]
-    double total[3];    // radiance times solid angle so far
-    ki_sun *candidates; // brighter than their share of what had come by then
+    int row_count;      // number of rows taken in so far
+    double *rings;      // [ring][2 size][3]; only for panoramas that come row by row
+    double *row_sums;   // radiance summed over each row, [size][3]
+    float *row_peaks;   // largest value of each row, [size]
+    double total[3];    // radiance times solid angle, summed over the rows so far
+    ki_sun *candidates; // texels that were suns relative to the light of the rows so far
     int candidate_count, candidate_room;
 
-    double *orders;  // [degree + 1][vector][12][8], a ring vector's Fourier coefficients
-    double *scratch; // a worker's: two FFT buffers and 16 rings, or a state for the recurrence
+    double *orders; // Fourier coefficients of the rings, [degree + 1][vector][12][8]
+    // Scratch memory of each worker: two FFT buffers and 16 rings, or the state of the recurrence.
+    double *scratch;
     size_t scratch_size;
 
-    const float *rows; // being taken in
+    const float *rows; // the rows that are being taken in
     int rows_here;
-    kiln_spectrum *spectrum; // being written
+    kiln_spectrum *spectrum; // the spectrum that is being written
 };
 
 enum {
-    PIECES = 16,             // each half of a row is cut into
-    RING_SET = 2 * KI_LANES, // rings of a vector
+    PIECES = 16,             // number of pieces into which each half of a row is cut
+    RING_SET = 2 * KI_LANES, // number of rings in a vector
 };
 
 kiln_result ki_intake_create(const ki_analysis *analysis, bool whole, ki_intake **intake,
@@ -244,9 +252,10 @@ void ki_intake_destroy(ki_intake *intake)
     ki_free(intake);
 }
 
-// Adds what the rows at hand give to one piece of a ring. Both halves of a row are cut alike, so that
-// a ring half a turn away receives the same piece of the other half. Sums go in the order of the
-// rows, however many come at a time.
+// Adds the contributions of the rows at hand to one piece of a ring. Both halves of a row are cut
+// at the same places, so that a ring half a turn away receives the same piece of the other half.
+// The sums are in the order of the rows, so that the result does not depend on how many rows come
+// at a time.
 static void spread_piece(const ki_intake *in, int ring, int half, int piece, double *accumulator)
 {
     enum { MOST = 32 };
@@ -272,7 +281,7 @@ static void spread_piece(const ki_intake *in, int ring, int half, int piece, dou
         a->kernels->spread(accumulator + here, in->rows, offsets, weights, n, 3 * count);
 }
 
-// Task: a piece of all rings.
+// Task of one thread: one piece of all rings.
 static void spread_rows(void *data, int index)
 {
     ki_intake *in = data;
@@ -291,7 +300,7 @@ static void sum_one_row(void *data, int index)
 
 static double row_solid_angle(int row, int size)
 {
-    // Of one texel: the column's width times the difference of cos theta.
+    // The solid angle of one texel is the column's width times the difference of cos theta.
     double high = ki_sin((row + 0.5) * KI_PI / size) * ki_sin(KI_PI / size / 2);
     return KI_PI / size * 2 * high;
 }
@@ -304,7 +313,7 @@ static bool is_sun(const float rgb[3], double solid, const double total[3])
     return false;
 }
 
-// Drops candidates that later light has outshone.
+// Removes candidates that are no longer suns relative to the light of the later rows.
 static void prune(ki_intake *in)
 {
     int kept = 0;
@@ -353,7 +362,7 @@ kiln_result ki_intake_rows(ki_intake *in, const float *rows, int count, kiln_err
     return KILN_OK;
 }
 
-// Decides which candidates are suns.
+// Moves the candidates that are suns to the spectrum.
 static bool settle_suns(ki_intake *in, kiln_spectrum *spectrum)
 {
     const ki_analysis *a = in->analysis;
@@ -380,7 +389,7 @@ static bool settle_suns(ki_intake *in, kiln_spectrum *spectrum)
 
 // ---------------------------------------------------------------------------------------- analysis
 
-// Takes the suns out of a ring.
+// Subtracts the suns from a ring.
 static void dim_ring(const ki_intake *in, int ring, double *accumulator)
 {
     const ki_analysis *a = in->analysis;
@@ -396,8 +405,9 @@ static void dim_ring(const ki_intake *in, int ring, double *accumulator)
         }
 }
 
-// The Fourier transforms of eight pairs of rings, one channel. Real and imaginary part carry the
-// northern and the southern ring; their sum and difference meet the even and odd functions.
+// Computes the Fourier transforms of eight pairs of rings for one channel. The real part of the
+// data is the northern ring, the imaginary part the southern ring. The sum of the two transforms
+// goes to the functions even about the equator, their difference to the odd functions.
 static void transform_channel(const ki_intake *in, int vector, int channel, double *const *rings,
                               double *buffer)
 {
@@ -428,7 +438,8 @@ static void transform_channel(const ki_intake *in, int vector, int channel, doub
     }
 }
 
-// Task: eight pairs of rings, gathered from the rows where those are at hand.
+// Task of one thread: eight pairs of rings, which are first summed from the rows if the whole
+// panorama is at hand.
 static void transform_rings(void *data, int worker, int vector)
 {
     ki_intake *in = data;
@@ -455,7 +466,7 @@ static void transform_rings(void *data, int worker, int vector)
         transform_channel(in, vector, channel, rings, buffer);
 }
 
-// Task: one order.
+// Task of one thread: one order of the coefficients.
 static void analyze_order(void *data, int worker, int m)
 {
     ki_intake *in = data;
@@ -509,7 +520,8 @@ kiln_result ki_intake_whole(ki_intake *in, const float *rows, kiln_spectrum *spe
 kiln_result ki_spectrum_add_suns(const kiln_spectrum *spectrum, int degree, double *a,
                                  kiln_error *error)
 {
-    // Gauss nodes across a texel's height and the exact integral over its width.
+    // Quadrature with Gauss nodes over the height of the sun's texel, and the exact integral over
+    // its width.
     kiln_context *context = spectrum->context;
     ki_legendre legendre;
     if (!ki_legendre_create(context, degree, &legendre))
