@@ -1,4 +1,4 @@
-// Brute force as the caller asks for it: checks the arguments of kiln_reference_filter.
+// kiln_reference_filter: checks the caller's arguments and computes the reference values.
 #include "bake/reference.h"
 
 #include "image/image.h"

@@ -1,5 +1,6 @@
-// The table of file formats, and what is looked up in it: the reader of some bytes by the first of
-// them, the writer and the limits of a path by its ending.
+// The table of file formats, one row for each, and its lookups: the reader for some bytes by the
+// first of these bytes, and the writer and limits for a path by its ending. In: bytes or a path.
+// Out: decoded texels, encoded files, or the row of a format.
 #include "codec/formats.h"
 
 #include "base/file.h"
@@ -199,7 +200,8 @@ const char *kiln_path_ending(const char *path)
     return ki_ends_with(path, "/") ? "/" : ending;
 }
 
-// The last of several comes after `last`, " or ".
+// Joins a list of endings to text, with spaces between them and `last`, for example " or ", before
+// the last ending.
 static const char *join(const char *const *list, int count, const char *last,
                         char text[KI_ENDINGS_TEXT])
 {
@@ -290,7 +292,7 @@ kiln_result ki_decode(kiln_context *context, const uint8_t *bytes, size_t size, 
     }
     bool is_map = info->face_count == 6;
     const char *layout = is_map ? "cube" : ki_layout_name(info->width, info->height);
-    if (!info->layout[0]) // unless the file says it
+    if (!info->layout[0]) // unless the file states its layout
         snprintf(info->layout, sizeof info->layout, "%s", layout ? layout : "image");
     if (decoded) {
         decoded->is_map = is_map;

@@ -1,10 +1,11 @@
-// The table of file formats: one row a format, whose reader and writer are a file of their own.
+// The table of file formats: one row for each format, whose reader and writer are in a file of
+// their own.
 #ifndef KI_FORMATS_H
 #define KI_FORMATS_H
 
 #include "codec/codec.h"
 
-/// What a format's files can hold, as bits.
+/// What the files of a format can hold, as bits.
 enum {
     KI_HOLDS_PICTURE =
         1, ///< a flat picture: a panorama, an octahedron, one face of a cube, or an image
@@ -14,12 +15,14 @@ enum {
     KI_HOLDS_CODE = 16, ///< functions that look tables up, and closed forms
 };
 
-/// What the file of a picture says of the picture, and how the picture's numbers are stored.
+/// What a picture's file states about the picture, and how the picture's numbers are stored.
 typedef struct ki_picture_about {
-    bool radiance; ///< a level of a map, stored by `format`; false: numbers, as exact as can be
+    /// True: the picture is a level of a map, stored by `format`. False: the picture holds numbers,
+    /// stored as exactly as the file allows.
+    bool radiance;
     kiln_format format;
     bool panorama, octahedron;
-    float roughness; ///< negative where there is none
+    float roughness; ///< roughness of the level; negative if there is none
 } ki_picture_about;
 
 typedef kiln_result ki_read_picture(kiln_context *context, const uint8_t *bytes, size_t size,
@@ -36,37 +39,43 @@ typedef kiln_result ki_write_cube(const kiln_map *map, const kiln_save_def *def,
                                   kiln_error *error);
 
 typedef struct ki_file_format {
-    const char *name;       ///< as in kiln_file_info, "ktx2"
-    const char *endings[3]; ///< of paths, in small letters with the dot; NULL behind the last
-    const char *first;      ///< the bytes that files begin with, or NULL
+    const char *name;       ///< name as in kiln_file_info, for example "ktx2"
+    const char *endings[3]; ///< endings of paths, in lower case with the dot; NULL after the last
+    /// First bytes of every file; NULL if the first bytes do not identify the format.
+    const char *first;
     int first_count;
-    bool (*begins)(const uint8_t *bytes, size_t size); ///< tells text, which has no such bytes
-    unsigned holds;                                    ///< KI_HOLDS_...
-    unsigned pixel_formats;         ///< of maps: bits 1 << kiln_format besides KILN_FORMAT_AUTO
-    unsigned table_formats;         ///< of tables: bits 1 << kiln_table_format
-    kiln_table_format table_format; ///< what KILN_TABLE_FORMAT_AUTO means
+    /// For formats of text without such first bytes: returns whether bytes are of this format.
+    bool (*begins)(const uint8_t *bytes, size_t size);
+    unsigned holds; ///< bits KI_HOLDS_...: what the files can hold
+    /// Formats of maps, as bits 1 << kiln_format; KILN_FORMAT_AUTO is always allowed.
+    unsigned pixel_formats;
+    unsigned table_formats;         ///< formats of tables, as bits 1 << kiln_table_format
+    kiln_table_format table_format; ///< format that KILN_TABLE_FORMAT_AUTO stands for
     bool zstd;
-    double limit;                  ///< the largest radiance by KILN_FORMAT_AUTO; 0 for none
-    ki_read_picture *read_picture; ///< one of the three, where the bytes tell the format
+    double limit; ///< largest radiance with KILN_FORMAT_AUTO; 0 for no limit
+    /// Reader. A format that is recognised by its bytes has one of read_picture, read and describe.
+    ki_read_picture *read_picture;
     ki_read_file *read;
-    ki_describe_file *describe; ///< of files that are not read, but described
+    ki_describe_file *describe; ///< for files whose texels are not read
     ki_write_picture *write_picture;
     ki_write_cube *write_cube;
 } ki_file_format;
 
-/// The row whose ending a path has, in letters of either case; NULL where there is none.
+/// Returns the row for the ending of a path, in lower or upper case, or NULL if no format has the
+/// ending.
 const ki_file_format *ki_file_format_of_path(const char *path);
-/// Whether a row is there and its files can hold one of these.
+/// Returns whether `format` is not NULL and its files can hold one of the things in `holds`.
 static inline bool ki_file_holds(const ki_file_format *format, unsigned holds)
 {
     return format && (format->holds & holds);
 }
 
 enum { KI_ENDINGS_TEXT = 96 };
-/// The endings of all formats that hold one of these, ".exr .hdr or .png", and returns `text`. `more`,
-/// which may be NULL, is one that comes last.
+/// Writes the endings of all formats that hold one of the things in `holds` to `text`, for example
+/// ".exr .hdr or .png", and returns `text`. `more`, which may be NULL, is a further ending at the
+/// end of the list.
 const char *ki_list_endings(unsigned holds, const char *more, char text[KI_ENDINGS_TEXT]);
-/// The same of the formats that store maps so.
+/// Writes the endings of all formats that store maps in `format` to `text`, and returns `text`.
 const char *ki_list_endings_of_format(kiln_format format, char text[KI_ENDINGS_TEXT]);
 
 #endif

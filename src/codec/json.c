@@ -1,3 +1,6 @@
+// A JSON reader in one pass (json.h). In: bytes that are not trusted. Out: the keys, strings,
+// numbers and flags that the caller asks for, one after the other. Skipping a value counts brackets
+// instead of recursing, so that deep nesting costs no stack. The first error sets `failed`.
 #include "codec/json.h"
 
 #include "codec/decimal.h"

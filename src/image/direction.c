@@ -1,5 +1,5 @@
-// Where the texels of each shape lie on the sphere: directions to faces, panoramas and octahedra, and
-// back.
+// Converts unit directions to points of cube faces, panoramas and octahedra, and such points back
+// to directions.
 #include "image/image.h"
 #include "math/math.h"
 
@@ -72,9 +72,9 @@ void ki_direction_panorama(const double direction[3], double *u, double *v)
     *v = ki_clamp(ki_atan2(sqrt(x * x + z * z), y) / KI_PI, 0, 1);
 }
 
-// The octahedron |x| + |y| + |z| = 1 from above: its upper half fills the inner diamond, with +X to
-// the right and +Z downwards as on the cube's +Y face; the four lower sides are folded out, so that
-// -Y is in every corner.
+// Maps a point of the map to the octahedron |x| + |y| + |z| = 1, seen from above. The upper half
+// fills the inner diamond, with +X to the right and +Z downwards as on the cube's +Y face. The four
+// lower sides are folded outwards, so that -Y is in every corner.
 void ki_octahedron_direction(double u, double v, double direction[3])
 {
     double x = 2 * u - 1, z = 2 * v - 1;
@@ -107,8 +107,8 @@ void ki_direction_octahedron(const double direction[3], double *u, double *v)
     *v = ki_clamp(0.5 * z + 0.5, 0, 1);
 }
 
-// The angle of a panorama's column grows by `degrees`: x = sin, z = -cos of that angle. Quarter
-// turns are exact.
+// The angle of a panorama's column, with x = sin and z = -cos of that angle, grows by `degrees`.
+// Quarter turns are exact.
 void ki_turn(const double direction[3], double degrees, double turned[3])
 {
     double rest = fmod(degrees, 360), sine, cosine;

@@ -1,4 +1,4 @@
-// One level of a map from a spectrum: the environment seen through a lobe.
+// kiln_spectrum_filter: computes one level of a map from a spectrum and a lobe.
 #include "image/image.h"
 #include "sphere/level.h"
 #include "sphere/lobe.h"

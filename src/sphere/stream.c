@@ -1,4 +1,5 @@
-// Analysis as the caller asks for it: of a map, or of a panorama's rows as they come.
+// The public functions that compute a spectrum, from a map or from the rows of a panorama one after
+// the other.
 #include "sphere/spectrum.h"
 
 #include "image/image.h"
