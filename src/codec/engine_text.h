@@ -8,8 +8,8 @@
 
 #include "base/bytes.h"
 
-/// Appends the line for the levels of a map, with its NUL. `words` are further words between the
-/// engine and the roughness, each with a space before it.
+/// Appends the line of text that describes the levels of a map, with a NUL at its end. `words` are
+/// further words between the engine and the roughness, each with a space before it.
 void ki_engine_text_write(ki_writer *writer, const char *engine, const char *words,
                           const kiln_map *map);
 /// Fills in `info` from a line that ends in NUL. The format is that of the texels in a PNG file.

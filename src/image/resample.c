@@ -85,7 +85,8 @@ static int from_middle(int sign, int k, int half)
     return sign > 0 ? half + k : half - 1 - k;
 }
 
-// Returns the map's texel for texel (p, q) of quarter `quarter` of a grid, where p runs along the
+// Returns the index in the map of texel (p, q) of a grid. A grid covers a quarter of a cube's top
+// face or of an octahedron; `quarter` is the number of quarter turns, and p runs along the
 // quarter's first direction.
 static ptrdiff_t quarter_texel(ki_stencil_kind kind, int quarter, bool flip, int p, int q, int half)
 {
@@ -136,8 +137,8 @@ static bool whole(double x)
     return fabs(x - floor(x + 0.5)) < 1e-9;
 }
 
-// Adds the grids of one kind. Quarters whose first directions lie at the same position within a
-// column share a grid.
+// Adds the grids of stencils of one kind. Quarters of the map whose first directions lie at the
+// same position within a panorama column share a grid.
 static kiln_result add_grids(ki_resample_plan *plan, ki_stencil_kind kind, int half, int height,
                              double turn, kiln_error *error)
 {
@@ -151,8 +152,8 @@ static kiln_result add_grids(ki_resample_plan *plan, ki_stencil_kind kind, int h
         for (int k = 0; k < plan->grid_count; k++)
             if (plan->grid[k].kind == kind && fabs(plan->grid[k].offset - offset) < 1e-9)
                 grid = &plan->grid[k];
-        // Mirroring maps column c to about - c: about the middle of a side of the cube, or of a
-        // quarter.
+        // Mirroring at the middle of a cube's side, or of a quarter, maps panorama column c to
+        // about - c.
         double about = kind == KI_STENCIL_SIDE ? 2 * offset : 2 * offset + width / 4;
         if (!grid) {
             grid = &plan->grid[plan->grid_count++];
@@ -207,7 +208,7 @@ static kiln_result add_all_grids(ki_resample_plan *plan, kiln_shape shape, int n
     return result;
 }
 
-// A position in the stencils of a chunk at one place of the map.
+// Runs through the stencils of a chunk at one place of the map.
 typedef struct cursor {
     const ki_stencil_grid *grid;
     const ki_stencil_place *place;
@@ -249,7 +250,7 @@ static inline bool cursor_next(cursor *c)
     return true;
 }
 
-// Returns the leftmost column that a stencil covers at a place.
+// Returns the leftmost panorama column that a stencil covers at a place of the map.
 static inline int first_column(const ki_stencil *stencil, const ki_stencil_place *place, int width)
 {
     int column = place->mirror ? place->mirror_column - (stencil->column + 4 * stencil->blocks - 1)
@@ -402,7 +403,8 @@ typedef struct resample_job {
     int first; // index of the first band, for scattering
 } resample_job;
 
-// Task of one thread: a chunk of a grid at all its places.
+// Task of one thread: computes the texels of one chunk of a grid at all places of the map where the
+// grid is used.
 static void gather_task(void *data, int index)
 {
     const resample_job *job = data;
@@ -447,8 +449,8 @@ static void coarsen_task(void *data, int index)
 
 // ------------------------------------------------------------------------------------------- scatter
 
-// Task of one thread: a band of rows of a panorama. Every stencil adds the light of its texel to
-// the panorama texels that it covers.
+// Task of one thread: computes a band of rows of a panorama. Every stencil adds the light of its
+// texel to the panorama texels that it covers.
 static void scatter_task(void *data, int index)
 {
     const resample_job *job = data;
@@ -478,7 +480,8 @@ static void scatter_task(void *data, int index)
                     const ki_stencil *s = c.stencil;
                     int row = place->flip ? height - s->row - s->rows : s->row;
                     int from = ki_max(row, first), to = ki_min(row + s->rows, end);
-                    // On the diagonal of a quarter, mirroring gives the same texel again.
+                    // On the diagonal of a quarter of the map, mirroring gives the same texel
+                    // again.
                     bool again = place->mirror && grid->kind != KI_STENCIL_SIDE && c.i == c.j;
                     if (from >= to || again)
                         continue;
@@ -601,15 +604,15 @@ static kiln_result plan_separable(ki_resample_plan *plan, kiln_error *error)
 
 // ------------------------------------------------------------------------------- faces, sub-samples
 
-// Returns a quarter of the solid angle between the rectangles from a face's centre to (s, t): the
-// solid angle of [0, s] x [0, t]. The function is odd in s and in t.
+// Returns the solid angle of the rectangle [0, s] x [0, t] on a cube's face. The function is odd in
+// s and in t.
 static double corner_angle(double s, double t)
 {
     return ki_atan2(s * t, sqrt(s * s + t * t + 1));
 }
 
-// Task of one thread: one row of a cube from rectangles on the faces of another cube. Quarter turns
-// map squares to squares.
+// Task of one thread: computes one row of a cube from rectangles on the faces of another cube.
+// Quarter turns map squares to squares.
 static void faces_task(void *data, int index)
 {
     const resample_job *job = data;
@@ -663,9 +666,9 @@ static size_t texel_towards(kiln_shape shape, int n, const double direction[3])
     return ((size_t)face * (size_t)n + (size_t)y) * (size_t)n + (size_t)x;
 }
 
-// Task of one thread: one row by samples. For independent random texels, some of them ten times
-// brighter than the others, the root mean square error is 3 % of the mean with 16 samples along
-// each side. The error is smaller where neighbouring texels are similar.
+// Task of one thread: computes one row of the map by samples. For independent random texels, some
+// of them ten times brighter than the others, the root mean square error is 3 % of the mean with 16
+// samples along each side. The error is smaller where neighbouring texels are similar.
 static void subsample_task(void *data, int index)
 {
     const resample_job *job = data;

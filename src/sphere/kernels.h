@@ -14,7 +14,8 @@
 enum {
     KI_LANES = 8,
     KI_COMPONENTS = 6, // real and imaginary parts of the three colour channels
-    // Weights of the interpolation between rings, and between the points of a ring.
+    // Number of weights of the interpolation between latitude rings, and between the points of a
+    // ring.
     KI_TAPS = 8,
     KI_TAP_STEPS = 256, // number of intervals of the fraction in a table of interpolation weights
     // Number of doubles in a table of interpolation weights, which has entries for both ends.
@@ -39,11 +40,11 @@ typedef struct ki_fft {
     double *tables;
 } ki_fft;
 
-/// Suns as points, each with a direction and its radiance times solid angle. For eight directions
-/// at once, a sun counts as its one centre point if the directions are all farther than far_versine
-/// (1 - cos of the angle) from the sun, and as 4 points if they are farther than near_versine.
-/// Otherwise, or if the horizon of a direction is within `horizon` (in cos of the angle) of the
-/// sun, the sun counts as near_count points.
+/// Suns, the texels that the analysis keeps out of the spectrum, as points with a direction and
+/// radiance times solid angle. For eight directions at once, a sun counts as its one centre point
+/// if the directions are all farther than far_versine (1 - cos of the angle) from the sun, and as 4
+/// points if they are farther than near_versine. Otherwise, or if the horizon of a direction is
+/// within `horizon` (in cos of the angle) of the sun, the sun counts as near_count points.
 typedef struct ki_sun_points {
     int count, near_count;
     double far_versine, near_versine, horizon;
@@ -77,9 +78,9 @@ typedef struct ki_kernels {
     void (*synthesize)(const double *f, int count, const double *twice_cos, const double *start,
                        const double *coefficients, double *out0, double *out1);
 
-    /// Sums the orders m = 0 .. count - 1 at one point of each ring of a vector. `orders` is
-    /// [m][pitch], as `synthesize` writes it. `cosine` and `sine` belong to phi of each point, and
-    /// `sign` is 1 on northern and -1 on southern rings. Writes rgb[channel][lane].
+    /// Sums the orders m = 0 .. count - 1 at one point of each latitude ring of a vector. `orders`
+    /// is [m][pitch], as `synthesize` writes it. `cosine` and `sine` belong to phi of each point,
+    /// and `sign` is 1 on northern and -1 on southern rings. Writes rgb[channel][lane].
     void (*sum_orders)(const double *orders, size_t pitch, int count, const double *cosine,
                        const double *sine, const double *sign, double *rgb);
 

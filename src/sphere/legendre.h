@@ -23,20 +23,20 @@ size_t ki_legendre_row(const ki_legendre *legendre, int m);
 /// + j.
 typedef struct ki_rings {
     int pair_count, vector_count, degree;
-    double *twice_cos; // 2 cos theta of the northern ring of each pair, [vector][8]
+    double *twice_cos; // 2 cos theta of the northern latitude ring of each pair, [vector][8]
     double *start;     // sin^m theta, [degree + 1][vector][8]
-    // The first vector that contributes to each order, [degree + 1]: P_lm is negligible on the
-    // rings before.
+    // The first vector of rings that contributes to each order, [degree + 1]. P_lm is negligible on
+    // the rings of the vectors before, which are nearer to the poles.
     int *first;
 } ki_rings;
 
-/// Creates ring pairs at the given increasing theta, each at most pi / 2. The last pair is repeated
-/// until the number of vectors is even. Returns false when memory runs out.
+/// Creates pairs of latitude rings at the given increasing theta, each at most pi / 2. The last
+/// pair is repeated until the number of vectors is even. Returns false when memory runs out.
 bool ki_rings_create(kiln_context *context, const double *theta, int pair_count, int degree,
                      ki_rings *rings);
-/// Creates ring pairs at equal steps, theta = (k + 1/2) pi / (2 pair_count). There are at least 1.5
-/// (degree + 1) rings, so that interpolation between rings errs less than the truncation at
-/// `degree`. Returns false when memory runs out.
+/// Creates pairs of latitude rings at equal steps, theta = (k + 1/2) pi / (2 pair_count). There are
+/// at least 1.5 (degree + 1) rings, so that interpolation between rings errs less than the
+/// truncation at `degree`. Returns false when memory runs out.
 bool ki_rings_create_grid(kiln_context *context, int degree, ki_rings *rings);
 void ki_rings_destroy(ki_rings *rings);
 

@@ -21,8 +21,8 @@ enum { PAD = 4, TAP_OFFSET = KI_TAPS / 2 - 1 };
 // A texel of a small level. Such a level is evaluated at its texels, whose centres lie on few
 // circles of latitude.
 typedef struct place {
-    // theta of the northern ring of the pair, cosine and sine of phi, and the sign of the
-    // hemisphere: 1 north, -1 south.
+    // theta of the northern latitude ring of the pair, cosine and sine of phi, and the sign of the
+    // hemisphere: 1 north, -1 south
     double theta, cosine, sine, sign;
     int texel, ring;
 } place;
@@ -41,17 +41,17 @@ struct ki_level {
     size_t scratch_size;
 
     // The fields up to ring_start are for small levels.
-    place *places; // texels, sorted by ring
+    place *places; // texels, sorted by the latitude ring on which they lie
     int place_count;
-    int *ring_start; // index of each ring's first texel in places, [lanes + 1]
+    int *ring_start; // index in `places` of the first texel on each ring, [lanes + 1]
 
     // The fields up to `positions` are for other levels, which are interpolated on a grid.
     ki_fft fft;
     float *ring_taps, *column_taps;
     size_t pitch, plane;
     float *grid; // [3][PAD + rings + PAD][pitch]
-    // Position of each texel on the grid as {ring, column}: of the faces +X and +Y of a cube, or of
-    // all texels.
+    // Position of each texel on the grid as {index of the latitude ring, column}, both with
+    // fractions: of the faces +X and +Y of a cube, or of all texels.
     double *positions;
 
     // The fields from here on are set during an execution.
@@ -297,7 +297,8 @@ static const double *synthesize_orders(const ki_level *v, int worker, int index)
     return orders;
 }
 
-// Task of one thread: Fourier-synthesises the rings of two vectors and stores them in the grid.
+// Task of one thread: Fourier-synthesises the latitude rings of two vectors and stores them in the
+// grid.
 static void fill_grid(void *data, int worker, int index)
 {
     ki_level *v = data;
@@ -324,7 +325,7 @@ static void fill_grid(void *data, int worker, int index)
         }
 }
 
-// Task of one thread: evaluates the texels on the rings of two vectors.
+// Task of one thread: evaluates the texels that lie on the latitude rings of two vectors.
 static void fill_places(void *data, int worker, int index)
 {
     ki_level *v = data;
@@ -339,8 +340,8 @@ static void fill_places(void *data, int worker, int index)
         for (int n = 0; n < most; n++) {
             double cosine[KI_LANES], sine[KI_LANES], sign[KI_LANES], rgb[3 * KI_LANES];
             for (int j = 0; j < KI_LANES; j++) {
-                // In place of missing texels, a ring with fewer texels computes some texel again,
-                // whose value is not used.
+                // Eight rings are evaluated at once. A ring with fewer texels than the others
+                // evaluates some texel again, whose value is not used.
                 const place *p = &v->places[start[j] + n < start[j + 1] ? start[j] + n : 0];
                 cosine[j] = p->cosine;
                 sine[j] = p->sine;

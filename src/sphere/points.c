@@ -57,10 +57,10 @@ static void divide(const ki_sun *sun, int size, int n, const double *nodes, cons
     }
 }
 
-// Number of points that a sun needs. Let h be the size of its texel and s the distance from the sun
-// or the width of the lobe k. The relative error of one point is about (h/s)^2 / 24 times k'' s^2 /
-// k, which is 20 in the tail of GGX. Two by two Gauss nodes err by (h/s)^4 / 4320 times 840, four
-// by four by 1e-4 (h/s)^8.
+// Decides how many points represent a sun, that is a bright texel kept out of the spectrum. Let h
+// be the size of the texel and s the distance from the sun or the width of the lobe k. The relative
+// error of one point is about (h/s)^2 / 24 times k'' s^2 / k, which is 20 in the tail of GGX. Two
+// by two Gauss nodes err by (h/s)^4 / 4320 times 840, four by four by 1e-4 (h/s)^8.
 kiln_result ki_points_create(const kiln_spectrum *spectrum, const ki_zonal *zonal, double integral,
                              double rotation, ki_points *points, kiln_error *error)
 {

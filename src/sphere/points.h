@@ -1,12 +1,14 @@
-// The part of a filtered environment that is summed over texels instead of transformed: the suns,
-// and the surroundings of a direction for lobes too narrow for the spectrum.
+// The part of a filtered environment that is summed over texels instead of transformed: the suns
+// (bright texels kept out of the spectrum), and the surroundings of a direction for lobes too
+// narrow for the spectrum.
 #ifndef KI_POINTS_H
 #define KI_POINTS_H
 
 #include "sphere/spectrum.h"
 #include "sphere/zonal.h"
 
-/// The suns of a spectrum as points on the sphere. The lobe decides how many points a sun needs.
+/// The suns of a spectrum, bright texels kept out of it, as points on the sphere. The narrower the
+/// lobe, the more points represent a sun.
 typedef struct ki_points {
     const ki_kernels *kernels;
     ki_zonal zonal;

@@ -11,22 +11,24 @@
 #include <math.h>
 #include <string.h>
 
-// Least share of the panorama's light, in one channel, of a texel that is a sun.
+// A texel can be kept out of the spectrum as a sun only if it holds at least this share of the
+// panorama's light in some channel.
 static const double sun_share = 1e-3;
-// Least ratio of a sun's radiance to the mean radiance of the panorama.
+// A texel can be kept out of the spectrum as a sun only if it is at least this many times brighter
+// than the mean of the panorama.
 static const double sun_contrast = 200;
 
 // ---------------------------------------------------------------------------------------- the plan
 
 enum { ROW_NODES = 6 };
 
-// Integrates the interpolating function of each ring, times sin theta, over the row from theta0 to
-// theta1. Rings k < 0 or k >= ring_count lie beyond a pole. Returns the number of weights; with
-// `weights` NULL the weights are only counted.
+// Integrates the interpolating function of each latitude ring, times sin theta, over the row from
+// theta0 to theta1. Rings k < 0 or k >= ring_count lie beyond a pole. Returns the number of
+// weights; with `weights` NULL the weights are only counted.
 static int spread_row(double theta0, double theta1, int ring_count, const double *taps,
                       const double rule[2][ROW_NODES], int *first, double *weights)
 {
-    double scale = ring_count / KI_PI; // ring k lies at scale * theta = k + 1/2
+    double scale = ring_count / KI_PI; // latitude ring k lies at scale * theta = k + 1/2
     int low = (int)floor(theta0 * scale - 0.5), high = (int)floor(theta1 * scale - 0.5);
     *first = low - 3;
     int count = high - low + KI_TAPS;
@@ -46,8 +48,8 @@ static int spread_row(double theta0, double theta1, int ring_count, const double
     return count;
 }
 
-// Returns the real index of a ring that may lie beyond a pole. *turned says whether the ring then
-// lies half a turn away.
+// Returns the real index of a latitude ring that may lie beyond a pole. *turned says whether the
+// ring then lies half a turn away.
 static int real_ring(int ring, int count, bool *turned)
 {
     *turned = ring < 0 || ring >= count;
@@ -60,8 +62,8 @@ static bool plan_shares(ki_analysis *a, const double *taps)
     double rule[2][ROW_NODES];
     ki_gauss_legendre(ROW_NODES, rule[0], rule[1]);
     const double(*nodes)[ROW_NODES] = (const double(*)[ROW_NODES])rule;
-    // A row contributes to at most as many rings as its height covers, plus the weights at both
-    // ends.
+    // A row contributes to at most as many latitude rings as its height covers, plus those of the
+    // interpolation weights at both ends.
     int most = rings / size + KI_TAPS + 2;
     double *weights = ki_alloc_raw(a->context, (size_t)most, sizeof *weights);
     int *filled = ki_alloc(a->context, (size_t)rings, sizeof *filled);
@@ -181,16 +183,18 @@ int kiln_spectrum_degree(const kiln_spectrum *spectrum)
 
 struct ki_intake {
     const ki_analysis *analysis;
-    int row_count;      // number of rows taken in so far
-    double *rings;      // [ring][2 size][3]; only for panoramas that come row by row
+    int row_count; // number of rows taken in so far
+    // Sums of each latitude ring, [ring][2 size][3]; only for panoramas that come row by row.
+    double *rings;
     double *row_sums;   // radiance summed over each row, [size][3]
     float *row_peaks;   // largest value of each row, [size]
     double total[3];    // radiance times solid angle, summed over the rows so far
-    ki_sun *candidates; // texels that were suns relative to the light of the rows so far
+    ki_sun *candidates; // texels bright enough to be suns relative to the light of the rows so far
     int candidate_count, candidate_room;
 
-    double *orders; // Fourier coefficients of the rings, [degree + 1][vector][12][8]
-    // Scratch memory of each worker: two FFT buffers and 16 rings, or the state of the recurrence.
+    double *orders; // Fourier coefficients of the latitude rings, [degree + 1][vector][12][8]
+    // Scratch memory of each worker: two FFT buffers and 16 latitude rings, or the state of the
+    // Legendre recurrence.
     double *scratch;
     size_t scratch_size;
 
@@ -200,8 +204,8 @@ struct ki_intake {
 };
 
 enum {
-    PIECES = 16,             // number of pieces into which each half of a row is cut
-    RING_SET = 2 * KI_LANES, // number of rings in a vector
+    PIECES = 16,             // number of pieces into which each half of a panorama row is cut
+    RING_SET = 2 * KI_LANES, // number of latitude rings in a vector
 };
 
 kiln_result ki_intake_create(const ki_analysis *analysis, bool whole, ki_intake **intake,
@@ -252,10 +256,10 @@ void ki_intake_destroy(ki_intake *intake)
     ki_free(intake);
 }
 
-// Adds the contributions of the rows at hand to one piece of a ring. Both halves of a row are cut
-// at the same places, so that a ring half a turn away receives the same piece of the other half.
-// The sums are in the order of the rows, so that the result does not depend on how many rows come
-// at a time.
+// Adds the contributions of the panorama rows at hand to one piece of a latitude ring. Both halves
+// of a row are cut at the same places, so that a ring half a turn away receives the same piece of
+// the other half. The sums are in the order of the rows, so that the result does not depend on how
+// many rows come at a time.
 static void spread_piece(const ki_intake *in, int ring, int half, int piece, double *accumulator)
 {
     enum { MOST = 32 };
@@ -281,7 +285,7 @@ static void spread_piece(const ki_intake *in, int ring, int half, int piece, dou
         a->kernels->spread(accumulator + here, in->rows, offsets, weights, n, 3 * count);
 }
 
-// Task of one thread: one piece of all rings.
+// Task of one thread: adds the rows at hand to the same piece of all latitude rings.
 static void spread_rows(void *data, int index)
 {
     ki_intake *in = data;
@@ -313,7 +317,8 @@ static bool is_sun(const float rgb[3], double solid, const double total[3])
     return false;
 }
 
-// Removes candidates that are no longer suns relative to the light of the later rows.
+// Removes candidates that are no longer bright enough to be suns relative to the light of the later
+// rows.
 static void prune(ki_intake *in)
 {
     int kept = 0;
@@ -362,7 +367,7 @@ kiln_result ki_intake_rows(ki_intake *in, const float *rows, int count, kiln_err
     return KILN_OK;
 }
 
-// Moves the candidates that are suns to the spectrum.
+// Decides which candidates are suns and moves these to the spectrum.
 static bool settle_suns(ki_intake *in, kiln_spectrum *spectrum)
 {
     const ki_analysis *a = in->analysis;
@@ -389,7 +394,7 @@ static bool settle_suns(ki_intake *in, kiln_spectrum *spectrum)
 
 // ---------------------------------------------------------------------------------------- analysis
 
-// Subtracts the suns from a ring.
+// Subtracts the texels that are kept as suns from the sums of a latitude ring.
 static void dim_ring(const ki_intake *in, int ring, double *accumulator)
 {
     const ki_analysis *a = in->analysis;
@@ -405,9 +410,9 @@ static void dim_ring(const ki_intake *in, int ring, double *accumulator)
         }
 }
 
-// Computes the Fourier transforms of eight pairs of rings for one channel. The real part of the
-// data is the northern ring, the imaginary part the southern ring. The sum of the two transforms
-// goes to the functions even about the equator, their difference to the odd functions.
+// Computes the Fourier transforms of eight pairs of latitude rings for one channel. The real part
+// of the data is the northern ring, the imaginary part the southern ring. The sum of the two
+// transforms goes to the functions even about the equator, their difference to the odd functions.
 static void transform_channel(const ki_intake *in, int vector, int channel, double *const *rings,
                               double *buffer)
 {
@@ -438,8 +443,8 @@ static void transform_channel(const ki_intake *in, int vector, int channel, doub
     }
 }
 
-// Task of one thread: eight pairs of rings, which are first summed from the rows if the whole
-// panorama is at hand.
+// Task of one thread: transforms eight pairs of latitude rings, which are first summed from the
+// rows if the whole panorama is at hand.
 static void transform_rings(void *data, int worker, int vector)
 {
     ki_intake *in = data;
@@ -466,7 +471,7 @@ static void transform_rings(void *data, int worker, int vector)
         transform_channel(in, vector, channel, rings, buffer);
 }
 
-// Task of one thread: one order of the coefficients.
+// Task of one thread: computes the coefficients of one order m.
 static void analyze_order(void *data, int worker, int m)
 {
     ki_intake *in = data;

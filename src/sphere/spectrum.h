@@ -21,15 +21,16 @@ typedef struct ki_sun {
 struct kiln_spectrum {
     kiln_context *context;
     int degree, size; // degree of the coefficients, and number of rows of the panorama
-    double *a;        // a_lm for m >= 0 by order, see ki_coefficient_row; without the suns
+    // Spherical-harmonic coefficients a_lm, m >= 0, see ki_coefficient_row; without the suns.
+    double *a;
     ki_sun *suns;
     int sun_count;
 };
 
-/// The weight with which a row of the panorama contributes to a ring.
+/// The weight with which a row of the panorama contributes to a latitude ring.
 typedef struct ki_share {
     int row;
-    bool turned; // across a pole: the ring takes the texels half a turn away
+    bool turned; // true: the ring lies across a pole and takes the texels half a turn away
     double weight;
 } ki_share;
 
@@ -43,8 +44,8 @@ typedef struct ki_analysis {
     ki_fft fft; // transform of one row
     // Integral of exp(-i m phi) over the texel column 0 for each order m, [degree + 1][2].
     double *column;
-    int *ring_start;  // index of the first share of each ring, [rings + 1]
-    ki_share *shares; // shares, sorted by ring and then by row
+    int *ring_start;  // index in `shares` of the first share of each latitude ring, [rings + 1]
+    ki_share *shares; // shares, sorted by latitude ring and then by row
 } ki_analysis;
 
 /// Prepares the analysis of panoramas with `size` rows. `density` is the model of the spectrum for
@@ -53,13 +54,13 @@ kiln_result ki_analysis_create(kiln_context *context, int size, int degree, cons
                                ki_analysis **analysis, kiln_error *error);
 void ki_analysis_destroy(ki_analysis *analysis);
 
-/// Creates a spectrum of the analysis' degree, with coefficients 0 and no suns.
+/// Creates a spectrum of the analysis' degree, with coefficients 0 and an empty list of suns.
 kiln_result ki_spectrum_create(const ki_analysis *analysis, kiln_spectrum **spectrum,
                                kiln_error *error);
 
 /// A panorama that is being analysed: with `whole`, any number of whole panoramas one after the
-/// other, else one panorama in rows from north to south. The analysis by rows keeps all rings in
-/// memory, that of whole panoramas only the rings of one vector for each thread.
+/// other, else one panorama in rows from north to south. The analysis by rows keeps all latitude
+/// rings in memory, that of whole panoramas only the rings of one vector for each thread.
 typedef struct ki_intake ki_intake;
 kiln_result ki_intake_create(const ki_analysis *analysis, bool whole, ki_intake **intake,
                              kiln_error *error);
@@ -72,8 +73,8 @@ kiln_result ki_intake_rows(ki_intake *intake, const float *rows, int count, kiln
 /// Writes the spectrum once all rows have been passed.
 kiln_result ki_intake_finish(ki_intake *intake, kiln_spectrum *spectrum, kiln_error *error);
 
-/// Adds the harmonics of the suns up to `degree` to the coefficients `a`, whose rows are those of
-/// that degree.
+/// Adds the harmonics of the suns (bright texels kept out of the spectrum) up to `degree` to the
+/// coefficients `a`, whose rows are those of that degree.
 kiln_result ki_spectrum_add_suns(const kiln_spectrum *spectrum, int degree, double *a,
                                  kiln_error *error);
 
