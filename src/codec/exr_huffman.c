@@ -18,9 +18,10 @@ enum {
 
 typedef struct decoder {
     uint8_t length[SYMBOLS];
-    uint32_t symbol[SYMBOLS];        // symbols by code length, then by value
-    uint32_t table[1 << TABLE_BITS]; // symbol << 6 | length for short codes, else 0
-    uint64_t first[LONGEST + 1];     // lowest code of each length
+    uint32_t symbol[SYMBOLS]; // symbols by code length, then by value
+    // Entries symbol << 6 | length for short codes, 0 for longer ones.
+    uint32_t table[1 << TABLE_BITS];
+    uint64_t first[LONGEST + 1]; // lowest code of each length
     uint32_t count[LONGEST + 1], start[LONGEST + 1];
 } decoder;
 

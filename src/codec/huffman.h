@@ -1,4 +1,4 @@
-// Huffman codes for deflate's blocks.
+// Builds Huffman codes for deflate's blocks.
 #ifndef KI_HUFFMAN_H
 #define KI_HUFFMAN_H
 

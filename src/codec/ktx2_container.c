@@ -66,7 +66,7 @@ kiln_result ki_ktx2_begin(ki_writer *w, const ki_ktx2_file *file, ki_ktx2_writer
     k->index = w->size;
     for (int i = 0; i < 4; i++) // offsets and lengths of descriptor and metadata, filled in later
         ki_write_u32(w, 0);
-    ki_write_u64(w, 0); // no global data of the compression
+    ki_write_u64(w, 0); // no global data for the compression scheme
     ki_write_u64(w, 0);
     k->levels = w->size;
     for (int i = 0; i < 3 * file->level_count; i++)

@@ -508,7 +508,7 @@ static void scatter_task(void *data, int index)
         }
     }
     for (int r = first; r < end; r++) {
-        // cos a - cos b = 2 sin((a + b) / 2) sin((b - a) / 2)
+        // By cos a - cos b = 2 sin((a + b) / 2) sin((b - a) / 2), without cancellation.
         double step = KI_PI / height;
         double tall = 2 * ki_sin((r + 0.5) * step) * ki_sin(0.5 * step);
         double scale = width / (2 * KI_PI * tall);

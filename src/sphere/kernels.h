@@ -26,8 +26,8 @@ enum {
 typedef struct ki_fft_pass {
     // `length` of a pass is its radix times the `length` of the next pass.
     int radix, length, stride;
-    const double *twiddles; // [length / radix][radix - 1][2]
-    const double *roots;    // generic radices: [radix][2], else NULL
+    const double *twiddles; // twiddle factors, [length / radix][radix - 1][2]
+    const double *roots;    // roots of unity, [radix][2], read by radices other than 2, 3, 4
 } ki_fft_pass;
 
 enum { KI_FFT_PASSES = 24 };

@@ -127,7 +127,8 @@ kiln_result ki_sh_check_bands(int bands, double window, double rotation, kiln_er
 kiln_result kiln_sh_filter(const kiln_sh *radiance, int bands, bool irradiance, double window,
                            kiln_sh *sh, kiln_error *error)
 {
-    // Ramamoorthi and Hanrahan 2001, eq. 8; A_3 = 0, A_4 = -pi / 24.
+    // Factors of the cosine lobe by band, from Ramamoorthi and Hanrahan 2001, eq. 8; A_3 = 0, A_4 =
+    // -pi / 24.
     static const double cosine_lobe[] = {KI_PI, 2 * KI_PI / 3, KI_PI / 4, 0, -KI_PI / 24};
     kiln_sh from = *radiance;
     *sh = (kiln_sh){0};
