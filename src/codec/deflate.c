@@ -1,49 +1,51 @@
-// Bytes packed as zlib data (RFC 1950, RFC 1951), for EXR and PNG files: the same data for the same
-// input in every build and on every machine, which no library that may be there or not can promise.
+// Compression to zlib data (RFC 1950, RFC 1951), for EXR and PNG files. In: plain bytes, whole or
+// in parts. Out: zlib data that are the same for the same input in every build and on every
+// machine, which a library that may or may not be present could not guarantee.
 //
-// Matches are found by chains of positions with the same hash of four bytes, the most recent first;
-// a match is given up where the next position has one that saves more ("lazy matching"), and a short one
-// where its literals, by how often they occur, cost less: filtered rows and halfs have many. What is found
-// is kept as items, literals and matches, until the statistics change or the store is full; then the
-// block is written in the shortest of deflate's three forms. All arithmetic is in integers.
+// Matches are found by chains of positions with the same hash of four bytes, the most recent
+// position first. A match is dropped if the next position has a match that saves more ("lazy
+// matching"), and a short match if its literals, by how often they occur, take fewer bits, as is
+// common in filtered rows and halfs. Literals and matches are kept as items until the statistics
+// change or the store is full. The block is then written in the shortest of deflate's three forms.
+// All arithmetic is in integers.
 #include "codec/deflate.h"
 #include "codec/huffman.h"
 
 #include <string.h>
 
 enum {
-    WINDOW = 1 << 15, // distances are below this
+    WINDOW = 1 << 15, // bound of the distances
     MIN_MATCH = 3,
     MAX_MATCH = 258,
-    NEAR = 1 << 12, // a match of three bytes pays up to this distance
-    CHAIN = 24,     // positions that are tried, and half as many where there is a match already
-    NICE = 128,     // a match of this length is taken without trying more
+    NEAR = 1 << 12, // greatest distance at which a match of three bytes is used
+    CHAIN = 24,     // number of positions that are tried; half as many if there is a match already
+    NICE = 128,     // length of a match that is used without trying further positions
     HASH_BITS = 15,
     NEAR_BITS = 12,
-    ITEMS = 1 << 15, // of a block at most
-    LOOK = 512,      // items after which the statistics are compared
+    ITEMS = 1 << 15, // greatest number of items in a block
+    LOOK = 512,      // number of items between two comparisons of the statistics
     LITERALS = 286,
     DISTANCES = 30,
     LENGTH_CODES = 19,
     END_OF_BLOCK = 256,
-    CLASSES = 10,     // of items, by which statistics are compared
-    MATCH_BITS = 10,  // of a match, besides those of its distance's logarithm
-    SHORT_MATCH = 16, // bytes of a match whose literals are looked at
+    CLASSES = 10,     // number of classes of items by which statistics are compared
+    MATCH_BITS = 10,  // estimated bits of a match, apart from the logarithm of its distance
+    SHORT_MATCH = 16, // length below which a match is compared with the cost of its literals
 };
 
 struct ki_deflater {
-    // Matches. Positions are counted from the first byte that is still known.
+    // State of the search for matches. Positions count from the first byte that is still known.
     const uint8_t *bytes;
     int32_t end, inserted; // positions below `inserted` are in the chains
     int hash_bits;
     int32_t first[1 << HASH_BITS], threes[1 << NEAR_BITS], next[WINDOW];
-    // Items: a literal, or a match's length << 16 | its distance.
+    // Items: a literal byte, or the length of a match << 16 | its distance.
     uint32_t items[ITEMS];
-    int count, looked; // items; those whose classes are in `before`
-    int32_t start, at; // of the block, and behind its last item
+    int count, looked; // number of items, and number of items whose classes are counted in `before`
+    int32_t start, at; // first position of the block, and the position after its last item
     uint32_t before[CLASSES], recent[CLASSES];
-    uint8_t literal_cost[256]; // eighths of a bit
-    // Output.
+    uint8_t literal_cost[256]; // estimated cost of each literal in eighths of a bit
+    // State of the output.
     uint8_t *out, *out_end;
     uint64_t bits;
     int held;
@@ -60,7 +62,8 @@ static const uint16_t length_from[29] = {3,  4,  5,  6,   7,   8,   9,   10,  11
                                          15, 17, 19, 23,  27,  31,  35,  43,  51, 59,
                                          67, 83, 99, 115, 131, 163, 195, 227, 258};
 
-static int length_extra(int symbol) // of the 29
+// Extra bits of a length symbol, counted from the first of the 29.
+static int length_extra(int symbol)
 {
     return symbol < 8 || symbol == 28 ? 0 : symbol / 4 - 1;
 }
@@ -70,7 +73,7 @@ static int log2_of(uint32_t x)
     return 31 - __builtin_clz(x);
 }
 
-// Eighths: the three bits behind the highest one.
+// Returns the logarithm to base 2 in eighths. Its fraction is the three bits after the highest bit.
 static uint32_t log2_eighths(uint32_t x)
 {
     int log = log2_of(x);
@@ -91,7 +94,7 @@ static int distance_extra(int symbol)
     return symbol < 4 ? 0 : symbol / 2 - 1;
 }
 
-// Writes the whole bytes that are held. The caller has made sure that they fit.
+// Writes the whole bytes that are held. The caller has checked that the output has room for them.
 static void flush(ki_deflater *d)
 {
     if (d->out_end - d->out >= 8) {
@@ -105,7 +108,7 @@ static void flush(ki_deflater *d)
         *d->out++ = (uint8_t)d->bits;
 }
 
-// At most 16 bits, of which 48 may follow each other without flush().
+// Appends at most 16 bits. At most 48 bits may be appended without a call of flush().
 static void put(ki_deflater *d, uint32_t value, int count)
 {
     d->bits |= (uint64_t)value << d->held;
@@ -118,7 +121,8 @@ static void put_flush(ki_deflater *d, uint32_t value, int count)
     flush(d);
 }
 
-// Whether `bits` more fit, whole bytes at the end.
+// Returns whether `bits` more bits, rounded up to whole bytes, fit in the output; sets `full` if
+// not.
 static bool fits(ki_deflater *d, uint64_t bits)
 {
     d->full = d->full || ((uint64_t)d->held + bits + 7) / 8 > (uint64_t)(d->out_end - d->out);
@@ -137,8 +141,8 @@ static void make_fixed_codes(ki_deflater *d)
     ki_huffman_assign(&d->distances, DISTANCES, with_distances, 5);
 }
 
-// The lengths of both codes as a block begins with them: bits 0 to 4 a symbol of the code of lengths,
-// from bit 8 on what follows it.
+// The code lengths of both codes as a block stores them. Bits 0 to 4 of an item are a symbol of the
+// code of lengths, the bits from 8 on the symbol's extra bits.
 typedef struct header {
     uint16_t items[LITERALS + DISTANCES];
     int count, literals, distances, lengths;
@@ -158,7 +162,8 @@ static void add_item(header *h, int symbol, int follows)
     h->items[h->count++] = (uint16_t)(follows << 8 | symbol);
 }
 
-// Equal lengths: 16 repeats the last one 3 to 6 times, 17 and 18 are 3 to 10 and 11 to 138 zeros.
+// Adds a run of equal lengths. Symbol 16 repeats the previous length 3 to 6 times, symbols 17 and
+// 18 stand for 3 to 10 and 11 to 138 zeros.
 static void add_run(header *h, int length, int run)
 {
     if (length) {
@@ -185,7 +190,7 @@ static void make_header(ki_deflater *d, header *h)
     h->literals = LITERALS;
     h->distances = DISTANCES;
     while (!d->literals.length[h->literals - 1])
-        h->literals--; // not below 257: a block's end occurs
+        h->literals--; // does not go below 257, because the end-of-block symbol always occurs
     while (h->distances > 1 && !d->distances.length[h->distances - 1])
         h->distances--;
     memcpy(all, d->literals.length, (size_t)h->literals);
@@ -201,7 +206,7 @@ static void make_header(ki_deflater *d, header *h)
     ki_huffman_make(&d->lengths, counts, LENGTH_CODES, 7);
     h->lengths = LENGTH_CODES;
     while (!d->lengths.length[length_order[h->lengths - 1]])
-        h->lengths--; // not below 4: there are lengths other than 0
+        h->lengths--; // does not go below 4, because some length is not 0
     h->bits = 14 + 3 * (uint64_t)h->lengths;
     for (int i = 0; i < LENGTH_CODES; i++)
         h->bits += counts[i] * (uint64_t)(d->lengths.length[i] + item_extra(i));
@@ -237,7 +242,8 @@ static void count_items(ki_deflater *d, int count)
     d->literal_counts[END_OF_BLOCK] = 1;
 }
 
-// Bits of the items of a block, its end included, by the codes as they are.
+// Returns the number of bits of a block's items, including the end of the block, by the current
+// codes.
 static uint64_t item_bits(const ki_deflater *d)
 {
     uint64_t bits = 0;
@@ -275,7 +281,8 @@ static void put_items(ki_deflater *d, int count)
 static uint64_t stored_bits(size_t size)
 {
     size_t pieces = size ? (size + 65534) / 65535 : 1;
-    return 8 * (uint64_t)size + 42 * (uint64_t)pieces; // 3 bits, up to 7 that fill a byte, 32
+    // For each piece 3 bits of header, up to 7 bits of padding, 32 bits of length.
+    return 8 * (uint64_t)size + 42 * (uint64_t)pieces;
 }
 
 static void put_stored(ki_deflater *d, const uint8_t *bytes, size_t size, bool last)
@@ -287,7 +294,7 @@ static void put_stored(ki_deflater *d, const uint8_t *bytes, size_t size, bool l
         put_flush(d, 0, -d->held & 7);
         put_flush(d, (uint32_t)count, 16);
         put_flush(d, (uint32_t)~count & 0xffff, 16);
-        memcpy(d->out, bytes, count); // nothing is held
+        memcpy(d->out, bytes, count); // no bits are held here
         d->out += count;
         bytes += count;
     } while (size);
@@ -333,8 +340,8 @@ static void write_block(ki_deflater *d, int count, int32_t end, bool last)
 
 // ----------------------------------------------------------------------------------------- splitting
 
-// Whether the items since the last look are of another kind than the block's before them: the
-// distributions over classes differ by a third.
+// Returns whether the items since the last comparison differ in kind from the earlier items of the
+// block: their distributions over the classes differ by more than a third.
 static bool is_new_kind(const ki_deflater *d)
 {
     uint64_t old = (uint64_t)d->looked, new = (uint64_t)(d->count - d->looked), difference = 0;
@@ -345,7 +352,8 @@ static bool is_new_kind(const ki_deflater *d)
     return 3 * difference > old * new;
 }
 
-// Called after every LOOK items: where the last ones are of a new kind, a block ends before them.
+// Compares the statistics, after every LOOK items. If the latest items are of a new kind, a block
+// ends before them.
 static void look(ki_deflater *d, int32_t before_recent)
 {
     if (d->looked >= 4 * LOOK && is_new_kind(d))
@@ -375,7 +383,8 @@ static uint32_t hash3(uint32_t value)
     return (value << 8) * 0x9e3779b1U >> (32 - NEAR_BITS);
 }
 
-// Puts the positions below `until` into the chains; the last three of the input have no four bytes.
+// Inserts the positions below `until` into the chains. The last three positions of the input have
+// no four bytes to hash.
 static inline void insert(ki_deflater *d, int32_t until)
 {
     until = until < d->end - 3 ? until : d->end - 3;
@@ -406,7 +415,8 @@ typedef struct match {
     int32_t length, distance;
 } match;
 
-// The longest match at a position that is longer than `best`; of length `best` where there is none.
+// Finds the longest match at a position that is longer than `best`. Returns the length `best` and
+// distance 0 if there is none.
 static inline match find(ki_deflater *d, int32_t position, int32_t best, int tries)
 {
     match found = {best, 0};
@@ -446,7 +456,7 @@ static void add(ki_deflater *d, uint32_t item, int32_t length)
     d->recent[item < 256 ? item >> 5 : length < 9 ? 8 : 9]++;
 }
 
-// What each byte costs as a literal, by how often it occurs: the logarithm of its part of all.
+// Estimates the cost of each byte as a literal: the negative logarithm of its relative frequency.
 static void estimate_literals(ki_deflater *d)
 {
     uint32_t counts[256] = {0}, most = 8 * 15;
@@ -459,7 +469,7 @@ static void estimate_literals(ki_deflater *d)
     }
 }
 
-// Whether a match takes fewer bits than its literals.
+// Returns whether a match takes fewer bits than its literals.
 static bool pays(const ki_deflater *d, match m)
 {
     if (!m.distance || m.length >= SHORT_MATCH)
@@ -470,7 +480,7 @@ static bool pays(const ki_deflater *d, match m)
     return cost < literals;
 }
 
-// The items of the bytes from `at` to the end.
+// Finds the items of the bytes from `at` to the end.
 static void compress(ki_deflater *d)
 {
     int32_t look_at = d->at;
@@ -481,7 +491,7 @@ static void compress(ki_deflater *d)
         bool taken = pays(d, m);
         while (taken && m.length < NICE) {
             match later = find(d, d->at + 1, m.length - 1, CHAIN / 2);
-            // A bit of a distance counts as a quarter of a byte.
+            // one bit of a distance counts as a quarter of a byte
             int gain = 4 * (later.length - m.length);
             if (!later.distance ||
                 gain + log2_of((uint32_t)m.distance) - log2_of((uint32_t)later.distance) <= 2)
@@ -532,7 +542,7 @@ size_t ki_deflate_part(ki_deflater *d, const uint8_t *plain, size_t history, siz
     d->count = d->looked = 0;
     memset(d->before, 0, sizeof d->before);
     memset(d->recent, 0, sizeof d->recent);
-    d->hash_bits = 10; // fewer for little input, so that there is less to clear
+    d->hash_bits = 10; // a small hash table for a short input, since the table must be cleared
     while (d->hash_bits < HASH_BITS && d->end >> d->hash_bits)
         d->hash_bits++;
     memset(d->first, 0xff, sizeof *d->first << d->hash_bits);
@@ -541,7 +551,7 @@ size_t ki_deflate_part(ki_deflater *d, const uint8_t *plain, size_t history, siz
     d->out_end = packed + room;
     d->full = room < 2;
     if (place & KI_DEFLATE_FIRST && !d->full) {
-        d->bits = 0x9c78; // deflate, a window of 32768, usual effort
+        d->bits = 0x9c78; // zlib's header: deflate, a window of 32768 bytes, default compression
         d->held = 16;
         d->sum = 1;
         flush(d);

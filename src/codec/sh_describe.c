@@ -10,7 +10,8 @@
 
 enum { MOST = KILN_MAX_BANDS * KILN_MAX_BANDS };
 
-// The beginning of a file as text that ends in NUL: more than the longest that kiln writes.
+// The beginning of a file as text that ends in NUL. The room exceeds the longest text that kiln
+// writes.
 typedef struct text {
     char bytes[8192];
 } text;
@@ -92,8 +93,8 @@ kiln_result ki_sh_json_describe(const uint8_t *bytes, size_t size, const char *n
     return finish("json", count, name, info, error);
 }
 
-// Three numbers a line, whatever stands around them, up to the first line without, where `at` is left;
-// returns how many lines have them.
+// Reads three numbers from each line, whatever text surrounds them, up to the first line without
+// three numbers, at which *at then points. Returns the number of lines read.
 static int read_lines(const char **at, kiln_file_info *info)
 {
     int count = 0;
@@ -123,7 +124,8 @@ kiln_result ki_sh_lines_describe(const uint8_t *bytes, size_t size, const char *
     }
     const char *at = t.bytes;
     int count = read_lines(&at, info);
-    return finish("text", *at ? 0 : count, name, info, error); // none may be cut off
+    // Every line must have been read to its end.
+    return finish("text", *at ? 0 : count, name, info, error);
 }
 
 kiln_result ki_sh_array_describe(const uint8_t *bytes, size_t size, const char *name,
