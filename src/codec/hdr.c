@@ -26,7 +26,7 @@ typedef struct hdr_file {
     double exposure;
     size_t *line_start;
     int task_count;
-    uint8_t *texels; // of each task, the line that it decodes
+    uint8_t *texels; // texels of the line that each task decodes
     float *pixels;
     float scale[256];
 } hdr_file;
@@ -203,8 +203,8 @@ static void decode_line(const hdr_file *f, int index, uint8_t *texels)
     }
 }
 
-// A task decodes a share of the lines, into texels of its own: a line of 32767 of them is too much for
-// the stack of a thread of WebAssembly.
+// Task of one thread: decodes a share of the lines. The task has its own memory for the texels of a
+// line, because a line of 32767 texels would not fit on the stack of a WebAssembly thread.
 static void decode_lines(void *data, int task)
 {
     const hdr_file *f = data;
