@@ -75,7 +75,7 @@ typedef struct reference {
     const double (*directions)[3]; // unit directions, turned by the rotation
     double (*values)[3];
     int count;
-    double *scratch; // scratch memory of a batch of groups
+    double *scratch; // scratch memory, one piece for each group of directions in a batch
     size_t scratch_size;
 } reference;
 
@@ -163,7 +163,8 @@ static void set_rule(reference *r, const ki_reference_rule *rule)
     r->rule.edge = rule->edge;
     if (!(rule->edge > 0)) {
         // Relative to the integral of the lobe, GGX at the horizon has at most 4 alpha^2 / (1 +
-        // alpha^2)^2 times the weight of Lambert.
+        // alpha^2)^2 times the weight of Lambert, so that larger cells may cross the horizon of a
+        // narrow lobe.
         r->rule.edge = 0.0025;
         if (r->rational)
             r->rule.edge = ki_clamp(0.0025 * (1 + r->a2) / (2 * sqrt(r->a2)), 0, 0.01);

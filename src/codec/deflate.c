@@ -22,7 +22,7 @@ enum {
     NICE = 128,     // length of a match that is used without trying further positions
     HASH_BITS = 15,
     NEAR_BITS = 12,
-    ITEMS = 1 << 15, // greatest number of items in a block
+    ITEMS = 1 << 15, // greatest number of items (literals and matches) in a block
     LOOK = 512,      // number of items between two comparisons of the statistics
     LITERALS = 286,
     DISTANCES = 30,
@@ -36,7 +36,7 @@ enum {
 struct ki_deflater {
     // State of the search for matches. Positions count from the first byte that is still known.
     const uint8_t *bytes;
-    int32_t end, inserted; // positions below `inserted` are in the chains
+    int32_t end, inserted; // positions below `inserted` are in the hash chains
     int hash_bits;
     int32_t first[1 << HASH_BITS], threes[1 << NEAR_BITS], next[WINDOW];
     // Items: a literal byte, or the length of a match << 16 | its distance.
@@ -242,8 +242,8 @@ static void count_items(ki_deflater *d, int count)
     d->literal_counts[END_OF_BLOCK] = 1;
 }
 
-// Returns the number of bits of a block's items, including the end of the block, by the current
-// codes.
+// Returns the number of bits of a block's items (literals and matches), including the end of the
+// block, by the current codes.
 static uint64_t item_bits(const ki_deflater *d)
 {
     uint64_t bits = 0;
@@ -383,8 +383,8 @@ static uint32_t hash3(uint32_t value)
     return (value << 8) * 0x9e3779b1U >> (32 - NEAR_BITS);
 }
 
-// Inserts the positions below `until` into the chains. The last three positions of the input have
-// no four bytes to hash.
+// Inserts the positions below `until` into the hash chains. The last three positions of the input
+// have no four bytes to hash.
 static inline void insert(ki_deflater *d, int32_t until)
 {
     until = until < d->end - 3 ? until : d->end - 3;
@@ -480,7 +480,7 @@ static bool pays(const ki_deflater *d, match m)
     return cost < literals;
 }
 
-// Finds the items of the bytes from `at` to the end.
+// Finds the items (literals and matches) that represent the bytes from `at` to the end.
 static void compress(ki_deflater *d)
 {
     int32_t look_at = d->at;

@@ -75,7 +75,8 @@ static void limit_lengths(int *with, int deepest, int longest)
         int length = longest - 1;
         while (!with[length])
             length--;
-        // This code becomes two codes of one more bit, one of which replaces a longest code.
+        // The code of this length becomes two codes with one more bit. One of the two is for a
+        // symbol with a code of the greatest length.
         with[length]--;
         with[length + 1] += 2;
         with[longest]--;

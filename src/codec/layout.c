@@ -1,4 +1,4 @@
-// Places flat pictures on the sphere: panoramas, crosses, strips and octahedra, by the ratio of the
+// Makes maps from flat pictures: panoramas, crosses, strips and octahedra, by the ratio of the
 // sides or by the caller's choice. A cross or strip is cut into the six faces of a cube.
 #include "codec/layout.h"
 

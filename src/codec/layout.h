@@ -1,4 +1,5 @@
-// Places flat pictures on the sphere.
+// Makes maps from flat pictures: a picture is a panorama, a cross or strip of cube faces, or an
+// octahedron.
 #ifndef KI_LAYOUT_H
 #define KI_LAYOUT_H
 

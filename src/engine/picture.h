@@ -5,8 +5,9 @@
 
 #include "base/base.h"
 
-/// Sets `rgb` to the radiance wanted at (u, v), which runs from 0 to 1 inside the border and
-/// slightly beyond within the border. Returns the solid angle per area there, in any unit.
+/// Sets `rgb` to the radiance wanted at (u, v). Inside the border u and v run from 0 to 1; in the
+/// border they lie slightly outside of this range. Returns the solid angle per area there, in any
+/// unit.
 typedef double ki_picture_read(const void *data, double u, double v, double rgb[3]);
 
 typedef struct ki_picture {

@@ -170,7 +170,8 @@ static inline int find_row(const builder *b, double z, int row)
 // Returns the column of a direction, by a search that begins at `column`.
 static inline int find_column(const builder *b, double cosine, double sine, int column)
 {
-    // Such wide columns need arctan: the sign of a cross product cannot find the column.
+    // Columns of 45 degrees or more are found by arctan, because a step to the next column by the
+    // sign of a cross product would be ambiguous.
     if (!b->small)
         return (int)floor(ki_atan2(sine, cosine) * (b->grid->height / KI_PI) + b->grid->offset);
     const double *bc = b->cosine - b->first_border, *bs = b->sine - b->first_border;
