@@ -73,7 +73,7 @@ typedef struct builder {
     // Cosine and sine of phi at the borders between columns, from first_border on.
     const double *cosine, *sine;
     int first_border, end_border;
-    bool small; // columns are narrower than 45 degrees
+    bool small; // columns are at most 45 degrees wide
     ki_stencil_chunk *chunk;
     double *area, *width; // areas and widths of the box of texels that is being filled
     size_t box_room;
@@ -116,7 +116,7 @@ void ki_stencil_grid_range(const ki_stencil_grid *grid, int j, int *first, int *
 // --------------------------------------------------------------------------------------------- arcs
 
 // Returns the angle in [-pi, pi] with this sine and cosine. With eight columns or more,
-// neighbouring nodes are less than 45 degrees apart. Small angles are then computed by the series
+// neighbouring nodes are at most 45 degrees apart. Small angles are then computed by the series
 // of arcsin, whose first omitted term is below 1e-16 of the first term.
 static inline double angle(double sine, double cosine, bool small)
 {
@@ -170,7 +170,7 @@ static inline int find_row(const builder *b, double z, int row)
 // Returns the column of a direction, by a search that begins at `column`.
 static inline int find_column(const builder *b, double cosine, double sine, int column)
 {
-    // Columns of 45 degrees or more are found by arctan, because a step to the next column by the
+    // Columns wider than 45 degrees are found by arctan, because a step to the next column by the
     // sign of a cross product would be ambiguous.
     if (!b->small)
         return (int)floor(ki_atan2(sine, cosine) * (b->grid->height / KI_PI) + b->grid->offset);
