@@ -1,4 +1,4 @@
-// Sentences of errors.
+// Writes error messages.
 #include "base/base.h"
 
 #include <stdio.h>

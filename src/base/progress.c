@@ -1,4 +1,4 @@
-// Progress: what the caller is told of it, and its wish to cancel.
+// Reports progress to the caller of the library, and passes on the caller's wish to cancel.
 #include "base/context.h"
 
 bool ki_progress(kiln_context *context, const char *stage, double fraction)

@@ -1,4 +1,5 @@
-// What recipes write with: a cube and its harmonics turned to an engine's axes, and files added to a set.
+// What all recipes use to write files: turns a cube and its harmonics to the axes of an engine, and
+// adds files to a set.
 #include "engine/engine.h"
 
 #include "codec/codec.h"

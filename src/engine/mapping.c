@@ -1,4 +1,4 @@
-// Which roughness a level holds, where several engines agree, and its inverse.
+// The two mappings from levels to roughness that several engines share, and their inverses.
 #include "engine/engine.h"
 
 #include <math.h>

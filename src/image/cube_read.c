@@ -1,11 +1,11 @@
-// Bilinear reads of a cube across its faces, as graphics processors do them.
+// Reads a cube bilinearly, across the edges of its faces too, as graphics processors do.
 #include "image/image.h"
 #include "math/math.h"
 
 #include <math.h>
 
-// Texel (x, y) of a face, which may lie one beyond its edge: then it is the neighbour's that is
-// nearest.
+// Returns the index of texel (x, y) of a face. If (x, y) lies one texel beyond the face's edge, the
+// nearest texel of the neighbouring face is returned.
 static size_t texel_at(int n, int face, int x, int y)
 {
     if (x < 0 || y < 0 || x >= n || y >= n) {
