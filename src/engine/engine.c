@@ -1,7 +1,8 @@
-// The list of recipes, and engines as the caller sees them. In: a cube of prefiltered levels in kiln's
-// directions and harmonics of radiance. Out: both turned to the axes of an engine (export.c) and passed
-// to the engine's recipe, which adds its files to a set. Also the checks of sizes, levels and formats,
-// and kiln_engine_show, which computes what an engine's shader reads.
+// The list of recipes, and the public functions of engines. In: a cube of prefiltered levels in
+// kiln's directions and harmonics of radiance. Out: the cube and the harmonics turned to the axes
+// of an engine (export.c) and passed to the engine's recipe, which adds its files to a set. Also
+// the checks of sizes, levels and formats, and kiln_engine_show, which computes what an engine's
+// shader reads.
 #include "engine/engine.h"
 
 #include "codec/pixel_format.h"
