@@ -8,24 +8,38 @@ if(EMSCRIPTEN) # part of a page: nothing is shared, nothing installed
     return()
 endif()
 add_library(kiln_shared SHARED $<TARGET_OBJECTS:kiln_objects>)
-set(KILN_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/kiln)
 foreach(kind static shared)
     set_target_properties(kiln_${kind} PROPERTIES OUTPUT_NAME kiln)
     target_include_directories(kiln_${kind} INTERFACE
         $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
         $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
-    install(TARGETS kiln_${kind} EXPORT kiln-${kind}
-            ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
-            LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-    install(EXPORT kiln-${kind} NAMESPACE kiln:: DESTINATION ${KILN_CMAKE_DIR})
+    if(NOT PROJECT_IS_TOP_LEVEL) # part of another project, which links one of the two
+        set_target_properties(kiln_${kind} PROPERTIES EXCLUDE_FROM_ALL TRUE)
+    endif()
 endforeach()
+# Until 1.0 each minor version may change what a caller sees.
 set_target_properties(kiln_shared PROPERTIES EXPORT_NAME kiln VERSION ${PROJECT_VERSION}
-                      SOVERSION ${PROJECT_VERSION_MAJOR})
+                      SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+if(WIN32) # kiln.h then asks the DLL
+    target_compile_definitions(kiln_shared INTERFACE KILN_SHARED)
+endif()
 target_link_libraries(kiln_static PRIVATE ${KILN_USES})
 # What the shared library uses is its own affair: installed, it asks for no package.
 target_link_libraries(kiln_shared PRIVATE "$<BUILD_INTERFACE:${KILN_USES}>")
 add_library(kiln::kiln ALIAS kiln_shared)
 add_library(kiln::kiln_static ALIAS kiln_static)
+if(NOT KILN_INSTALL)
+    return()
+endif()
+
+set(KILN_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/kiln)
+foreach(kind static shared)
+    install(TARGETS kiln_${kind} EXPORT kiln-${kind}
+            ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+            LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+            RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+    install(EXPORT kiln-${kind} NAMESPACE kiln:: DESTINATION ${KILN_CMAKE_DIR})
+endforeach()
 
 install(FILES include/kiln/kiln.h include/kiln/brdf.h include/kiln/course.h
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/kiln)

@@ -10,13 +10,15 @@ build=$source/build/$preset${compiler:+-$compiler}
 log=$build.log
 [ -z "$compiler" ] || export CC="$compiler"
 
-cd "$source"
-{ cmake --preset "$preset" -B "$build" && cmake --build "$build" -j 1; } >"$log" 2>&1 ||
-    { tail -n 60 "$log"; exit 1; }
 if [ "$preset" = mingw ]; then
     # Windows' registry and drives, in the build's folder.
     export WINEPREFIX="$build/wine" WINEDEBUG=-all LC_ALL=C.UTF-8
+    mkdir -p "$build"
     trap '"$(command -v wineserver64 || command -v wineserver || echo /usr/lib/wine/wineserver64)" -k 2>/dev/null || true' EXIT
 fi
+
+cd "$source"
+{ cmake --preset "$preset" -B "$build" && cmake --build "$build" -j 1; } >"$log" 2>&1 ||
+    { tail -n 60 "$log"; exit 1; }
 ctest --test-dir "$build" --output-on-failure -R '^golden$' --no-tests=error
-[ ! -e "$here/$preset.sh" ] || sh "$here/$preset.sh" "$build"
+[ ! -e "$here/$preset.sh" ] || sh "$here/$preset.sh" "$build" "$source"

@@ -1,7 +1,7 @@
 #!/bin/sh
 # The command in Windows, as wine is: bakes, puts a file in the place of another, and knows names that no
 # code page holds. cross.sh has set WINEPREFIX.
-#   mingw.sh BUILD_FOLDER
+#   mingw.sh BUILD_FOLDER SOURCE
 set -eu
 wine=$(command -v wine64 || echo /usr/lib/wine/wine64)
 work=$1/windows
@@ -30,3 +30,9 @@ kiln bake 'Höhle 洞/sides' -q -o again.ktx2 --size 16
 [ -z "$(find . -name '*.tmp')" ]
 if kiln bake missing.exr -q -o x.ktx2 2>said; then exit 1; fi
 grep -q 'missing.exr' said
+
+# A program that asks the DLL.
+x86_64-w64-mingw32-gcc -std=c17 -DKILN_SHARED -I"$2/include" "$2/tests/package/consumer/main.c" \
+    -o consumer.exe ../libkiln.dll.a
+cp ../libkiln.dll .
+"$wine" consumer.exe
