@@ -263,7 +263,8 @@ typedef struct kiln_file_info {
     /// "harmonics", or an atlas of levels side by side, "cubeuv" (three.js) or "atlas"
     /// (PlayCanvas).
     char layout[24];
-    /// Size of a cube face, of a picture, or of one slice of a table; of harmonics their number and 1.
+    /// Size of a cube face, of a picture, or of one slice of a table. For harmonics the width is
+    /// the number of coefficients and the height 1.
     int width, height;
     int depth; ///< number of slices of a table, else 1
     int face_count, level_count;

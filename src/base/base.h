@@ -1,5 +1,5 @@
-// Errors, memory, threads and the properties of the processor: what every other folder of the
-// library uses.
+// What every other folder of the library uses: error messages, memory, threads, progress reports
+// and the instruction set of the processor.
 #ifndef KI_BASE_H
 #define KI_BASE_H
 

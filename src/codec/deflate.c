@@ -300,7 +300,8 @@ static void put_stored(ki_deflater *d, const uint8_t *bytes, size_t size, bool l
     } while (size);
 }
 
-// The items, which stand for the bytes from `start` to `end`, as a block in its shortest form, if it fits.
+// Writes the first `count` items, which stand for the bytes from `start` to `end`, as a block in
+// the shortest of its three forms, if the block fits in the output.
 static void put_block(ki_deflater *d, int count, int32_t end, bool last)
 {
     size_t size = (size_t)(end - d->start);
@@ -326,7 +327,7 @@ static void put_block(ki_deflater *d, int count, int32_t end, bool last)
     put_items(d, count);
 }
 
-// Makes the first `count` items a block, and keeps the others.
+// Writes the first `count` items as a block, and keeps the other items.
 static void write_block(ki_deflater *d, int count, int32_t end, bool last)
 {
     if (!d->full)

@@ -176,8 +176,8 @@ kiln_result ki_lobe_spectrum(kiln_context *context, const kiln_lobe *lobe, doubl
     // First guess of the degree. The widest lobes get a longer allowance, because their kink at the
     // horizon makes their coefficients fall slowly.
     double width = ki_lobe_width(lobe), guess = (width < 1 ? 160 : 320) + 14 / width;
-    // A split would not help the Charlie lobe, which is narrow at the horizon and not around its
-    // centre.
+    // The Charlie lobe is narrow at the horizon and not around its centre, so that leaving the
+    // centre out of the spectrum would not help.
     split = split && lobe->kind != KILN_LOBE_CHARLIE;
     int limit = guess < KILN_MAX_DEGREE ? (int)guess : KILN_MAX_DEGREE;
     if (guess < 2 * KILN_MAX_DEGREE || !split) {
@@ -188,8 +188,8 @@ kiln_result ki_lobe_spectrum(kiln_context *context, const kiln_lobe *lobe, doubl
             ki_zonal_free(spectrum);
             result = ki_zonal_analyze(context, zonal, tolerance, KILN_MAX_DEGREE, spectrum, error);
         }
-        // A kink at the horizon makes coefficients that fall slowly but are small. Leaving out the
-        // centre of the lobe would not shorten that tail.
+        // A kink of the lobe at the horizon makes coefficients that fall slowly but are small.
+        // Leaving the centre of the lobe out of the spectrum would not shorten that tail.
         if (result != KILN_OK || spectrum->rest <= 10 * tolerance || !split)
             return result;
         ki_zonal_free(spectrum);
