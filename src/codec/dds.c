@@ -37,8 +37,7 @@ static uint32_t fourcc(const char code[4])
     return value;
 }
 
-kiln_result ki_dds_encode(const kiln_map *map, const kiln_save_def *def, ki_writer *writer,
-                          kiln_error *error)
+static kiln_result check(const kiln_map *map, const kiln_save_def *def, kiln_error *error)
 {
     const ki_pixel_format *pixel = ki_pixel_format_of(def->format);
     if (map->shape != KILN_SHAPE_CUBE)
@@ -52,43 +51,58 @@ kiln_result ki_dds_encode(const kiln_map *map, const kiln_save_def *def, ki_writ
     if (def->zstd)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "zstd is %d, a DDS file has no compression",
                        def->zstd);
-    ki_writer *w = writer;
+    return KILN_OK;
+}
+
+static void write_zeros(ki_writer *w, int count)
+{
+    for (int i = 0; i < count; i++)
+        ki_write_u32(w, 0);
+}
+
+static void write_header(const kiln_map *map, const ki_pixel_format *pixel, ki_writer *w)
+{
+    int rows = pixel->block > 1 ? map->size : 1;
     ki_write(w, "DDS ", 4);
     ki_write_u32(w, HEADER_SIZE);
     ki_write_u32(w, FLAGS | (pixel->block > 1 ? FLAG_LINEAR : FLAG_PITCH));
     ki_write_u32(w, (uint32_t)map->size);
     ki_write_u32(w, (uint32_t)map->size);
-    int rows = pixel->block > 1 ? map->size : 1;
     ki_write_u32(w, (uint32_t)ki_pixels_size(pixel, map->size, rows));
     ki_write_u32(w, 0); // depth of a volume
     ki_write_u32(w, (uint32_t)map->level_count);
-    for (int i = 0; i < 11; i++)
-        ki_write_u32(w, 0);
+    write_zeros(w, RESERVED);
     ki_write_u32(w, FORMAT_SIZE);
     ki_write_u32(w, FORMAT_FOURCC);
     ki_write(w, "DX10", 4);
-    for (int i = 0; i < 5; i++) // bits and masks of the older header
-        ki_write_u32(w, 0);
+    write_zeros(w, 5); // bits and masks of the older header
     ki_write_u32(w, CAPS);
     ki_write_u32(w, CAPS2_CUBE | CAPS2_ALL_FACES);
-    for (int i = 0; i < 3; i++)
-        ki_write_u32(w, 0);
+    write_zeros(w, 3);
     ki_write_u32(w, pixel->dxgi);
     ki_write_u32(w, DIMENSION_2D);
     ki_write_u32(w, MISC_CUBE);
     ki_write_u32(w, 1); // number of cubes
     ki_write_u32(w, 0); // alpha mode "not stated"
-    for (int face = 0; face < 6; face++) {
-        for (int k = 0; k < map->level_count; k++) {
-            int n = kiln_map_level_size(map, k);
-            size_t texels = kiln_map_texels(map, k) / 6;
-            uint8_t *room = ki_write_room(w, (size_t)ki_pixels_size(pixel, n, n));
-            if (!room)
-                return ki_fail_memory(w->context, error, "a DDS file", w->size);
-            if (!ki_pixels_pack(w->context, pixel, map->level[k] + 3 * texels * (size_t)face, n, n,
-                                1, room))
-                return ki_fail_cancelled(error, "writing");
-        }
+}
+
+kiln_result ki_dds_encode(const kiln_map *map, const kiln_save_def *def, ki_writer *w,
+                          kiln_error *error)
+{
+    const ki_pixel_format *pixel = ki_pixel_format_of(def->format);
+    kiln_result result = check(map, def, error);
+    if (result != KILN_OK || !pixel)
+        return result;
+    write_header(map, pixel, w);
+    for (int i = 0; i < 6 * map->level_count; i++) {
+        int face = i / map->level_count, k = i % map->level_count, n = kiln_map_level_size(map, k);
+        size_t texels = kiln_map_texels(map, k) / 6;
+        uint8_t *room = ki_write_room(w, (size_t)ki_pixels_size(pixel, n, n));
+        if (!room)
+            return ki_fail_memory(w->context, error, "a DDS file", w->size);
+        if (!ki_pixels_pack(w->context, pixel, map->level[k] + 3 * texels * (size_t)face, n, n, 1,
+                            room))
+            return ki_fail_cancelled(error, "writing");
     }
     return KILN_OK;
 }
@@ -128,6 +142,26 @@ typedef struct dds_header {
     char said[4 * RESERVED + 1];
     const ki_pixel_format *pixel;
 } dds_header;
+
+// Checks what the header says of pixels and sizes. `format` is the number that it gives its pixels.
+static kiln_result check_header(dds_header *h, uint32_t format, const char *name, kiln_error *error)
+{
+    if (!h->pixel)
+        return ki_fail(
+            error, KILN_ERROR_UNSUPPORTED,
+            "%s: has pixel format %u; DXGI 2, 10, 26, 67 and 95 and the codes 113 and 116 "
+            "are read",
+            name, format);
+    if (h->width < 1 || h->width != h->height || h->width > KILN_MAX_SIZE)
+        return ki_fail(error, KILN_ERROR_FORMAT,
+                       "%s: faces are %u x %u, they must be square and 1 to %d", name, h->width,
+                       h->height, KILN_MAX_SIZE);
+    h->levels = h->levels ? h->levels : 1;
+    if (h->levels > KILN_MAX_LEVELS || h->width >> (h->levels - 1) == 0)
+        return ki_fail(error, KILN_ERROR_FORMAT, "%s: has %u levels for a size of %u", name,
+                       h->levels, h->width);
+    return KILN_OK;
+}
 
 static kiln_result read_header(ki_reader *r, const char *name, dds_header *h, kiln_error *error)
 {
@@ -173,21 +207,7 @@ static kiln_result read_header(ki_reader *r, const char *name, dds_header *h, ki
     if ((!cube && !h->flat) || cubes != 1)
         return ki_fail(error, KILN_ERROR_UNSUPPORTED,
                        "%s: is no single cube of six faces, others are not read", name);
-    if (!h->pixel)
-        return ki_fail(
-            error, KILN_ERROR_UNSUPPORTED,
-            "%s: has pixel format %u; DXGI 2, 10, 26, 67 and 95 and the codes 113 and 116 "
-            "are read",
-            name, format);
-    if (h->width < 1 || h->width != h->height || h->width > KILN_MAX_SIZE)
-        return ki_fail(error, KILN_ERROR_FORMAT,
-                       "%s: faces are %u x %u, they must be square and 1 to %d", name, h->width,
-                       h->height, KILN_MAX_SIZE);
-    h->levels = h->levels ? h->levels : 1;
-    if (h->levels > KILN_MAX_LEVELS || h->width >> (h->levels - 1) == 0)
-        return ki_fail(error, KILN_ERROR_FORMAT, "%s: has %u levels for a size of %u", name,
-                       h->levels, h->width);
-    return KILN_OK;
+    return check_header(h, format, name, error);
 }
 
 // Fills in `info` from the text "kiln VERSION ENGINE" in an atlas that kiln wrote.
@@ -196,7 +216,9 @@ static void describe_atlas(const dds_header *h, kiln_file_info *info)
     const char *engine = strrchr(h->said, ' ');
     if (strncmp(h->said, "kiln ", 5) != 0 || engine < h->said + 5)
         return;
-    snprintf(info->writer, sizeof info->writer, "%.*s", (int)(engine - h->said), h->said);
+    char writer[sizeof h->said] = "";
+    memcpy(writer, h->said, (size_t)(engine - h->said));
+    ki_copy_printable(info->writer, sizeof info->writer, writer);
     ki_copy_printable(info->engine, sizeof info->engine, engine + 1);
     snprintf(info->layout, sizeof info->layout, "atlas");
 }
