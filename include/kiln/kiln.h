@@ -517,12 +517,13 @@ KILN_API KILN_CHECKED kiln_result kiln_bake(kiln_context *context, const kiln_ma
 KILN_API void kiln_environment_free(kiln_environment *environment);
 
 /// A prepared bake for many sources of one size. A plan computes once everything that depends only
-/// on the sizes, and allocates once the memory that a bake needs.
+/// on the sizes, and allocates once the memory that executions need.
 typedef struct kiln_plan kiln_plan;
 
 /// Creates a plan for sources of one shape and size. `source_size` is the number of rows of a
 /// panorama, or the number of texels along a side of a cube face or an octahedron. `def` may be
-/// NULL. The plan uses the context until kiln_plan_destroy; destroy the plan before the context.
+/// NULL. The plan uses the context. For tuned levels the creation takes as long as one execution more,
+/// which measures the memory that is needed.
 KILN_API KILN_CHECKED kiln_result kiln_plan_create(kiln_context *context, kiln_shape source_shape,
                                                    int source_size, const kiln_bake_def *def,
                                                    kiln_plan **plan, kiln_error *error);
@@ -533,7 +534,9 @@ KILN_API KILN_CHECKED kiln_result kiln_plan_environment(const kiln_plan *plan,
                                                         kiln_error *error);
 /// Bakes into an environment made by kiln_plan_environment, or into maps of the same shape, size
 /// and levels. The result is bit-identical to that of kiln_bake. On failure the content of the maps
-/// is undefined.
+/// is undefined. An execution allocates nothing, except where a source has
+/// more suns than 64 and more than any source before: single texels with a thousandth of all light
+/// each.
 KILN_API KILN_CHECKED kiln_result kiln_plan_execute(kiln_plan *plan, const kiln_map *source,
                                                     kiln_environment *environment,
                                                     kiln_error *error);

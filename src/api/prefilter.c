@@ -61,8 +61,8 @@ static kiln_result find_levels(const kiln_bake_def *def, float roughness[KILN_MA
     return KILN_OK;
 }
 
-kiln_result kiln_plan_create(kiln_context *context, kiln_shape source_shape, int source_size,
-                             const kiln_bake_def *def, kiln_plan **plan, kiln_error *error)
+static kiln_result create_plan(kiln_context *context, kiln_shape source_shape, int source_size,
+                               const kiln_bake_def *def, kiln_plan **plan, kiln_error *error)
 {
     static const kiln_bake_def defaults = {0};
     float roughness[KILN_MAX_LEVELS];
@@ -92,6 +92,19 @@ kiln_result kiln_plan_create(kiln_context *context, kiln_shape source_shape, int
     return ki_plan_create(context, &full, plan, error);
 }
 
+kiln_result kiln_plan_create(kiln_context *context, kiln_shape source_shape, int source_size,
+                             const kiln_bake_def *def, kiln_plan **plan, kiln_error *error)
+{
+    kiln_result result = create_plan(context, source_shape, source_size, def, plan, error);
+    if (result == KILN_OK)
+        result = ki_plan_reserve(*plan, error);
+    if (result != KILN_OK) {
+        kiln_plan_destroy(*plan);
+        *plan = NULL;
+    }
+    return result;
+}
+
 // Computes an environment by a plan that is used once and destroyed.
 static kiln_result execute_once(kiln_plan *plan, const kiln_map *source,
                                 kiln_environment *environment, kiln_error *error)
@@ -111,7 +124,7 @@ kiln_result kiln_bake(kiln_context *context, const kiln_map *source, const kiln_
     *environment = (kiln_environment){0};
     kiln_result result = ki_map_check(source, error);
     if (result == KILN_OK)
-        result = kiln_plan_create(context, source->shape, source->size, def, &plan, error);
+        result = create_plan(context, source->shape, source->size, def, &plan, error);
     if (result == KILN_OK)
         result = execute_once(plan, source, environment, error);
     kiln_plan_destroy(plan);

@@ -25,7 +25,10 @@ enum {
     // 1e-7 of the sum.
     IRRADIANCE_DEGREE = 320,
     // Smallest degree of an analysis; the harmonics need degree KILN_MAX_BANDS - 1.
-    SH_DEGREE = 8
+    SH_DEGREE = 8,
+    // Number of suns that a plan has memory for from the beginning. A sun is a single texel that holds a
+    // thousandth of all light.
+    RESERVED_SUNS = 64
 };
 
 // An analysis of the panorama that is separate from the analysis for the levels.
@@ -51,6 +54,8 @@ struct kiln_plan {
     ki_prefilter *prefilter;
     analyzer for_sh, for_irradiance; // empty where the spectrum of `prefilter` is used
     ki_level *irradiance;            // the level that is filtered by the cosine lobe
+    bool has_scratch;
+    ki_scratch scratch; // the memory that an execution uses
 };
 
 // ---------------------------------------------------------------------------------------- analysis
@@ -79,14 +84,15 @@ static kiln_result analyzer_create(kiln_context *context, int size, int degree, 
     return result;
 }
 
-// Sets *spectrum to the spectrum of the analyzer, computed from the panorama, or to that of the
-// prefilter if the analyzer is empty.
-static kiln_result find_spectrum(const kiln_plan *p, const analyzer *a, const kiln_map *panorama,
-                                 const kiln_spectrum **spectrum, kiln_error *error)
+// Returns the spectrum of the analyzer, computed from the panorama, or that of the prefilter if the
+// analyzer is empty.
+static const kiln_spectrum *find_spectrum(const kiln_plan *p, const analyzer *a,
+                                          const kiln_map *panorama)
 {
-    *spectrum = a->spectrum ? a->spectrum : p->prefilter->spectrum;
-    return a->spectrum ? ki_intake_whole(a->intake, panorama->level[0], a->spectrum, error)
-                       : KILN_OK;
+    if (!a->spectrum)
+        return p->prefilter->spectrum;
+    ki_intake_whole(a->intake, panorama->level[0], a->spectrum);
+    return a->spectrum;
 }
 
 // -------------------------------------------------------------------------------------------- plan
@@ -199,6 +205,7 @@ void kiln_plan_destroy(kiln_plan *plan)
 {
     if (!plan)
         return;
+    ki_scratch_free(&plan->scratch);
     ki_level_destroy(plan->irradiance);
     analyzer_destroy(&plan->for_sh);
     analyzer_destroy(&plan->for_irradiance);
@@ -304,32 +311,103 @@ static kiln_result take_source(kiln_plan *p, const kiln_map **source, const kiln
                : ki_fail_cancelled(error, stage.name);
 }
 
+static kiln_result execute(kiln_plan *p, const kiln_map *source, kiln_environment *environment,
+                           kiln_error *error)
+{
+    const kiln_map *panorama;
+    kiln_result result = take_source(p, &source, &panorama, error);
+    if (result == KILN_OK)
+        result = ki_prefilter_execute(p->prefilter, panorama, source, &environment->levels, error);
+    if (result == KILN_OK && p->sh_bands)
+        result = ki_sh_project(find_spectrum(p, &p->for_sh, panorama), p->sh_bands, p->rotation,
+                               &environment->sh, error);
+    if (result == KILN_OK && p->irradiance_size)
+        result = ki_level_execute(p->irradiance, find_spectrum(p, &p->for_irradiance, panorama),
+                                  NULL, p->rotation, &environment->irradiance, 0, NULL, error);
+    return result;
+}
+
 kiln_result kiln_plan_execute(kiln_plan *plan, const kiln_map *source,
                               kiln_environment *environment, kiln_error *error)
 {
-    const kiln_map *panorama;
-    const kiln_spectrum *spectrum;
     kiln_result result = check_source(plan, source, error);
     if (result == KILN_OK)
         result = check_target(plan, environment, error);
-    if (result == KILN_OK)
-        result = take_source(plan, &source, &panorama, error);
-    if (result == KILN_OK)
-        result =
-            ki_prefilter_execute(plan->prefilter, panorama, source, &environment->levels, error);
+    if (result != KILN_OK)
+        return result;
     environment->lobe = plan->prefilter->def.lobe;
     environment->degree = plan->prefilter->spectrum->degree;
-    if (result == KILN_OK && plan->sh_bands)
-        result = find_spectrum(plan, &plan->for_sh, panorama, &spectrum, error);
-    if (result == KILN_OK && plan->sh_bands)
-        result = ki_sh_project(spectrum, plan->sh_bands, plan->rotation, &environment->sh, error);
-    if (result == KILN_OK && plan->irradiance_size)
-        result = find_spectrum(plan, &plan->for_irradiance, panorama, &spectrum, error);
-    if (result == KILN_OK && plan->irradiance_size)
-        result = ki_level_execute(plan->irradiance, spectrum, NULL, plan->rotation,
-                                  &environment->irradiance, 0, NULL, error);
     environment->irradiance.roughness[0] = plan->irradiance_size ? 1 : 0;
+    if (plan->has_scratch)
+        ki_scratch_begin(plan->context, &plan->scratch);
+    result = execute(plan, source, environment, error);
+    if (!plan->has_scratch)
+        return result;
+    ki_scratch_end(plan->context);
+    // More suns than ever before: the next execution finds room for them.
+    if (plan->scratch.memory && plan->scratch.peak > plan->scratch.capacity)
+        (void)ki_scratch_reserve(plan->context, &plan->scratch, 0);
     return result;
+}
+
+// ----------------------------------------------------------------------------------------- scratch
+
+// Noise, so that every degree has light, and a sun.
+static void fill_rehearsal(kiln_map *source)
+{
+    uint32_t state = 1;
+    size_t count = 3 * kiln_map_texels(source, 0);
+    for (size_t i = 0; i < count; i++) {
+        state = state * 1664525u + 1013904223u;
+        source->level[0][i] = (float)(state >> 8) / 16777216;
+    }
+    source->level[0][count / 2] = (float)count;
+}
+
+// An execution without memory of its own measures what executions need.
+static kiln_result rehearse(kiln_plan *p, kiln_error *error)
+{
+    kiln_map source = {.shape = p->source_shape, .size = p->source_size, .level_count = 1};
+    kiln_environment made = {0};
+    kiln_result result = ki_map_allocate(p->context, &source, error);
+    if (result == KILN_OK)
+        result = kiln_plan_environment(p, &made, error);
+    if (result == KILN_OK) {
+        fill_rehearsal(&source);
+        ki_prefilter_rehearse(p->prefilter, true);
+        result = kiln_plan_execute(p, &source, &made, error);
+        ki_prefilter_rehearse(p->prefilter, false);
+    }
+    kiln_environment_free(&made);
+    kiln_map_free(&source);
+    return result;
+}
+
+kiln_result ki_plan_reserve(kiln_plan *p, kiln_error *error)
+{
+    kiln_sh sh;
+    kiln_result result = KILN_OK;
+    p->has_scratch = true;
+    if (p->prefilter->tune) {
+        result = rehearse(p, error);
+    } else if (p->sh_bands) {
+        ki_scratch_begin(p->context, &p->scratch);
+        result = ki_sh_project(p->prefilter->spectrum, p->sh_bands, 0, &sh, error);
+        ki_scratch_end(p->context);
+    }
+    if (result != KILN_OK)
+        return result;
+    size_t suns = ki_prefilter_suns_size(p->prefilter, RESERVED_SUNS);
+    if (p->irradiance) {
+        int rows = p->to_panorama ? p->panorama.size : p->source_size;
+        size_t own = ki_level_suns_size(p->irradiance, rows, RESERVED_SUNS);
+        suns = own > suns ? own : suns;
+    }
+    // Tables of transforms are not always larger for a larger degree: a sixteenth more suffices.
+    size_t more = suns + p->scratch.peak / 16;
+    return ki_scratch_reserve(p->context, &p->scratch, more)
+               ? KILN_OK
+               : ki_fail_memory(p->context, error, "a plan's scratch", p->scratch.peak + more);
 }
 
 // --------------------------------------------------------------------------------------- harmonics
@@ -351,7 +429,7 @@ kiln_result kiln_map_sh(kiln_context *context, const kiln_map *map, int bands, d
     if (result == KILN_OK)
         result = analyzer_create(context, map->size, SH_DEGREE, &a, error);
     if (result == KILN_OK)
-        result = ki_intake_whole(a.intake, map->level[0], a.spectrum, error);
+        ki_intake_whole(a.intake, map->level[0], a.spectrum);
     if (result == KILN_OK)
         result = ki_sh_project(a.spectrum, bands, rotation, sh, error);
     analyzer_destroy(&a);

@@ -197,10 +197,10 @@ kiln_result ki_prefilter_execute(ki_prefilter *p, const kiln_map *panorama, cons
                                  kiln_map *map, kiln_error *error)
 {
     static const char stage[] = "filtering";
-    kiln_result result;
+    kiln_result result = KILN_OK;
     if (!ki_progress(p->context, stage, 0))
         return ki_fail_cancelled(error, stage);
-    result = ki_intake_whole(p->intake, panorama->level[0], p->spectrum, error);
+    ki_intake_whole(p->intake, panorama->level[0], p->spectrum);
     // Progress is reported in proportion to texels: each level has four times the texels of the
     // next.
     double done = 0.25;
@@ -242,4 +242,20 @@ void ki_prefilter_destroy(ki_prefilter *plan)
     ki_intake_destroy(plan->intake);
     ki_analysis_destroy(plan->analysis);
     ki_free(plan);
+}
+
+void ki_prefilter_rehearse(ki_prefilter *prefilter, bool rehearses)
+{
+    if (prefilter->tune)
+        ki_tune_rehearse(prefilter->tune, rehearses);
+}
+
+size_t ki_prefilter_suns_size(const ki_prefilter *p, size_t count)
+{
+    size_t most = p->tune ? ki_tune_suns_size(p->tune, p->source_size, count) : 0;
+    for (int i = 0; i < p->def.level_count; i++) {
+        size_t size = p->levels[i] ? ki_level_suns_size(p->levels[i], p->source_size, count) : 0;
+        most = size > most ? size : most;
+    }
+    return most;
 }

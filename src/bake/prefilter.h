@@ -46,6 +46,10 @@ kiln_result ki_prefilter_create(kiln_context *context, int panorama_size, const 
 /// size. The spectrum stays in the prefilter until the next execution.
 kiln_result ki_prefilter_execute(ki_prefilter *prefilter, const kiln_map *panorama,
                                  const kiln_map *source, kiln_map *map, kiln_error *error);
+/// See ki_tune_rehearse; does nothing for exact levels.
+void ki_prefilter_rehearse(ki_prefilter *prefilter, bool rehearses);
+/// Bytes that an execution takes at most for `count` suns.
+size_t ki_prefilter_suns_size(const ki_prefilter *prefilter, size_t count);
 /// Frees a prefilter. `prefilter` may be NULL.
 void ki_prefilter_destroy(ki_prefilter *prefilter);
 

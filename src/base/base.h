@@ -54,6 +54,27 @@ static inline kiln_result ki_fail_memory(kiln_context *context, kiln_error *erro
     ki_describe_memory(context, error, what, byte_count);
     return KILN_ERROR_MEMORY;
 }
+/// Bytes that a block of that size takes from the context, or SIZE_MAX.
+size_t ki_block_size(size_t count, size_t size);
+
+/// Memory for what lives during one execution of a plan, so that an execution allocates nothing. Between
+/// begin and end, blocks are taken from it one behind the other; a block that is freed makes room once
+/// all blocks behind it are freed. The calling thread alone may allocate then. What does not fit comes
+/// from the context as ever. Without memory (capacity 0) it only measures.
+typedef struct ki_scratch {
+    uint8_t *memory;
+    size_t capacity, peak; ///< bytes there are, and the most that were wanted
+    struct ki_block *top;  ///< the last block that is there
+} ki_scratch;
+
+void ki_scratch_begin(kiln_context *context, ki_scratch *scratch);
+/// All blocks that were taken are freed by now.
+void ki_scratch_end(kiln_context *context);
+/// Gives it as much memory as was ever wanted, and `more` bytes; false where there is not so much. Not
+/// between begin and end.
+bool ki_scratch_reserve(kiln_context *context, ki_scratch *scratch, size_t more);
+void ki_scratch_free(ki_scratch *scratch);
+
 /// Sets *product to a times b. Returns false on overflow.
 bool ki_mul_size(size_t a, size_t b, size_t *product);
 

@@ -4,6 +4,7 @@
 #include "base/context.h"
 #include "base/base.h"
 
+#include <assert.h>
 #include <stdalign.h>
 #include <stdio.h>
 #include <string.h>
@@ -16,11 +17,16 @@ const char *kiln_version(void)
     return KI_STR(KILN_VERSION_MAJOR) "." KI_STR(KILN_VERSION_MINOR) "." KI_STR(KILN_VERSION_PATCH);
 }
 
-// A header of 64 bytes before every memory block, which records the block's heap and size.
-typedef struct block_head {
+// A header of 64 bytes before every memory block says where the block came from. The blocks of a scratch
+// are a list from the last to the first.
+typedef struct ki_block {
     alignas(64) ki_heap *heap;
-    size_t size; // size of the block with its header
-} block_head;
+    size_t size; // with these bytes
+    ki_scratch *scratch;
+    struct ki_block *below;
+    size_t offset;            // in the scratch, or where it would be
+    bool is_freed, is_inside; // of a scratch: freed, but others are above; in the scratch's memory
+} ki_block;
 
 bool ki_mul_size(size_t a, size_t b, size_t *product)
 {
@@ -61,19 +67,21 @@ static void heap_leave(ki_heap *heap)
         heap->release(heap->user, heap, sizeof *heap);
 }
 
-void *ki_alloc_raw(kiln_context *context, size_t count, size_t size)
+size_t ki_block_size(size_t count, size_t size)
 {
-    ki_heap *heap = context->heap;
     size_t bytes;
-    if (!ki_mul_size(count, size, &bytes) || bytes > SIZE_MAX - 2 * sizeof(block_head))
-        return NULL;
-    bytes = (bytes + sizeof(block_head) + 63) & ~(size_t)63;
+    if (!ki_mul_size(count, size, &bytes) || bytes > SIZE_MAX - 2 * sizeof(ki_block))
+        return SIZE_MAX;
+    return (bytes + sizeof(ki_block) + 63) & ~(size_t)63;
+}
 
+static ki_block *heap_take(ki_heap *heap, size_t bytes)
+{
     size_t held = atomic_fetch_add(&heap->held, bytes) + bytes;
-    block_head *head = NULL;
+    ki_block *block = NULL;
     if (!heap->limit || (held <= heap->limit && held >= bytes))
-        head = heap->allocate(heap->user, bytes);
-    if (!head) {
+        block = heap->allocate(heap->user, bytes);
+    if (!block) {
         atomic_fetch_sub(&heap->held, bytes);
         return NULL;
     }
@@ -81,9 +89,87 @@ void *ki_alloc_raw(kiln_context *context, size_t count, size_t size)
     size_t peak = atomic_load(&heap->peak);
     while (held > peak && !atomic_compare_exchange_weak(&heap->peak, &peak, held)) {
     }
-    head->heap = heap;
-    head->size = bytes;
-    return head + 1;
+    *block = (ki_block){.heap = heap, .size = bytes};
+    return block;
+}
+
+static void heap_give(ki_block *block)
+{
+    ki_heap *heap = block->heap;
+    size_t size = block->size;
+    atomic_fetch_sub(&heap->held, size);
+    heap->release(heap->user, block, size);
+    heap_leave(heap);
+}
+
+static ki_block *scratch_take(ki_heap *heap, ki_scratch *scratch, size_t bytes)
+{
+    size_t offset = scratch->top ? scratch->top->offset + scratch->top->size : 0;
+    bool is_inside = offset <= scratch->capacity && bytes <= scratch->capacity - offset;
+    ki_block *block =
+        is_inside ? (ki_block *)(void *)(scratch->memory + offset) : heap_take(heap, bytes);
+    if (!block)
+        return NULL;
+    *block = (ki_block){.heap = heap,
+                        .size = bytes,
+                        .scratch = scratch,
+                        .below = scratch->top,
+                        .offset = offset,
+                        .is_inside = is_inside};
+    scratch->top = block;
+    scratch->peak = offset + bytes > scratch->peak ? offset + bytes : scratch->peak;
+    return block;
+}
+
+static void scratch_give(ki_block *block)
+{
+    ki_scratch *scratch = block->scratch;
+    block->is_freed = true;
+    while (scratch->top && scratch->top->is_freed) {
+        ki_block *top = scratch->top;
+        scratch->top = top->below;
+        if (!top->is_inside)
+            heap_give(top);
+    }
+}
+
+void ki_scratch_begin(kiln_context *context, ki_scratch *scratch)
+{
+    context->scratch = scratch;
+}
+
+void ki_scratch_end(kiln_context *context)
+{
+    assert(!context->scratch->top);
+    context->scratch = NULL;
+}
+
+bool ki_scratch_reserve(kiln_context *context, ki_scratch *scratch, size_t more)
+{
+    if (more > SIZE_MAX / 2 || scratch->peak > SIZE_MAX / 2)
+        return false;
+    ki_free(scratch->memory);
+    scratch->capacity = scratch->peak + more;
+    scratch->memory = ki_alloc_raw(context, scratch->capacity, 1);
+    if (!scratch->memory)
+        scratch->capacity = 0;
+    return scratch->memory != NULL;
+}
+
+void ki_scratch_free(ki_scratch *scratch)
+{
+    ki_free(scratch->memory);
+    *scratch = (ki_scratch){0};
+}
+
+void *ki_alloc_raw(kiln_context *context, size_t count, size_t size)
+{
+    size_t bytes = ki_block_size(count, size);
+    if (bytes == SIZE_MAX)
+        return NULL;
+    ki_block *block = context->scratch ? scratch_take(context->heap, context->scratch, bytes)
+                                       : heap_take(context->heap, bytes);
+    return block ? block + 1 : NULL;
 }
 
 void *ki_alloc(kiln_context *context, size_t count, size_t size)
@@ -98,12 +184,11 @@ void ki_free(void *memory)
 {
     if (!memory)
         return;
-    block_head *head = (block_head *)memory - 1;
-    ki_heap *heap = head->heap;
-    size_t size = head->size;
-    atomic_fetch_sub(&heap->held, size);
-    heap->release(heap->user, head, size);
-    heap_leave(heap);
+    ki_block *block = (ki_block *)memory - 1;
+    if (block->scratch)
+        scratch_give(block);
+    else
+        heap_give(block);
 }
 
 void ki_describe_memory(kiln_context *context, kiln_error *error, const char *what,

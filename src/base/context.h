@@ -38,7 +38,8 @@ typedef struct ki_heap {
 struct kiln_context {
     kiln_context_def def;
     ki_heap *heap;
-    ki_stage said; // the last progress report
+    ki_scratch *scratch; // of the execution that runs; NULL if none runs
+    ki_stage said;       // the last progress report
     ki_pool pool;
 };
 

@@ -4,8 +4,14 @@
 bool ki_progress(kiln_context *context, const char *stage, double fraction)
 {
     context->said = (ki_stage){stage, fraction, fraction};
-    return !context->def.progress ||
-           context->def.progress(context->def.progress_user, stage, fraction);
+    if (!context->def.progress)
+        return true;
+    // What the callback allocates by this context does not belong to the execution that reports.
+    ki_scratch *scratch = context->scratch;
+    context->scratch = NULL;
+    bool go_on = context->def.progress(context->def.progress_user, stage, fraction);
+    context->scratch = scratch;
+    return go_on;
 }
 
 bool ki_go_on(kiln_context *context)

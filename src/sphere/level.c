@@ -509,3 +509,8 @@ kiln_result ki_level_execute(ki_level *v, const kiln_spectrum *spectrum, const k
     ki_points_destroy(&v->points);
     return result;
 }
+
+size_t ki_level_suns_size(const ki_level *level, int source_size, size_t count)
+{
+    return ki_points_size(&level->zonal, source_size, count);
+}

@@ -21,4 +21,7 @@ kiln_result ki_level_execute(ki_level *level, const kiln_spectrum *spectrum,
                              const kiln_map *panorama, double rotation, kiln_map *map, int index,
                              const ki_stage *stage, kiln_error *error);
 
+/// Bytes that an execution takes for `count` suns of a panorama of `source_size` rows, and all.
+size_t ki_level_suns_size(const ki_level *level, int source_size, size_t count);
+
 #endif

@@ -61,6 +61,27 @@ static void divide(const ki_sun *sun, int size, int n, const double *nodes, cons
 // be the size of the texel and s the distance from the sun or the width of the lobe k. The relative
 // error of one point is about (h/s)^2 / 24 times k'' s^2 / k, which is 20 in the tail of GGX. Two
 // by two Gauss nodes err by (h/s)^4 / 4320 times 840, four by four by 1e-4 (h/s)^8.
+static void lay_suns(const ki_zonal *zonal, int size, ki_sun_points *suns)
+{
+    double texel = KI_PI / size, width = ki_lobe_width(&zonal->lobe);
+    // The Charlie lobe is steep where the horizon cuts through a texel, hence at least 4 cells.
+    int least = zonal->lobe.kind == KILN_LOBE_CHARLIE ? 4 : 1;
+    int n = 4 * (int)ki_clamp(ceil(texel / width / 0.5), least, MOST_CELLS);
+    suns->near_count = n * n;
+    suns->near_versine = texel > 0.04 * width ? 1 - ki_cos(fmin(KI_PI, 24 * texel)) : -1;
+    suns->far_versine = width > 128 * texel ? -1 : 1 - ki_cos(fmin(KI_PI, 128 * texel));
+    suns->horizon = texel;
+}
+
+size_t ki_points_size(const ki_zonal *zonal, int size, size_t count)
+{
+    ki_sun_points suns = {0};
+    lay_suns(zonal, size, &suns);
+    return ki_block_size(count, sizeof *suns.centre) +
+           ki_block_size(count, 4 * sizeof *suns.pairs) +
+           ki_block_size(count, (size_t)suns.near_count * sizeof *suns.near);
+}
+
 kiln_result ki_points_create(const kiln_spectrum *spectrum, const ki_zonal *zonal, double integral,
                              double rotation, ki_points *points, kiln_error *error)
 {
@@ -73,14 +94,7 @@ kiln_result ki_points_create(const kiln_spectrum *spectrum, const ki_zonal *zona
     ki_sun_points *suns = &points->suns;
     if (!suns->count)
         return KILN_OK;
-    double texel = KI_PI / spectrum->size, width = ki_lobe_width(&zonal->lobe);
-    // The Charlie lobe is steep where the horizon cuts through a texel, hence at least 4 cells.
-    int least = zonal->lobe.kind == KILN_LOBE_CHARLIE ? 4 : 1;
-    int cells = (int)ki_clamp(ceil(texel / width / 0.5), least, MOST_CELLS), n = 4 * cells;
-    suns->near_count = n * n;
-    suns->near_versine = texel > 0.04 * width ? 1 - ki_cos(fmin(KI_PI, 24 * texel)) : -1;
-    suns->far_versine = width > 128 * texel ? -1 : 1 - ki_cos(fmin(KI_PI, 128 * texel));
-    suns->horizon = texel;
+    lay_suns(zonal, spectrum->size, suns);
     size_t count = (size_t)suns->count, near_count = (size_t)suns->near_count;
     suns->centre = ki_alloc_raw(context, count, sizeof *suns->centre);
     suns->pairs = ki_alloc_raw(context, count * 4, sizeof *suns->pairs);
@@ -90,8 +104,11 @@ kiln_result ki_points_create(const kiln_spectrum *spectrum, const ki_zonal *zona
         return ki_fail_memory(context, error, "the suns", count * near_count * sizeof *suns->near);
     }
     double nodes[4 * MOST_CELLS], weights[4 * MOST_CELLS];
+    int n = 4;
+    while (n * n < suns->near_count)
+        n += 4;
     for (int i = 0; i < n; i++) {
-        int cell = i / 4, k = i % 4;
+        int cell = i / 4, k = i % 4, cells = n / 4;
         nodes[i] = (cell + 0.5 + gauss_four[0][k]) / cells;
         weights[i] = gauss_four[1][k] / cells;
     }

@@ -18,6 +18,8 @@ typedef struct ki_points {
 kiln_result ki_points_create(const kiln_spectrum *spectrum, const ki_zonal *zonal, double integral,
                              double rotation, ki_points *points, kiln_error *error);
 void ki_points_destroy(ki_points *points);
+/// Bytes that ki_points_create takes for `count` suns of a panorama of `size` rows.
+size_t ki_points_size(const ki_zonal *zonal, int size, size_t count);
 /// Adds the light of the suns in eight unit directions, [3][8], to sum[channel][lane].
 void ki_points_add(const ki_points *points, const double *directions, double *sum);
 

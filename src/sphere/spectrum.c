@@ -17,6 +17,8 @@ static const double sun_share = 1e-3;
 // A texel can be kept out of the spectrum as a sun only if it is at least this many times brighter
 // than the mean of the panorama.
 static const double sun_contrast = 200;
+// Texels that may be suns at a time: no more than 1000 hold their share of one channel's light.
+enum { CANDIDATES = 4096 };
 
 // ---------------------------------------------------------------------------------------- the plan
 
@@ -156,8 +158,9 @@ kiln_result ki_spectrum_create(const ki_analysis *analysis, kiln_spectrum **spec
         *s =
             (kiln_spectrum){.context = context, .degree = analysis->degree, .size = analysis->size};
         s->a = ki_alloc(context, ki_coefficient_count(s->degree), sizeof *s->a);
+        s->suns = ki_alloc_raw(context, CANDIDATES, sizeof *s->suns);
     }
-    if (s && s->a)
+    if (s && s->a && s->suns)
         return KILN_OK;
     kiln_spectrum_destroy(s);
     *spectrum = NULL;
@@ -190,7 +193,7 @@ struct ki_intake {
     float *row_peaks;   // largest value of each row, [size]
     double total[3];    // radiance times solid angle, summed over the rows so far
     ki_sun *candidates; // texels bright enough to be suns relative to the light of the rows so far
-    int candidate_count, candidate_room;
+    int candidate_count;
 
     double *orders; // Fourier coefficients of the latitude rings, [degree + 1][vector][12][8]
     // Scratch memory of each worker: two FFT buffers and 16 latitude rings, or the state of the
@@ -227,8 +230,7 @@ kiln_result ki_intake_create(const ki_analysis *analysis, bool whole, ki_intake 
     in->rings = whole ? NULL : ki_alloc_raw(context, ring_bytes, 1);
     in->row_sums = ki_alloc_raw(context, (size_t)analysis->size, 3 * sizeof(double));
     in->row_peaks = ki_alloc_raw(context, (size_t)analysis->size, sizeof(float));
-    in->candidate_room = 4096;
-    in->candidates = ki_alloc_raw(context, (size_t)in->candidate_room, sizeof *in->candidates);
+    in->candidates = ki_alloc_raw(context, CANDIDATES, sizeof *in->candidates);
     in->orders =
         ki_alloc_raw(context, ((size_t)analysis->degree + 1) * vectors, 96 * sizeof(double));
     in->scratch = ki_alloc_raw(context, threads * in->scratch_size, sizeof(double));
@@ -345,9 +347,9 @@ static void gather_candidates(ki_intake *in)
             const float *rgb = in->rows + 3 * ((size_t)j * 2 * (size_t)size + (size_t)x);
             if (!is_sun(rgb, solid, in->total))
                 continue;
-            if (in->candidate_count == in->candidate_room)
+            if (in->candidate_count == CANDIDATES)
                 prune(in);
-            if (in->candidate_count < in->candidate_room)
+            if (in->candidate_count < CANDIDATES)
                 in->candidates[in->candidate_count++] = (ki_sun){row, x, {rgb[0], rgb[1], rgb[2]}};
         }
     }
@@ -368,9 +370,8 @@ kiln_result ki_intake_rows(ki_intake *in, const float *rows, int count, kiln_err
 }
 
 // Decides which candidates are suns and moves these to the spectrum.
-static bool settle_suns(ki_intake *in, kiln_spectrum *spectrum)
+static void settle_suns(ki_intake *in, kiln_spectrum *spectrum)
 {
-    const ki_analysis *a = in->analysis;
     int count = 0;
     prune(in);
     for (int i = 0; i < in->candidate_count; i++) {
@@ -380,16 +381,9 @@ static bool settle_suns(ki_intake *in, kiln_spectrum *spectrum)
             bright |= (double)sun->radiance[c] * 4 * KI_PI > sun_contrast * in->total[c] &&
                       in->total[c] > 0;
         if (bright)
-            in->candidates[count++] = *sun;
+            spectrum->suns[count++] = *sun;
     }
-    ki_free(spectrum->suns);
-    spectrum->sun_count = 0;
-    spectrum->suns = ki_alloc_raw(a->context, (size_t)count + 1, sizeof *spectrum->suns);
-    if (!spectrum->suns)
-        return false;
-    memcpy(spectrum->suns, in->candidates, (size_t)count * sizeof *spectrum->suns);
     spectrum->sun_count = count;
-    return true;
 }
 
 // ---------------------------------------------------------------------------------------- analysis
@@ -488,16 +482,13 @@ static void analyze_order(void *data, int worker, int m)
             out[KI_COMPONENTS * i + c] *= a->legendre.scale[row + (size_t)i];
 }
 
-static kiln_result analyze_rings(ki_intake *in, kiln_spectrum *spectrum, kiln_error *error)
+static void analyze_rings(ki_intake *in, kiln_spectrum *spectrum)
 {
     const ki_analysis *a = in->analysis;
-    if (!settle_suns(in, spectrum))
-        return ki_fail_memory(a->context, error, "the list of suns",
-                              (size_t)in->candidate_count * sizeof(ki_sun));
+    settle_suns(in, spectrum);
     in->spectrum = spectrum;
     ki_parallel_workers(a->context, a->rings.vector_count, transform_rings, in);
     ki_parallel_workers(a->context, a->degree + 1, analyze_order, in);
-    return KILN_OK;
 }
 
 kiln_result ki_intake_finish(ki_intake *in, kiln_spectrum *spectrum, kiln_error *error)
@@ -505,11 +496,11 @@ kiln_result ki_intake_finish(ki_intake *in, kiln_spectrum *spectrum, kiln_error 
     if (in->row_count != in->analysis->size)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "the panorama has %d rows, only %d came",
                        in->analysis->size, in->row_count);
-    return analyze_rings(in, spectrum, error);
+    analyze_rings(in, spectrum);
+    return KILN_OK;
 }
 
-kiln_result ki_intake_whole(ki_intake *in, const float *rows, kiln_spectrum *spectrum,
-                            kiln_error *error)
+void ki_intake_whole(ki_intake *in, const float *rows, kiln_spectrum *spectrum)
 {
     in->row_count = in->candidate_count = 0;
     memset(in->total, 0, sizeof in->total);
@@ -517,7 +508,7 @@ kiln_result ki_intake_whole(ki_intake *in, const float *rows, kiln_spectrum *spe
     in->rows_here = in->analysis->size;
     ki_parallel_for(in->analysis->context, in->rows_here, sum_one_row, in);
     gather_candidates(in);
-    return analyze_rings(in, spectrum, error);
+    analyze_rings(in, spectrum);
 }
 
 // -------------------------------------------------------------------------------------------- suns

@@ -66,8 +66,7 @@ kiln_result ki_intake_create(const ki_analysis *analysis, bool whole, ki_intake 
                              kiln_error *error);
 void ki_intake_destroy(ki_intake *intake);
 /// Writes the spectrum of a whole panorama of `size` rows.
-kiln_result ki_intake_whole(ki_intake *intake, const float *rows, kiln_spectrum *spectrum,
-                            kiln_error *error);
+void ki_intake_whole(ki_intake *intake, const float *rows, kiln_spectrum *spectrum);
 /// Adds the next `count` rows of the panorama.
 kiln_result ki_intake_rows(ki_intake *intake, const float *rows, int count, kiln_error *error);
 /// Writes the spectrum once all rows have been passed.

@@ -6,6 +6,7 @@
 
 #include "image/image.h"
 #include "math/math.h"
+#include "sphere/points.h"
 #include "sphere/sh.h"
 #include "tune/tune_level.h"
 #include "tune/tune_mix.h"
@@ -33,6 +34,7 @@ struct ki_tune {
     // Results for the environment of the last ki_tune_execute.
     ki_mixtures mixtures;
     double (*power)[3]; // power of each degree: [degree + 1] without the suns, then with the suns
+    bool rehearses;     // see ki_tune_rehearse
 };
 
 static int size_at(const ki_tune *t, int level)
@@ -106,7 +108,6 @@ void ki_tune_destroy(ki_tune *t)
         return;
     for (int n = 0; n <= t->nodes.count; n++)
         ki_zonal_free(&t->nodes.spectra[n]);
-    ki_free(t->power);
     ki_free(t);
 }
 
@@ -126,7 +127,6 @@ bool ki_tune_makes(const ki_tune *t, int level)
 static kiln_result choose_mixtures(ki_tune *t, const kiln_spectrum *spectrum, kiln_error *error)
 {
     size_t count = (size_t)spectrum->degree + 1;
-    ki_free(t->power);
     t->power = ki_alloc(t->context, 2 * count, sizeof *t->power);
     if (!t->power)
         return ki_fail_memory(t->context, error, "a spectrum's power",
@@ -175,7 +175,7 @@ static kiln_result make_kernel(const ki_tune *t, int level, ki_zonal *zonal, ki_
     int l = ki_min(degree, most_degree(size_at(t, level)));
     for (; l > ki_min(degree, KI_LEAST_DEGREE); l--) {
         left += spectrum->k[l] * spectrum->k[l] * power_at(t, l);
-        if (left > t->tolerance * t->tolerance * all)
+        if (t->rehearses || left > t->tolerance * t->tolerance * all)
             break;
     }
     for (int i = 1; i <= degree; i++)
@@ -283,17 +283,15 @@ static kiln_result make_read(ki_tune *t, const ki_legendre *legendre, const kiln
     return result;
 }
 
-kiln_result ki_tune_execute(ki_tune *t, const ki_legendre *legendre, const kiln_spectrum *spectrum,
-                            double rotation, kiln_map *map, const ki_stage *stage,
-                            kiln_error *error)
+static kiln_result make_levels(ki_tune *t, const ki_legendre *legendre,
+                               const kiln_spectrum *spectrum, double rotation, kiln_map *map,
+                               const ki_stage *stage, kiln_error *error)
 {
     kiln_map mirror = {.shape = t->shape, .size = t->size, .level_count = 1};
     while (t->size >> mirror.level_count >= t->smallest && mirror.level_count < t->level_count)
         mirror.level_count++;
     kiln_map targets[KILN_MAX_LEVELS] = {{0}};
-    kiln_result result = choose_mixtures(t, spectrum, error);
-    if (result == KILN_OK)
-        result = ki_map_allocate(t->context, &mirror, error);
+    kiln_result result = ki_map_allocate(t->context, &mirror, error);
     if (result != KILN_OK)
         return result;
     ki_make_mirrors(t->context, map, &mirror);
@@ -315,4 +313,30 @@ kiln_result ki_tune_execute(ki_tune *t, const ki_legendre *legendre, const kiln_
         kiln_map_free(&targets[i]);
     kiln_map_free(&mirror);
     return result;
+}
+
+kiln_result ki_tune_execute(ki_tune *t, const ki_legendre *legendre, const kiln_spectrum *spectrum,
+                            double rotation, kiln_map *map, const ki_stage *stage,
+                            kiln_error *error)
+{
+    kiln_result result = choose_mixtures(t, spectrum, error);
+    if (result == KILN_OK)
+        result = make_levels(t, legendre, spectrum, rotation, map, stage, error);
+    ki_free(t->power);
+    t->power = NULL;
+    return result;
+}
+
+void ki_tune_rehearse(ki_tune *t, bool rehearses)
+{
+    t->rehearses = rehearses;
+}
+
+size_t ki_tune_suns_size(const ki_tune *t, int source_size, size_t count)
+{
+    double narrowest = 1;
+    for (int n = 0; n <= t->nodes.count; n++)
+        narrowest = fmin(narrowest, t->nodes.roughness[n] * t->nodes.roughness[n]);
+    const ki_zonal zonal = {.lobe = kiln_lobe_ggx(narrowest)};
+    return ki_points_size(&zonal, source_size, count) + ki_block_size(count, 6 * sizeof(double));
 }

@@ -54,4 +54,10 @@ kiln_result ki_tune_execute(ki_tune *tune, const ki_legendre *legendre,
                             const kiln_spectrum *spectrum, double rotation, kiln_map *map,
                             const ki_stage *stage, kiln_error *error);
 
+/// While a tuning rehearses, its executions make every level to the highest degree that any source may
+/// need, and so take as much memory as any execution but for the suns.
+void ki_tune_rehearse(ki_tune *tune, bool rehearses);
+/// Bytes that an execution takes at most for `count` suns of a panorama of `source_size` rows.
+size_t ki_tune_suns_size(const ki_tune *tune, int source_size, size_t count);
+
 #endif
