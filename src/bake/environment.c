@@ -107,9 +107,10 @@ static int panorama_rows(kiln_shape shape, int size)
 static kiln_result check_def(const ki_plan_def *def, kiln_error *error)
 {
     int most = def->source_shape == KILN_SHAPE_PANORAMA ? KILN_MAX_SIZE / 2 : KILN_MAX_SIZE;
-    if ((int)def->source_shape < 0 || def->source_shape > KILN_SHAPE_OCTAHEDRON)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "source_shape is %d, it must be 0 to %d",
-                       (int)def->source_shape, (int)KILN_SHAPE_OCTAHEDRON);
+    if (def->source_shape < KILN_SHAPE_PANORAMA || def->source_shape > KILN_SHAPE_OCTAHEDRON)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "source_shape is %d, it must be %d to %d",
+                       (int)def->source_shape, (int)KILN_SHAPE_PANORAMA,
+                       (int)KILN_SHAPE_OCTAHEDRON);
     if (def->source_size < 1 || def->source_size > most)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "source_size is %d, it must be 1 to %d",
                        def->source_size, most);
@@ -248,7 +249,7 @@ const kiln_spectrum *kiln_plan_spectrum(const kiln_plan *plan)
 
 // --------------------------------------------------------------------------------------- execution
 
-static const char *const shape_names[] = {"panoramas", "cubes", "octahedra"};
+static const char *const shape_names[] = {"", "panoramas", "cubes", "octahedra"};
 
 static kiln_result check_source(const kiln_plan *p, const kiln_map *source, kiln_error *error)
 {

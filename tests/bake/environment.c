@@ -36,7 +36,7 @@ static kiln_map make_source(kiln_shape shape, uint32_t seed)
 static void levels_and_harmonics_are_those_made_alone(void **state)
 {
     (void)state;
-    for (int shape = 0; shape < 3; shape++) {
+    for (int shape = KILN_SHAPE_PANORAMA; shape <= KILN_SHAPE_OCTAHEDRON; shape++) {
         kiln_map source = make_source((kiln_shape)shape, 5), levels;
         kiln_bake_def def = {.levels = {.size = 16, .rotation = 25}, .sh_bands = 5};
         kiln_environment made, bare;
@@ -68,7 +68,7 @@ static void levels_and_harmonics_are_those_made_alone(void **state)
 static void the_irradiance_is_the_integral_over_the_cosine(void **state)
 {
     (void)state;
-    for (int shape = 0; shape < 3; shape++) {
+    for (int shape = KILN_SHAPE_PANORAMA; shape <= KILN_SHAPE_OCTAHEDRON; shape++) {
         kiln_map panorama = scene_panorama(context, 32, 9),
                  source = make_source((kiln_shape)shape, 9);
         kiln_bake_def def = {.levels = {.size = 4}, .irradiance_size = 8};
@@ -127,7 +127,7 @@ static void white_stays_white(void **state)
 static void the_source_is_mirrored_and_exposed_first(void **state)
 {
     (void)state;
-    for (int shape = 0; shape < 3; shape++) {
+    for (int shape = KILN_SHAPE_PANORAMA; shape <= KILN_SHAPE_OCTAHEDRON; shape++) {
         kiln_map source = make_source((kiln_shape)shape, 3),
                  changed = make_source((kiln_shape)shape, 3);
         kiln_bake_def def = {.levels = {.size = 8, .rotation = 40}, .irradiance_size = 4};
@@ -149,7 +149,7 @@ static void the_source_is_mirrored_and_exposed_first(void **state)
 static void a_plan_makes_the_same_of_every_shape(void **state)
 {
     (void)state;
-    for (int shape = 0; shape < 3; shape++) {
+    for (int shape = KILN_SHAPE_PANORAMA; shape <= KILN_SHAPE_OCTAHEDRON; shape++) {
         kiln_map source[2] = {make_source((kiln_shape)shape, 1), make_source((kiln_shape)shape, 2)};
         kiln_bake_def def = {.levels = {.size = 16, .level_count = 3}, .exposure = 0.5};
         kiln_environment wanted[2], made;
@@ -162,7 +162,7 @@ static void a_plan_makes_the_same_of_every_shape(void **state)
             CHECK_OK(kiln_plan_execute(plan, &source[i % 2], &made, &error));
             assert_true(same_environment(&made, &wanted[i % 2]));
         }
-        source[0].shape = (kiln_shape)((shape + 1) % 3);
+        source[0].shape = (kiln_shape)(shape % 3 + 1);
         assert_int_equal(kiln_plan_execute(plan, &source[0], &made, &error), KILN_ERROR_ARGUMENT);
         assert_non_null(strstr(error.message, "the plan is for"));
         kiln_plan_destroy(plan);
