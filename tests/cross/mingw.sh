@@ -34,5 +34,5 @@ grep -q 'missing.exr' said
 # A program that asks the DLL.
 x86_64-w64-mingw32-gcc -std=c17 -DKILN_SHARED -I"$2/include" "$2/tests/package/consumer/main.c" \
     -o consumer.exe ../libkiln.dll.a
-cp ../libkiln.dll .
+cp ../bin/libkiln.dll .
 "$wine" consumer.exe
