@@ -31,6 +31,9 @@ flags="-std=c17 -Wall -Wextra -Werror"
 cc $flags $(pkg-config --cflags kiln) "$consumer/main.c" -o "$work/shared" \
     $(pkg-config --libs kiln)
 say "pkg-config, shared: $(LD_LIBRARY_PATH=$libdir "$work/shared")"
+# Until 1.0 a minor version may change the interface, so the name that programs ask for carries it.
+version=$(pkg-config --modversion kiln)
+[ -e "$libdir/libkiln.so.${version%.*}" ] || { say "no libkiln.so.${version%.*}"; ls "$libdir"; exit 1; }
 rm "$libdir"/libkiln.so*
 # shellcheck disable=SC2046,SC2086
 cc $flags $(pkg-config --cflags kiln) "$consumer/main.c" -o "$work/static" \
