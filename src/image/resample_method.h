@@ -1,0 +1,104 @@
+// A plan for resampling by area, and the methods that execute it. Shared by resample.c, which chooses
+// the method, resample_stencil.c (gather and scatter) and resample_texel.c (all others).
+#ifndef KI_RESAMPLE_METHOD_H
+#define KI_RESAMPLE_METHOD_H
+
+#include "image/resample.h"
+#include "image/stencil.h"
+
+#include <math.h>
+
+enum {
+    KI_RESAMPLE_GRIDS = 8,
+    KI_RESAMPLE_BANDS = 8 ///< row bands to which threads distribute light at the same time
+};
+
+typedef enum ki_resample_method {
+    KI_RESAMPLE_GATHER,    ///< panorama to cube or octahedron
+    KI_RESAMPLE_SCATTER,   ///< cube or octahedron to panorama
+    KI_RESAMPLE_SEPARABLE, ///< panorama to panorama
+    KI_RESAMPLE_FACES,     ///< cube to cube of another size, by quarter turns
+    KI_RESAMPLE_SUBSAMPLE  ///< all else
+} ki_resample_method;
+
+/// The range of source columns or rows that a target column or row overlaps.
+typedef struct ki_resample_span {
+    int first, count;
+    size_t weight; // index of the first weight
+} ki_resample_span;
+
+struct ki_resample_plan {
+    kiln_context *context;
+    kiln_shape source_shape, shape;
+    int source_size, size;
+    double rotation;
+
+    // Constant after creation; the method says which member is in use.
+    ki_resample_method method;
+    union {
+        struct
+        { // gather, scatter: the cube or octahedron is computed `factor` times finer than its size
+            ki_stencil_grid grid[KI_RESAMPLE_GRIDS];
+            int grid_count;
+            int factor;
+            float *fine_area; // solid angles of the finer map's first face's texels; gather only
+            int band_rows;    // rows of a band; scatter only
+        };
+        struct { // separable
+            ki_resample_span *columns, *rows;
+            float *weights;
+        };
+        int sub; // subsample: points along a texel's side
+    };
+
+    // Written by each execution, allocated with the plan so that executions allocate nothing.
+    struct {
+        float *fine;   // gather: the finer map
+        double *bands; // scatter: sums of bands of rows of a panorama
+    } scratch;
+};
+
+/// One execution, which the tasks below share.
+typedef struct ki_resample_job {
+    const ki_resample_plan *plan;
+    const float *source;
+    float *target;
+    int first; // index of the first band, for scattering
+} ki_resample_job;
+
+// Wraps a column into the range 0 .. width - 1, without a division. The column must not be far
+// outside the range.
+static inline int wrap(int column, int width)
+{
+    while (column < 0)
+        column += width;
+    while (column >= width)
+        column -= width;
+    return column;
+}
+
+/// Whether a number is whole, up to rounding.
+static inline bool ki_is_whole(double x)
+{
+    return fabs(x - floor(x + 0.5)) < 1e-9;
+}
+
+/// Sets grids and factor for a cube or octahedron of size n beside a panorama of `height` rows.
+kiln_result ki_resample_plan_stencils(ki_resample_plan *plan, kiln_shape shape, int n, int height,
+                                      double rotation, kiln_error *error);
+/// Allocates the finer map of a gather, and its texels' solid angles.
+kiln_result ki_resample_plan_fine(ki_resample_plan *plan, kiln_error *error);
+kiln_result ki_resample_plan_separable(ki_resample_plan *plan, kiln_error *error);
+
+/// Tasks; `data` is a ki_resample_job. The index is a chunk of stencils,
+void ki_resample_gather(void *data, int index);
+/// a row of the map that is made from `factor` rows of the finer one,
+void ki_resample_coarsen(void *data, int index);
+/// a band from the job's first one on,
+void ki_resample_scatter(void *data, int index);
+/// and a row of the target, all faces one below the other.
+void ki_resample_separable(void *data, int index);
+void ki_resample_faces(void *data, int index);
+void ki_resample_subsample(void *data, int index);
+
+#endif

@@ -1,0 +1,206 @@
+// Resampling texel by texel of the target. Panorama to panorama: separable weights of columns and rows.
+// Cube to cube by quarter turns: rectangles on faces. All else: sub-samples, each weighted by its solid
+// angle.
+#include "image/resample_method.h"
+
+#include "image/image.h"
+#include "math/math.h"
+
+#include <math.h>
+#include <string.h>
+
+// ----------------------------------------------------------------------------------------- separable
+
+void ki_resample_separable(void *data, int y)
+{
+    const ki_resample_job *job = data;
+    const ki_resample_plan *plan = job->plan;
+    int width = 2 * plan->size, source_width = 2 * plan->source_size;
+    ki_resample_span row = plan->rows[y];
+    const float *row_weights = plan->weights + row.weight;
+    float *out = job->target + 3 * (size_t)y * (size_t)width;
+    for (int x = 0; x < width; x++) {
+        ki_resample_span column = plan->columns[x];
+        const float *weights = plan->weights + column.weight;
+        double rgb[3] = {0, 0, 0};
+        for (int j = 0; j < row.count; j++) {
+            const float *line = job->source + 3 * (size_t)(row.first + j) * (size_t)source_width;
+            double sum[3] = {0, 0, 0};
+            for (int i = 0, at = column.first; i < column.count; i++) {
+                for (int c = 0; c < 3; c++)
+                    sum[c] += (double)weights[i] * (double)line[3 * (size_t)at + (size_t)c];
+                at = at + 1 == source_width ? 0 : at + 1;
+            }
+            for (int c = 0; c < 3; c++)
+                rgb[c] += (double)row_weights[j] * sum[c];
+        }
+        for (int c = 0; c < 3; c++)
+            out[3 * (size_t)x + (size_t)c] = (float)rgb[c];
+    }
+}
+
+// Fills a ki_resample_span with the weights for the range [low, high], in units of source rows or columns. Rows
+// are weighted by the difference of cos theta.
+static ki_resample_span make_span(double low, double high, int count, bool rows, float *weights,
+                                  size_t at)
+{
+    double first = floor(low + 1e-9), last = ceil(high - 1e-9);
+    ki_resample_span s = {(int)first, ki_max(1, (int)(last - first)), at};
+    double total = 0;
+    for (int pass = 0; pass < 2; pass++) {
+        for (int k = 0; k < s.count; k++) {
+            double a = k ? first + k : low, b = k + 1 < s.count ? first + k + 1 : high;
+            double w = b - a, step = KI_PI / count;
+            if (rows)
+                w = ki_sin(0.5 * (a + b) * step) * ki_sin(0.5 * (b - a) * step);
+            if (pass)
+                weights[at + (size_t)k] = (float)(w / total);
+            else
+                total += w;
+        }
+    }
+    if (!rows)
+        s.first = wrap(s.first, count);
+    return s;
+}
+
+kiln_result ki_resample_plan_separable(ki_resample_plan *plan, kiln_error *error)
+{
+    int rows = plan->size, source_rows = plan->source_size;
+    size_t spans = 3 * (size_t)rows;
+    size_t count = 3 * (size_t)source_rows + 3 * spans;
+    plan->columns = ki_alloc_raw(plan->context, spans, sizeof *plan->columns);
+    plan->weights = ki_alloc_raw(plan->context, count, sizeof *plan->weights);
+    if (!plan->columns || !plan->weights)
+        return ki_fail_memory(plan->context, error, "resampling",
+                              spans * sizeof *plan->columns + count * sizeof *plan->weights);
+    plan->rows = plan->columns + 2 * (size_t)rows;
+    double turn = fmod(plan->rotation, 360) * (2.0 * source_rows) / 360;
+    if (ki_is_whole(turn))
+        turn = floor(turn + 0.5);
+    size_t used = 0;
+    double ratio = (double)source_rows / rows;
+    for (int x = 0; x < 2 * rows; x++) {
+        plan->columns[x] = make_span(x * ratio + turn, (x + 1) * ratio + turn, 2 * source_rows,
+                                     false, plan->weights, used);
+        used += (size_t)plan->columns[x].count;
+    }
+    for (int y = 0; y < rows; y++) {
+        plan->rows[y] = make_span(y * ratio, ki_clamp((y + 1) * ratio, 0, source_rows), source_rows,
+                                  true, plan->weights, used);
+        used += (size_t)plan->rows[y].count;
+    }
+    return KILN_OK;
+}
+
+// ------------------------------------------------------------------------------- faces, sub-samples
+
+// Returns the solid angle of the rectangle [0, s] x [0, t] on a cube's face. The function is odd in
+// s and in t.
+static double corner_angle(double s, double t)
+{
+    return ki_atan2(s * t, sqrt(s * s + t * t + 1));
+}
+
+// Task of one thread: computes one row of a cube from rectangles on the faces of another cube.
+// Quarter turns map squares to squares.
+void ki_resample_faces(void *data, int index)
+{
+    const ki_resample_job *job = data;
+    const ki_resample_plan *plan = job->plan;
+    int n = plan->size, from = plan->source_size, face = index / n, y = index % n;
+    for (int x = 0; x < n; x++) {
+        double d[3], s, t, rgb[3] = {0, 0, 0}, total = 0;
+        ki_face_direction(face, (2 * x + 1.0) / n - 1, (2 * y + 1.0) / n - 1, d);
+        ki_turn(d, plan->rotation, d);
+        int source_face = ki_direction_face(d, &s, &t);
+        double s0 = s - 1.0 / n, s1 = s + 1.0 / n, t0 = t - 1.0 / n, t1 = t + 1.0 / n;
+        int x0 = ki_max(0, (int)floor((s0 + 1) / 2 * from + 1e-9));
+        int x1 = ki_min(from, (int)ceil((s1 + 1) / 2 * from - 1e-9));
+        int y0 = ki_max(0, (int)floor((t0 + 1) / 2 * from + 1e-9));
+        int y1 = ki_min(from, (int)ceil((t1 + 1) / 2 * from - 1e-9));
+        for (int j = y0; j < y1; j++) {
+            double b0 = j == y0 ? t0 : 2.0 * j / from - 1;
+            double b1 = j + 1 == y1 ? t1 : 2.0 * (j + 1) / from - 1;
+            double left = corner_angle(s0, b1) - corner_angle(s0, b0);
+            const float *line =
+                job->source + 3 * ((size_t)source_face * (size_t)from + (size_t)j) * (size_t)from;
+            for (int i = x0; i < x1; i++) {
+                double a1 = i + 1 == x1 ? s1 : 2.0 * (i + 1) / from - 1;
+                double right = corner_angle(a1, b1) - corner_angle(a1, b0);
+                double area = right - left;
+                for (int c = 0; c < 3; c++)
+                    rgb[c] += area * (double)line[3 * (size_t)i + (size_t)c];
+                total += area;
+                left = right;
+            }
+        }
+        float *out = job->target + 3 * ((size_t)index * (size_t)n + (size_t)x);
+        for (int c = 0; c < 3; c++)
+            out[c] = (float)(rgb[c] / total);
+    }
+}
+
+// Returns the index of the source's texel in a direction.
+static size_t texel_towards(kiln_shape shape, int n, const double direction[3])
+{
+    double u, v;
+    int face = 0;
+    if (shape == KILN_SHAPE_CUBE) {
+        face = ki_direction_face(direction, &u, &v);
+        u = 0.5 * u + 0.5;
+        v = 0.5 * v + 0.5;
+    } else {
+        ki_direction_octahedron(direction, &u, &v);
+    }
+    int x = ki_min(n - 1, (int)(u * n)), y = ki_min(n - 1, (int)(v * n));
+    return ((size_t)face * (size_t)n + (size_t)y) * (size_t)n + (size_t)x;
+}
+
+// Task of one thread: computes one row of the map by samples. For independent random texels, some
+// of them ten times brighter than the others, the root mean square error is 3 % of the mean with 16
+// samples along each side. The error is smaller where neighbouring texels are similar.
+void ki_resample_subsample(void *data, int index)
+{
+    const ki_resample_job *job = data;
+    const ki_resample_plan *plan = job->plan;
+    int n = plan->size, sub = plan->sub, face = index / n, y = index % n;
+    bool cube = plan->shape == KILN_SHAPE_CUBE;
+    double turned[3]; // cosine and sine of the rotation, see ki_turn
+    ki_turn((const double[3]){1, 0, 0}, plan->rotation, turned);
+    for (int x = 0; x < n; x++) {
+        double rgb[3] = {0, 0, 0}, total = 0;
+        float *out = job->target + 3 * ((size_t)index * (size_t)n + (size_t)x);
+        for (int j = 0; j < sub; j++) {
+            for (int i = 0; i < sub; i++) {
+                double u = (x + (i + 0.5) / sub) / n, v = (y + (j + 0.5) / sub) / n, d[3], area;
+                if (cube) {
+                    ki_face_direction(face, 2 * u - 1, 2 * v - 1, d);
+                    double r2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+                    area = 1 / (r2 * sqrt(r2));
+                } else {
+                    // Before normalisation, the octahedron's point has the length 1 / (|x| + |y| +
+                    // |z|), with x, y, z the unit direction.
+                    ki_octahedron_direction(u, v, d);
+                    double sum = fabs(d[0]) + fabs(d[1]) + fabs(d[2]);
+                    area = sum * sum * sum;
+                }
+                double right = d[0] * turned[0] - d[2] * turned[2];
+                d[2] = d[2] * turned[0] + d[0] * turned[2];
+                d[0] = right;
+                const float *texel =
+                    job->source + 3 * texel_towards(plan->source_shape, plan->source_size, d);
+                if (sub == 1) {
+                    memcpy(out, texel, 3 * sizeof *out);
+                    continue;
+                }
+                for (int c = 0; c < 3; c++)
+                    rgb[c] += area * (double)texel[c];
+                total += area;
+            }
+        }
+        if (sub > 1)
+            for (int c = 0; c < 3; c++)
+                out[c] = (float)(rgb[c] / total);
+    }
+}
