@@ -86,10 +86,10 @@ float schlick_fresnel(float voh)
     return c2 * c2 * c;
 }
 
-// The coefficient `dip` of a metal's Fresnel term F = f0 + (1 - f0) (1 - voh)^5 - dip voh (1 -
+// The coefficient `edge` of a metal's Fresnel term F = f0 + (1 - f0) (1 - voh)^5 - edge voh (1 -
 // voh)^6 (Lazanyi and Szirmay-Kalos 2005), such that F is f82 at voh = 1 / 7, an angle of 82
 // degrees (Kutz et al. 2021).
-vec3 f82_dip(vec3 f0, vec3 f82)
+vec3 f82_edge(vec3 f0, vec3 f82)
 {
     const float edge = 6.0 / 7.0, power = edge * edge * edge * edge * edge;
     return (f0 + (1.0 - f0) * power - f82) * (7.0 / (power * edge));
@@ -99,7 +99,7 @@ vec3 f82_dip(vec3 f0, vec3 f82)
 vec3 fresnel_f82(vec3 f0, vec3 f82, float voh)
 {
     float power = schlick_fresnel(voh);
-    vec3 f = f0 + (1.0 - f0) * power - f82_dip(f0, f82) * (voh * power * (1.0 - voh));
+    vec3 f = f0 + (1.0 - f0) * power - f82_edge(f0, f82) * (voh * power * (1.0 - voh));
     return clamp(f, 0.0, 1.0);
 }
 

@@ -35,7 +35,7 @@ layout(std140) uniform View
                               // shows; 1 to show debug tables of the handout's model
     vec4 table_layout[7];     // layouts (see table_place) of E, E_avg and the split sum of the
                               // handout's model, of the same three of the environment's model, and
-                              // of dip_sum
+                              // of edge_sum
     vec4 level_roughness[8];  // roughness of the levels of the two environments, 16 numbers each
     vec4 harmonics[18];       // 9 coefficients of each of the two environments
     vec4 balls[5 * MAX_BALLS]; // of each ball: centre, radius; f0, roughness; F_avg, method;
@@ -44,7 +44,7 @@ layout(std140) uniform View
 
 uniform highp samplerCube environment, environment_textbook, irradiance;
 uniform highp sampler2D handout_e, handout_e_average, handout_split;
-uniform highp sampler2D e, e_average, split_sum, dip_sum;
+uniform highp sampler2D e, e_average, split_sum, edge_sum;
 
 out vec4 color;
 
@@ -143,7 +143,7 @@ vec3 lit_by_light(Ball ball, vec3 n, vec3 v, float nov)
 }
 
 // Radiance towards v from the environment. The specular part is the split sum: prefiltered radiance
-// times the lobe's albedo f0 A + B - dip C, whose last term is for metals. Light of further bounces
+// times the lobe's albedo f0 A + B - edge C, whose last term is for metals. Light of further bounces
 // is added as diffuse light. Light that the specular part does not reflect reaches the diffuse
 // base. `open` is the share of diffuse light that other balls leave.
 vec3 lit_by_environment(int slot, Ball ball, vec3 n, vec3 v, float nov, float open)
@@ -155,8 +155,8 @@ vec3 lit_by_environment(int slot, Ball ball, vec3 n, vec3 v, float nov, float op
     vec3 around = irradiance_at(slot, n) * open;
     vec2 ab = table_read(split_sum, table_layout[5], nov, ball.roughness).rg;
     float missing = table_missing(e, table_layout[3], nov, ball.roughness);
-    float dip = table_read(dip_sum, table_layout[6], nov, ball.roughness).r;
-    vec3 single = ball.f0 * ab.x + ab.y - f82_dip(ball.f0, ball.f82) * dip, multiple = vec3(0.0);
+    float edge = table_read(edge_sum, table_layout[6], nov, ball.roughness).r;
+    vec3 single = ball.f0 * ab.x + ab.y - f82_edge(ball.f0, ball.f82) * edge, multiple = vec3(0.0);
     if (ball.method == METHOD_KULLA_CONTY || ball.method == METHOD_HANDOUT) {
         float a = table_missing(e_average, table_layout[4], 0.0, ball.roughness);
         int form = ball.method == METHOD_HANDOUT ? F_ADD_ASSIGNMENT : F_ADD_BOUNCES;

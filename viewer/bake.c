@@ -1,5 +1,5 @@
 // From a panorama to what the shaders read.
-#include "parts.h"
+#include "internal.h"
 
 #include <kiln/course.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 #include "headless.h"
 
-#include "parts.h"
+#include "internal.h"
 
 #include <EGL/egl.h>
 #include <EGL/eglext.h>

@@ -1,5 +1,5 @@
 // The environment as a light: where its power is, directions are drawn.
-#include "parts.h"
+#include "internal.h"
 #include "trace.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 // Metals from their measured indices of refraction: the exact reflectance of each wavelength, seen
 // under daylight, in linear Rec. 709.
-#include "parts.h"
+#include "internal.h"
 
 #include <math.h>
 

@@ -1,6 +1,6 @@
 // Shaders: one vertex shader for all, fragment shaders with their includes in place.
 #include "gl.h"
-#include "parts.h"
+#include "internal.h"
 
 static kiln_result compile(const view_gl *gl, GLenum stage, const char *text, GLuint *shader,
                            kiln_error *error)

@@ -9,7 +9,7 @@
 // standard error is what was wanted.
 #include "reference.h"
 
-#include "parts.h"
+#include "internal.h"
 #include "trace.h"
 
 #include <math.h>

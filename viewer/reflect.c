@@ -1,5 +1,5 @@
 // The reflection model in double precision: what scene.frag shades with, but exact.
-#include "parts.h"
+#include "internal.h"
 #include "trace.h"
 
 #include <math.h>
@@ -28,7 +28,7 @@ kiln_result view_energy_create(kiln_context *context, const view_options *option
     if (result == KILN_OK && !light)
         result = kiln_table_create(context, &def, &energy->split, error);
     if (result == KILN_OK && !light)
-        result = view_dip_create(context, &energy->dip, error);
+        result = view_edge_create(context, &energy->edge, error);
     for (int i = 0; i <= VIEW_CURVE && options->material < VIEW_METAL_COUNT; i++)
         view_metal_fresnel(options->material, (double)i / VIEW_CURVE, energy->curve[i]);
     if (result != KILN_OK)
@@ -40,7 +40,7 @@ void view_energy_free(view_energy *energy)
 {
     kiln_table_free(&energy->e);
     kiln_table_free(&energy->split);
-    kiln_table_free(&energy->dip);
+    kiln_table_free(&energy->edge);
 }
 
 void view_fresnel(const view_ball *ball, const view_energy *energy, double voh, double f[3])
@@ -67,8 +67,8 @@ static kiln_f_add form_of(view_method method)
     return method == VIEW_METHOD_KULLA_CONTY_HANDOUT ? KILN_F_ADD_ASSIGNMENT : KILN_F_ADD_SECOND;
 }
 
-// As shaders/brdf.glsl's f82_dip.
-static double dip_of(double f0, double f82)
+// As shaders/brdf.glsl's f82_edge.
+static double edge_of(double f0, double f82)
 {
     static const double edge = 1.0 / 7;
     return (kiln_fresnel_schlick(f0, edge) - f82) / (edge * pow(1 - edge, 6));
@@ -76,15 +76,15 @@ static double dip_of(double f0, double f82)
 
 void view_point_prepare(const view_ball *ball, const view_energy *energy, view_point *point)
 {
-    double ab[2], dip, average = energy->average[point->ball];
+    double ab[2], edge, average = energy->average[point->ball];
     if (!energy->split.image.pixels) // one light: view_reflect_light needs none of it
         return;
     kiln_table_lookup(&energy->split, point->v[2], ball->roughness, 0, ab);
-    kiln_table_lookup(&energy->dip, point->v[2], ball->roughness, 0, &dip);
+    kiln_table_lookup(&energy->edge, point->v[2], ball->roughness, 0, &edge);
     double e = ab[0] + ab[1];
     for (int c = 0; c < 3; c++) {
         double f0 = ball->f0[c], single = f0 * ab[0] + ab[1], multiple = 0;
-        single -= dip_of(f0, ball->f82[c]) * dip;
+        single -= edge_of(f0, ball->f82[c]) * edge;
         point->specular[c] = 1;
         point->lobe[c] = 0;
         if (is_kulla_conty(ball->method)) {

@@ -1,6 +1,6 @@
 // The GL side: shader, textures, one block of uniforms, one triangle.
 #include "gl.h"
-#include "parts.h"
+#include "internal.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -23,7 +23,7 @@ _Static_assert(offsetof(block, balls) == 704, "std140");
 enum { TONE_LINEAR, TONE_NEUTRAL, TONE_ASSIGNMENT };
 
 // Texture units.
-enum { ENVIRONMENT, ENVIRONMENT_TEXTBOOK, IRRADIANCE, TABLES, DIP = 6, TEXTURES = TABLES + 7 };
+enum { ENVIRONMENT, ENVIRONMENT_TEXTBOOK, IRRADIANCE, TABLES, EDGE = 6, TEXTURES = TABLES + 7 };
 static const char *const samplers[TEXTURES] = {"environment",
                                                "environment_textbook",
                                                "irradiance",
@@ -33,7 +33,7 @@ static const char *const samplers[TEXTURES] = {"environment",
                                                "e",
                                                "e_average",
                                                "split_sum",
-                                               "dip_sum"};
+                                               "edge_sum"};
 
 struct view_renderer {
     kiln_context *context;
@@ -132,15 +132,15 @@ static kiln_result make_model_tables(view_renderer *r, kiln_g g, kiln_error *err
 
 static kiln_result make_tables(view_renderer *r, kiln_error *error)
 {
-    kiln_table dip = {0};
+    kiln_table edge = {0};
     kiln_result result = make_model_tables(r, KILN_G_SCHLICK_K2, error);
     if (result == KILN_OK)
         result = make_model_tables(r, KILN_G_SMITH, error);
     if (result == KILN_OK)
-        result = view_dip_create(r->context, &dip, error);
+        result = view_edge_create(r->context, &edge, error);
     if (result == KILN_OK)
-        set_table(r, DIP, &dip);
-    kiln_table_free(&dip);
+        set_table(r, EDGE, &edge);
+    kiln_table_free(&edge);
     return result;
 }
 

@@ -1,5 +1,5 @@
 // What stands where, made of what: numbers only, shared by the renderer and the reference.
-#include "parts.h"
+#include "internal.h"
 
 #include <math.h>
 #include <stdarg.h>

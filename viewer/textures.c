@@ -1,6 +1,6 @@
 // Pictures into textures.
 #include "gl.h"
-#include "parts.h"
+#include "internal.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -55,7 +55,7 @@ enum { VIEW_CURVE = 256 };
 /// metal's F at v.h = i / VIEW_CURVE.
 typedef struct view_energy {
     kiln_model model;
-    kiln_table e, split, dip;
+    kiln_table e, split, edge;
     double average[VIEW_MAX_BALLS];
     double curve[VIEW_CURVE + 1][3];
 } view_energy;

@@ -7,7 +7,7 @@
 // appendix). Its normal is one of those visible from -w, it turns w into its mirror image, and F of
 // the weight remains. At each bounce what leaves is counted by its expectation, both where the ray was
 // turned to and in a direction drawn from the environment, weighted by the balance heuristic.
-#include "parts.h"
+#include "internal.h"
 #include "trace.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
 
 #include "controls.h"
 #include "gl.h"
-#include "parts.h"
+#include "internal.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>

@@ -175,7 +175,7 @@ bool baker_table(baker *b, const char *path, int kind)
 
 bool baker_truth(baker *b, const double *numbers, int width, int height, double noise, bool alone)
 {
-    view_options options = numbers_to(numbers);
+    view_options options = view_from_numbers(numbers);
     view_reference_def def = {
         .noise = noise, .alone = alone, .thread_count = 1, .progress = progress};
     view_reference_report report = {0};

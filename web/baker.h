@@ -4,7 +4,7 @@
 #ifndef BAKER_H
 #define BAKER_H
 
-#include "numbers.h"
+#include "view_numbers.h"
 
 #include <emscripten.h>
 #include <stdbool.h>

@@ -1,7 +1,7 @@
 // The page: takes a panorama, has it baked, shows and hands out what comes of it.
 import { makeControls } from './controls.mjs';
 import { Engine } from './engine.mjs';
-import { Later } from './later.mjs';
+import { BackgroundWork } from './background.mjs';
 import { Stage } from './stage.mjs';
 import { bounded, flag, fromHash, number, text, toHash, word } from './state.mjs';
 import makeStageModule from './stage.js';
@@ -93,13 +93,13 @@ function setBusy(busy) {
         button.disabled = busy || !baked;
 }
 
-// Work in the order of the wishes. Of wishes that wait only the last is done.
-let wish = 0, running = Promise.resolve();
-function soon(work) {
-    const mine = ++wish;
+// Runs requested work one after the other. Of requests that wait only the newest is run.
+let newest = 0, running = Promise.resolve();
+function request(work) {
+    const mine = ++newest;
     document.body.setAttribute('aria-busy', 'true');
     running = running.then(async () => {
-        if (mine !== wish)
+        if (mine !== newest)
             return;
         setBusy(true);
         error.hidden = true;
@@ -109,7 +109,7 @@ function soon(work) {
             complain(problem.message);
             say(baked ? `${opened ? opened.name : 'The sky'} is still here.` : 'Nothing is baked yet.');
         }
-        if (mine === wish)
+        if (mine === newest)
             setBusy(false);
         refresh();
     });
@@ -117,7 +117,7 @@ function soon(work) {
 }
 
 // Takes a file, or the sky where there is none, and bakes it. What was there stays where that fails.
-const bake = (file) => soon(async () => {
+const bake = (file) => request(async () => {
     say(`Reading ${file ? file.name : 'the sky'}.`);
     const { size, sun, bearing, haze } = state;
     const source = file ? await engine.open(file.bytes, file.name)
@@ -141,8 +141,8 @@ const bake = (file) => soon(async () => {
 const words = { textbook: '', truth: '' };
 const speak = (who) => (sentence) => {
     words[who] = sentence;
-    get('later').textContent = Object.values(words).filter(Boolean).join('; ');
-    get('stop').hidden = !get('later').textContent;
+    get('background').textContent = Object.values(words).filter(Boolean).join('; ');
+    get('stop').hidden = !get('background').textContent;
 };
 
 const sourceKey = () => (opened ? opened.stamp : [state.sun, state.bearing, state.haze].join());
@@ -150,7 +150,7 @@ const openIn = (worker) => (opened ? worker.open(opened.bytes, opened.name)
     : worker.sky({ elevation: state.sun, azimuth: state.bearing, turbidity: state.haze }));
 
 // The textbook's bake for compare, with few samples first.
-const textbook = new Later({
+const textbook = new BackgroundWork({
     onWords: speak('textbook'),
     onFailure: (problem) => complain(problem.message),
     onResult(scenery, _, last) {
@@ -179,7 +179,7 @@ function wantTextbook() {
 // The reference, with much noise first, and what the view's error against it is.
 const TRUTH_ROWS = 128;
 let wrong = null;
-const truth = new Later({
+const truth = new BackgroundWork({
     onWords: speak('truth'),
     onFailure: (problem) => complain(problem.message),
     onResult(integral, { key, seen }, last) {

@@ -75,18 +75,18 @@ const char *stage_word(int kind, int index)
 void stage_defaults(stage *s, int scene)
 {
     view_options o = view_defaults((view_scene)scene);
-    numbers_from(&o, s->numbers);
+    view_to_numbers(&o, s->numbers);
 }
 
 void stage_draw(stage *s, int width, int height)
 {
-    view_options options = numbers_to(s->numbers);
+    view_options options = view_from_numbers(s->numbers);
     view_draw(s->renderer, &options, width, height);
 }
 
 bool stage_furnace(stage *s, int width, int height, double *off)
 {
-    view_options options = numbers_to(s->numbers);
+    view_options options = view_from_numbers(s->numbers);
     return !view_furnace_residual(s->renderer, &options, width, height, &off[0], &off[1],
                                   &s->error);
 }
@@ -137,7 +137,7 @@ float *stage_truth(stage *s, int width, int height)
 
 bool stage_error(stage *s, double *off)
 {
-    view_options options = numbers_to(s->numbers);
+    view_options options = view_from_numbers(s->numbers);
     kiln_image image;
     if (view_picture(s->renderer, &options, s->truth.width, s->truth.height, true, &image,
                      &s->error))

@@ -3,7 +3,7 @@
 #ifndef STAGE_H
 #define STAGE_H
 
-#include "numbers.h"
+#include "view_numbers.h"
 
 #include <emscripten.h>
 #include <stdbool.h>

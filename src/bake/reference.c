@@ -267,13 +267,13 @@ static double cell_mean(const reference *r, const double d[3], int depth, double
 
 // A direction in which the lobe looks, while the rows are summed. The part of the cosine between
 // that direction and a texel that varies along a row is sin theta of the row times `along`.
-typedef struct look {
+typedef struct ray_sums {
     double d[3], sin_theta;
     // Column of the direction's azimuth, in texels; texel centres are whole numbers.
     double column;
     double *along[3]; // `along` at the columns' means and at their two nodes
     double sum[4];    // weighted sums of the three channels, and the sum of the weights
-} look;
+} ray_sums;
 
 // A range of columns, counted from the azimuth of the direction; the range may extend over the
 // picture's edge.
@@ -283,7 +283,7 @@ typedef struct span {
 
 // Returns the range of columns of one row whose centres have a cosine above `threshold` to the
 // direction of `ray`.
-static span columns_above(const reference *r, const look *ray, const row_geometry *row,
+static span columns_above(const reference *r, const ray_sums *ray, const row_geometry *row,
                           double threshold)
 {
     double p = ray->d[1] * row->cos_centre, q = ray->sin_theta * row->sin_centre;
@@ -308,7 +308,7 @@ static int wrap(const reference *r, int x)
 }
 
 // Sets weight[x] to the mean of the lobe over 2 x 2 nodes of the texel in column x.
-static void fill_pairs(const reference *r, const look *ray, const row_geometry *row, int first,
+static void fill_pairs(const reference *r, const ray_sums *ray, const row_geometry *row, int first,
                        int last, double *restrict weight)
 {
     const double *restrict ea = ray->along[1], *restrict eb = ray->along[2];
@@ -343,7 +343,7 @@ static void fill_pairs(const reference *r, const look *ray, const row_geometry *
 
 // Sets weight[x] to the lobe at the mean direction of the texel in column x, which is exact for a
 // lobe linear in cos theta.
-static void fill_means(const reference *r, const look *ray, const row_geometry *row, int first,
+static void fill_means(const reference *r, const ray_sums *ray, const row_geometry *row, int first,
                        int last, double *restrict weight)
 {
     const double *restrict e = ray->along[0];
@@ -363,7 +363,7 @@ static void fill_means(const reference *r, const look *ray, const row_geometry *
 typedef double lanes __attribute__((vector_size(32), aligned(8)));
 
 // Adds weight times radiance for the columns first .. last, in four lanes that start at `first`.
-static void gather(look *ray, const double *weight, const double *const plane[3], int first,
+static void gather(ray_sums *ray, const double *weight, const double *const plane[3], int first,
                    int last, double area)
 {
     lanes red = {0}, green = {0}, blue = {0}, all = {0};
@@ -391,7 +391,7 @@ static void gather(look *ray, const double *weight, const double *const plane[3]
         ray->sum[c] += area * sum[c];
 }
 
-static void refine(const reference *r, const look *ray, const row_geometry *row, span s,
+static void refine(const reference *r, const ray_sums *ray, const row_geometry *row, span s,
                    double *weight)
 {
     double step = 2 * KI_PI / r->width, step_theta = KI_PI / r->height;
@@ -408,7 +408,7 @@ static void refine(const reference *r, const look *ray, const row_geometry *row,
 // Returns whether one value a texel suffices in a row, where the row is nearest to the lobe's peak;
 // otherwise texels need 2 x 2 nodes. *near receives the cosine of the distance from the peak within
 // which 2 x 2 nodes do not suffice either.
-static bool means_suffice(const reference *r, const look *ray, const row_geometry *row,
+static bool means_suffice(const reference *r, const ray_sums *ray, const row_geometry *row,
                           double *near)
 {
     double theta_size = KI_PI / r->height;
@@ -434,7 +434,7 @@ static bool means_suffice(const reference *r, const look *ray, const row_geometr
     return r->linear || size < r->rule.centre * lobe_scale(r, nearest > 0 ? nearest : 0);
 }
 
-static void row_of_ray(const reference *r, look *ray, const row_geometry *row,
+static void row_of_ray(const reference *r, ray_sums *ray, const row_geometry *row,
                        const double *const plane[3], double *weight)
 {
     double width = 2 * KI_PI / r->width * (row->sin_centre + KI_PI / r->height);
@@ -474,7 +474,7 @@ static void row_of_ray(const reference *r, look *ray, const row_geometry *row,
             gather(ray, weight, plane, piece[k].first, piece[k].last, row->area);
 }
 
-static void start_ray(const reference *r, look *ray, const double direction[3], double *along)
+static void start_ray(const reference *r, ray_sums *ray, const double direction[3], double *along)
 {
     memcpy(ray->d, direction, sizeof ray->d);
     ray->sin_theta = sqrt(direction[0] * direction[0] + direction[2] * direction[2]);
@@ -498,7 +498,7 @@ static void run_group(void *data, int index)
     double *scratch = r->scratch + (size_t)index * r->scratch_size;
     double *plane[3] = {scratch, scratch + width, scratch + 2 * width};
     double *weight = scratch + 3 * width;
-    look rays[GROUP];
+    ray_sums rays[GROUP];
     for (int i = 0; i < count; i++)
         start_ray(r, &rays[i], r->directions[first + i], scratch + (4 + 3 * (size_t)i) * width);
 

@@ -48,10 +48,10 @@ double ki_smith_g1_over_cosine(double alpha, double nox);
 /// the angle.
 double ki_schlick_fresnel(double voh);
 /// Fresnel term of a metal with reflectance f0 at normal incidence and f82 at voh = 1 / 7, an angle
-/// of 82 degrees: Schlick's F - dip voh (1 - voh)^6, clamped to [0, 1]. dip = ki_f82_dip(f0, f82).
+/// of 82 degrees: Schlick's F - edge voh (1 - voh)^6, clamped to [0, 1]. edge = ki_f82_edge(f0, f82).
 double ki_fresnel_f82(double f0, double f82, double voh);
-/// The coefficient `dip` of ki_fresnel_f82.
-double ki_f82_dip(double f0, double f82);
+/// The coefficient `edge` of ki_fresnel_f82.
+double ki_f82_edge(double f0, double f82);
 /// Exact reflectance of a dielectric for unpolarised light. ior is n_transmitted / n_incident, and
 /// c is the cosine of the angle of incidence. Total reflection returns 1.
 double ki_fresnel_dielectric(double ior, double c);

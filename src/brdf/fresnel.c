@@ -72,9 +72,9 @@ void ki_gulbrandsen(double reflectivity, double edge_tint, double *n, double *k)
     *k = sqrt(k2 > 0 ? k2 : 0);
 }
 
-// Solves F(1 / 7) = f82 for dip in F = f0 + (1 - f0) (1 - voh)^5 - dip voh (1 - voh)^6. The last
+// Solves F(1 / 7) = f82 for edge in F = f0 + (1 - f0) (1 - voh)^5 - edge voh (1 - voh)^6. The last
 // term is largest at voh = 1 / 7.
-double ki_f82_dip(double f0, double f82)
+double ki_f82_edge(double f0, double f82)
 {
     double edge = 6.0 / 7, power = edge * edge * edge * edge * edge;
     return (f0 + (1 - f0) * power - f82) * 7 / (power * edge);
@@ -83,7 +83,7 @@ double ki_f82_dip(double f0, double f82)
 double ki_fresnel_f82(double f0, double f82, double voh)
 {
     double power = ki_schlick_fresnel(voh);
-    double f = f0 + (1 - f0) * power - ki_f82_dip(f0, f82) * voh * (power * (1 - voh));
+    double f = f0 + (1 - f0) * power - ki_f82_edge(f0, f82) * voh * (power * (1 - voh));
     return ki_clamp(f, 0, 1);
 }
 
@@ -237,7 +237,7 @@ double kiln_fresnel_f82(double f0, double f82, double voh)
 double kiln_fresnel_f82_average(double f0, double f82)
 {
     double f = ki_unit(f0);
-    return (1 + 20 * f) / 21 - ki_f82_dip(f, ki_unit(f82)) / 126;
+    return (1 + 20 * f) / 21 - ki_f82_edge(f, ki_unit(f82)) / 126;
 }
 
 double kiln_fresnel_schlick_average(double f0)

@@ -2,7 +2,7 @@
 // and the third term of the split sum against a sum over half vectors.
 #include "check.h"
 
-#include "parts.h"
+#include "internal.h"
 
 static kiln_context *context;
 
@@ -69,7 +69,7 @@ static void the_shaders_form_is_near(void **unused)
 }
 
 // int f voh (1 - voh)^6 (n.l) dl over half vectors, dl = 4 voh dh, with tan(theta) = alpha tan(u).
-static double sum_dip(double r, double nov)
+static double sum_edge(double r, double nov)
 {
     enum { DOWN = 1500, AROUND = 200 };
     const double half_pi = 1.5707963267948966;
@@ -99,15 +99,15 @@ static void the_dip_is_the_sum(void **unused)
     kiln_error error = {0};
     kiln_table table;
     double largest = 0;
-    CHECK_OK(view_dip_create(context, &table, &error));
+    CHECK_OK(view_edge_create(context, &table, &error));
     for (int i = 0; i < 16; i++) {
-        double looked_up, wanted = sum_dip(r[i / 4], cosines[i % 4]);
+        double looked_up, wanted = sum_edge(r[i / 4], cosines[i % 4]);
         kiln_table_lookup(&table, cosines[i % 4], r[i / 4], 0, &looked_up);
-        CHECK_NEAR(view_dip(r[i / 4], cosines[i % 4]), wanted, 2e-4);
+        CHECK_NEAR(view_edge(r[i / 4], cosines[i % 4]), wanted, 2e-4);
         CHECK_NEAR(looked_up, wanted, 3e-4);
         largest = fmax(largest, wanted);
     }
-    CHECK_NEAR(view_dip(0, 0.3), 0.3 * pow(0.7, 6), 0);
+    CHECK_NEAR(view_edge(0, 0.3), 0.3 * pow(0.7, 6), 0);
     assert_true(largest > 0.05);
     kiln_table_free(&table);
 }

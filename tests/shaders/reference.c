@@ -1,7 +1,7 @@
 // The integrator against a sum over every texel, and its parts against their laws.
 #include "check.h"
 
-#include "parts.h"
+#include "internal.h"
 #include "reference.h"
 #include "trace.h"
 

@@ -4,7 +4,7 @@
 
 #include "gl.h"
 #include "headless.h"
-#include "parts.h"
+#include "internal.h"
 
 #include "brdf/brdf.h"
 
@@ -170,10 +170,10 @@ static void c_schlick_fresnel(const double x[ARGUMENTS], double r[3])
     r[0] = ki_schlick_fresnel(x[0]);
 }
 
-static void c_f82_dip(const double x[ARGUMENTS], double r[3])
+static void c_f82_edge(const double x[ARGUMENTS], double r[3])
 {
     for (int c = 0; c < 3; c++)
-        r[c] = 10 + ki_f82_dip(x[c], x[3 + c]);
+        r[c] = 10 + ki_f82_edge(x[c], x[3 + c]);
 }
 
 static void c_fresnel_f82(const double x[ARGUMENTS], double r[3])
@@ -302,9 +302,9 @@ static const function functions[] = {
      c_schlick_fresnel,
      {0},
      {TO_1}},
-    {"f82_dip", // away from 0, where there is no relative error
-     "r = 10.0 + f82_dip(vec3(x[0], x[1], x[2]), vec3(x[3], x[4], x[5]));",
-     c_f82_dip,
+    {"f82_edge", // away from 0, where there is no relative error
+     "r = 10.0 + f82_edge(vec3(x[0], x[1], x[2]), vec3(x[3], x[4], x[5]));",
+     c_f82_edge,
      {0},
      {TO_1}},
     {"fresnel_f82", // likewise

@@ -185,12 +185,12 @@ async function theErrorIsIntegrated(page, address) {
     // A change of the view is followed; what takes too long can be stopped, and the page lives on.
     await page.evaluate(() => { location.hash = `${location.hash.replace('noise=0.4', 'noise=0.01')}&azimuth=30`; });
     await idle(page);
-    await page.waitForFunction(() => /^Integrating/.test(document.getElementById('later').textContent),
+    await page.waitForFunction(() => /^Integrating/.test(document.getElementById('background').textContent),
                                null, { timeout: 60000 });
     await button(page, 'Stop').click();
-    check(await text(page, 'later') === '', 'it does not stop');
+    check(await text(page, 'background') === '', 'it does not stop');
     await page.waitForTimeout(600);
-    check(await text(page, 'later') === '' && !await page.isVisible('#error'), 'it begins again');
+    check(await text(page, 'background') === '' && !await page.isVisible('#error'), 'it begins again');
     await cube(page);
 }
 
@@ -199,7 +199,7 @@ async function theTextbookTakesItsTime(page, address) {
     await page.goto('about:blank');
     await page.goto(`${address}#size=64&samples=1&scene=compare`);
     await idle(page);
-    await page.waitForFunction(() => /^The textbook bakes/.test(document.getElementById('later').textContent));
+    await page.waitForFunction(() => /^The textbook bakes/.test(document.getElementById('background').textContent));
     await page.locator('#view').focus();
     await page.keyboard.press('ArrowRight');
     await page.waitForFunction(() => document.getElementById('view').dataset.textbook === 'whole',

@@ -1,6 +1,6 @@
 // A view as numbers, which the page hands to the baker and to the stage.
-#ifndef NUMBERS_H
-#define NUMBERS_H
+#ifndef VIEW_NUMBERS_H
+#define VIEW_NUMBERS_H
 
 #include "viewer.h"
 
@@ -30,7 +30,7 @@ typedef enum stage_number {
     STAGE_NUMBERS
 } stage_number;
 
-void numbers_from(const view_options *options, double numbers[STAGE_NUMBERS]);
-view_options numbers_to(const double numbers[STAGE_NUMBERS]);
+void view_to_numbers(const view_options *options, double numbers[STAGE_NUMBERS]);
+view_options view_from_numbers(const double numbers[STAGE_NUMBERS]);
 
 #endif

@@ -1,6 +1,6 @@
 // What the viewer's files share among themselves.
-#ifndef KILN_VIEWER_PARTS_H
-#define KILN_VIEWER_PARTS_H
+#ifndef KILN_VIEWER_INTERNAL_H
+#define KILN_VIEWER_INTERNAL_H
 
 #include "viewer.h"
 
@@ -22,8 +22,8 @@ void view_metal_average(view_material metal, double average[3]);
 
 /// The split sum's third term, int f / F voh (1 - voh)^6 (n.l) dl with height-correlated Smith, to
 /// 1e-4; and a table of it, one channel, texels at corners, on the square root.s axis.
-double view_dip(double roughness, double nov);
-KILN_CHECKED kiln_result view_dip_create(kiln_context *context, kiln_table *table,
+double view_edge(double roughness, double nov);
+KILN_CHECKED kiln_result view_edge_create(kiln_context *context, kiln_table *table,
                                          kiln_error *error);
 
 /// What the handout's figure 6 reads for E_avg: the albedo texture.

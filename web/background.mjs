@@ -1,10 +1,10 @@
-// Work that takes long, in workers of its own while the page goes on: what there is so far comes first,
-// better comes later, and whatever is no longer wanted is stopped.
+// Work that takes long, run in a worker of its own while the page stays usable: the first steps give a
+// coarse result, later steps better ones, and work whose result is no longer wanted is stopped.
 import { Engine } from './engine.mjs';
 
 // A row of steps, each of which gives something to see. start({ key, open, steps }) does nothing where
 // that key is at work or done; open(engine) opens the environment in the worker.
-export class Later {
+export class BackgroundWork {
     // onWords(sentence) while it works; '' when it no longer does. onResult(result, step, last).
     constructor({ onWords, onResult, onFailure }) {
         Object.assign(this, { onWords, onResult, onFailure, key: '', opened: '', round: 0, busy: false });

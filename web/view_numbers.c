@@ -1,6 +1,6 @@
-#include "numbers.h"
+#include "view_numbers.h"
 
-void numbers_from(const view_options *o, double n[STAGE_NUMBERS])
+void view_to_numbers(const view_options *o, double n[STAGE_NUMBERS])
 {
     n[STAGE_SCENE] = (double)o->scene;
     n[STAGE_METHOD] = (double)o->method;
@@ -25,7 +25,7 @@ void numbers_from(const view_options *o, double n[STAGE_NUMBERS])
     n[STAGE_BENT] = o->bent;
 }
 
-view_options numbers_to(const double n[STAGE_NUMBERS])
+view_options view_from_numbers(const double n[STAGE_NUMBERS])
 {
     return (view_options){
         .scene = (view_scene)n[STAGE_SCENE],

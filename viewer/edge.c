@@ -1,10 +1,10 @@
-// The third term of the split sum, which metals need: with F = Schlick's - dip voh (1 - voh)^6 their
-// albedo is F0 A + B - dip C,
+// The third term of the split sum, which metals need: with F = Schlick's - edge voh (1 - voh)^6 their
+// albedo is F0 A + B - edge C,
 //
 //     C(n.v) = int D G / (4 n.v n.l) voh (1 - voh)^6 (n.l) dl = int Dv(h) G / G1(v) voh (1 - voh)^6 dh
 //
 // over the visible normals, which Dupuy and Benyoub (2023) draw evenly from a spherical cap.
-#include "parts.h"
+#include "internal.h"
 
 #include <math.h>
 
@@ -15,7 +15,7 @@ static double root(double alpha, double x)
     return sqrt(x * x + alpha * alpha * (1 - x) * (1 + x));
 }
 
-double view_dip(double roughness, double nov)
+double view_edge(double roughness, double nov)
 {
     double alpha = roughness * roughness, sum = 0;
     double sine = sqrt((1 - nov) * (1 + nov)), root_v = root(alpha, nov);
@@ -39,7 +39,7 @@ double view_dip(double roughness, double nov)
     return sum / (ACROSS * DOWN);
 }
 
-kiln_result view_dip_create(kiln_context *context, kiln_table *table, kiln_error *error)
+kiln_result view_edge_create(kiln_context *context, kiln_table *table, kiln_error *error)
 {
     const kiln_table_def def = {
         .width = SIZE, .height = SIZE, .axis = KILN_AXIS_SQRT, .corners = true};
@@ -47,7 +47,7 @@ kiln_result view_dip_create(kiln_context *context, kiln_table *table, kiln_error
     for (int i = 0; i < SIZE * SIZE && result == KILN_OK; i++) {
         double nov, roughness, none;
         kiln_table_texel(table, i % SIZE, i / SIZE, 0, &nov, &roughness, &none);
-        table->image.pixels[i] = (float)view_dip(roughness, nov);
+        table->image.pixels[i] = (float)view_edge(roughness, nov);
     }
     return result;
 }
