@@ -24,7 +24,7 @@ void view_metal_average(view_material metal, double average[3]);
 /// 1e-4; and a table of it, one channel, texels at corners, on the square root.s axis.
 double view_edge(double roughness, double nov);
 KILN_CHECKED kiln_result view_edge_create(kiln_context *context, kiln_table *table,
-                                         kiln_error *error);
+                                          kiln_error *error);
 
 /// What the handout's figure 6 reads for E_avg: the albedo texture.
 extern const double view_handout_albedo[3];

@@ -11,7 +11,7 @@
 // poles lie at that distance. Most texels are computed a row at a time with 1 or 2 x 2 nodes.
 // Texels near the peak or crossed by the lobe's horizon are computed singly: each is cut into four
 // as often as needed, and each cell gets 4 x 4 nodes.
-#include "bake/reference.h"
+#include "bake/reference_state.h"
 
 #include "image/image.h"
 #include "math/math.h"
@@ -23,67 +23,20 @@
 enum {
     GROUP = 8,  // number of directions that are summed in one pass over the rows
     BATCH = 16, // number of groups of directions between two progress reports
-    // Deepest level of cutting: the 2^48th part of a texel is smaller than a double resolves.
-    MAX_DEPTH = 48,
 };
 
 // Gauss-Legendre nodes on [-1, 1] and weights whose sum is 1.
 static const double pair_node = 0.57735026918962576451;
 static const double quad_node[4] = {-0.86113631159405257522, -0.33998104358485626480,
                                     0.33998104358485626480, 0.86113631159405257522};
-static const double quad_weight[4] = {0.17392742256872692869, 0.32607257743127307131,
-                                      0.32607257743127307131, 0.17392742256872692869};
 
 // ------------------------------------------------------------------------------------------- setup
 
-typedef struct row_geometry {
-    double cos_centre, sin_centre;
-    // Means of cos theta and sin theta over the solid angle of the row's texels.
-    double cos_mean, sin_mean;
-    double cos_pair[2], sin_pair[2];
-    double area; // solid angle of one texel of the row in steradians
-} row_geometry;
-
-// Geometry that is the same for all cells of one depth of cutting. A texel has depth 0.
-typedef struct cell_geometry {
-    double theta_size, phi_size;
-    // Cosine and sine of the nodes' offsets from the centre of a cell.
-    double theta_cos[4], theta_sin[4], phi_cos[4], phi_sin[4];
-    double theta_quarter_cos, theta_quarter_sin, phi_quarter_cos, phi_quarter_sin;
-} cell_geometry;
-
-typedef struct reference {
-    const float *texels;
-    int width, height;
-    row_geometry *rows;
-    // Means of sin phi and cos phi over each column, then sine and cosine of phi at its two
-    // nodes.
-    double *columns[6];
-    cell_geometry cells[MAX_DEPTH + 1];
-
-    kiln_lobe lobe;
-    bool rational; // true: GGX, or Lambert, which is GGX with alpha = 1
-    // True: the lobe is linear in cos theta, so that one value at the mean direction is exact.
-    bool linear;
-    double a2;  // alpha^2 of a GGX lobe
-    double cut; // cos theta below which the lobe is 0 or negligible
-    bool kink;  // true: the lobe has an edge at cos theta = `cut`
-    double lobe_width;
-    int depth_limit;
-    ki_reference_rule rule;
-
-    const double (*directions)[3]; // unit directions, turned by the rotation
-    double (*values)[3];
-    int count;
-    double *scratch; // scratch memory, one piece for each group of directions in a batch
-    size_t scratch_size;
-} reference;
-
-static void set_rows(reference *r)
+static void set_rows(ki_reference *r)
 {
     double step = KI_PI / r->height;
     for (int y = 0; y < r->height; y++) {
-        row_geometry *row = &r->rows[y];
+        ki_row_geometry *row = &r->rows[y];
         double s0, c0, s1, c1, centre = step * (y + 0.5);
         ki_sincos(step * y, &s0, &c0);
         ki_sincos(step * (y + 1), &s1, &c1);
@@ -101,7 +54,7 @@ static void set_rows(reference *r)
     }
 }
 
-static void set_columns(reference *r)
+static void set_columns(ki_reference *r)
 {
     double step = 2 * KI_PI / r->width;
     double mean = ki_sin(step / 2) / (step / 2);
@@ -116,11 +69,11 @@ static void set_columns(reference *r)
     }
 }
 
-static void set_cells(reference *r)
+static void set_cells(ki_reference *r)
 {
     double theta = KI_PI / r->height, phi = 2 * KI_PI / r->width;
-    for (int d = 0; d <= MAX_DEPTH; d++, theta /= 2, phi /= 2) {
-        cell_geometry *cell = &r->cells[d];
+    for (int d = 0; d <= KI_REFERENCE_DEPTH; d++, theta /= 2, phi /= 2) {
+        ki_cell_geometry *cell = &r->cells[d];
         cell->theta_size = theta;
         cell->phi_size = phi;
         for (int k = 0; k < 4; k++) {
@@ -132,12 +85,12 @@ static void set_cells(reference *r)
     }
 }
 
-static void set_lobe(reference *r, const kiln_lobe *lobe)
+static void set_lobe(ki_reference *r, const kiln_lobe *lobe)
 {
     r->lobe = *lobe;
     r->lobe_width = ki_lobe_width(lobe);
     r->rational = lobe->kind == KILN_LOBE_GGX || lobe->kind == KILN_LOBE_LAMBERT;
-    r->depth_limit = lobe->kind == KILN_LOBE_CHARLIE ? 6 : MAX_DEPTH;
+    r->depth_limit = lobe->kind == KILN_LOBE_CHARLIE ? 6 : KI_REFERENCE_DEPTH;
     r->kink = lobe->kind != KILN_LOBE_CUSTOM;
     r->cut = r->kink ? 0 : -2;
     if (r->rational) {
@@ -155,7 +108,7 @@ static void set_lobe(reference *r, const kiln_lobe *lobe)
     }
 }
 
-static void set_rule(reference *r, const ki_reference_rule *rule)
+static void set_rule(ki_reference *r, const ki_reference_rule *rule)
 {
     r->rule.centre = rule->centre > 0 ? rule->centre : 1.0 / 300;
     r->rule.pairs = rule->pairs > 0 ? rule->pairs : 1.0 / 20;
@@ -169,98 +122,6 @@ static void set_rule(reference *r, const ki_reference_rule *rule)
         if (r->rational)
             r->rule.edge = ki_clamp(0.0025 * (1 + r->a2) / (2 * sqrt(r->a2)), 0, 0.01);
     }
-}
-
-// ---------------------------------------------------------------------------------- texel by texel
-
-// Returns the length over which the lobe changes at a distance from its peak.
-static double lobe_scale(const reference *r, double distance)
-{
-    if (r->rational)
-        return sqrt(r->lobe_width * r->lobe_width + distance * distance);
-    if (r->lobe.kind == KILN_LOBE_CHARLIE && distance < r->lobe_width)
-        return distance; // Charlie is a power of the distance, and not always a smooth one
-    if (r->lobe.kind == KILN_LOBE_CUSTOM && distance > 4 * r->lobe_width)
-        return distance / 4;
-    return r->lobe_width;
-}
-
-// Returns the mean over a cell's rectangle in (theta, phi) of k sin theta, k being the lobe, by 4 x
-// 4 nodes.
-static double cell_nodes(const reference *r, const double d[3], const cell_geometry *cell,
-                         double sin_theta, double cos_theta, double sin_phi, double cos_phi)
-{
-    double px[4], pz[4], far[4][4], weight[4][4], total = 0;
-    for (int k = 0; k < 4; k++) {
-        px[k] = sin_phi * cell->phi_cos[k] + cos_phi * cell->phi_sin[k];
-        pz[k] = sin_phi * cell->phi_sin[k] - cos_phi * cell->phi_cos[k];
-    }
-    double sines[4];
-    for (int i = 0; i < 4; i++) {
-        double st = sin_theta * cell->theta_cos[i] + cos_theta * cell->theta_sin[i];
-        double ct = cos_theta * cell->theta_cos[i] - sin_theta * cell->theta_sin[i];
-        double dy = d[1] - ct;
-        sines[i] = st;
-        // 1 - cos of the angle between the directions d and l is |d - l|^2 / 2, which is precise
-        // for small angles.
-        for (int k = 0; k < 4; k++) {
-            double dx = d[0] - st * px[k], dz = d[2] - st * pz[k];
-            far[i][k] = 0.5 * (dx * dx + dy * dy + dz * dz);
-        }
-    }
-    if (r->rational) {
-        double a2 = r->a2, slope = 0.5 * (1 - a2);
-        for (int i = 0; i < 4; i++)
-            for (int k = 0; k < 4; k++) {
-                double c = 1 - far[i][k], ratio = a2 / (a2 + slope * far[i][k]);
-                weight[i][k] = (c > 0 ? c : 0) * ratio * ratio;
-            }
-    } else {
-        for (int i = 0; i < 4; i++)
-            for (int k = 0; k < 4; k++)
-                weight[i][k] = ki_lobe_weight(&r->lobe, far[i][k]);
-    }
-    for (int i = 0; i < 4; i++) {
-        double line = 0;
-        for (int k = 0; k < 4; k++)
-            line += quad_weight[k] * weight[i][k];
-        total += quad_weight[i] * sines[i] * line;
-    }
-    return total;
-}
-
-// Returns the mean that cell_nodes computes, but cuts the cell into four as long as the lobe
-// changes too fast across the cell.
-static double cell_mean(const reference *r, const double d[3], int depth, double sin_theta,
-                        double cos_theta, double sin_phi, double cos_phi)
-{
-    const cell_geometry *cell = &r->cells[depth];
-    double dx = d[0] - sin_theta * sin_phi, dy = d[1] - cos_theta;
-    double dz = d[2] + sin_theta * cos_phi;
-    double chord2 = dx * dx + dy * dy + dz * dz;
-
-    double width = sin_theta + 0.5 * cell->theta_size;
-    width = cell->phi_size * (width < 1 ? width : 1);
-    double size = cell->theta_size > width ? cell->theta_size : width;
-    double reach = 0.51 * sqrt(cell->theta_size * cell->theta_size + width * width);
-    double distance = sqrt(chord2) - reach;
-    bool cut = size > r->rule.quads * lobe_scale(r, distance > 0 ? distance : 0);
-    cut |= r->kink && size > r->rule.edge && fabs(1 - 0.5 * chord2) < reach;
-    if (!cut || depth == r->depth_limit)
-        return cell_nodes(r, d, cell, sin_theta, cos_theta, sin_phi, cos_phi);
-
-    double total = 0;
-    for (int i = 0; i < 2; i++) {
-        double sign = i ? 1 : -1;
-        double ts = sign * cell->theta_quarter_sin, tc = cell->theta_quarter_cos;
-        double st = sin_theta * tc + cos_theta * ts, ct = cos_theta * tc - sin_theta * ts;
-        for (int k = 0; k < 2; k++) {
-            double ps = (k ? 1 : -1) * cell->phi_quarter_sin, pc = cell->phi_quarter_cos;
-            total += cell_mean(r, d, depth + 1, st, ct, sin_phi * pc + cos_phi * ps,
-                               cos_phi * pc - sin_phi * ps);
-        }
-    }
-    return 0.25 * total;
 }
 
 // -------------------------------------------------------------------------------------- row by row
@@ -283,7 +144,7 @@ typedef struct span {
 
 // Returns the range of columns of one row whose centres have a cosine above `threshold` to the
 // direction of `ray`.
-static span columns_above(const reference *r, const ray_sums *ray, const row_geometry *row,
+static span columns_above(const ki_reference *r, const ray_sums *ray, const ki_row_geometry *row,
                           double threshold)
 {
     double p = ray->d[1] * row->cos_centre, q = ray->sin_theta * row->sin_centre;
@@ -302,14 +163,14 @@ static span columns_above(const reference *r, const ray_sums *ray, const row_geo
     return s;
 }
 
-static int wrap(const reference *r, int x)
+static int wrap(const ki_reference *r, int x)
 {
     return x < 0 ? x + r->width : x >= r->width ? x - r->width : x;
 }
 
 // Sets weight[x] to the mean of the lobe over 2 x 2 nodes of the texel in column x.
-static void fill_pairs(const reference *r, const ray_sums *ray, const row_geometry *row, int first,
-                       int last, double *restrict weight)
+static void fill_pairs(const ki_reference *r, const ray_sums *ray, const ki_row_geometry *row,
+                       int first, int last, double *restrict weight)
 {
     const double *restrict ea = ray->along[1], *restrict eb = ray->along[2];
     double p0 = ray->d[1] * row->cos_pair[0], p1 = ray->d[1] * row->cos_pair[1];
@@ -343,8 +204,8 @@ static void fill_pairs(const reference *r, const ray_sums *ray, const row_geomet
 
 // Sets weight[x] to the lobe at the mean direction of the texel in column x, which is exact for a
 // lobe linear in cos theta.
-static void fill_means(const reference *r, const ray_sums *ray, const row_geometry *row, int first,
-                       int last, double *restrict weight)
+static void fill_means(const ki_reference *r, const ray_sums *ray, const ki_row_geometry *row,
+                       int first, int last, double *restrict weight)
 {
     const double *restrict e = ray->along[0];
     double p = ray->d[1] * row->cos_mean, q = row->sin_mean;
@@ -391,7 +252,7 @@ static void gather(ray_sums *ray, const double *weight, const double *const plan
         ray->sum[c] += area * sum[c];
 }
 
-static void refine(const reference *r, const ray_sums *ray, const row_geometry *row, span s,
+static void refine(const ki_reference *r, const ray_sums *ray, const ki_row_geometry *row, span s,
                    double *weight)
 {
     double step = 2 * KI_PI / r->width, step_theta = KI_PI / r->height;
@@ -401,14 +262,15 @@ static void refine(const reference *r, const ray_sums *ray, const row_geometry *
         int x = wrap(r, i);
         double sine, cosine;
         ki_sincos(2 * KI_PI * ((x + 0.5) / r->width - 0.5), &sine, &cosine);
-        weight[x] = scale * cell_mean(r, ray->d, 0, row->sin_centre, row->cos_centre, sine, cosine);
+        weight[x] =
+            scale * ki_reference_cell(r, ray->d, 0, row->sin_centre, row->cos_centre, sine, cosine);
     }
 }
 
 // Returns whether one value a texel suffices in a row, where the row is nearest to the lobe's peak;
 // otherwise texels need 2 x 2 nodes. *near receives the cosine of the distance from the peak within
 // which 2 x 2 nodes do not suffice either.
-static bool means_suffice(const reference *r, const ray_sums *ray, const row_geometry *row,
+static bool means_suffice(const ki_reference *r, const ray_sums *ray, const ki_row_geometry *row,
                           double *near)
 {
     double theta_size = KI_PI / r->height;
@@ -431,10 +293,10 @@ static bool means_suffice(const reference *r, const ray_sums *ray, const row_geo
     } else if (r->lobe.kind == KILN_LOBE_CHARLIE) {
         *near = ki_cos(ki_clamp(length + size, 0, KI_PI));
     }
-    return r->linear || size < r->rule.centre * lobe_scale(r, nearest > 0 ? nearest : 0);
+    return r->linear || size < r->rule.centre * ki_reference_scale(r, nearest > 0 ? nearest : 0);
 }
 
-static void row_of_ray(const reference *r, ray_sums *ray, const row_geometry *row,
+static void row_of_ray(const ki_reference *r, ray_sums *ray, const ki_row_geometry *row,
                        const double *const plane[3], double *weight)
 {
     double width = 2 * KI_PI / r->width * (row->sin_centre + KI_PI / r->height);
@@ -474,7 +336,8 @@ static void row_of_ray(const reference *r, ray_sums *ray, const row_geometry *ro
             gather(ray, weight, plane, piece[k].first, piece[k].last, row->area);
 }
 
-static void start_ray(const reference *r, ray_sums *ray, const double direction[3], double *along)
+static void start_ray(const ki_reference *r, ray_sums *ray, const double direction[3],
+                      double *along)
 {
     memcpy(ray->d, direction, sizeof ray->d);
     ray->sin_theta = sqrt(direction[0] * direction[0] + direction[2] * direction[2]);
@@ -492,7 +355,7 @@ static void start_ray(const reference *r, ray_sums *ray, const double direction[
 
 static void run_group(void *data, int index)
 {
-    const reference *r = data;
+    const ki_reference *r = data;
     size_t width = (size_t)r->width;
     int first = index * GROUP, count = ki_min(GROUP, r->count - first);
     double *scratch = r->scratch + (size_t)index * r->scratch_size;
@@ -539,14 +402,14 @@ static void set_directions(double (*to)[3], const double (*from)[3], int count, 
     }
 }
 
-static kiln_result integrate(kiln_context *context, reference *r, kiln_error *error)
+static kiln_result integrate(kiln_context *context, ki_reference *r, kiln_error *error)
 {
     static const char stage[] = "reference";
     int groups = (r->count + GROUP - 1) / GROUP;
     for (int done = 0; done < groups; done += BATCH) {
         if (!ki_progress(context, stage, (double)done / groups))
             return ki_fail_cancelled(error, stage);
-        reference batch = *r;
+        ki_reference batch = *r;
         batch.directions += (ptrdiff_t)done * GROUP;
         batch.values += (ptrdiff_t)done * GROUP;
         batch.count -= done * GROUP;
@@ -564,7 +427,7 @@ kiln_result ki_reference_integrate(kiln_context *context, const kiln_map *panora
     kiln_result result = KILN_OK;
     size_t width = 2 * (size_t)panorama->size;
     double(*turned)[3] = NULL, *columns = NULL;
-    reference *r = ki_alloc(context, 1, sizeof *r);
+    ki_reference *r = ki_alloc(context, 1, sizeof *r);
     int groups = ki_min(BATCH, (count + GROUP - 1) / GROUP);
     if (count < 1)
         goto done;
