@@ -90,13 +90,10 @@ void ki_huffman_assign(ki_huffman_code *c, int count, const int *with, int longe
         next[length] = first;
         first = (first + (uint32_t)with[length]) << 1;
     }
-    for (int i = 0; i < count; i++) {
-        int length = c->length[i];
-        uint32_t value = length ? next[length]++ : 0, reversed = 0;
-        for (int b = 0; b < length; b++)
-            reversed |= (value >> b & 1) << (length - 1 - b);
-        c->bits[i] = (uint16_t)reversed;
-    }
+    memset(c->bits, 0, sizeof c->bits);
+    for (int i = 0; i < count; i++)
+        if (c->length[i])
+            c->bits[i] = (uint16_t)ki_reverse_bits(next[c->length[i]]++, c->length[i]);
 }
 
 void ki_huffman_make(ki_huffman_code *c, const uint32_t *counts, int count, int longest)

@@ -7,6 +7,7 @@
 // than that index continue in a second table. While both input and output have room to spare, eight
 // bytes are read and copied at a time; the last bytes are handled singly.
 #include "codec/deflate.h"
+#include "codec/huffman.h"
 
 #include <string.h>
 
@@ -129,14 +130,6 @@ static uint32_t distance_meaning(int symbol)
     return ENTRY(KIND_RANGE, from, extra);
 }
 
-static uint32_t reverse(uint32_t code, int length)
-{
-    uint32_t reversed = 0;
-    for (int b = 0; b < length; b++)
-        reversed |= (code >> b & 1) << (length - 1 - b);
-    return reversed;
-}
-
 // A table that is being built. `with` holds the number of codes of each length, `sorted` the
 // symbols by length and then by number.
 typedef struct table {
@@ -200,7 +193,7 @@ static bool build(uint32_t *entries, size_t room, int bits, const uint8_t *lengt
     const uint16_t *symbol = t.sorted;
     for (int length = 1; length <= LONGEST; length++, next <<= 1)
         for (int k = 0; k < t.with[length]; k++, next++) {
-            uint32_t code = reverse(next, length), entry = mean(*symbol++);
+            uint32_t code = ki_reverse_bits(next, length), entry = mean(*symbol++);
             if (length <= bits) {
                 for (uint32_t i = code; i <= mask; i += 1U << length)
                     entries[i] = entry | (uint32_t)length;
