@@ -1,12 +1,16 @@
-// The integrator. A pixel is the mean over the same n x n rays as the real-time picture has; where
-// light comes from everywhere each of them is estimated by drawing light from the environment, from
-// the visible normals and from the cosine, one of each, weighted by the balance heuristic:
+// Monte Carlo integration of a view. In: view_options and an unfiltered environment. Out: a picture
+// of linear radiance, whose pixels reach a wanted standard error, and a report of that noise.
 //
-//     L(v) = int f(v, l) L(l) (n.l) dl  ~  sum over the three of  f L (n.l) / (p1 + p2 + p3)
+// A pixel is the mean over the same n x n rays as in the real-time picture. Where a ray meets a
+// ball, one batch draws three directions l: from the environment's power (density p1), from the
+// visible normals (p2) and from the cosine (p3). The balance heuristic (Veach 1997, section 9.2.2)
+// weights them:
 //
-// (Veach 1997, section 9.2.2). Where l meets another ball, L is what that one reflects, by one of the three
-// drawn at random, and so on until a path leaves. Batches of that are repeated until the pixel's
-// standard error is what was wanted.
+//     L(v) = int f(v, l) L(l) (n.l) dl  ~  sum over the three l of  f L (n.l) / (p1 + p2 + p3)
+//
+// Where l meets another ball, L is the light that the other ball reflects, estimated by one of the
+// three kinds of draw chosen at random, until the path leaves the scene. Batches are repeated until
+// the pixel's standard error is small enough.
 #include "reference.h"
 
 #include "internal.h"
@@ -27,14 +31,16 @@ typedef struct job {
     double noise;
     int batch_limit, bounces;
     bool alone;
-    bool walks[VIEW_MAX_BALLS]; // its further bounces are walked
+    // the ball's bounces after the first one are computed by view_walk_add
+    bool walks[VIEW_MAX_BALLS];
     double eye[3], right[3], up[3], back[3], slope;
     view_ball balls[VIEW_MAX_BALLS];
     int ball_count;
     view_light light;
     view_energy energy;
     kiln_image *image;
-    view_reference_report *rows; // of each row: sums, not means
+    // one report for each row, with sums where the final report has means
+    view_reference_report *rows;
     atomic_int next;
     atomic_bool stop;
 } job;
@@ -58,8 +64,8 @@ static void ray_at(const job *j, double x, double y, double d[3])
         d[c] /= sqrt(size);
 }
 
-// How far the ball is along d from `from`; negative where it is not met. `closest` is the foot of
-// the perpendicular from the ball's centre, seen from there.
+// Distance from `from` along the unit vector d to the ball; negative where the ray misses the ball.
+// `closest` is the point of the ray's line nearest to the ball's centre, relative to that centre.
 static double meet(const view_ball *ball, const double from[3], const double d[3],
                    double closest[3])
 {
@@ -73,7 +79,7 @@ static double meet(const view_ball *ball, const double from[3], const double d[3
     return rest > 0 ? -along - sqrt(rest) : -1;
 }
 
-// Duff et al. 2017.
+// Two unit tangents of the unit normal n, without a branch: Duff et al. 2017.
 static void tangents(const double n[3], double t[3], double b[3])
 {
     double sign = copysign(1, n[2]), a = -1 / (sign + n[2]), c = n[0] * n[1] * a;
@@ -85,7 +91,8 @@ static void tangents(const double n[3], double t[3], double b[3])
     b[2] = -n[1];
 }
 
-// What a ray from `from` meets, but for the ball that it leaves; VIEW_MAX_BALLS for none.
+// Finds the nearest ball that a ray from `from` along d meets, except ball `leaves`, on which the
+// ray starts (VIEW_MAX_BALLS: the ray starts on no ball). p->ball is -1 where there is none.
 static void find_point(const job *j, const double from[3], const double d[3], int leaves,
                        view_point *p)
 {
@@ -129,7 +136,7 @@ static bool is_shaded(const job *j, const view_point *p, const double d[3])
 static void estimate_one(const job *j, const view_point *p, int depth, view_random *random,
                          double sum[3]);
 
-// What arrives at p from d; p is the depth-th ball of its path.
+// Radiance that arrives at p from direction d. The path has met `depth` balls, p's included.
 static void incoming(const job *j, const view_point *p, int depth, const double d[3],
                      view_random *random, double radiance[3])
 {
@@ -143,7 +150,7 @@ static void incoming(const job *j, const view_point *p, int depth, const double 
         view_light_radiance(&j->light, d, radiance);
         return;
     }
-    // Long paths go on with a fair chance.
+    // Russian roulette: a path that has met SURE balls continues with probability 0.75.
     double chance = depth < SURE ? 1 : 0.75;
     if (depth == j->bounces || (chance < 1 && view_random_next(random) >= chance))
         return;
@@ -172,15 +179,16 @@ static double pdf_specular(const view_ball *ball, const view_point *p, const dou
     return kiln_pdf_reflection(kiln_pdf_visible(ball->roughness, p->v[2], noh, voh), voh);
 }
 
-// A path's vertex, and how its light is counted.
+// The point where a path is reflected, with what its draws need.
 typedef struct vertex {
     const job *j;
     const view_point *p;
     int depth;
-    double share; // the weight of a draw
+    double share; // weight of one draw: 1 where all three kinds are drawn, 3 where one kind is
 } vertex;
 
-// Adds what light from l brings, over the density of all three ways to draw it.
+// Adds the light that arrives from l, divided by the sum of the three densities with which the
+// kinds of draw would have chosen l.
 static void add(const vertex *v, const double l[3], view_random *random, double sum[3])
 {
     const job *j = v->j;
@@ -233,7 +241,7 @@ static void add_specular(const vertex *v, view_random *random, double sum[3])
         add(v, l, random, sum);
         return;
     }
-    // A perfect mirror: no draw finds its peak.
+    // A perfect mirror reflects one direction only, which no random draw hits.
     reflect(p->v, up, l);
     to_world(p, l, d);
     incoming(v->j, p, v->depth, d, random, radiance);
@@ -289,8 +297,8 @@ static void estimate_one(const job *j, const view_point *p, int depth, view_rand
 
 // ------------------------------------------------------------------------------------------ pixels
 
-// What the ray shows without integration: the sky, the assignment's light. False where it has to be
-// integrated.
+// Computes the radiance of rays that need no integration: the sky behind the balls, and balls under
+// the assignment's light. Returns false for a ball in an environment.
 static bool shines(const job *j, const view_point *p, double radiance[3])
 {
     radiance[0] = radiance[1] = radiance[2] = 0;
@@ -303,7 +311,7 @@ static bool shines(const job *j, const view_point *p, double radiance[3])
 }
 
 typedef struct tally {
-    double mean[3], squares[3]; // Welford's
+    double mean[3], squares[3]; // Welford's running mean, and the sum of squared deviations from it
     int count;
 } tally;
 
@@ -317,7 +325,8 @@ static void note(tally *t, const double x[3])
     }
 }
 
-// The standard error of the mean, relative to it and a little of the whole environment.
+// Standard error of the mean, relative to the mean plus `floor`, in the worst channel. The floor
+// keeps black pixels from being sampled for ever.
 static double noise_of(const tally *t, double floor)
 {
     double worst = 0;
@@ -346,7 +355,8 @@ static void pixel(job *j, int x, int y, view_reference_report *report, float *ou
     tally t = {0};
     view_random random;
     view_random_start(&random, (uint64_t)y * (uint64_t)j->width + (uint64_t)x);
-    // Looked at after doubling counts only: stopping at the first lucky one would be a bias.
+    // The error is checked after 32, 64, 128 ... batches only: stopping at the first batch with a
+    // small estimated error would favour low estimates.
     for (int until = FIRST_CHECK; waiting; until *= 2) {
         until = until < j->batch_limit ? until : j->batch_limit;
         while (t.count < until) {
@@ -390,7 +400,7 @@ static void *help(void *data)
     return NULL;
 }
 
-// The caller works too, and reports.
+// Renders the rows with several threads. The calling thread renders too, and reports progress.
 static bool run(job *j, const view_reference_def *def)
 {
     pthread_t threads[MAX_THREADS];
@@ -446,7 +456,7 @@ kiln_result view_reference(kiln_context *context, const view_options *options,
         .noise = def->noise > 0 ? def->noise : 0.01,
         .batch_limit = def->batch_limit > 1 ? def->batch_limit : 16384,
         .bounces = def->bounces,
-        .alone = def->alone || white, // the dark row would be seen in the other
+        .alone = def->alone || white, // else the two rows of the furnace would reflect each other
         .slope = tan(options->camera.fov / 2 * degree),
         .image = image,
     };

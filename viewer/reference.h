@@ -1,35 +1,41 @@
-// The scenes by integration, without prefiltered levels, split sums or tables of a few texels: what
-// the real-time picture ought to be, with the same rays and the same reflection model.
+// Renders a view by Monte Carlo integration, without prefiltered levels, split sums or small
+// tables. The picture has the same rays and the same reflection model as the real-time picture,
+// which can be measured against it (view_compare).
 #ifndef KILN_VIEWER_REFERENCE_H
 #define KILN_VIEWER_REFERENCE_H
 
 #include "viewer.h"
 
-/// {0} is a good default.
+/// Settings; {0} selects the defaults.
 typedef struct view_reference_def {
-    double noise;    ///< wanted standard error of a pixel, relative, 1e-4 to 1; 0 for 0.01
-    int batch_limit; ///< at most so many samples of each ray; 0 for 16384
-    bool walk;   ///< bounces from the second one on by a random walk between the microfacets, in
-                 ///< place of the method of those balls that have one
-    int bounces; ///< light that would meet more balls than these is lost; 0 for all of it
-    bool alone;  ///< balls do not see one another, as the real-time picture has it; with occlusion
-                 ///< they are black to one another. Always so in the furnace
-    int thread_count; ///< 1 to 256; 0 for one a core. The picture does not depend on it
-    /// Called now and then from the calling thread. Returning false cancels. May be NULL.
+    double noise;    ///< wanted relative standard error of a pixel, 1e-4 to 1; 0 for 0.01
+    int batch_limit; ///< largest number of samples for each ray; 0 for 16384
+    /// a random walk between microfacets computes the bounces from the second one on, in place of
+    /// each ball's compensation method
+    bool walk;
+    int bounces; ///< a light path may meet this many balls; 0 for no limit
+    /// balls do not reflect one another, as in the real-time picture; with view_options.occlusion
+    /// they look black to one another. The furnace scene always does this
+    bool alone;
+    /// 1 to 256 threads; 0 for one thread a core. The picture does not depend on it
+    int thread_count;
+    /// Called now and then from the calling thread with the finished fraction, 0 to 1. Returning
+    /// false cancels. May be NULL.
     bool (*progress)(void *user, const char *stage, double fraction);
     void *progress_user;
 } view_reference_def;
 
-/// How it went, over the pixels that show a ball.
+/// Noise and effort of a picture, over the pixels that show a ball.
 typedef struct view_reference_report {
-    double noise;       ///< RMS of the pixels' standard errors, relative
+    double noise;       ///< RMS of the pixels' relative standard errors
     double batches;     ///< mean number of samples of each ray
-    size_t pixel_count; ///< pixels that show a ball
-    size_t noisy_count; ///< those that reached the limit before the wanted noise
+    size_t pixel_count; ///< number of pixels that show a ball
+    size_t noisy_count; ///< number of pixels that reached batch_limit before the wanted noise
 } view_reference_report;
 
-/// Linear light, three channels, row 0 at the top. `source` is the environment itself, any map, its
-/// texels uniformly bright; NULL for scenes without one. `report` may be NULL.
+/// Renders a picture of linear radiance: three channels, row 0 at the top. `source` is the
+/// unfiltered environment, a map of any shape whose texels are uniformly bright; NULL for scenes
+/// without an environment. `report` may be NULL.
 KILN_CHECKED kiln_result view_reference(kiln_context *context, const view_options *options,
                                         const kiln_map *source, int width, int height,
                                         const view_reference_def *def, kiln_image *image,
@@ -37,15 +43,16 @@ KILN_CHECKED kiln_result view_reference(kiln_context *context, const view_option
 
 /// How two linear pictures of a view differ over the pixels whose centre shows a ball.
 typedef struct view_error {
-    double rms, largest; ///< relative to the truth's mean over these pixels
-    double screen;       ///< RMS of what a screen shows, of 255
+    double rms, largest; ///< RMS and largest difference, over the mean of the true picture
+    double screen;       ///< RMS difference of the tone-mapped values, in steps of 255
     int ball_count;
-    double ball[VIEW_MAX_BALLS];        ///< RMS of each ball, relative to its own mean
-    double ball_screen[VIEW_MAX_BALLS]; ///< as `screen`
+    double ball[VIEW_MAX_BALLS]; ///< RMS difference within each ball, over the ball's mean
+    /// RMS difference within each ball of the tone-mapped values, in steps of 255
+    double ball_screen[VIEW_MAX_BALLS];
 } view_error;
 
-/// Leaves image - truth in `image`, over that mean, or as colours: blue too dark, red too bright,
-/// white none, full at 25 %.
+/// Replaces `image` by (image - truth) / mean of the truth, or with `colours` by a colour:
+/// blue for too dark, red for too bright, white for no difference, fully saturated from 25 % on.
 view_error view_compare(const view_options *options, kiln_image *image, const kiln_image *truth,
                         bool colours);
 

@@ -1,9 +1,13 @@
-// The real-time renderer: rows of balls under a light or in a baked environment, on OpenGL ES 3.0,
-// which is WebGL 2. The renderer draws into whatever context is current; headless.h and window.h
-// make contexts. It sees libkiln's public header only.
+// Renders rows of balls under one light or in a baked environment, on OpenGL ES 3.0 (WebGL 2).
 //
-// One source serves the command, the window and the page, so the three show the same picture.
-// Lengths are those of the assignment's scene: balls of radius 36 at a spacing of 80.
+// In: a view (view_options), a prefiltered environment with its harmonics, tables of the reflection
+// model. Out: pixels in the bound framebuffer, or a picture of three float channels. The fragment
+// shader shaders/scene.frag casts rays at the balls and shades each hit with the split sum
+// (docs/theory/realtime.md). The renderer draws into the current GL context; headless.h and
+// window.h create contexts. It uses libkiln's public headers only.
+//
+// The command, the window and the web page compile this one source, so all three show the same
+// picture. Lengths are in the unit of the assignment's scene: balls of radius 36, 80 apart.
 #ifndef KILN_VIEWER_H
 #define KILN_VIEWER_H
 
@@ -15,18 +19,21 @@ typedef enum view_scene {
     VIEW_SCENE_ASSIGNMENT, ///< two rows of five copper balls under one directional light
     VIEW_SCENE_IBL,        ///< the same rows in the environment
     VIEW_SCENE_FURNACE,    ///< the same rows, reflecting everything, in uniform white
-    VIEW_SCENE_GRID,       ///< roughness from left to right by metallic from bottom to top
-    VIEW_SCENE_COMPARE, ///< ibl with the exact bake left of the handle, the textbook's right of it
+    VIEW_SCENE_GRID,       ///< 7 x 5 balls: roughness grows to the right, metallic grows upwards
+    /// VIEW_SCENE_IBL with the exact bake left of a handle and the sampled bake right of it
+    VIEW_SCENE_COMPARE,
     VIEW_SCENE_COUNT
 } view_scene;
 
-/// What makes up for the light that bounces more than once between microfacets.
+/// How the light that bounces more than once between microfacets is approximated.
 typedef enum view_method {
-    VIEW_METHOD_SINGLE,              ///< nothing: one bounce
-    VIEW_METHOD_KULLA_CONTY,         ///< Kulla and Conty 2017, bounces summed from the second on
-    VIEW_METHOD_KULLA_CONTY_HANDOUT, ///< F E / (1 - F (1 - E)) as the assignment prints it
-    VIEW_METHOD_FDEZ_AGUERA,         ///< Fdez-Aguera 2019
-    VIEW_METHOD_TURQUIN,             ///< Turquin 2019
+    VIEW_METHOD_SINGLE, ///< leaves that light out: one bounce only
+    /// Kulla and Conty 2017; their Fresnel factor sums the bounces from the second one on
+    VIEW_METHOD_KULLA_CONTY,
+    /// Kulla and Conty 2017 with the Fresnel factor F E / (1 - F (1 - E)) of the assignment
+    VIEW_METHOD_KULLA_CONTY_HANDOUT,
+    VIEW_METHOD_FDEZ_AGUERA, ///< Fdez-Aguera 2019
+    VIEW_METHOD_TURQUIN,     ///< Turquin 2019
     VIEW_METHOD_COUNT
 } view_method;
 
@@ -37,59 +44,68 @@ typedef enum view_material {
     VIEW_MATERIAL_SILVER,
     VIEW_MATERIAL_IRON,
     VIEW_MATERIAL_TITANIUM,
-    VIEW_MATERIAL_WHITE,   ///< reflects everything: F0 = 1
-    VIEW_MATERIAL_HANDOUT, ///< the assignment's copper
-    VIEW_MATERIAL_PLASTIC, ///< a dielectric of index 1.5, red underneath
-    VIEW_MATERIAL_CHALK,   ///< the same, white underneath
+    VIEW_MATERIAL_WHITE,   ///< metal that reflects all light: F0 = 1
+    VIEW_MATERIAL_HANDOUT, ///< copper with the constants of the GAMES202 assignment
+    VIEW_MATERIAL_PLASTIC, ///< dielectric of index 1.5 over a red diffuse base
+    VIEW_MATERIAL_CHALK,   ///< dielectric of index 1.5 over a white diffuse base
     VIEW_MATERIAL_COUNT,
-    VIEW_METAL_COUNT = VIEW_MATERIAL_WHITE ///< those from measured indices of refraction
+    /// number of metals above, whose reflectance comes from measured indices of refraction
+    VIEW_METAL_COUNT = VIEW_MATERIAL_WHITE
 } view_material;
 
-/// What is shown instead of the picture.
+/// What is shown in place of the shaded balls.
 typedef enum view_debug {
     VIEW_DEBUG_NONE,
-    VIEW_DEBUG_LEVEL,           ///< a level of the environment, unrolled as a panorama
-    VIEW_DEBUG_TABLE_E,         ///< the tables, n.v to the right, roughness upwards
-    VIEW_DEBUG_TABLE_E_AVERAGE, ///<
-    VIEW_DEBUG_TABLE_SPLIT,     ///< A in red, B in green
-    VIEW_DEBUG_E,               ///< E(n.v, roughness) on the balls
-    VIEW_DEBUG_F,               ///< Fresnel's reflectance at n.v on the balls
+    VIEW_DEBUG_LEVEL,           ///< one mip level of the environment, unrolled as a panorama
+    VIEW_DEBUG_TABLE_E,         ///< table of E: n.v grows to the right, roughness grows upwards
+    VIEW_DEBUG_TABLE_E_AVERAGE, ///< table of E_avg: roughness grows upwards
+    VIEW_DEBUG_TABLE_SPLIT, ///< split-sum table: A in red, B in green; axes as in the table of E
+    VIEW_DEBUG_E,           ///< E(n.v, roughness) on the balls
+    VIEW_DEBUG_F,           ///< Fresnel's reflectance at n.v on the balls
     VIEW_DEBUG_COUNT
 } view_debug;
 
-/// Turns about `target`. Azimuth 0 looks along -Z; degrees.
+/// A camera that orbits `target`. Angles are in degrees; at azimuth 0 it looks along -Z.
 typedef struct view_camera {
     double target[3];
     double azimuth, elevation, distance;
-    double fov; ///< vertical
+    double fov; ///< vertical field of view, degrees
 } view_camera;
 
-/// One view: everything that the picture depends on, besides environment and tables. Start from
+/// Everything that a picture depends on except its size, the environment and the tables. Start from
 /// view_defaults.
 typedef struct view_options {
     view_scene scene;
-    view_method method;     ///< of the upper row; the lower one is always single. All of the grid
-    view_material material; ///< not of the assignment's and the furnace's balls
+    /// method of the upper row, and of every ball in VIEW_SCENE_GRID; the lower row is always
+    /// single
+    view_method method;
+    /// material of the balls; VIEW_SCENE_ASSIGNMENT and VIEW_SCENE_FURNACE have their own
+    view_material material;
     view_camera camera;
-    double rotation; ///< of the environment about +Y in degrees, as kiln_map_convert turns it
-    double exposure; ///< stops
+    double rotation; ///< turns the environment about +Y, in degrees, with kiln_map_convert's sign
+    double exposure; ///< factor 2^exposure on the radiance before tone mapping
     view_debug debug;
-    int debug_level;   ///< 0 to level_count - 1
-    double split;      ///< where the handle of compare is, 0 at the left to 1
-    double background; ///< roughness at which the environment is seen behind the balls, 0 to 1
-    int samples;       ///< n x n rays a pixel on a regular grid, 1 to 8; their mean is tone-mapped
-    bool as_printed;   ///< assignment: the handout's figure 6 with its mistake
-    bool one_row;      ///< without the upper row, as the handout's figure 5
-    bool occlusion;    ///< balls shade one another's ambient light
-    bool bent;         ///< rough balls look the environment up nearer to their normal
-    bool cube_diffuse; ///< diffuse light from the irradiance cube, else from spherical harmonics
+    int debug_level; ///< mip level that VIEW_DEBUG_LEVEL shows, 0 to level_count - 1
+    /// place of VIEW_SCENE_COMPARE's handle: 0 at the left border, 1 at the right border
+    double split;
+    /// blur of the environment seen behind the balls, as a roughness from 0 to 1
+    double background;
+    /// a pixel averages samples x samples rays on a regular grid before tone mapping; 1 to 8
+    int samples;
+    /// VIEW_SCENE_ASSIGNMENT: repeats the handout's figure 6, which uses the albedo as E_avg
+    bool as_printed;
+    bool one_row;   ///< leaves the upper row out, as in the handout's figure 5
+    bool occlusion; ///< balls block the environment's light from one another
+    bool bent;      ///< looks a rough ball's reflection up nearer to its normal
+    /// diffuse light comes from the irradiance cube instead of the spherical harmonics
+    bool cube_diffuse;
 } view_options;
 
-/// The scene as it is meant to be seen.
+/// Camera, method, material and settings that suit the scene.
 view_options view_defaults(view_scene scene);
 
-/// Words for command lines and addresses: "assignment", "kulla-conty", "gold", "level", ... NULL
-/// beyond the last.
+/// Names for command lines and addresses: "assignment", "kulla-conty", "gold", "level". NULL for an
+/// index beyond the last name.
 const char *view_scene_name(int scene);
 const char *view_method_name(int method);
 const char *view_material_name(int material);
@@ -102,29 +118,33 @@ enum { VIEW_MAX_BALLS = 64 };
 typedef struct view_ball {
     double centre[3], radius;
     double roughness, metallic;
-    double f0[3];        ///< specular at normal incidence
-    double f82[3];       ///< at 82 degrees, as kiln_fresnel_f82 has it
-    double f_average[3]; ///< 2 int F(mu) mu dmu
-    double albedo[3];    ///< of the diffuse base; 0 for metals
+    double f0[3];        ///< reflectance at normal incidence
+    double f82[3];       ///< reflectance at about 82 degrees (cosine 1/7), see kiln_fresnel_f82
+    double f_average[3]; ///< cosine-weighted mean reflectance, 2 int F(mu) mu dmu
+    double albedo[3];    ///< albedo of the diffuse base; 0 for metals
     view_method method;
-    bool measured; ///< the metal's own F, to the share `metallic`
+    /// takes the share `metallic` of F from the metal's measured indices of refraction
+    bool measured;
 } view_ball;
 
-/// The balls of a view; returns how many.
+/// Fills `balls` with the balls of the view; returns their number.
 int view_balls(const view_options *options, view_ball balls[VIEW_MAX_BALLS]);
-/// Position of the camera and its axes: right, up, backwards. Unit and orthogonal.
+/// World position of the camera and its axes: right, up, backwards. The axes are orthogonal unit
+/// vectors.
 void view_camera_axes(const view_camera *camera, double eye[3], double right[3], double up[3],
                       double back[3]);
 
-/// Radiance, exposed, to what a screen shows, 0 to 1, as shaders/tone.glsl does it. The two may be
-/// the same.
+/// Maps exposed linear radiance to the screen's values, 0 to 1, with the curve of
+/// shaders/tone.glsl. `radiance` and `shown` may be the same array.
 void view_tone(view_scene scene, const double radiance[3], double shown[3]);
 
 // ------------------------------------------------------------------------------------- environment
 
-/// Bakes what the shaders read of any map: GGX levels in a cube, the last of 8 texels, a cube of
-/// irradiance, and harmonics. A cube with levels is taken as baked already. With `samples` above 0 the
-/// levels are the textbook's, of so many samples a texel (it has 1024). `size` 16 to 2048, 0 for 256.
+/// Bakes the textures that the shaders read: GGX levels in a cube (the smallest has at least 8
+/// texels a side), an irradiance cube, and spherical harmonics. A cube `source` with more than one
+/// level counts as baked, and its levels are copied. With `samples` above 0 the levels come from
+/// kiln_textbook_prefilter with that many samples a texel (1024 is common). `size` is the edge of
+/// level 0: 16 to 2048, or 0 for 256.
 KILN_CHECKED kiln_result view_bake(kiln_context *context, const kiln_map *source, int size,
                                    int samples, kiln_environment *environment, kiln_error *error);
 
@@ -132,34 +152,36 @@ KILN_CHECKED kiln_result view_bake(kiln_context *context, const kiln_map *source
 
 typedef struct view_renderer view_renderer;
 
-/// Looks a GL function up by its name: eglGetProcAddress or glfwGetProcAddress.
+/// Finds a GL function by its name: eglGetProcAddress or glfwGetProcAddress.
 typedef void (*view_function)(void);
 typedef view_function view_lookup(const char *name);
 
-/// Compiles the shaders in the current GL ES 3.0 context and makes exact tables. `lookup` is ignored
-/// under emscripten. `context` must outlive the renderer.
+/// Compiles the shaders in the current GL ES 3.0 context and computes exact tables. `lookup` is
+/// ignored under emscripten. `context` must outlive the renderer.
 KILN_CHECKED kiln_result view_create(kiln_context *context, view_lookup *lookup,
                                      view_renderer **renderer, kiln_error *error);
 /// May be NULL. The GL context must be current.
 void view_destroy(view_renderer *renderer);
-/// The GL's own name: "llvmpipe (LLVM 15.0.6, 256 bits)".
+/// The GL_RENDERER string of the driver, such as "llvmpipe (LLVM 15.0.6, 256 bits)".
 const char *view_gl_name(const view_renderer *renderer);
 
 typedef enum view_slot {
     VIEW_SLOT_EXACT,
-    VIEW_SLOT_TEXTBOOK, ///< right of compare's handle
+    VIEW_SLOT_TEXTBOOK, ///< environment shown right of VIEW_SCENE_COMPARE's handle
     VIEW_SLOT_COUNT
 } view_slot;
 
-/// An environment as kiln makes it: GGX levels in a cube with roughness[] rising from 0, harmonics of
-/// the radiance with 3 bands or more, and a cube of irradiance / pi, which may be NULL.
+/// Uploads an environment. `levels`: a cube of GGX levels with roughness[] rising from 0. `sh`:
+/// harmonics of the radiance with 3 bands or more. `irradiance`: a cube of irradiance / pi; NULL
+/// keeps the one that is there.
 KILN_CHECKED kiln_result view_set_environment(view_renderer *renderer, view_slot slot,
                                               const kiln_map *levels, const kiln_sh *sh,
                                               const kiln_map *irradiance, kiln_error *error);
 
-/// Replaces the renderer's own tables of one model: the assignment's where the model's G is one of
-/// Schlick's, else the environment's. E and E_avg may store the complement; any size, axis and places
-/// of texels. Each may be NULL to keep what is there.
+/// Replaces the renderer's own tables of one model. A model whose G is one of Schlick's replaces
+/// the tables of VIEW_SCENE_ASSIGNMENT, any other model those of the environment scenes. E and
+/// E_avg may store the complement. Any size, axis and placement of texels will do. NULL keeps the
+/// table that is there.
 KILN_CHECKED kiln_result view_set_tables(view_renderer *renderer, const kiln_table *e,
                                          const kiln_table *e_average, const kiln_table *split,
                                          kiln_error *error);
@@ -167,14 +189,15 @@ KILN_CHECKED kiln_result view_set_tables(view_renderer *renderer, const kiln_tab
 /// Draws into the framebuffer that is bound, tone-mapped for an 8-bit sRGB screen.
 void view_draw(view_renderer *renderer, const view_options *options, int width, int height);
 
-/// Draws into a picture of three channels, row 0 at the top: linear light, or tone-mapped values
-/// from 0 to 1.
+/// Draws into a new picture of three channels, row 0 at the top. `linear`: linear radiance; else
+/// tone-mapped values from 0 to 1.
 KILN_CHECKED kiln_result view_picture(view_renderer *renderer, const view_options *options,
                                       int width, int height, bool linear, kiln_image *image,
                                       kiln_error *error);
 
-/// How far the furnace is from vanishing: the largest and the RMS difference from 1 over the balls
-/// that are compensated, silhouettes included.
+/// Renders VIEW_SCENE_FURNACE, where a lossless ball is invisible, and returns the
+/// largest difference from 1 in the row of balls with compensation, silhouettes included, and the
+/// RMS of the differences that are not 0.
 KILN_CHECKED kiln_result view_furnace_residual(view_renderer *renderer, const view_options *options,
                                                int width, int height, double *largest, double *rms,
                                                kiln_error *error);
