@@ -1,4 +1,4 @@
-// From a panorama to what the shaders read.
+// Bakes an environment map into the cubes and harmonics that the shaders read.
 #include "internal.h"
 
 #include <kiln/course.h>
@@ -6,7 +6,8 @@
 
 enum { SIZE = 256, SMALLEST = 8, IRRADIANCE_SIZE = 32 };
 
-// Down to SMALLEST texels: a level of one texel has six values for the whole sphere.
+// Levels are halved while they have SMALLEST texels a side: a level of one texel would describe the
+// whole sphere by six values.
 static int count_levels(int size)
 {
     int count = 1;
@@ -48,8 +49,8 @@ static kiln_result textbook_levels(kiln_context *context, const kiln_map *source
     return result;
 }
 
-// Irradiance and harmonics of a source whose levels come from elsewhere: the one level that is made is
-// of the cosine lobe.
+// Bakes irradiance and harmonics only. kiln_bake makes at least one level, which serves as the
+// irradiance: its lobe is the cosine.
 static kiln_result bake_diffuse(kiln_context *context, const kiln_map *source,
                                 kiln_environment *environment, kiln_error *error)
 {

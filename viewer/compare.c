@@ -1,9 +1,11 @@
-// Where and how much two pictures of a view differ.
+// Compares a picture of a view with its reference: errors of each ball, and a picture of
+// differences.
 #include "reference.h"
 
 #include <math.h>
 
-// The ball that a pixel's centre shows, or -1.
+// Index of the nearest ball on the ray through the image plane's point (sx, sy); -1 if there is
+// none.
 static int ball_at(const view_ball *balls, int count, const view_camera *camera, double sx,
                    double sy)
 {
@@ -31,7 +33,8 @@ static int ball_at(const view_ball *balls, int count, const view_camera *camera,
     return found;
 }
 
-// White where there is no error, red where the picture is too bright, blue where it is too dark.
+// Colours a relative difference: white for 0, red for a picture that is too bright, blue for one
+// that is too dark; fully saturated from 25 % on.
 static void colour(float pixel[3])
 {
     double mean = ((double)pixel[0] + (double)pixel[1] + (double)pixel[2]) / 3;
@@ -41,7 +44,7 @@ static void colour(float pixel[3])
     pixel[2] = (float)(mean < 0 ? 1 : 1 - strength);
 }
 
-// Sums over the pixels of one ball, of three channels each.
+// Sums over the three channels of all pixels of one ball.
 typedef struct sums {
     double count, truth, squares, screen;
 } sums;

@@ -1,14 +1,17 @@
-// The third term of the split sum, which metals need: with F = Schlick's - edge voh (1 - voh)^6 their
-// albedo is F0 A + B - edge C,
+// The third term C of the split sum. Metals need it: their Fresnel reflectance is Schlick's minus
+// edge voh (1 - voh)^6, which dips near 82 degrees. Their directional albedo is then F0 A + B -
+// edge C with
 //
 //     C(n.v) = int D G / (4 n.v n.l) voh (1 - voh)^6 (n.l) dl = int Dv(h) G / G1(v) voh (1 - voh)^6 dh
 //
-// over the visible normals, which Dupuy and Benyoub (2023) draw evenly from a spherical cap.
+// Dv is the density of the visible normals h. A uniform grid on the spherical cap of Dupuy and
+// Benyoub (2023) has that density.
 #include "internal.h"
 
 #include <math.h>
 
-enum { SIZE = 48, ACROSS = 16, DOWN = 32 }; // of half the cap, which is symmetric
+// ACROSS x DOWN nodes on half the cap: the other half is its mirror image
+enum { SIZE = 48, ACROSS = 16, DOWN = 32 };
 
 static double root(double alpha, double x)
 {
@@ -21,7 +24,8 @@ double view_edge(double roughness, double nov)
     double sine = sqrt((1 - nov) * (1 + nov)), root_v = root(alpha, nov);
     if (alpha < 1e-6 || root_v <= 0)
         return nov * pow(1 - nov, 6);
-    double sx = alpha * sine / root_v, sz = nov / root_v; // v on the stretched surface
+    // v in the space where the surface is a hemisphere
+    double sx = alpha * sine / root_v, sz = nov / root_v;
     for (int i = 0; i < DOWN; i++) {
         double z = (i + 0.5) / DOWN * (1 + sz) - sz, around = sqrt(fmax(0, (1 - z) * (1 + z)));
         for (int j = 0; j < ACROSS; j++) {

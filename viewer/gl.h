@@ -1,5 +1,5 @@
-// The functions of OpenGL ES 3.0 that the renderer calls, looked up at run time, so that nothing of
-// GL is needed where it is not used.
+// The functions of OpenGL ES 3.0 that the renderer calls. They are looked up at run time: the
+// program starts on machines without OpenGL.
 #ifndef KILN_VIEWER_GL_H
 #define KILN_VIEWER_GL_H
 
@@ -66,19 +66,21 @@ typedef struct view_gl {
 #undef VIEW_GL_MEMBER
 } view_gl;
 
-/// False where a function is missing; its name goes to `missing`.
+/// Looks all functions up; returns false where one is missing and stores its name in `missing`.
 bool view_gl_load(view_gl *gl, view_lookup *lookup, const char **missing);
-/// The context offers this extension.
+/// Whether the current context offers this extension.
 bool view_gl_has(const view_gl *gl, const char *extension);
 
-/// A program of the screen's triangle and a fragment shader's text, without version and precision.
+/// Compiles and links a program of the full-screen triangle's vertex shader and a fragment shader,
+/// whose text has no version and precision lines.
 KILN_CHECKED kiln_result view_link(const view_gl *gl, const char *fragment, GLuint *program,
                                    kiln_error *error);
 
-/// A new texture in place of `texture`, bound to a unit. Half floats, all levels, filtered: a cube.
+/// Replaces `texture` by a new cube texture, bound to a unit: half floats, all mip levels,
+/// trilinear filter.
 KILN_CHECKED kiln_result view_upload_cube(const view_gl *gl, int unit, GLuint *texture,
                                           const kiln_map *map, kiln_error *error);
-/// 32-bit floats, not filtered.
+/// Replaces `texture` by a new 2D texture of 32-bit floats, bound to a unit, without filter.
 void view_upload_image(const view_gl *gl, int unit, GLuint *texture, const kiln_image *image);
 
 #endif

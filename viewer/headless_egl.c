@@ -33,7 +33,8 @@ struct view_headless {
     EGLContext context;
 };
 
-// dlsym's pointers to objects become pointers to functions, as POSIX wants it done.
+// Copies dlsym's object pointer into a function pointer: POSIX allows this, ISO C has no cast for
+// it.
 static bool find(void *library, const char *name, void *function)
 {
     void *symbol = dlsym(library, name);
@@ -41,7 +42,7 @@ static bool find(void *library, const char *name, void *function)
     return symbol;
 }
 
-// EGL stays loaded until the process ends: drivers do not like to be unloaded.
+// EGL stays loaded until the process ends: some drivers cannot be unloaded safely.
 static kiln_result load(egl_functions *egl, kiln_error *error)
 {
     void *library = dlopen("libEGL.so.1", RTLD_NOW | RTLD_LOCAL);
@@ -131,7 +132,7 @@ void view_headless_destroy(view_headless *h)
 
 view_function view_headless_lookup(const char *name)
 {
-    // Loaded already: this only counts one more user.
+    // EGL is loaded already; dlopen only adds a user to its count.
     void *library = dlopen("libEGL.so.1", RTLD_NOW | RTLD_LOCAL);
     __typeof__(&eglGetProcAddress) get = NULL;
     return library && find(library, "eglGetProcAddress", &get) ? (view_function)get(name) : NULL;

@@ -1,4 +1,7 @@
-// The environment as a light: where its power is, directions are drawn.
+// The environment as a light source. In: a map of any shape and its rotation. Out: the radiance
+// from a direction, and directions drawn with a density proportional to r + g + b, by inverting the
+// cumulated power of the panorama's rows and then of one row's texels. The random numbers of
+// view_random are here too.
 #include "internal.h"
 #include "trace.h"
 
@@ -37,7 +40,8 @@ static double power(const float *texel)
     return (double)texel[0] + (double)texel[1] + (double)texel[2];
 }
 
-// The difference of the cosines of a row's borders.
+// cos(theta) at the upper border of row y minus cos(theta) at its lower border. This difference is
+// proportional to the solid angle of the row's texels.
 static double row_height(int size, int y)
 {
     return cos(pi * y / size) - cos(pi * (y + 1) / size);
@@ -123,7 +127,8 @@ double view_light_pdf(const view_light *light, const double d[3])
     return light->total > 0 ? power(texel_at(light, d)) / light->total : 0;
 }
 
-// The last place of sums[0 .. count] that is not above `value`, and how far beyond it.
+// Binary search in cumulated sums: returns the last i < count with sums[i] <= value. `rest`
+// receives the position of `value` between sums[i] and sums[i + 1], 0 to 1.
 static int find(const double *sums, int count, double value, double *rest)
 {
     int low = 0, high = count;

@@ -1,5 +1,6 @@
-// Metals from their measured indices of refraction: the exact reflectance of each wavelength, seen
-// under daylight, in linear Rec. 709.
+// Fresnel reflectance of metals. In: a metal, the cosine v.h. Out: the reflectance in linear Rec.
+// 709, 0 to 1. Each wavelength from 380 to 780 nm reflects by Fresnel's equations with the metal's
+// measured complex index n + ik; the spectrum under daylight (D65) is then converted to a colour.
 #include "internal.h"
 
 #include <math.h>
@@ -7,12 +8,12 @@
 enum { INDICES = 15, WAVES = 41, FIRST = 380, STEP = 10 };
 
 typedef struct index {
-    double wave, n, k; // nm
+    double wave, n, k; // wavelength in nm; complex index of refraction n + ik
 } index;
 
-// Gold, copper, silver: Johnson and Christy, Phys. Rev. B 6, 4370 (1972); iron, titanium: the same, Phys.
-// Rev. B 9, 5056 (1974); aluminium: Rakic, Appl. Opt. 34, 4755 (1995). Rows as refractiveindex.info has
-// them (public domain, CC0).
+// Gold, copper and silver: Johnson and Christy, Phys. Rev. B 6, 4370 (1972). Iron and titanium:
+// Johnson and Christy, Phys. Rev. B 9, 5056 (1974). Aluminium: Rakic, Appl. Opt. 34, 4755 (1995).
+// The rows are copied from refractiveindex.info (public domain, CC0).
 static const index indices[VIEW_METAL_COUNT][INDICES] = {
     [VIEW_MATERIAL_GOLD] = {{381.5, 1.46, 1.933},
                             {397.4, 1.47, 1.952},
@@ -106,7 +107,8 @@ static const index indices[VIEW_METAL_COUNT][INDICES] = {
                                 {821, 3.21, 4.01}},
 };
 
-// CIE standard illuminant D65, 380 to 780 nm (CIE 15:2004, table T.1).
+// Spectral power of the CIE standard illuminant D65 from 380 to 780 nm in steps of 10 nm (CIE
+// 15:2004, table T.1).
 static const double daylight[WAVES] = {
     49.9755, 54.6482, 82.7549, 91.4860, 93.4318, 86.6823, 104.865, 117.008, 117.812,
     114.861, 115.923, 108.811, 109.354, 107.802, 104.790, 107.689, 104.405, 104.046,
@@ -114,7 +116,8 @@ static const double daylight[WAVES] = {
     80.0268, 80.2146, 82.2778, 78.2842, 69.7213, 71.6091, 74.3490, 61.6040, 69.8856,
     75.0870, 63.5927, 46.4182, 66.8054, 63.3828};
 
-// The CIE 1931 observer in one formula: Wyman, Sloan and Shirley, JCGT 2(2), 2013, section 2.2.
+// One Gaussian of the fit to the CIE 1931 colour matching functions: Wyman, Sloan and Shirley, JCGT
+// 2(2), 2013, section 2.2.
 static double lobe(double wave, double centre, double left, double right)
 {
     double t = (wave - centre) * (wave < centre ? left : right);
@@ -129,7 +132,7 @@ static void observe(double w, double xyz[3])
     xyz[2] = 1.217 * lobe(w, 437.0, 0.0845, 0.0278) + 0.681 * lobe(w, 459.0, 0.0385, 0.0725);
 }
 
-// Linear between measurements.
+// Interpolates n and k linearly between the measured wavelengths.
 static void index_at(const index *of, double wave, double *n, double *k)
 {
     int i = 0;
@@ -142,7 +145,7 @@ static void index_at(const index *of, double wave, double *n, double *k)
 
 void view_metal_fresnel(view_material metal, double voh, double f[3])
 {
-    // IEC 61966-2-1: CIE XYZ to linear Rec. 709.
+    // Matrix from CIE XYZ to linear Rec. 709 (IEC 61966-2-1).
     static const double primaries[3][3] = {
         {3.2406, -1.5372, -0.4986}, {-0.9689, 1.8758, 0.0415}, {0.0557, -0.2040, 1.0570}};
     double seen[3] = {0}, white[3] = {0};
@@ -158,14 +161,15 @@ void view_metal_fresnel(view_material metal, double voh, double f[3])
                 white[c] += light;
             }
     }
-    // What reflects everything is white; gold's red lies outside the primaries.
+    // Dividing by `white` makes a perfect reflector (1, 1, 1). The clamp is needed because gold's
+    // colour lies outside Rec. 709.
     for (int c = 0; c < 3; c++)
         f[c] = fmax(0, fmin(1, seen[c] / white[c]));
 }
 
 void view_metal_average(view_material metal, double average[3])
 {
-    enum { NODES = 32 }; // midpoints, to 1e-4
+    enum { NODES = 32 }; // the midpoint rule with 32 nodes has an error of at most 1e-4
     average[0] = average[1] = average[2] = 0;
     for (int i = 0; i < NODES; i++) {
         double mu = (i + 0.5) / NODES, f[3];

@@ -1,4 +1,4 @@
-// Shaders: one vertex shader for all, fragment shaders with their includes in place.
+// Compiles and links the shaders. All programs share one vertex shader.
 #include "gl.h"
 #include "internal.h"
 

@@ -1,4 +1,7 @@
-// The reflection model in double precision: what scene.frag shades with, but exact.
+// The balls' reflection model in double precision. In: a ball, a point on it, a direction of light.
+// Out: the BRDF times n.l, and the factors of the lobes at the point (trace.h). The formulas are
+// those of shaders/scene.frag and docs/theory/realtime.md, with exact tables in place of small
+// textures.
 #include "internal.h"
 #include "trace.h"
 
@@ -77,7 +80,7 @@ static double edge_of(double f0, double f82)
 void view_point_prepare(const view_ball *ball, const view_energy *energy, view_point *point)
 {
     double ab[2], edge, average = energy->average[point->ball];
-    if (!energy->split.image.pixels) // one light: view_reflect_light needs none of it
+    if (!energy->split.image.pixels) // view_reflect_light needs no split sum
         return;
     kiln_table_lookup(&energy->split, point->v[2], ball->roughness, 0, ab);
     kiln_table_lookup(&energy->edge, point->v[2], ball->roughness, 0, &edge);
@@ -93,14 +96,15 @@ void view_point_prepare(const view_ball *ball, const view_energy *energy, view_p
             point->lobe[c] = average < 1 ? factor * (1 - e) / (1 - average) : 0;
             multiple = factor * (1 - e);
         } else if (ball->method == VIEW_METHOD_FDEZ_AGUERA) {
-            // kiln_fdez_aguera, with the metal's own F_avg.
+            // The formula of kiln_fdez_aguera, with the ball's own F_avg.
             multiple = single * (1 - e) / e *
                        kiln_kulla_conty_fresnel(KILN_F_ADD_ASSIGNMENT, ball->f_average[c], e);
         } else if (ball->method == VIEW_METHOD_TURQUIN) {
             point->specular[c] = kiln_turquin(f0, e);
         }
         single *= point->specular[c];
-        // Fdez-Aguera's bounces are diffuse light; Kulla and Conty's have a lobe of their own.
+        // Fdez-Aguera 2019 treats the further bounces as diffuse light. Kulla and Conty 2017 give
+        // the further bounces a lobe of their own (point->lobe).
         point->diffuse[c] = ball->albedo[c] * (1 - single - multiple) +
                             (ball->method == VIEW_METHOD_FDEZ_AGUERA ? multiple : 0);
     }
@@ -118,7 +122,7 @@ void view_reflect(const view_ball *ball, const view_energy *energy, const view_p
         size += h[c] * h[c];
     }
     size = sqrt(size);
-    double voh = fmin(size / 2, 1), fresnel[3]; // |l + v| = 2 v.h
+    double voh = fmin(size / 2, 1), fresnel[3]; // l and v are unit vectors: |l + v| = 2 v.h
     view_fresnel(ball, energy, voh, fresnel);
     double specular = 0, lobe = 0;
     if (ball->roughness > 0)
@@ -135,12 +139,12 @@ void view_reflect(const view_ball *ball, const view_energy *energy, const view_p
     }
 }
 
-// As the assignment has it: the denominator is not let below 0.001.
+// The assignment's shader keeps the denominator 4 n.l n.v at 0.001 or more.
 void view_reflect_light(const view_options *o, const view_ball *ball, const view_energy *energy,
                         const view_point *point, double radiance[3])
 {
     double nov = point->v[2], nol = fmax(point->n[2], 0), r = ball->roughness;
-    // l = (0, 0, 1); the half vector in the world.
+    // The light comes from (0, 0, 1). h is the half vector in the world, before normalization.
     double h[3], size = 0, noh = 0;
     for (int c = 0; c < 3; c++) {
         h[c] = (c == 2) - point->ray[c];
@@ -156,7 +160,7 @@ void view_reflect_light(const view_options *o, const view_ball *ball, const view
     kiln_table_lookup(&energy->e, nol, r, 0, &e_i);
     for (int c = 0; c < 3; c++) {
         double f = lobe * kiln_fresnel_schlick(ball->f0[c], fmin(size / 2, 1));
-        // The handout's figure 6 has the albedo where E_avg should be.
+        // The handout's figure 6 uses the albedo in place of E_avg.
         double e = o->as_printed ? view_handout_albedo[c] : average;
         if (is_kulla_conty(ball->method))
             f += kiln_kulla_conty(e_o, e_i, e) *

@@ -1,4 +1,6 @@
-// The GL side: shader, textures, one block of uniforms, one triangle.
+// The OpenGL ES 3.0 renderer. In: a view, an environment's cubes and harmonics, tables. Out: the
+// picture in the bound framebuffer, or read back as floats. One triangle covers the screen. The
+// fragment shader scene.frag computes each pixel from the textures and one block of uniforms.
 #include "gl.h"
 #include "internal.h"
 
@@ -6,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// As the block View in shaders/scene.frag, std140.
+// The uniform block View of shaders/scene.frag in the layout std140.
 typedef struct block {
     float eye[4], right[4], up[4], back[4], light[4], turn[4], screen[4], handout_average[4];
     int32_t mode[4], flags[4], levels[4];
@@ -22,7 +24,8 @@ _Static_assert(offsetof(block, balls) == 704, "std140");
 
 enum { TONE_LINEAR, TONE_NEUTRAL, TONE_ASSIGNMENT };
 
-// Texture units.
+// Texture unit of each sampler; the names in `samplers` are in the same order. The seven tables
+// begin at TABLES.
 enum { ENVIRONMENT, ENVIRONMENT_TEXTBOOK, IRRADIANCE, TABLES, EDGE = 6, TEXTURES = TABLES + 7 };
 static const char *const samplers[TEXTURES] = {"environment",
                                                "environment_textbook",
@@ -58,7 +61,7 @@ static void set_table(view_renderer *r, int place, const kiln_table *table)
     float *layout = r->block.table_layout[place];
     layout[0] = (float)table->def.axis;
     if (table->def.axis == KILN_AXIS_GRAZING && table->def.model.g == KILN_G_SCHLICK_TEXT)
-        layout[0]++; // AXIS_GRAZING_TEXT
+        layout[0]++; // the shader's AXIS_GRAZING_TEXT
     layout[1] = table->def.corners;
     layout[2] = table->def.complement;
     layout[3] = table->def.flip;
@@ -106,7 +109,8 @@ kiln_result view_set_environment(view_renderer *r, view_slot slot, const kiln_ma
 
 // ------------------------------------------------------------------------------------------- tables
 
-// Exact E and A, B of one model, and the E_avg that belongs to the table of E as it is looked up.
+// Computes the exact tables E, E_avg and (A, B) of the model with shadowing `g`. E_avg is the mean
+// of E as the shader interpolates it, which keeps the furnace white.
 static kiln_result make_model_tables(view_renderer *r, kiln_g g, kiln_error *error)
 {
     kiln_table e = {0}, average = {0}, split = {0};
@@ -144,7 +148,7 @@ static kiln_result make_tables(view_renderer *r, kiln_error *error)
     return result;
 }
 
-// Nothing but black, so that every sampler has something to read.
+// Binds black textures: a sampler without a texture would be incomplete.
 static kiln_result make_darkness(view_renderer *r, kiln_error *error)
 {
     kiln_map black = {0};
@@ -255,7 +259,7 @@ static void fill_block(block *b, const view_options *o, int width, int height, b
     b->right[3] = (float)(slope * width / height);
     b->up[3] = (float)slope;
     b->back[3] = (float)exp2(o->exposure);
-    b->light[2] = b->light[3] = 1; // radiance 1 from +Z
+    b->light[2] = b->light[3] = 1; // direction (0, 0, 1), radiance 1
     b->turn[0] = (float)cos(o->rotation * degree);
     b->turn[1] = (float)sin(o->rotation * degree);
     b->turn[2] = (float)o->split;
@@ -305,7 +309,8 @@ void view_draw(view_renderer *r, const view_options *o, int width, int height)
 
 // --------------------------------------------------------------------------------------- pictures
 
-// What was drawn, bottom row first and four channels, into the picture.
+// Reads the framebuffer (RGBA floats, bottom row first) into a picture of three channels, top row
+// first.
 static kiln_result read_back(view_renderer *r, int width, int height, kiln_image *image,
                              kiln_error *error)
 {
@@ -377,7 +382,7 @@ kiln_result view_furnace_residual(view_renderer *r, const view_options *options,
         return result;
     double sum = 0;
     size_t count = 0;
-    // The compensated row is the upper half of the picture.
+    // The row of balls with compensation lies in the upper half of the picture.
     for (size_t i = 0; i < (size_t)width * (size_t)(height / 2) * 3; i++) {
         double off = fabs((double)image.pixels[i] - 1);
         *largest = off > *largest ? off : *largest;

@@ -1,4 +1,6 @@
-// What stands where, made of what: numbers only, shared by the renderer and the reference.
+// The geometry and the materials of each scene, as numbers for the renderer and the reference. In:
+// view_options. Out: the list of balls, the camera's axes, the tone curve, and the names of scenes,
+// methods, materials and debug views.
 #include "internal.h"
 
 #include <math.h>
@@ -63,7 +65,7 @@ view_options view_defaults(view_scene scene)
         .bent = true,
     };
     if (scene == VIEW_SCENE_ASSIGNMENT) {
-        // At (0, 80, 300), looking at the origin.
+        // The assignment's camera stands at (0, 80, 300) and looks at the origin.
         o.camera = (view_camera){.elevation = atan2(80, 300) / degree,
                                  .distance = sqrt(80.0 * 80 + 300.0 * 300),
                                  .fov = 75};
@@ -82,7 +84,7 @@ void view_camera_axes(const view_camera *c, double eye[3], double right[3], doub
 {
     double sin_a = sin(c->azimuth * degree), cos_a = cos(c->azimuth * degree);
     double sin_e = sin(c->elevation * degree), cos_e = cos(c->elevation * degree);
-    // From the target to the eye; right is level.
+    // `back` points from the target to the eye. `right` is horizontal.
     back[0] = cos_e * sin_a;
     back[1] = sin_e;
     back[2] = cos_e * cos_a;
@@ -102,18 +104,18 @@ typedef struct substance {
     double f0[3], albedo[3];
 } substance;
 
-// Of what is not measured: metals.c has the others.
+// Constants of the materials without measured indices; metals.c has the measured metals.
 static const substance substances[VIEW_MATERIAL_COUNT] = {
     [VIEW_MATERIAL_WHITE] = {.f0 = {1, 1, 1}},
     [VIEW_MATERIAL_PLASTIC] = {.f0 = {0.04, 0.04, 0.04}, .albedo = {0.6, 0.05, 0.04}},
     [VIEW_MATERIAL_CHALK] = {.f0 = {0.04, 0.04, 0.04}, .albedo = {0.9, 0.9, 0.9}},
 };
 
-// The assignment's copper: reflectivity as stored, decoded by the power 2.2, and edge tint.
+// The assignment's copper: its reflectivity before decoding by the power 2.2, and its edge tint.
 const double view_handout_albedo[3] = {0.7216, 0.451, 0.2};
 static const double handout_edge[3] = {0.827, 0.792, 0.678};
 
-static const double edge = 1.0 / 7; // where F82 is
+static const double edge = 1.0 / 7; // cosine of the angle that F82 belongs to
 
 static void set_substance(view_ball *ball, view_material material)
 {
@@ -138,7 +140,7 @@ static void set_substance(view_ball *ball, view_material material)
     }
 }
 
-// What is on all balls.
+// A ball at the origin with the material and the radius of all balls.
 static view_ball make_ball(view_material material)
 {
     view_ball ball = {.radius = 36};
@@ -146,7 +148,7 @@ static view_ball make_ball(view_material material)
     return ball;
 }
 
-// The assignment's rows: compensated above, one bounce below.
+// Two rows of five balls: o->method in the upper row, one bounce in the lower row.
 static int make_rows(const view_options *o, view_material material, view_ball *balls)
 {
     enum { COLUMNS = 5 };
@@ -164,8 +166,9 @@ static int make_rows(const view_options *o, view_material material, view_ball *b
     return count;
 }
 
-// Roughness 0 to 1 from left to right, metallic 0 to 1 upwards: F and albedo between a dielectric's
-// and the metal's, which a metal keeps in its F0.
+// A grid of balls: roughness grows from 0 to 1 to the right, metallic from 0 to 1 upwards. F0 and
+// the diffuse albedo are interpolated between a dielectric's and the metal's. A metal's colour is
+// its F0.
 static int make_grid(const view_options *o, view_ball *balls)
 {
     enum { COLUMNS = 7, ROWS = 5 };

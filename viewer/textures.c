@@ -1,12 +1,12 @@
-// Pictures into textures.
+// Uploads cubes of half floats and tables of floats as GL textures.
 #include "gl.h"
 #include "internal.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-// A float as IEEE half, rounded to nearest even; beyond the largest finite half that one. For numbers
-// that are not negative.
+// Converts a float that is not negative to an IEEE half, rounded to nearest even. Values above the
+// largest finite half become that half.
 static uint16_t half(float value)
 {
     if (!(value > 0))
@@ -15,9 +15,10 @@ static uint16_t half(float value)
         return 0x7bff;
     int exponent;
     (void)frexpf(value, &exponent);
-    if (exponent < -13) // subnormal: a multiple of 2^-24
+    if (exponent < -13) // subnormal half: a multiple of 2^-24
         return (uint16_t)lrintf(ldexpf(value, 24));
-    uint32_t mantissa = (uint32_t)lrintf(ldexpf(value, 11 - exponent)); // 1024 to 2048
+    // 11 bits with the leading one: 1024 to 2048
+    uint32_t mantissa = (uint32_t)lrintf(ldexpf(value, 11 - exponent));
     return (uint16_t)(((uint32_t)(exponent + 14) << 10) + mantissa - 1024);
 }
 
@@ -40,7 +41,7 @@ static void fresh(const view_gl *gl, int unit, GLenum target, GLuint *texture)
     gl->PixelStorei(GL_UNPACK_ALIGNMENT, 1);
 }
 
-// Half floats, which every ES 3.0 filters.
+// Stores half floats, because OpenGL ES 3.0 need not filter 32-bit floats.
 kiln_result view_upload_cube(const view_gl *gl, int unit, GLuint *texture, const kiln_map *map,
                              kiln_error *error)
 {

@@ -1,12 +1,15 @@
-// Light that bounces more than once between the microfacets, by a random walk in GGX's microsurface:
-// Heitz, Hanika, d'Eon and Dachsbacher 2016. Every method of compensation stands for this.
+// Estimates the light that bounces at least twice between microfacets, by a random walk in GGX's
+// microsurface (Heitz, Hanika, d'Eon and Dachsbacher 2016). In: a point of a ball, the light that
+// arrives there. Out: an unbiased estimate of the radiance towards the camera, added to a sum. The
+// compensation methods of view_method approximate this radiance.
 //
-// A ray is a direction, a height, given by the share c of heights below it, and a weight. A ray that
-// travels along w leaves the microsurface with the probability c^Lambda(w); otherwise it meets a
-// microfacet at the share c / (1 - u (1 - c^Lambda(w)))^(1 / Lambda(w)), u uniform (their eq. 13 and
-// appendix). Its normal is one of those visible from -w, it turns w into its mirror image, and F of
-// the weight remains. At each bounce what leaves is counted by its expectation, both where the ray was
-// turned to and in a direction drawn from the environment, weighted by the balance heuristic.
+// The state of the walk is a direction w, a height, given by the share c of the microsurface's
+// heights below it, and a weight. A ray along w leaves the microsurface with the probability
+// c^Lambda(w). Otherwise, with u uniform in (0, 1), it meets a microfacet at the height whose share
+// is c / (1 - u (1 - c^Lambda(w)))^(1 / Lambda(w)) (equation 13 of the paper). The microfacet's
+// normal is drawn from the normals visible from -w. The microfacet mirrors w and multiplies the
+// weight by Fresnel's reflectance. Each bounce adds its expected light along two directions: the
+// mirrored w, and a direction drawn from the environment. The balance heuristic weights the two.
 #include "internal.h"
 #include "trace.h"
 
@@ -15,8 +18,8 @@
 enum { MAX_BOUNCES = 64 };
 
 typedef struct ray {
-    double w[3];  // where it travels
-    double below; // the share of heights below it
+    double w[3];  // direction of travel, in the frame (t, b, n)
+    double below; // share of the microsurface's heights that lie below the ray's height
     double weight[3];
 } ray;
 
@@ -25,25 +28,27 @@ static double dot(const double a[3], const double b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-// sqrt(cos^2 + alpha^2 sin^2), Heitz 2014, eq. 72.
+// sqrt(cosine^2 + alpha^2 sine^2), which Smith's Lambda contains: Heitz 2014, equation 72.
 static double root(double alpha, double cosine)
 {
     return sqrt(cosine * cosine + alpha * alpha * (1 - cosine) * (1 + cosine));
 }
 
-// Of a direction that may point down, where it is below -1.
+// Smith's Lambda of a direction with this cosine to the normal. The cosine may be negative: Lambda
+// is then below -1.
 static double lambda(double alpha, double cosine)
 {
     return (root(alpha, cosine) / cosine - 1) / 2;
 }
 
-// The share of a ray along w that leaves without another bounce.
+// Probability that a ray with this cosine leaves the microsurface without another bounce.
 static double leaving(double alpha, double below, double cosine)
 {
     return cosine > 0 ? pow(below, lambda(alpha, cosine)) : 0;
 }
 
-// Visible normals of any direction v: Dupuy and Benyoub 2023.
+// Draws h from the normals visible from direction v, which may point below the horizon, after Dupuy
+// and Benyoub 2023.
 static void draw_normal(double alpha, const double v[3], view_random *random, double h[3])
 {
     double s[3] = {alpha * v[0], alpha * v[1], v[2]}, size = sqrt(dot(s, s));
@@ -58,12 +63,13 @@ static void draw_normal(double alpha, const double v[3], view_random *random, do
         h[c] /= size;
 }
 
-// On to the next microfacet; false where the ray has as good as left.
+// Moves the ray to the next microfacet. The weight keeps the probability that the ray does not
+// leave. Returns false where that probability rounds to 0.
 static bool advance(double alpha, view_random *random, ray *r)
 {
     double cosine = fmin(fmax(r->w[2], -1 + 1e-12), 1 - 1e-12);
     if (fabs(cosine) < 1e-9)
-        return true; // level: it stays at its height
+        return true; // a horizontal ray keeps its height
     double l = lambda(alpha, cosine), out = leaving(alpha, r->below, cosine);
     for (int c = 0; c < 3; c++)
         r->weight[c] *= 1 - out;
@@ -72,7 +78,8 @@ static bool advance(double alpha, view_random *random, ray *r)
     return out < 1;
 }
 
-// The density of the mirror image l of -w among visible normals, per steradian, and v.h.
+// Density per steradian of l among the mirror images of -w about its visible normals. `voh`
+// receives the cosine between l and the half vector.
 static double phase(double roughness, const double w[3], const double l[3], double *voh)
 {
     double h[3], size = 0, alpha = roughness * roughness;
@@ -84,12 +91,13 @@ static double phase(double roughness, const double w[3], const double l[3], doub
     *voh = size / 2;
     if (!(size > 0) || h[2] <= 0)
         return 0;
-    // What the microsurface shows to -w: (1 + Lambda) cos.
+    // Area that the microsurface projects towards -w: (1 + Lambda(-w)) cos(-w).
     double shown = (-w[2] + root(alpha, -w[2])) / 2;
     return shown > 0 ? kiln_brdf_d(KILN_D_GGX, roughness, fmin(h[2] / size, 1)) / (4 * shown) : 0;
 }
 
-// What leaves along l after a bounce, over the densities of both ways to draw it.
+// Adds the light that arrives from l and leaves after one more bounce, divided by the sum of the
+// densities with which the walk and the environment's sampling would have chosen l.
 static void count(const view_walk *walk, const view_point *p, const ray *before, const double l[3],
                   view_random *random, double sum[3])
 {
@@ -124,7 +132,7 @@ void view_walk_add(const view_walk *walk, const view_point *p, view_random *rand
         double voh = dot(v, h);
         for (int c = 0; c < 3; c++)
             l[c] = 2 * voh * h[c] - v[c];
-        if (bounce > 1) { // the first one is the lobe, which is known
+        if (bounce > 1) { // the single-scattering lobe already contains the first bounce
             double xi[2] = {view_random_next(random), view_random_next(random)}, d[3];
             view_light_sample(walk->light, xi, d);
             const double drawn[3] = {dot(d, p->t), dot(d, p->b), dot(d, p->n)};
@@ -138,7 +146,8 @@ void view_walk_add(const view_walk *walk, const view_point *p, view_random *rand
         }
         if (!advance(alpha, random, &r))
             return;
-        // Those that carry little go on with a fair chance.
+        // Russian roulette: a ray whose largest weight is below 1/4 continues with a probability of
+        // 4 times that weight.
         double most = fmax(r.weight[0], fmax(r.weight[1], r.weight[2]));
         double chance = fmin(1, 4 * most);
         if (view_random_next(random) >= chance)

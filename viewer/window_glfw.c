@@ -1,3 +1,7 @@
+// The window of window.h. In: a view and callbacks that set environments. Out: frames on the
+// screen, or one screenshot. GLFW's functions are found by dlopen; keys and mouse change the view
+// by controls.h, and a frame is drawn after each change.
+//
 #include "window.h"
 
 #include "controls.h"
@@ -54,8 +58,8 @@ typedef struct window {
     view_options options;
     bool allowed[VIEW_SCENE_COUNT];
     bool dragging;
-    bool stale;  // what is seen is not what `options` says
-    double x, y; // of the mouse
+    bool stale;  // the frame on the screen was drawn before the last change of `options`
+    double x, y; // last position of the mouse pointer
 } window;
 
 // ----------------------------------------------------------------------------------------- loading
@@ -73,7 +77,7 @@ static void *open_library(void)
     return library ? library : dlopen("libglfw.so", RTLD_NOW | RTLD_LOCAL);
 }
 
-// Stays loaded until the process ends.
+// GLFW stays loaded until the process ends.
 static kiln_result load(glfw_functions *glfw, kiln_error *error)
 {
     void *library = open_library();
@@ -95,9 +99,10 @@ static view_function lookup(const char *name)
     return find(open_library(), "glfwGetProcAddress", &get) ? (view_function)get(name) : NULL;
 }
 
-// ---------------------------------------------------------------------------------------- the hands
+// --------------------------------------------------------------------------------------- callbacks
 
-// GLFW hands the window's pointer to callbacks only through a function of its own.
+// Callbacks receive only the GLFW handle: GLFW's own function returns the window that was stored
+// with it.
 static window *of(GLFWwindow *handle)
 {
     __typeof__(&glfwGetWindowUserPointer) get = NULL;
@@ -125,7 +130,8 @@ static void on_move(GLFWwindow *handle, double x, double y)
     w->stale = true;
 }
 
-// While a button is held, fewer rays make it quick; afterwards all are drawn.
+// While a button is held, frames are drawn with fewer rays a pixel, which makes dragging smooth.
+// Releasing the button draws all rays.
 static void on_button(GLFWwindow *handle, int button, int action, int mods)
 {
     (void)button;
@@ -197,13 +203,14 @@ static kiln_result say(const window *w, const char *what, kiln_error *error)
                      why ? why : "");
 }
 
-// GLFW 3.4 asks for a Wayland screen first, and libwayland prints a line of its own where the folder
-// of Wayland's sockets is not named. No such screen can be found then, so only X11 is asked. GLFW 3.3
-// knows no such hint, which is an error that is dropped here, and asks X11 alone.
+// GLFW 3.4 tries Wayland first. Without XDG_RUNTIME_DIR and WAYLAND_DISPLAY there is no Wayland
+// screen to find, and libwayland prints a warning: only X11 is tried then. GLFW 3.3 supports only
+// X11 and reports the hint as an error, which is dropped here.
 static void choose_platform(const glfw_functions *glfw)
 {
 #ifdef __linux__
-    enum { PLATFORM = 0x00050003, PLATFORM_X11 = 0x00060004 }; // as in the header of GLFW 3.4
+    // values of GLFW_PLATFORM and GLFW_PLATFORM_X11 in GLFW 3.4's header
+    enum { PLATFORM = 0x00050003, PLATFORM_X11 = 0x00060004 };
     if (!getenv("XDG_RUNTIME_DIR") && !getenv("WAYLAND_DISPLAY")) {
         glfw->InitHint(PLATFORM, PLATFORM_X11);
         glfw->GetError(NULL);
@@ -241,7 +248,7 @@ static kiln_result open_window(window *w, const view_window_def *def, kiln_error
     return KILN_OK;
 }
 
-// The window's pixels, 0 to 1, row 0 at the top.
+// Reads the window's pixels into a picture: values 0 to 1, row 0 at the top.
 static kiln_result shoot(kiln_context *context, int width, int height, kiln_image *image,
                          kiln_error *error)
 {
@@ -265,7 +272,7 @@ static kiln_result shoot(kiln_context *context, int width, int height, kiln_imag
     return result;
 }
 
-// The textbook's bake takes a while: the title says how far it is.
+// Shows the progress of the sampled bake in the window's title.
 static kiln_result ask_textbook(window *w, const view_window_def *def, view_renderer *renderer,
                                 double *done, kiln_error *error)
 {
@@ -281,7 +288,7 @@ static kiln_result ask_textbook(window *w, const view_window_def *def, view_rend
 static kiln_result loop(window *w, kiln_context *context, const view_window_def *def,
                         view_renderer *renderer, kiln_error *error)
 {
-    double textbook = 0; // how much of its bake is done
+    double textbook = 0; // finished share of the sampled bake
     w->stale = true;
     while (!w->glfw.WindowShouldClose(w->handle) && (!def->go_on || def->go_on(def->user))) {
         int width, height;

@@ -2,10 +2,12 @@
 // coarse result, later steps better ones, and work whose result is no longer wanted is stopped.
 import { Engine } from './engine.mjs';
 
-// A row of steps, each of which gives something to see. start({ key, open, steps }) does nothing where
-// that key is at work or done; open(engine) opens the environment in the worker.
+// Runs a series of steps, each of which gives a result to show. start() does nothing if the same
+// key is running or finished.
 export class BackgroundWork {
-    // onWords(sentence) while it works; '' when it no longer does. onResult(result, step, last).
+    // onWords(sentence) reports progress, and '' when work ends. onResult(result, step, last)
+    // receives the result of each step; `last` is true for the final step. onFailure(error)
+    // receives an exception.
     constructor({ onWords, onResult, onFailure }) {
         Object.assign(this, { onWords, onResult, onFailure, key: '', opened: '', round: 0, busy: false });
     }
@@ -18,14 +20,15 @@ export class BackgroundWork {
         this.round++;
         this.key = '';
         if (this.busy)
-            this.engine.restart('Stopped.'); // a new worker, which has nothing open
+            this.engine.restart('Stopped.'); // a new worker without an open source
         if (this.busy)
             this.opened = '';
         this.busy = false;
         this.onWords('');
     }
 
-    // steps: [{ words, work(engine) }]; `source` says what open() would open.
+    // `steps` is an array of { words, work(engine) }. open(engine) opens the source in the worker,
+    // unless the worker has the source named `source` open already.
     async start({ key, source, open, steps }) {
         if (key === this.key)
             return;

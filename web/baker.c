@@ -1,3 +1,7 @@
+// The web page's baker (baker.h), compiled to WebAssembly. In: a file's bytes or the sky's
+// parameters. Out: baked levels and harmonics in memory, files in emscripten's file system, and
+// reference pictures. libkiln and the viewer's bake and reference do the work, on one thread.
+//
 #include "baker.h"
 
 #include "reference.h"
@@ -29,7 +33,7 @@ static bool progress(void *user, const char *stage, double fraction)
     return true;
 }
 
-// Memory of a page ends at 2 GiB; a part of that is kept for files.
+// WebAssembly memory ends at 2 GiB; 1800 MiB are kiln's limit, and the other memory holds files.
 #define MEMORY ((size_t)1800 << 20)
 
 baker *baker_create(void)

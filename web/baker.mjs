@@ -1,5 +1,5 @@
-// kiln as an object: what baker.h says, with exceptions that carry its sentences.
-//   const baker = await Baker.make({ progress(stage, fraction) {} })
+// JavaScript class around baker.h; failures throw an Error with baker_message's text.
+//   const baker = await Baker.make(makeModule, { progress(stage, fraction) {} })
 export const FORMATS = { rgba16f: 1, rgba32f: 2, rgb9e5: 3, b10g11r11: 4 };
 export const TABLES = ['e', 'eavg', 'dfg'];
 export const SHAPES = ['auto', 'panorama', 'cube', 'octahedron'];
@@ -22,7 +22,8 @@ export class Baker {
             throw new Error(this.module.UTF8ToString(this.module._baker_message(this.self)));
     }
 
-    // The file's bytes are copied; `name` stands in sentences. Returns what was opened.
+    // Opens an image file from its bytes, which are copied; error messages quote `name`. Returns
+    // the source's shape and size.
     open(bytes, name) {
         const at = this.module._malloc(bytes.length);
         if (!at)
@@ -48,12 +49,13 @@ export class Baker {
         return { shape, width: shape === 'panorama' ? 2 * size : size, height: size };
     }
 
-    // Six faces of RGB floats, copied.
+    // Copies the RGB floats of six faces.
     texels(at, size) {
         return this.module.HEAPF32.slice(at >>> 2, (at >>> 2) + 18 * size * size);
     }
 
-    // Returns what was baked: of each level its size, roughness and texels.
+    // Bakes the source. Returns each level's size, roughness and texels, the harmonics and the
+    // time.
     bake({ size = 256, levels = 0, rotation = 0, exposure = 0 } = {}) {
         const { module, self } = this, began = performance.now();
         this.call('baker_bake', size, levels, rotation, exposure);
@@ -71,7 +73,8 @@ export class Baker {
         };
     }
 
-    // Returns what the view is lit by, as Stage.light takes it; the textbook's with `samples`.
+    // Returns the textures that light the view, in the form that Stage.light takes. With `samples`
+    // above 0 the levels are importance-sampled with that many samples a texel.
     scenery({ size = 256, samples = 0 } = {}) {
         const { module, self } = this, began = performance.now();
         this.call('baker_scenery', size, samples);
@@ -90,7 +93,8 @@ export class Baker {
         };
     }
 
-    // A view of what was opened, integrated to a noise: RGB floats, and the noise that was reached.
+    // Integrates a view of the source to a relative noise. Returns RGB floats and the noise
+    // reached.
     truth({ numbers, width, height, noise, alone }) {
         const { module, self } = this, at = module._malloc(8 * numbers.length);
         try {
@@ -104,19 +108,20 @@ export class Baker {
                  texels: module.HEAPF32.slice(from, from + 3 * width * height) };
     }
 
-    // The irradiance beside what was baked: .ktx2 .dds
+    // Bytes of the baked irradiance cube as a file: .ktx2 or .dds.
     irradiance(name, format = 'rgba16f') {
         this.call('baker_save_irradiance', `/${name}`, FORMATS[format]);
         return this.written(`/${name}`);
     }
 
-    // A file that the command would write, by the name's ending: .ktx2 .dds .json .txt .h
+    // Bytes of the file that the command would write; the ending of the name selects the kind:
+    // .ktx2, .dds, .json, .txt or .h.
     file(name, format = 'rgba16f') {
         this.call('baker_save', `/${name}`, FORMATS[format]);
         return this.written(`/${name}`);
     }
 
-    // A table of the reflection model: .ktx2 .raw .h .glsl
+    // Bytes of a table of the reflection model as a file: .ktx2, .raw, .h or .glsl.
     table(name, kind) {
         this.call('baker_table', `/${name}`, TABLES.indexOf(kind));
         return this.written(`/${name}`);

@@ -1,9 +1,9 @@
-// The controls at the right, by lil-gui.
+// The panel of controls at the right of the page, made with lil-gui.
 import GUI from './lil-gui.mjs';
 
 const SIZES = [16, 32, 64, 128, 256, 512, 1024];
 
-// changed(name) is called after the state has changed.
+// Each control writes to `state` and then calls changed(name).
 export function makeControls(container, state, words, changed) {
     const gui = new GUI({ container, title: 'Controls', injectStyles: false });
     const folders = { sky: gui.addFolder('Sky'), bake: gui.addFolder('Bake'),
@@ -34,7 +34,8 @@ export function makeControls(container, state, words, changed) {
     }
     const only = { split: 'compare', asPrinted: 'assignment', method: null };
     return {
-        // After changes from elsewhere; what means nothing in the scene is not shown.
+        // Shows the present state, after it has changed elsewhere; hides controls without effect in
+        // the scene.
         update() {
             for (const controller of gui.controllersRecursive()) {
                 controller.updateDisplay();

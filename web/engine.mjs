@@ -1,5 +1,6 @@
-// The baker behind promises: engine.bake({...}) is done in the worker. A worker that breaks is
-// replaced by a new one, which has nothing open.
+// Runs the baker in a worker: engine.bake({...}) and the other methods return promises. A worker
+// that fails is replaced by a new worker without an open source, and the waiting promises are
+// rejected.
 const WORK = ['open', 'sky', 'bake', 'scenery', 'truth', 'file', 'irradiance', 'table'];
 
 export class Engine {

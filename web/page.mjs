@@ -1,4 +1,6 @@
-// The page: takes a panorama, has it baked, shows and hands out what comes of it.
+// The web page's main module. In: the address, dropped files, controls, keys. Out: the rendered
+// view, the strip of baked levels, files to download. A worker (engine.mjs) bakes; stage.mjs draws
+// on the canvas; the state is kept in the address.
 import { makeControls } from './controls.mjs';
 import { Engine } from './engine.mjs';
 import { BackgroundWork } from './background.mjs';
@@ -30,7 +32,8 @@ const stage = await Stage.make(makeStageModule, '#view');
 
 // ------------------------------------------------------------------------------------------- state
 
-// What an address may hold. A scene has its own camera, material and method.
+// Name, kind and default of each value that the address may hold. Each scene has defaults of its
+// own for camera, material and method.
 function kindsOf(scene) {
     const own = stage.defaults(scene), { words } = stage;
     return {
@@ -41,13 +44,15 @@ function kindsOf(scene) {
         size: number(256, 16, 1024, 0),
         turn: number(0, -180, 180),
         stops: number(0, -16, 16),
-        shown: number(-1, -1, 15, 0), // a level instead of the balls
+        // index of the level shown in place of the balls; -1 shows the balls
+        shown: number(-1, -1, 15, 0),
         scene: word('ibl', ...words.scene),
         method: word(own.method, ...words.method),
         material: word(own.material, ...words.material),
         debug: word('none', ...words.debug, 'error'),
-        noise: number(0.05, 0.01, 0.5, 3), // at which the reference of the error is done
-        alone: flag(false), // it has no light among the balls
+        // relative noise of the reference that the error is measured against
+        noise: number(0.05, 0.01, 0.5, 3),
+        alone: flag(false), // the reference leaves out light between balls
         azimuth: number(own.azimuth, -3600, 3600),
         elevation: number(own.elevation, -89, 89),
         distance: number(own.distance, 60, 3000, 1),
@@ -68,7 +73,7 @@ function readAddress() {
 }
 
 const state = readAddress();
-let opened = null; // the file's own bytes and name; null for the sky
+let opened = null; // bytes and name of the opened file; null for the sky
 let baked = null, lit = '';
 
 function remember() {
@@ -116,7 +121,7 @@ function request(work) {
     return running;
 }
 
-// Takes a file, or the sky where there is none, and bakes it. What was there stays where that fails.
+// Opens a file, or the sky if `file` is null, and bakes it. On failure the previous bake stays.
 const bake = (file) => request(async () => {
     say(`Reading ${file ? file.name : 'the sky'}.`);
     const { size, sun, bearing, haze } = state;
@@ -136,7 +141,7 @@ const bake = (file) => request(async () => {
     remember();
 });
 
-// ------------------------------------------------------------------------------------- what takes long
+// --------------------------------------------------------------------------------- background work
 
 const words = { textbook: '', truth: '' };
 const speak = (who) => (sentence) => {
@@ -149,7 +154,7 @@ const sourceKey = () => (opened ? opened.stamp : [state.sun, state.bearing, stat
 const openIn = (worker) => (opened ? worker.open(opened.bytes, opened.name)
     : worker.sky({ elevation: state.sun, azimuth: state.bearing, turbidity: state.haze }));
 
-// The textbook's bake for compare, with few samples first.
+// The importance-sampled environment that scene compare shows, with few samples first.
 const textbook = new BackgroundWork({
     onWords: speak('textbook'),
     onFailure: (problem) => complain(problem.message),
@@ -176,7 +181,7 @@ function wantTextbook() {
     });
 }
 
-// The reference, with much noise first, and what the view's error against it is.
+// The integrated reference, with much noise first, and the view's error against it.
 const TRUTH_ROWS = 128;
 let wrong = null;
 const truth = new BackgroundWork({
@@ -188,7 +193,8 @@ const truth = new BackgroundWork({
     },
 });
 
-// The picture whose error is wanted: one ray a pixel, and few of them.
+// The view whose error is measured, with one ray a pixel and TRUTH_ROWS rows, because integration
+// is slow.
 function wantedTruth() {
     const box = get('stage'), height = TRUTH_ROWS;
     const width = Math.max(1, Math.round(height * box.clientWidth / Math.max(1, box.clientHeight)));
@@ -220,7 +226,7 @@ function wantTruth() {
     }), 250);
 }
 
-// What is not to be begun again until something changes.
+// Keys of work that the user stopped: it starts again only after its key has changed.
 const stopped = { textbook: '', truth: '' };
 get('stop').onclick = () => {
     if (textbook.busy)
@@ -275,14 +281,14 @@ function showLevels() {
     }));
 }
 
-// What the renderer is told: the state, and the brightness that fits.
+// The view to draw: the scene's defaults, the state, and an exposure that fits the environment.
 function viewOf() {
     const fit = state.auto && baked && state.scene !== 'furnace' && state.scene !== 'assignment';
     const exposure = fit ? Math.log2(middleGrey(baked.harmonics)) + FIT : state.stops;
     const debug = state.debug === 'error' ? 'none' : state.debug;
     return { ...stage.defaults(state.scene), ...state, debug, level: 0, rotation: state.turn, exposure };
 }
-const FIT = 1.5; // stops, from the level strip's middle grey to the renderer's tone mapping
+const FIT = 1.5; // stops between the exposure of the level strip and that of the tone-mapped view
 
 function noteOf(error) {
     if (!stage.ready)
@@ -335,7 +341,8 @@ function refresh() {
 
 const BAKES = ['sun', 'bearing', 'haze', 'size', 'turn', 'stops'];
 
-// After the state has changed: is there anything to bake?
+// Called after state[name] has changed: bakes again if the bake depends on that value, and
+// refreshes.
 function changed(name) {
     if (name === 'scene')
         Object.assign(state, ownOf(state.scene));
@@ -349,7 +356,7 @@ function changed(name) {
     refresh();
 }
 
-// A scene's own camera, material and method.
+// The scene's defaults for the camera, the material and the method.
 function ownOf(scene) {
     const { method, material, azimuth, elevation, distance, split } = stage.defaults(scene);
     return { method, material, azimuth, elevation, distance, split, debug: 'none', shown: -1 };
@@ -381,9 +388,9 @@ get('keys').append(...KEYS.map(([keys, words]) => {
     return line;
 }));
 
-// ----------------------------------------------------------------------------------------- handing out
+// ---------------------------------------------------------------------------------------- downloads
 
-// A button for a file: its name, and its bytes by that.
+// Adds a button that downloads a file; nameOf() gives the file's name and bytesOf(name) its bytes.
 function addDownload(label, nameOf, bytesOf) {
     const button = document.createElement('button');
     button.type = 'button';
@@ -419,7 +426,7 @@ addTable('Table of E', 'e');
 addTable('Table of E_avg', 'eavg');
 addTable('Table of A, B', 'dfg');
 
-// ----------------------------------------------------------------------------------------- taking in
+// -------------------------------------------------------------------------------------------- input
 
 get('choose').onclick = () => get('file').click();
 get('file').onchange = async () => {
@@ -448,7 +455,7 @@ window.addEventListener('hashchange', () => {
     bake(state.source === 'sky' ? null : opened);
 });
 
-// An address cannot hold a file: it says which one to drop.
+// The address holds the name of a file but not its bytes, so the message asks for that file.
 const wanted = state.source;
 await bake(null);
 if (wanted !== 'sky')

@@ -1,5 +1,6 @@
-// Serves a folder on loopback and prints its address.
-//   node serve.mjs FOLDER [PORT]      8420, or where that is taken any; 0 for any
+// Serves a folder on 127.0.0.1 and prints the address.
+//   node serve.mjs FOLDER [PORT]
+// Without PORT the port is 8420, or any free port if 8420 is taken. PORT 0 means any free port.
 import fs from 'node:fs';
 import http from 'node:http';
 import path from 'node:path';
@@ -46,7 +47,7 @@ function respond(root, request, response) {
     return undefined;
 }
 
-// Resolves to the server and its address.
+// Starts the server; resolves to { server, address }.
 export function serve(folder, port = 0) {
     const root = path.resolve(folder);
     const server = http.createServer((request, response) => respond(root, request, response));

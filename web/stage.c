@@ -1,3 +1,7 @@
+// The web page's renderer (stage.h), compiled to WebAssembly. In: a view as numbers, environments,
+// a reference picture. Out: the view on a WebGL 2 canvas, the furnace's residual, and the error
+// against the reference. viewer/renderer.c draws and viewer/compare.c compares.
+//
 #include "stage.h"
 
 #include "reference.h"

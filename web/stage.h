@@ -1,5 +1,5 @@
-// The view in the page: the renderer on a canvas, behind functions of numbers, which stage.mjs calls.
-// What returns bool leaves a sentence in stage_message where it returns false.
+// Renderer for the web page: C functions over numbers and pointers, which stage.mjs calls. They
+// draw on a canvas. A function that returns false leaves an error message in stage_message.
 #ifndef STAGE_H
 #define STAGE_H
 
@@ -12,22 +12,23 @@
 
 typedef struct stage stage;
 
-/// The canvas by its CSS selector. Without WebGL 2 the stage is made all the same, with a sentence;
-/// stage_ready tells.
+/// Creates a stage on the canvas with this CSS selector. If the browser has no WebGL 2, the stage
+/// is created too, stage_ready returns false and stage_message says why.
 STAGE stage *stage_create(const char *canvas);
 STAGE bool stage_ready(const stage *s);
 STAGE const char *stage_message(const stage *s);
 STAGE const char *stage_gl_name(const stage *s);
-/// What stage_draw draws, and what the functions below write.
+/// The array of view numbers (view_numbers.h) that stage_draw and the functions below read.
 STAGE double *stage_numbers(stage *s);
-/// Sets the numbers to a scene's own.
+/// Sets the numbers to the scene's defaults.
 STAGE void stage_defaults(stage *s, int scene);
-/// Words for scenes (0), methods, materials and debug views (3); NULL beyond the last.
+/// Name of entry `index` of the scenes (kind 0), methods (1), materials (2) or debug views (3);
+/// NULL for an index beyond the last entry.
 STAGE const char *stage_word(int kind, int index);
 
-/// Room for an environment: six faces of RGB floats of `level`, or the irradiance's where that is -1;
-/// nine harmonics of three doubles. Then stage_light puts it into the scene: slot 0 is exact, 1 the
-/// textbook's.
+/// Allocates an environment: six faces of RGB floats for each level (stage_texels; level -1 is the
+/// irradiance cube) and nine harmonics of three doubles. stage_light uploads it once it is filled:
+/// slot 0 for the exact environment, slot 1 for the sampled one.
 STAGE bool stage_room(stage *s, int size, int levels, int irradiance_size);
 STAGE float *stage_texels(stage *s, int level);
 STAGE double *stage_harmonics(stage *s);
@@ -35,13 +36,15 @@ STAGE void stage_roughness(stage *s, int level, double roughness);
 STAGE bool stage_light(stage *s, int slot);
 
 STAGE void stage_draw(stage *s, int width, int height);
-/// Largest and RMS difference from 1 of the furnace's compensated balls, in numbers 0 and 1 of `off`.
+/// Renders the furnace; off[0] receives the largest difference from 1 and off[1] the RMS, of the
+/// balls with compensation.
 STAGE bool stage_furnace(stage *s, int width, int height, double *off);
 
-/// Room for the truth of a picture of this size: RGB floats, row 0 at the top.
+/// Allocates a reference picture of this size: RGB floats, row 0 at the top.
 STAGE float *stage_truth(stage *s, int width, int height);
-/// Draws the view at that size and compares. stage_colours then are those of its error, 0 to 1, and `off`
-/// receives RMS and largest relative to the truth's mean, and the RMS of 255 on a screen.
+/// Draws the view in the size of the reference picture and compares the two. stage_colours then
+/// returns the error's colours, 0 to 1. off[0] receives the RMS and off[1] the largest difference,
+/// both over the reference's mean; off[2] receives the RMS in steps of 255 on the screen.
 STAGE bool stage_error(stage *s, double *off);
 STAGE const float *stage_colours(const stage *s);
 

@@ -1,4 +1,4 @@
-// The view as an object: what stage.h says, with names for its numbers.
+// JavaScript class around stage.h; views are objects whose keys are the names in NUMBERS.
 const NUMBERS = ['scene', 'method', 'material', 'targetX', 'targetY', 'targetZ', 'azimuth',
                  'elevation', 'distance', 'fov', 'rotation', 'exposure', 'debug', 'level', 'split',
                  'background', 'samples', 'asPrinted', 'occlusion', 'cubeDiffuse',
@@ -6,7 +6,8 @@ const NUMBERS = ['scene', 'method', 'material', 'targetX', 'targetY', 'targetZ',
 const WORDS = ['scene', 'method', 'material', 'debug'];
 
 export class Stage {
-    // `canvas` is a CSS selector. Where there is no WebGL 2, `problem` says so and nothing is drawn.
+    // `canvas` is a CSS selector. Without WebGL 2 `ready` is false, `problem` says why, and nothing
+    // is drawn.
     static async make(makeModule, canvas, options = {}) {
         const stage = new Stage(), module = await makeModule(options);
         stage.module = module;
@@ -27,7 +28,7 @@ export class Stage {
         return this.module.UTF8ToString(this.module._stage_message(this.self));
     }
 
-    // The numbers of a scene as it is meant to be seen, with words for what has words.
+    // The scene's default view. Scene, method, material and debug view are given by name.
     defaults(scene) {
         this.module._stage_defaults(this.self, this.words.scene.indexOf(scene));
         const at = this.module._stage_numbers(this.self) >>> 3;
@@ -51,7 +52,8 @@ export class Stage {
         this.module._stage_draw(this.self, width, height);
     }
 
-    // An environment as the baker's scenery() gives it.
+    // Uploads an environment, in the form that Baker.scenery() returns, to the exact or the sampled
+    // slot.
     light({ levels, irradiance, harmonics }, textbook = false) {
         const { module, self } = this;
         if (!module._stage_room(self, levels[0].size, levels.length, irradiance.size))
@@ -68,7 +70,8 @@ export class Stage {
             throw new Error(this.message());
     }
 
-    // The error of what draw() shows against its truth: colours, RGB floats of 0 to 1, and figures.
+    // Compares the view with a reference picture. Returns colours (RGB floats, 0 to 1) and the
+    // figures of stage_error.
     error(view, { width, height, texels }) {
         const { module, self } = this, at = module._stage_truth(self, width, height);
         if (!at)
@@ -85,7 +88,7 @@ export class Stage {
                  colours: module.HEAPF32.slice(from, from + 3 * width * height) };
     }
 
-    // How far the furnace's compensated balls are from vanishing.
+    // Residual of the furnace: largest and RMS difference from 1 of the balls with compensation.
     furnace(view, width, height) {
         this.set(view);
         const off = this.module._malloc(16);

@@ -1,11 +1,11 @@
-// What the page shows, as an object and as the part of the address behind #: only what differs from
-// the defaults is written. Numbers out of their range are brought into it, unknown words are ignored.
+// Converts the page's state to the part of the address behind # and back. Only values that differ
+// from the defaults are written. Numbers out of range are clamped; unknown words are ignored.
 export const number = (value, low, high, digits = 2) => ({ value, low, high, digits });
 export const word = (value, ...words) => ({ value, words });
 export const flag = (value) => ({ value, flag: true });
 export const text = (value) => ({ value, text: true });
 
-// A value as its kind allows it.
+// Clamps or replaces a value until it is valid for its kind.
 export function bounded(kind, value) {
     if (kind.flag)
         return Boolean(value);

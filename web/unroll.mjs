@@ -1,6 +1,6 @@
-// Pictures of baked levels: a cube's six faces unrolled as a panorama, tone-mapped for a screen.
+// Draws baked cube levels as panoramas, tone-mapped for a screen.
 
-// Face and place in it of a direction, as OpenGL's cube maps have them.
+// Index of the texel in a direction (x, y, z), with the faces of OpenGL's cube maps.
 function texel(level, x, y, z) {
     const ax = Math.abs(x), ay = Math.abs(y), az = Math.abs(z);
     let face, s, t, m;
@@ -14,13 +14,13 @@ function texel(level, x, y, z) {
     return 3 * ((face * n + at(t)) * n + at(s));
 }
 
-// x / (1 + x), then sRGB's curve.
+// Tone-maps a radiance by x / (1 + x) and sRGB's curve to a byte's range, 0 to 255.
 function shown(radiance) {
     const v = radiance / (1 + radiance);
     return 255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * v ** (1 / 2.4) - 0.055);
 }
 
-// The exposure at which the mean luminance of the sphere becomes middle grey.
+// Factor on the radiance that makes the mean luminance of the sphere middle grey (0.22).
 export function middleGrey(harmonics) {
     const mean = (0.2126 * harmonics[0] + 0.7152 * harmonics[1] + 0.0722 * harmonics[2]) *
                  0.28209479177387814;

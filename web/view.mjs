@@ -1,6 +1,6 @@
-// The canvas: draws when something has changed, coarsely while it moves and finely when it rests, and
+// The canvas with its input. Draws a coarse frame at each change and a fine frame after a pause;
 // turns pointer and keys into changes of the state.
-const RESTS = 180; // ms
+const RESTS = 180; // ms without a change before the fine frame
 
 export const KEYS = [
     ['arrows, drag', 'walk around the balls'],
@@ -14,7 +14,8 @@ export const KEYS = [
 ];
 
 export class View {
-    // onChange(name, value) is asked for every change; onKeys() to show the keys.
+    // onChange(name, value) is called for each change of a value, onKeys() for the key that shows
+    // the help.
     constructor({ canvas, handle, stage, read, onChange, onScene, onNext, onReset, onKeys }) {
         Object.assign(this, { canvas, handle, stage, read, onChange, onScene, onNext, onReset, onKeys });
         new ResizeObserver(() => this.change()).observe(canvas);
@@ -27,7 +28,7 @@ export class View {
         handle.addEventListener('keydown', (event) => this.slideByKey(event));
     }
 
-    // Draws soon; finely once nothing has changed for a while.
+    // Requests a coarse frame at once and a fine frame after RESTS ms without another change.
     change() {
         this.canvas.dataset.drawn = '';
         if (!this.asked)

@@ -1,10 +1,11 @@
-// A view as numbers, which the page hands to the baker and to the stage.
+// A view as an array of numbers. The page's JavaScript hands views to the baker and the stage in
+// this form.
 #ifndef VIEW_NUMBERS_H
 #define VIEW_NUMBERS_H
 
 #include "viewer.h"
 
-// In this order; flags are 0 or 1.
+// Index of each number in the array. Flags are 0 or 1.
 typedef enum stage_number {
     STAGE_SCENE,
     STAGE_METHOD,

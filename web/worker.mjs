@@ -1,5 +1,5 @@
-// The baker's own thread. Takes {id, work, values} one after the other, answers {id, result} or
-// {id, error}, and between them {stage, fraction}.
+// The worker in which the baker runs. It receives messages {id, work, values} and handles them in
+// order. It answers {id, result} or {id, error, fatal}, and reports progress as {stage, fraction}.
 import makeModule from './baker.js';
 import { Baker } from './baker.mjs';
 
