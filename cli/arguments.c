@@ -1,12 +1,15 @@
-// The parser of a command line. Words and a table of rows go in; values, defaults and the words that are
-// no options come out.
-//   --size 64, --size=64     a long option; the next word is its value whatever it begins with, so that
-//                            --rotate -30 needs no =
-//   -o out, -oout, -o=out    a short option; -qo out is -q -o out
-//   --zstd, --zstd=19        an option with a value of its own takes another by = only
-//   --                       what follows is no option; neither is -
-// Options may stand after other words. An option given twice is wrong. Names cannot be shortened, but
-// the sentence about an unknown name suggests one.
+// The parser of command lines. In: words and a table of option rows. Out: the options' values and
+// defaults, and the words that are not options.
+//
+//   --size 64, --size=64     a long option. The next word is its value even if it begins with -, as
+// in
+//                            --rotate -30
+//   -o out, -oout, -o=out    a short option; -qo out means -q -o out
+//   --zstd, --zstd=19        an option that may stand without a value takes a value only after =
+//   --                       the words after it are not options; a single - is not an option either
+//
+// Options may follow other words. Giving an option twice is an error. Names cannot be shortened,
+// but the error message for an unknown name suggests a similar name.
 #include "cli.h"
 #include "suggest.h"
 
@@ -50,8 +53,8 @@ static int no_such_option(const cli_command *command, const char *word)
                      cli_suggestion_text(&suggestion, ", ", "--", text));
 }
 
-// One option. `*value` is what stands behind it in its own word, NULL for nothing; where the value is the
-// next word, `*at` moves on to that.
+// Takes one option. `value` is the text in the option's own word (after = or the letter), or NULL.
+// If the value is the next word, `*at` is advanced to that word.
 static int take(cli_arguments *a, const cli_call *call, int index, const char *form,
                 const char *value, int *at)
 {
@@ -186,7 +189,8 @@ int cli_find_word(const cli_command *command, const char *what, const char *text
                      cli_suggestion_text(&suggestion, "; ", "", nearest));
 }
 
-// Enumerations of the values have the size of an int.
+// Writes an option's value to its place in the command's structure. An enumeration has the size of
+// an int.
 static int store(const cli_command *command, const cli_option *option, const char *text, char *to)
 {
     int n = 0, code = CLI_GO;
@@ -265,7 +269,8 @@ int cli_read_arguments(cli_arguments *a, const cli_command *command, const cli_c
         if (options && !strcmp(word, "--"))
             options = false;
         else if (!options || word[0] != '-' || !word[1])
-            a->rest[a->rest_count++] = word; // never further than what has been read
+            // rest[] shares memory with words[]: the writes never overtake the reads
+            a->rest[a->rest_count++] = word;
         else
             code = word[1] == '-' ? read_long(a, call, &i) : read_letters(a, call, &i);
         if (code != CLI_GO)

@@ -1,4 +1,6 @@
-// The assignment's pictures: computed all, then written all.
+// Makes the GAMES202 assignment's tables and pictures. In: an output folder, size, sample count and
+// the shadowing G. Out: PNG files and report.md. Tables are computed by the assignment's methods
+// (kiln/course.h) and by exact integration, then compared, and all files are written at the end.
 #include "assignment.h"
 #include "os.h"
 
@@ -7,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-// What each average is the average of.
+// The table of E that each table of E_avg is the average of.
 static const int source_of[ASSIGNMENT_TABLES] = {
     [ASSIGNMENT_AVERAGE_MC] = ASSIGNMENT_MC,
     [ASSIGNMENT_AVERAGE] = ASSIGNMENT_IS,
@@ -25,7 +27,7 @@ int assignment_check_folder(const cli_command *command, const char *folder)
         return cli_fail("%s: is a file, the assignment's pictures need a folder", folder);
     if (kind == OS_FOLDER)
         return os_is_writable(folder) ? CLI_GO : cli_fail("%s: cannot be written to", folder);
-    // A slash at the end would hide whether its own folder is there.
+    // Without the final slash, os_kind_of tells whether the folder itself exists.
     char path[4096];
     size_t length = strlen(folder);
     while (length > 1 && folder[length - 1] == '/')
@@ -63,7 +65,7 @@ static kiln_result compute_energies(assignment *a)
     return result;
 }
 
-// E_avg of a table of E, or with `bytes` of what its 8-bit picture holds.
+// Computes E_avg from a table of E; with `bytes`, from the 8-bit values that the PNG of E holds.
 static kiln_result compute_average(assignment *a, int table, bool bytes)
 {
     const kiln_image *source = &a->table[source_of[table]];
@@ -82,7 +84,7 @@ static kiln_result compute_average(assignment *a, int table, bool bytes)
     return result;
 }
 
-// The same model on the same texels, without sampling.
+// Integrates E and E_avg exactly for the same model and the same texel centres.
 static kiln_result compute_exact(assignment *a)
 {
     int size = a->def->size;
@@ -130,8 +132,8 @@ kiln_result assignment_save(assignment *a, const kiln_image *image, const char *
     return kiln_image_save(a->work->context, image, path, &a->work->error);
 }
 
-// As the framework does: three equal channels, (uint8)(255 x). `figure3` is 1 - E, row 0 at
-// roughness 0.
+// Writes a table as the assignment's framework does: three equal channels of (uint8)(255 x). With
+// `figure3` the picture shows 1 - E with roughness 0 in the top row, as in the handout's figure 3.
 static kiln_result save_table(assignment *a, const kiln_image *table, const char *name,
                               bool figure3)
 {
@@ -152,8 +154,8 @@ static kiln_result save_table(assignment *a, const kiln_image *table, const char
     return result;
 }
 
-// The colours of the error maps, from 1 too dark on the left to 1 too bright on the right, a decade
-// wherever the report says.
+// Writes the colour scale of the error maps: errors from -1 at the left to 1 at the right, with a
+// logarithmic magnitude from 1e-4 at the centre.
 static kiln_result save_legend(assignment *a)
 {
     enum { HALF = 160, HEIGHT = 20 };
@@ -182,7 +184,8 @@ static kiln_result write_pictures(assignment *a)
 {
     kiln_result result = KILN_OK;
     for (int t = 0; t < ASSIGNMENT_TABLES && !result; t++) {
-        if (t != ASSIGNMENT_AVERAGE_BYTES) // differs by a byte: in the report only
+        // this table differs from another by one byte at most: it is only in the report
+        if (t != ASSIGNMENT_AVERAGE_BYTES)
             result = save_table(a, &a->table[t], assignment_names[t], false);
         if (!result && a->map[t].pixels)
             result = assignment_save(a, &a->map[t], "error_", assignment_names[t]);
@@ -227,7 +230,7 @@ int assignment_write(cli_work *work, const assignment_def *def)
     else if (code == CLI_DONE && !def->quiet)
         print_figures(&a);
     if (code != CLI_DONE && made)
-        os_remove_folder(def->folder); // stays where a picture was written
+        os_remove_folder(def->folder); // fails, as wanted, if the folder already holds a picture
 done:
     for (int t = 0; t < ASSIGNMENT_TABLES; t++) {
         kiln_image_free(&a.table[t]);

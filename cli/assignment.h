@@ -1,5 +1,6 @@
-// The tables of GAMES202's fourth assignment by its own methods, with the exact integrals, maps of the errors
-// and a report: for kiln tables --assignment, and for kiln assignment, which adds rendered balls.
+// The tables of the fourth GAMES202 assignment, made with the assignment's methods, with exact
+// integrals, error maps and a report. kiln tables --assignment writes them; kiln assignment also
+// draws balls with them.
 #ifndef KILN_CLI_ASSIGNMENT_H
 #define KILN_CLI_ASSIGNMENT_H
 
@@ -11,22 +12,23 @@
 struct assignment;
 
 typedef struct assignment_def {
-    const char *folder; ///< made where missing
+    const char *folder; ///< output folder, created if it does not exist
     int size, samples;
-    kiln_g g; ///< one of Schlick's two
+    kiln_g g; ///< shadowing of the tables: KILN_G_SCHLICK_K2 or KILN_G_SCHLICK_TEXT
     bool json, quiet;
-    /// Draws pictures that are no tables, and writes their part of the report. May be NULL.
+    /// Draws further pictures and writes their part of the report. May be NULL.
     kiln_result (*draw)(struct assignment *a);
     void (*describe)(const struct assignment *a, FILE *report);
     void *user;
 } assignment_def;
 
-/// CLI_GO, or the exit code: the folder's name cannot be one.
+/// Checks that `folder` can be the output folder: CLI_GO or an exit code.
 int assignment_check_folder(const cli_command *command, const char *folder);
-/// Computes all, then writes all: pictures and report.md. CLI_DONE or CLI_FAILED.
+/// Computes all tables first and then writes the pictures and report.md. Returns CLI_DONE or
+/// CLI_FAILED.
 int assignment_write(cli_work *work, const assignment_def *def);
 
-// What follows is between the work and its report.
+// The declarations below are shared by the sources assignment*.c.
 
 enum {
     ASSIGNMENT_MC,
@@ -44,22 +46,23 @@ enum {
 typedef struct assignment {
     cli_work *work;
     const assignment_def *def;
-    kiln_image table[ASSIGNMENT_TABLES];           ///< one channel, the top row is roughness 1
-    kiln_image map[ASSIGNMENT_TABLES];             ///< of the error, where there is a file for it
-    kiln_difference difference[ASSIGNMENT_TABLES]; ///< to the exact table
+    kiln_image table[ASSIGNMENT_TABLES]; ///< one channel; roughness 1 in the top row
+    /// map of each table's error, for tables whose error map is written
+    kiln_image map[ASSIGNMENT_TABLES];
+    kiln_difference difference[ASSIGNMENT_TABLES]; ///< difference from the exact table
     int file_count;
 } assignment;
 
-/// The file's name without its ending, and what is in it.
+/// For each table: its file's name without the ending, and its description.
 extern const char *const assignment_names[ASSIGNMENT_TABLES];
 extern const char *const assignment_words[ASSIGNMENT_TABLES];
-/// The exact table has no error.
+/// Whether the table is an exact integral, which has no error map.
 bool assignment_is_exact(int table);
 
-/// Writes NAME.png into the folder; `before` stands before the name.
+/// Writes the picture BEFORE + NAME + .png, with `before` as the prefix, into the output folder.
 kiln_result assignment_save(assignment *a, const kiln_image *image, const char *before,
                             const char *name);
-/// report.md, written whole or not at all. CLI_DONE or CLI_FAILED.
+/// Writes report.md completely or not at all. Returns CLI_DONE or CLI_FAILED.
 int assignment_write_report(const assignment *a);
 void assignment_print_json(const assignment *a);
 

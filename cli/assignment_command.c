@@ -1,5 +1,6 @@
-// kiln assignment: everything that GAMES202's fourth assignment asks for: its tables, the balls drawn with
-// them, and the report.
+// kiln assignment: makes what GAMES202's fourth assignment asks for. In: an output folder. Out: the
+// tables, the balls rendered with them, and the report. assignment.c makes the tables; the viewer's
+// renderer, or its reference on machines without OpenGL, draws the balls.
 #include "assignment.h"
 
 #include "headless.h"
@@ -25,13 +26,15 @@ static const cli_option options[] = {
 };
 
 typedef struct pictures {
-    char by[128];   ///< what drew them
-    bool on_cpu;    ///< there is no GL: shaded on the CPU
-    double largest; ///< steps of 255 that the assignment's bytes differ from exact tables
+    char by[128]; ///< name of the OpenGL renderer, or of the CPU's integrator
+    bool on_cpu;  ///< there is no OpenGL: the CPU shaded the balls
+    /// largest difference, in steps of 255, between balls drawn with the 8-bit tables and with
+    /// exact tables
+    double largest;
     double rms;
 } pictures;
 
-// The table of bytes as the framework loads it.
+// Quantizes a table to bytes, as the framework reads it from its PNG.
 static kiln_result load_bytes(const assignment *a, int table, kiln_table *to)
 {
     const kiln_image *from = &a->table[table];
@@ -60,7 +63,7 @@ static kiln_result use_bytes(const assignment *a, view_renderer *renderer)
     return result;
 }
 
-// Without GL the same rays are shaded on the CPU, with exact E.
+// Without OpenGL the CPU shades the same rays, with exact E.
 static kiln_result shade(assignment *a, const view_options *o, kiln_image *image)
 {
     kiln_result result = view_reference(a->work->context, o, NULL, WIDTH, HEIGHT, NULL, image, NULL,

@@ -1,4 +1,6 @@
-// report.md of the assignment's folder, and the same figures for programs.
+// Writes report.md into the assignment's folder, and the same figures as JSON. In: the assignment's
+// tables and their differences from the exact tables. The report lists the files, the errors by
+// method and roughness, and their causes.
 #include "assignment.h"
 #include "json.h"
 #include "os.h"
@@ -8,7 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
-// The row of the tables whose roughness is nearest.
+// Index of the table row whose roughness is nearest.
 static int row_of(const assignment *a, double roughness)
 {
     int size = a->def->size, up = (int)floor(roughness * size);
@@ -34,7 +36,8 @@ static double first_of_row(const assignment *a, int table, int row)
     return (double)a->table[table].pixels[(size_t)row * (size_t)a->def->size];
 }
 
-// Below this roughness the denominator of D's peak, pi alpha^4, is under the clamp's 1e-4.
+// The roughness below which pi alpha^4, the denominator of D at its peak, is less than 1e-4, where
+// the framework clamps it.
 static double clamp_reach(void)
 {
     return pow(1e-4 / 3.14159265358979323846, 0.125);

@@ -1,4 +1,4 @@
-// The tables of the assignment: the names of their files, and what each is.
+// File names and descriptions of the assignment's tables.
 #include "assignment.h"
 
 const char *const assignment_names[ASSIGNMENT_TABLES] = {

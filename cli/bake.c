@@ -1,5 +1,6 @@
-// kiln bake: a panorama in, every level of an environment out, with diffuse irradiance and spherical
-// harmonics where they are asked for. The options are in bake_options.c, the report in bake_report.c.
+// kiln bake. In: an environment (a panorama or six faces). Out: a file with all prefiltered levels
+// and, if asked for, files of diffuse irradiance and spherical harmonics. kiln_bake filters;
+// bake_options.c reads the options and bake_report.c prints the result.
 #include "bake.h"
 #include "os.h"
 
@@ -31,7 +32,8 @@ static int load(bake *b)
     return CLI_GO;
 }
 
-// Bands of harmonics to make: those of the file's metadata, of which engines want three, and of --sh.
+// Bands of harmonics to compute: enough for the output file's metadata (engines need three bands)
+// and for --sh.
 static int most_bands(const bake *b)
 {
     return b->engine && b->sh_bands < 3 ? 3 : b->sh_bands;
@@ -55,7 +57,7 @@ static int bake_exactly(bake *b)
                                                                                   : CLI_GO;
 }
 
-// The textbook's methods read a panorama as it is.
+// The importance-sampling methods read only panoramas, so other shapes are converted.
 static int make_panorama(bake *b)
 {
     if (b->source.shape == KILN_SHAPE_PANORAMA && b->rotation == 0)

@@ -1,29 +1,32 @@
-// kiln bake: the state that its options, its work and its report share.
+// The state of kiln bake, shared by its options (bake_options.c), its work (bake.c) and its report
+// (bake_report.c).
 #ifndef KILN_CLI_BAKE_H
 #define KILN_CLI_BAKE_H
 
 #include "work.h"
 
-/// Seconds are reported by stage.
+/// Stages whose seconds the report lists.
 typedef enum bake_stage { BAKE_LOAD, BAKE_FILTER, BAKE_SAVE, BAKE_STAGES } bake_stage;
 
 typedef enum bake_tuning { BAKE_EXACT, BAKE_SHARP, BAKE_SOFT } bake_tuning;
 
 typedef struct bake {
     cli_arguments arguments;
-    // By the rows.
+    // Values that the option rows write.
     const char *output, *irradiance_path, *sh_path, *roughness_text;
     int size, level_count, shape, format, zstd, lobe, textbook;
-    int engine_index; ///< -1 without --for
-    int tuning;       ///< a bake_tuning; -1 while that is the engine's to say
+    int engine_index; ///< index of the engine; -1 without --for
+    int tuning;       ///< a bake_tuning; -1 if the engine decides
     int samples, phi_steps, theta_steps;
     int irradiance_size, sh_bands, layout, threads;
     double sh_window, rotation, exposure;
     bool mirror, json, quiet, verbose, sh_radiance, sh_irradiance;
-    // By what they mean together.
-    char folder[2][4096];      ///< names of folders, with the slash at their end that was left out
-    const kiln_engine *engine; ///< NULL without --for
-    bool has_roughness, stores_sh; ///< stores_sh: in the file's metadata
+    // Values that follow from several options together.
+    /// names of the output folders with a final slash, which the user may omit
+    char folder[2][4096];
+    const kiln_engine *engine; ///< engine of --for; NULL without --for
+    /// has_roughness: --roughness is given; stores_sh: the file's metadata holds harmonics
+    bool has_roughness, stores_sh;
     float roughness[KILN_MAX_LEVELS];
 
     cli_work work;
@@ -39,10 +42,10 @@ extern const cli_option bake_options[];
 extern const char *const bake_lobes[], *const bake_shapes[], *const bake_methods[],
                                                                  *const bake_tunings[];
 
-/// Reads the command line and checks everything that can be checked before the work. CLI_GO or an exit
-/// code.
+/// Parses the command line and checks all that can be checked before the work. Returns CLI_GO or an
+/// exit code.
 int bake_read_options(bake *b, const cli_command *command, const cli_call *call);
-/// Prints what was done, in words or as JSON.
+/// Prints the result of the bake, in words or as JSON.
 void bake_report(bake *b);
 
 #endif

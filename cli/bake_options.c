@@ -1,6 +1,6 @@
-// The options of kiln bake: their rows, and which of them contradict one another. A command line goes in;
-// a `bake` comes out whose numbers are in their ranges, whose engine has decided what is its to decide,
-// and whose outputs can hold what is asked for.
+// The options of kiln bake and their contradictions. In: a command line. Out: a `bake` whose
+// numbers are in range, with the settings that the engine of --for decides, and with outputs whose
+// file format can hold the wanted data.
 #include "bake.h"
 
 #include <stdio.h>
@@ -190,7 +190,7 @@ static int read_roughness(bake *b)
 
 // ----------------------------------------------------------------------------------------- outputs
 
-// The first engine that loads files of such a name, NULL for none.
+// The first engine that loads files with this name's ending; NULL if no engine does.
 static const kiln_engine *engine_of(const char *path)
 {
     const kiln_engine *engine;
@@ -200,7 +200,8 @@ static const kiln_engine *engine_of(const char *path)
     return NULL;
 }
 
-// What can be written where. `option` names the path in sentences.
+// Checks that the file at `path` can hold the wanted data. `option` names the path in error
+// messages.
 static int check_output(const bake *b, const char *option, const char *path)
 {
     const kiln_save_def def = {.format = (kiln_format)b->format};
@@ -243,7 +244,7 @@ static int check_paths(const bake *b)
     return code;
 }
 
-// A folder that exists may be named without the slash at its end, which the library wants.
+// Adds the final slash, which the library requires, to the name of an existing folder.
 static const char *add_slash(const char *path, char folder[4096])
 {
     size_t length = path ? strlen(path) : 0;
@@ -255,7 +256,7 @@ static const char *add_slash(const char *path, char folder[4096])
 
 // ------------------------------------------------------------------------------ options of an engine
 
-// Options that an engine decides.
+// Checks that no option is given whose value the engine decides.
 static int check_engine(const bake *b)
 {
     static const int decided[] = {SHAPE, ZSTD, ROUGHNESS, LOBE, METHOD};
@@ -271,7 +272,7 @@ static int check_engine(const bake *b)
     return CLI_GO;
 }
 
-// --for decides the lobe and each level's roughness, and which formats there are.
+// Takes the lobe and the roughness of each level from the engine of --for, and checks the format.
 static int apply_engine(bake *b)
 {
     b->engine = kiln_engine_at(b->engine_index);
@@ -366,7 +367,7 @@ static int check_levels(const bake *b)
     return CLI_GO;
 }
 
-// The options of one method, lobe or file given without that.
+// Checks options that are valid only with a certain method, lobe or file.
 static int check_combinations(const bake *b)
 {
     const char *const *given = b->arguments.text;
@@ -394,7 +395,7 @@ int bake_read_options(bake *b, const cli_command *command, const cli_call *call)
 {
     cli_arguments *a = &b->arguments;
     int code = cli_read_arguments(a, command, call, b);
-    b->shape += KILN_SHAPE_PANORAMA; // the first of the words
+    b->shape += KILN_SHAPE_PANORAMA; // word number 0 is the panorama
     if (code == CLI_GO)
         code = cli_check_input(command, a->rest, a->rest_count);
     if (code != CLI_GO)

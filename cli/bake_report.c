@@ -1,4 +1,4 @@
-// What kiln bake says when its work is done: a line, with --verbose more, or JSON.
+// The report of kiln bake: one line, more lines with --verbose, or JSON.
 #include "bake.h"
 #include "json.h"
 #include "os.h"

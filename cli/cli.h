@@ -1,4 +1,5 @@
-// What the commands of kiln share: exit codes, a command's description, its arguments, and sentences.
+// Declarations that the kiln commands share: exit codes, a command's description, its parsed
+// arguments, error messages, file names and help.
 #ifndef KILN_CLI_H
 #define KILN_CLI_H
 
@@ -8,7 +9,7 @@
 
 #include <stdbool.h>
 
-/// Lets the compiler check a function's arguments against its format, printf's as C17 has it.
+/// Lets the compiler check a function's arguments against its printf format.
 #if defined(__MINGW32__) && !defined(__clang__)
 #define CLI_PRINTF(format_at, first) __attribute__((format(gnu_printf, format_at, first)))
 #else
@@ -16,46 +17,47 @@
 #endif
 
 enum {
-    CLI_DONE = 0,   ///< the work is done
-    CLI_FAILED = 1, ///< bad input, or the work could not be done
-    CLI_WRONG = 2,  ///< the command line makes no sense
-    CLI_GO = -1,    ///< not an exit code: go on
+    CLI_DONE = 0,   ///< the work is done: exit code 0
+    CLI_FAILED = 1, ///< bad input or failed work: exit code 1
+    CLI_WRONG = 2,  ///< wrong command line: exit code 2
+    CLI_GO = -1,    ///< no exit code: the caller continues
 };
 
-/// A command line and what it does, which may be NULL.
+/// An example for the help: a command line, and an explanation, which may be NULL.
 typedef struct cli_example {
     const char *line, *meaning;
 } cli_example;
 
 typedef struct cli_command cli_command;
 
-/// What a command is called with. `words` is the command's own to change.
+/// What a command is called with. The command may change the array `words`.
 typedef struct cli_call {
-    const cli_command *const *commands; ///< all there are, NULL behind the last
+    const cli_command *const *commands; ///< all commands; a NULL ends the array
     int count;
-    const char **words; ///< the command's name first
+    const char **words; ///< words of the command line, the command's name first
 } cli_call;
 
 struct cli_command {
-    const char *name;      ///< "bake"
-    const char *arguments; ///< "IN... -o OUT"; '|' between ways to call the command
-    const char *summary;   ///< one sentence
-    const char *about;     ///< paragraphs, each without line breaks inside; "" for none
-    const char *(*word)(
-        int index);         ///< what the first argument may be, NULL behind the last; or NULL
-    const char *list_title; ///< "Quantities"
+    const char *name; ///< name of the command, such as "bake"
+    /// form of the arguments, such as "IN... -o OUT"; '|' separates ways to call the command
+    const char *arguments;
+    const char *summary; ///< one sentence for the list of commands
+    const char *about;   ///< description: paragraphs without line breaks inside; "" for none
+    const char *(*word)(int index); ///< words of the first argument, NULL after the last; or NULL
+    const char *list_title;         ///< heading of that list in the help, such as "Quantities"
     /// What an argument may be: the word of an index with what it takes, and in words what that is; NULL
     /// behind the last. The function may be NULL.
     const char *(*list)(int index, char left[64]);
-    const char *more;            ///< further paragraphs, for the manual; may be NULL
-    const cli_example *examples; ///< ends in {NULL, NULL}
-    const cli_option *options;   ///< or NULL; --help is not among them
+    const char *more;            ///< further paragraphs that only the manual shows; may be NULL
+    const cli_example *examples; ///< array that ends in {NULL, NULL}
+    const cli_option *options;   ///< rows of the options except --help; may be NULL
     int (*run)(const cli_call *call);
 };
 
 extern const cli_command cli_bake, cli_engines, cli_eval, cli_fit, cli_info, cli_sky, cli_tables;
 extern const cli_command cli_completions, cli_help;
-extern const cli_command cli_assignment, cli_render, cli_view; // with KILN_VIEWER
+// commands of builds with KILN_VIEWER
+extern const cli_command cli_assignment, cli_render, cli_view;
 
 // --------------------------------------------------------------------------------------- arguments
 
@@ -63,68 +65,72 @@ enum { CLI_MAX_OPTIONS = 48 };
 
 typedef struct cli_arguments {
     const cli_command *command;
-    const char *text[CLI_MAX_OPTIONS]; ///< by the row's index: NULL where not given, "" for a flag
-    const char **rest;                 ///< what is no option
+    /// text of each option by its row's index: NULL for an absent option, "" for a flag
+    const char *text[CLI_MAX_OPTIONS];
+    const char **rest; ///< the words that are not options
     int rest_count;
 } cli_arguments;
 
-/// Reads a command's words into `arguments`, and values and defaults into `values`, the structure that the
-/// rows' offsets are of. CLI_GO, or the exit code: help has been printed, or a sentence about what is
-/// wrong. The words must outlive both.
+/// Parses a command's words. `arguments` receives the texts, `values` (the structure that the rows'
+/// offsets refer to) receives values and defaults. Returns CLI_GO, or the exit code after it has
+/// printed the help or an error message. The words must outlive `arguments` and `values`.
 int cli_read_arguments(cli_arguments *arguments, const cli_command *command, const cli_call *call,
                        void *values);
-/// Writes the values of the options that are given into `values` again.
+/// Writes the values of the given options into `values` once more, for commands that have changed
+/// the defaults.
 int cli_store_values(const cli_arguments *arguments, void *values);
-/// The number of an option of CLI_TEXT that is given, within a range that depends on other options; not
-/// given leaves `value` alone. CLI_GO or CLI_WRONG.
+/// Reads an option of type CLI_TEXT as an integer from `low` to `high`. `value` stays unchanged for
+/// an absent option. Returns CLI_GO or CLI_WRONG.
 int cli_integer(const cli_arguments *arguments, int option, int low, int high, int *value);
-/// The index of a word, likewise. `words` ends in NULL.
+/// Reads an option of type CLI_TEXT as one of `words`, which ends in NULL; `value` receives the
+/// index and stays unchanged for an absent option. Returns CLI_GO or CLI_WRONG.
 int cli_choice(const cli_arguments *arguments, int option, const char *const *words, int *value);
 
-/// The index of an argument among words, which are those of a row: CLI_GO, or CLI_WRONG with a sentence that
-/// names `what` is wanted, all words, and the nearest.
+/// Finds an argument among the words of a row; the index is stored. Returns CLI_GO, or CLI_WRONG
+/// after an error message that names `what` is expected, all the words, and the most similar word.
 int cli_find_word(const cli_command *command, const char *what, const char *text,
                   const cli_option *words, int *index);
 
 // --------------------------------------------------------------------------------------- sentences
 
-/// Prints "kiln: SENTENCE" and a hint to --help; returns CLI_WRONG. `command` may be NULL.
+/// Prints "kiln: MESSAGE" and a hint to --help; returns CLI_WRONG. `command` may be NULL.
 int cli_wrong(const cli_command *command, const char *format, ...) CLI_PRINTF(2, 3);
-/// Prints "kiln: SENTENCE"; returns CLI_FAILED.
+/// Prints "kiln: MESSAGE"; returns CLI_FAILED.
 int cli_fail(const char *format, ...) CLI_PRINTF(1, 2);
-/// "4.2 MB".
+/// A number of bytes for people, such as "4.2 MB".
 const char *cli_bytes(double bytes, char text[32]);
-/// Empties standard output; the exit code, `code` unless nothing could be written.
+/// Flushes standard output. Returns `code`, or the exit code of a failed write.
 int cli_close_output(int code);
 
 // ------------------------------------------------------------------------------------- file names
 
-/// Whether a name ends in a dot and `ending`, in small letters or capitals; "/" asks for a folder, which
-/// a slash at the end or one that is there makes of the name.
+/// Whether a file name ends in a dot and `ending`, in lower or upper case. The ending "/" means a
+/// folder: the name ends in a slash, or a folder with this name exists.
 bool cli_ends_in(const char *path, const char *ending);
-/// The ending in small letters without its dot, "" where kiln has no such ending, "/" for a folder.
+/// The file name's ending in lower case without its dot; "" for an ending that kiln does not know,
+/// "/" for a folder.
 const char *cli_ending(const char *path);
-/// Fails early, before the work, where the folder of an output file does not exist.
+/// Checks before the work that the folder of an output file exists. Returns CLI_GO or CLI_FAILED.
 int cli_check_folder(const char *path);
 
 // -------------------------------------------------------------------------------------------- help
 
-/// Prints a command's help, as wide as the terminal or 80 characters.
+/// Prints a command's help, wrapped at the terminal's width or at 80 characters.
 void cli_print_help(const cli_command *command);
-/// Prints `text`, its lines broken before `width`; each but the first begins with `indent` blanks. The
-/// first begins at `column`. A line break in the text ends the line.
+/// Prints `text` wrapped before column `width`. The first line starts in column `column`; the other
+/// lines are indented by `indent` blanks. A line break in `text` ends the line.
 void cli_print_wrapped(const char *text, int column, int indent, int width);
 
 // ------------------------------------------------------------------- options of several commands
 
-/// The words of `d` and `g` of a model, and of Charlie's masking, for rows.
+/// Words for options that choose a model's D, its G, or the masking of the Charlie lobe.
 const char *cli_d_word(int index);
 const char *cli_g_word(int index);
 const char *cli_sheen_word(int index);
-/// Whether the name that an option gives to source code can be one: CLI_GO or CLI_WRONG.
+/// Whether the option's text is a valid identifier in C and GLSL: CLI_GO or CLI_WRONG.
 int cli_check_source_name(const cli_arguments *arguments, int option);
 
-/// The rows that several commands have; `type` is the command's structure.
+/// Rows of options that several commands have. `type` is the command's structure.
 #define CLI_QUIET_ROW(type)                                                                        \
     {                                                                                              \
         "quiet", CLI_FLAG, offsetof(type, quiet), .letter = 'q',                                   \

@@ -1,6 +1,6 @@
-// kiln completions: what a shell needs to complete kiln's command lines, written from the commands' rows
-// for bash, zsh and fish. Names of commands and options, the words of choices and of first arguments, and
-// names of files are completed.
+// kiln completions. In: the commands' option rows. Out: a completion script for bash, zsh or fish.
+// The script completes the names of commands and options, the words of choices and of first
+// arguments, and file names.
 #include "cli.h"
 
 #include <stdio.h>
@@ -33,7 +33,7 @@ static void print_commands(const cli_call *call)
 
 enum { SUMMARY = 160 };
 
-// The help up to its first semicolon or colon, as text inside a shell's single quotes.
+// Copies the help up to its first semicolon or colon, escaped for single quotes of a shell.
 static const char *summary(const char *help, char text[SUMMARY])
 {
     size_t used = 0;
@@ -48,7 +48,7 @@ static const char *summary(const char *help, char text[SUMMARY])
 
 // -------------------------------------------------------------------------------------------- bash
 
-// The option's names as a pattern of case.
+// Prints the option's names as a pattern of bash's `case`, such as -o|--output.
 static void print_bash_names(const cli_option *option)
 {
     printf("        --%s", option->name);
@@ -63,7 +63,7 @@ static void print_bash_command(const cli_command *command)
     printf("    %s)\n        case $before in\n", command->name);
     for (int i = 0; options && options[i].name; i++) {
         if (!is_shown(&options[i]) || options[i].kind == CLI_FLAG || options[i].alone)
-            continue; // the next word is no value
+            continue; // an option of this kind takes no value from the next word
         print_bash_names(&options[i]);
         if (options[i].kind == CLI_CHOICE) {
             fputs("words='", stdout);
@@ -87,7 +87,7 @@ static void print_bash_command(const cli_command *command)
     puts("            esac\n            ;;\n        esac\n        ;;");
 }
 
-// Bash takes an = for a word of its own.
+// Bash splits --name=value into three words at the =.
 static void print_bash(const cli_call *call)
 {
     fputs(
@@ -117,7 +117,7 @@ static void print_bash(const cli_call *call)
 
 // --------------------------------------------------------------------------------------------- zsh
 
-// '(-o --output)'{-o+,--output=}'[what to write]:OUT:_files'
+// Prints an option in zsh's form: '(-o --output)'{-o+,--output=}'[what to write]:OUT:_files'
 static void print_zsh_option(const cli_option *option)
 {
     char text[SUMMARY];

@@ -1,4 +1,4 @@
-// kiln engines: what kiln bake --for knows, in short or one engine in full.
+// kiln engines: lists the engines that kiln bake --for knows, or describes one engine.
 #include "cli.h"
 #include "json.h"
 
@@ -59,7 +59,7 @@ static void print_short(const kiln_engine *engine)
     printf("  roughness    %s\n  proof        %s\n", engine->mapping, engine->proof);
 }
 
-// The sizes and roughness of the levels, as baked by default.
+// Prints the size and the roughness of each level of a default bake.
 static void print_levels(const kiln_engine *engine)
 {
     float roughness[KILN_MAX_LEVELS];
@@ -74,7 +74,8 @@ static void print_levels(const kiln_engine *engine)
     }
 }
 
-// Pages are named by the first word of an engine's name: docs/engines/three.md has three-cubeuv too.
+// Prints the engine's documentation page. The file is named by the first word of the engine's name:
+// docs/engines/three.md describes three-cubeuv too.
 static void print_page(const kiln_engine *engine)
 {
     printf("  how to load  docs/engines/%.*s.md\n", (int)strcspn(engine->name, "-"), engine->name);

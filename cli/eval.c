@@ -1,4 +1,6 @@
-// kiln eval: single values of the reflection model's functions and integrals, to twelve digits.
+// kiln eval. In: a quantity of the reflection model (a function or an integral), its arguments as
+// options or as lines of standard input. Out: the values with twelve digits, as lines or JSON.
+// kiln/brdf.h computes them.
 #include "cli.h"
 #include "os.h"
 
@@ -23,7 +25,7 @@ typedef enum argument {
     K,
     REFLECTIVITY,
     EDGE_TINT,
-    ARGUMENTS, // and the options that are none
+    ARGUMENTS, // number of arguments; the options after them are not arguments
     D = ARGUMENTS,
     G,
     SHEEN,
@@ -42,7 +44,8 @@ enum { MAX_ARGUMENTS = 4 };
 typedef struct quantity {
     const char *name;
     int count;
-    argument takes[MAX_ARGUMENTS]; // in the order of a line on standard input
+    // the arguments of the quantity, in the order of a line of standard input
+    argument takes[MAX_ARGUMENTS];
     double (*value)(const choices *c, const double x[MAX_ARGUMENTS]);
     const char *meaning;
 } quantity;
@@ -199,18 +202,19 @@ typedef struct eval {
     const quantity *quantity;
     choices choices;
     bool json;
-    double given[ARGUMENTS];     // by option
-    double fixed[MAX_ARGUMENTS]; // those that the quantity takes, in its order
-    int column_count;            // of the arguments that stand on a line
+    double given[ARGUMENTS]; // values of the arguments, indexed by option
+    // values of the quantity's arguments that are options, in the quantity's order
+    double fixed[MAX_ARGUMENTS];
+    int column_count; // number of arguments that each line holds
     int column[MAX_ARGUMENTS];
-    double *lines; // column_count numbers each
+    double *lines; // column_count numbers for each line
     size_t line_count;
 } eval;
 
 static const char *const f_adds[] = {"second", "assignment", NULL};
 
 #define AT(field) offsetof(eval, field)
-// An argument that no option gives is read from standard input.
+// An option of an argument. If it is absent, the argument is read from standard input.
 #define ARGUMENT(index, name, high, value, help)                                                   \
     [index] = {name, CLI_NUMBER,  AT(given) + (index) * sizeof(double), 0, high, 0, value,         \
                help, .keep = true}
@@ -261,7 +265,7 @@ static bool takes(const quantity *q, int option)
     return false;
 }
 
-// "roughness mu" of a line.
+// Names of the arguments that a line holds, such as "roughness mu".
 static const char *columns(const eval *v, char text[128])
 {
     *text = 0;
@@ -320,8 +324,8 @@ static int read_line(const eval *v, const char *line, size_t index, double *numb
     return CLI_GO;
 }
 
-// The next line of standard input, without its end, in a buffer that grows. False at the end of the file
-// and where memory runs out, which errno then tells.
+// Reads the next line of standard input, without its line break, into a buffer that grows. Returns
+// false at the end of the file, and if memory runs out, with errno set.
 static bool next_line(char **line, size_t *capacity)
 {
     size_t length = 0;
@@ -337,7 +341,8 @@ static bool next_line(char **line, size_t *capacity)
             *line = longer;
             *capacity = more;
         }
-        (*line)[length++] = (char)(c ? c : '?'); // which no number has
+        // a zero byte becomes ?, which is invalid in a number
+        (*line)[length++] = (char)(c ? c : '?');
     }
     if (c == EOF && length == 0)
         return false;
@@ -347,7 +352,7 @@ static bool next_line(char **line, size_t *capacity)
     return true;
 }
 
-// Room for one more line's numbers.
+// Makes room for the numbers of one more line.
 static bool grow(eval *v, size_t *room)
 {
     size_t width = (size_t)v->column_count, more = *room ? 2 * *room : 1024;
@@ -363,7 +368,7 @@ static bool grow(eval *v, size_t *room)
     return true;
 }
 
-// All lines are read before anything is printed: a bad one leaves no half of an answer.
+// Reads all lines before anything is printed: an invalid line leaves no partial output.
 static int read_lines(eval *v)
 {
     size_t capacity = 0, room = 0, width = (size_t)v->column_count;
@@ -385,7 +390,7 @@ static int read_lines(eval *v)
 
 // ------------------------------------------------------------------------------------------ output
 
-// The shortest number that is still x.
+// Prints the shortest decimal number that reads back as x.
 static void print_argument(double x)
 {
     char text[32];
@@ -408,7 +413,7 @@ static void print_json(const eval *v, const double *x, double value)
     if (isfinite(value))
         printf(", \"value\": %.12g}", value);
     else
-        fputs(", \"value\": null}", stdout); // JSON has no infinity
+        fputs(", \"value\": null}", stdout); // JSON has no infinity: null stands for it
 }
 
 static void print_values(const eval *v)
@@ -448,7 +453,7 @@ static int run(const cli_call *call)
     return code;
 }
 
-// "specular roughness mu nol noh".
+// A quantity with its arguments, such as "specular roughness mu nol noh".
 static const char *list(int index, char left[64])
 {
     if (index >= QUANTITIES)

@@ -21,7 +21,7 @@ int cli_check_folder(const char *path)
 {
     const char *slash = strrchr(path, '/');
     if (!slash || !slash[1])
-        return CLI_GO; // here, or a folder that will be made
+        return CLI_GO; // the file is in the current folder, or its folder will be created
     char folder[4096];
     size_t length = slash == path ? 1 : (size_t)(slash - path);
     if (length >= sizeof folder)

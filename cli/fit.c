@@ -1,4 +1,5 @@
-// kiln fit: closed forms of the integrals, as functions in C and GLSL.
+// kiln fit. In: an integral of the reflection model, and a wanted error or numbers of coefficients.
+// Out: a closed form fitted to the integral, as a function in C or GLSL.
 #include "json.h"
 #include "work.h"
 

@@ -1,5 +1,5 @@
-// The help of a command, from its rows: what the command does, its options by groups with their ranges
-// and defaults, and examples, wrapped at 80 characters or at the terminal's width.
+// Prints the help of a command from its rows: description, options by group with ranges and
+// defaults, examples. Text is wrapped at 80 characters or at the terminal's width.
 #include "cli.h"
 #include "os.h"
 
@@ -22,10 +22,10 @@ static void print_blanks(int count)
     printf("%*s", count > 0 ? count : 0, "");
 }
 
-// Words go on until one would reach the width.
+// Prints words until the next word would reach `width`, then starts a new line.
 void cli_print_wrapped(const char *text, int column, int indent, int width)
 {
-    bool first = true; // the word is the first of its line
+    bool first = true; // no word stands before this word on its line
     while (*text) {
         int length = (int)strcspn(text, " \n");
         if (!first && column + 1 + length >= width) {
@@ -52,7 +52,8 @@ void cli_print_wrapped(const char *text, int column, int indent, int width)
     putchar('\n');
 }
 
-// `left` in its column, `right` from COLUMN on; on a line of its own where `left` is long.
+// Prints `left` in its column and `right` from column COLUMN on; a long `left` gets a line of its
+// own.
 static void print_line(const char *left, const char *right, int width)
 {
     printf("  %s", left);

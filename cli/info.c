@@ -1,4 +1,4 @@
-// kiln info: what a file is.
+// kiln info. In: a file. Out: its format, shape, levels, metadata and harmonics, as text or JSON.
 #include "json.h"
 #include "work.h"
 
@@ -66,7 +66,7 @@ static void print_roughness_json(json *j, const kiln_file_info *info)
     json_end(j);
 }
 
-// Three numbers for each coefficient.
+// Writes the three channels of each coefficient.
 static void print_sh_json(json *j, const kiln_file_info *info)
 {
     json_array(j, info->sh_irradiance ? "sh_irradiance" : "sh_radiance");
@@ -122,7 +122,7 @@ static int describe(const cli_arguments *a, bool as_json, cli_work *work)
         if (kiln_file_describe(work->context, a->rest[i], &info, &work->error)) {
             if (!cli_interrupted())
                 cli_fail("%s", work->error.message);
-            work->error.message[0] = 0; // said
+            work->error.message[0] = 0; // the message is already printed
             code = CLI_FAILED;
         } else if (as_json) {
             print_json(&j, a->rest[i], &info);

@@ -1,4 +1,4 @@
-// What a command reads: one name, or six faces by name or in order.
+// Loads the input of a command: one file, folder or pattern, or six faces of a cube.
 #include "work.h"
 
 #include <ctype.h>
@@ -15,7 +15,8 @@ static const char *const face_words[][FACES] = {
     {"right", "left", "up", "down", "front", "back"},
 };
 
-// The name's last word, where words are letters between anything else: "sky_px.exr" has px.
+// Whether `word` is the last word of a file name, where words are runs of letters: the last word of
+// "sky_px.exr" is "px".
 static bool has_word(const char *path, const char *word)
 {
     const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
@@ -30,8 +31,8 @@ static bool has_word(const char *path, const char *word)
     return before == name || !isalpha((unsigned char)before[-1]);
 }
 
-// Which name is which face: all six told by their names, or none and then the order given.
-// False where only some can be told.
+// Finds which file is which face: by the names if all six names tell it, in the given order if no
+// name does. Returns false if only some names tell a face.
 static bool order_faces(const char **names, int order[FACES])
 {
     for (int set = 0; set < 4; set++) {
@@ -74,7 +75,7 @@ int cli_check_input(const cli_command *command, const char **names, int count)
     return CLI_GO;
 }
 
-// Copies a picture's colour into a face; what is not a radiance becomes 0.
+// Copies the colour of a picture into a face; negative and non-finite values become 0.
 static void copy_face(const kiln_image *image, float *face)
 {
     size_t count = (size_t)image->width * (size_t)image->height;

@@ -1,4 +1,5 @@
-// JSON (RFC 8259), written as it comes.
+// Writes JSON (RFC 8259) to standard output while the values arrive. In: keys and values, in order.
+// Out: indented text; json.h describes the numbers and the UTF-8 check.
 #include "json.h"
 
 #include <float.h>
@@ -16,7 +17,8 @@ static void indent(int depth)
 
 static void print_text(const char *text);
 
-// What stands before a value: a comma after another value, a new line in an object, and the key.
+// Prints what precedes a value: a comma after a previous value, inside an object a line break, and
+// the key.
 static void begin(json *j, const char *key)
 {
     bool array = j->array[j->depth];
@@ -65,7 +67,7 @@ void json_end(json *j)
 
 // ----------------------------------------------------------------------------------------- numbers
 
-// printf writes the locale's decimal separator, JSON has a point.
+// printf uses the locale's decimal separator; JSON requires a point.
 static void print_digits(double value, int digits)
 {
     char text[32];
@@ -114,12 +116,13 @@ void json_bool(json *j, const char *key, bool value)
 
 // -------------------------------------------------------------------------------------------- text
 
-// The length of the UTF-8 sequence at `at`, 0 where there is none: RFC 3629 has no overlong sequences, no
-// surrogates and nothing above U+10FFFF.
+// Length of the valid UTF-8 sequence at `at`; 0 if it is invalid. RFC 3629 excludes overlong
+// sequences, surrogates and values above U+10FFFF.
 static int sequence(const unsigned char *at)
 {
     static const struct {
-        unsigned char first, last, low, high; // the range of the second byte
+        // for a range of first bytes: the allowed range of the second byte
+        unsigned char first, last, low, high;
         int length;
     } forms[] = {
         {0x00, 0x7f, 0x00, 0x00, 1}, {0xc2, 0xdf, 0x80, 0xbf, 2}, {0xe0, 0xe0, 0xa0, 0xbf, 3},

@@ -1,4 +1,4 @@
-// kiln: the command. Finds the command of a name and hands over to it.
+// The kiln command: finds the command named by the first argument and runs it.
 #include "cli.h"
 #include "manual.h"
 #include "os.h"
@@ -33,7 +33,8 @@ static void print_overview(FILE *file)
           file);
 }
 
-// A name without its command is most often a picture that somebody wants to bake.
+// Whether an unknown command name looks like a picture: the user most likely forgot the word
+// `bake`.
 static bool is_input(const char *name)
 {
     static const char *const endings[] = {"exr", "hdr", "png", "ktx2", "dds", "/"};

@@ -1,6 +1,6 @@
-// The manual page, man/kiln.1 of the sources, in the language mdoc(7). A command's description and rows go
-// in; a section comes out with a paragraph or an item each. `kiln help --man` writes the page, and a test
-// holds the file to that.
+// Generates the manual page man/kiln.1 in the language mdoc(7), for `kiln help --man`. In: the
+// commands' descriptions and option rows. Out: the page on standard output, with one section for
+// each command. A test compares man/kiln.1 with this output.
 #include "manual.h"
 
 #include <ctype.h>
@@ -9,8 +9,8 @@
 
 enum { LINE = 80 };
 
-// One word: a backslash begins an escape, a hyphen would be a typographic one, and a line that begins with
-// a point or an apostrophe would be a macro.
+// Prints one word with escapes: a backslash begins a roff escape, a hyphen would become a
+// typographic hyphen, and a line that begins with a point or an apostrophe would be a macro.
 static int print_word(const char *word, int length, bool first)
 {
     if (first && (word[0] == '.' || word[0] == '\''))
@@ -26,7 +26,8 @@ static int print_word(const char *word, int length, bool first)
     return length;
 }
 
-// Text in lines of its own; a new sentence begins a line, as mdoc wants, and an empty line a paragraph.
+// Prints text. Each sentence begins a line, as mdoc recommends, and an empty line becomes a
+// paragraph.
 static void print_text(const char *text)
 {
     int column = 0;
@@ -57,7 +58,8 @@ static void print_text(const char *text)
         putchar('\n');
 }
 
-// A phrase with a full stop, and with a capital unless the first word is no word ("n.v").
+// Prints a phrase as a sentence: adds a full stop, and a capital unless the phrase begins with a
+// symbol such as "n.v".
 static void print_sentence(const char *phrase)
 {
     char text[CLI_HELP_TEXT];
@@ -68,7 +70,8 @@ static void print_sentence(const char *phrase)
     print_text(text);
 }
 
-// "[--table" "KIND]" "-o" "FILE" "IN...": a word of a command's arguments with its macro.
+// Prints one word of a command's arguments with its mdoc macro; words are "[--table", "KIND]",
+// "-o", "FILE", "IN...".
 static void print_argument(const char *word, int length)
 {
     char text[64];

@@ -1,4 +1,4 @@
-// The manual page kiln(1), made from the commands' descriptions and rows.
+// The manual page kiln(1), generated from the commands' descriptions and options.
 #ifndef KILN_CLI_MANUAL_H
 #define KILN_CLI_MANUAL_H
 

@@ -1,4 +1,5 @@
-// What the commands about the reflection model share: words of its options, and names in source code.
+// Options that the commands for the reflection model share: words of the model's choices, and the
+// check of names for generated source code.
 #include "cli.h"
 
 #include <ctype.h>
@@ -19,8 +20,8 @@ const char *cli_sheen_word(int index)
     return kiln_sheen_names()[index];
 }
 
-// Lower-case words that C or GLSL ES 3.00 keeps for itself. Of its vectors, matrices and samplers GLSL
-// has too many to list, so names that begin like them are out.
+// Reserved words of C and GLSL ES 3.00 in lower case. GLSL has too many vectors, matrices and
+// samplers to list: names that begin like those are rejected.
 static bool is_reserved(const char *name)
 {
     static const char *const words[] = {

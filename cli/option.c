@@ -1,4 +1,4 @@
-// What a row says of its option, in words: how the option is written, its range and its default.
+// Describes an option in words for the help: its form, its range and its default.
 #include "option.h"
 
 #include <stdio.h>
@@ -37,7 +37,7 @@ const char *cli_list(const cli_option *option, char text[CLI_RANGE_TEXT])
     return text;
 }
 
-// Where the default is a value of its own range, the number or word says it.
+// Adds the default to the text if the default is a value of the option's own range.
 static void add_default(const cli_option *option, char text[CLI_RANGE_TEXT])
 {
     char what[CLI_RANGE_TEXT];

@@ -1,5 +1,5 @@
 // The operating system of the command: POSIX.1-2008.
-#define _DEFAULT_SOURCE // TIOCGWINSZ
+#define _DEFAULT_SOURCE // declares TIOCGWINSZ
 #include "os.h"
 
 #include <errno.h>
@@ -54,8 +54,8 @@ int os_signal(void)
 static const int stopping[] = {SIGINT, SIGTERM, SIGHUP};
 enum { STOPPING = sizeof stopping / sizeof *stopping };
 
-// Without SA_RESTART, waiting reads and writes are interrupted. What the parent has set to be ignored,
-// as nohup does, stays ignored.
+// Without SA_RESTART the signals interrupt waiting reads and writes. Signals that the parent
+// process ignores, as nohup does for SIGHUP, stay ignored.
 void os_catch_signals(void)
 {
     struct sigaction action = {.sa_handler = on_signal}, old;
@@ -63,7 +63,8 @@ void os_catch_signals(void)
     for (int i = 0; i < STOPPING; i++)
         if (sigaction(stopping[i], NULL, &old) == 0 && old.sa_handler != SIG_IGN)
             sigaction(stopping[i], &action, NULL);
-    // As failed writes these two go the way of every failure, on which temporary files are removed.
+    // With SIGPIPE and SIGXFSZ ignored, the write fails instead of ending the process, and the
+    // error path removes temporary files.
     signal(SIGPIPE, SIG_IGN);
     signal(SIGXFSZ, SIG_IGN);
 }
@@ -97,7 +98,7 @@ double os_peak_memory(void)
     struct rusage usage = {0};
     getrusage(RUSAGE_SELF, &usage);
 #ifdef __APPLE__
-    return (double)usage.ru_maxrss; // in bytes there, in kB elsewhere
+    return (double)usage.ru_maxrss; // ru_maxrss is in bytes on macOS and in kB on other systems
 #else
     return 1024.0 * (double)usage.ru_maxrss;
 #endif

@@ -1,7 +1,8 @@
-// The operating system of the command: Windows 7 and later. Names are UTF-8 in kiln and UTF-16 here.
+// The command's interface to Windows 7 and later (os.h). In and out: paths in UTF-8, which are
+// converted to UTF-16 for the Windows functions; errors are reported in errno.
 #define WIN32_LEAN_AND_MEAN
 #define _WIN32_WINNT 0x0601
-#define PSAPI_VERSION 2 // GetProcessMemoryInfo out of kernel32
+#define PSAPI_VERSION 2 // takes GetProcessMemoryInfo from kernel32
 #include "os.h"
 
 #include <windows.h>
@@ -13,7 +14,7 @@
 #include <shellapi.h>
 #include <stdlib.h>
 
-enum { ROOM = 4096 }; // UTF-16 units of a path, its zero included
+enum { ROOM = 4096 }; // UTF-16 units of a path, including the final zero
 
 static bool widen(const char *path, wchar_t wide[ROOM])
 {
@@ -25,8 +26,8 @@ static bool widen(const char *path, wchar_t wide[ROOM])
 
 // --------------------------------------------------------------------------------------- arguments
 
-// One argument in UTF-8, its backslashes turned to the slashes that Windows reads as well: so only one
-// separator is known to the rest of the command. Names that begin with \\?\ are not read so.
+// Converts an argument to UTF-8 and its backslashes to slashes, which Windows accepts too: the
+// command then knows one separator. Names that begin with \\?\ do not work in this form.
 static char *narrow(const wchar_t *wide)
 {
     int size = WideCharToMultiByte(CP_UTF8, 0, wide, -1, NULL, 0, NULL, NULL);
@@ -47,13 +48,13 @@ static void restore_code_page(void)
     SetConsoleOutputCP(code_page_before);
 }
 
-// The arguments live as long as the process.
+// The converted arguments are never freed: the process uses them until it ends.
 bool os_begin(int *argc, char ***argv)
 {
     code_page_before = GetConsoleOutputCP();
     if (code_page_before && SetConsoleOutputCP(CP_UTF8))
         atexit(restore_code_page);
-    _setmode(_fileno(stdout), _O_BINARY); // lines end alike everywhere
+    _setmode(_fileno(stdout), _O_BINARY); // binary mode: lines end in \n as on other systems
     wchar_t **wide = CommandLineToArgvW(GetCommandLineW(), argc);
     char **words = wide ? calloc((size_t)*argc + 1, sizeof *words) : NULL;
     bool good = words != NULL;
@@ -70,7 +71,7 @@ bool os_begin(int *argc, char ***argv)
 
 bool os_is_terminal(os_stream stream)
 {
-    return _isatty((int)stream) != 0; // descriptors 0, 1 and 2
+    return _isatty((int)stream) != 0; // the values of os_stream are the file descriptors 0, 1 and 2
 }
 
 int os_columns(void)
@@ -91,11 +92,11 @@ double os_seconds(void)
 
 // ----------------------------------------------------------------------------------------- signals
 
-enum { INTERRUPT = 2, BROKEN_PIPE = 13 }; // as POSIX counts signals
+enum { INTERRUPT = 2, BROKEN_PIPE = 13 }; // the signal numbers of POSIX
 
 static volatile LONG caught;
 
-// Runs in a thread of its own. The second time, Windows ends the process.
+// Windows calls this in a separate thread. A second event ends the process.
 static BOOL WINAPI on_event(DWORD event)
 {
     (void)event;
@@ -142,7 +143,7 @@ double os_peak_memory(void)
 
 // ------------------------------------------------------------------------------- files and folders
 
-// Sets errno from Windows' last error; false.
+// Sets errno from Windows' last error; returns false.
 static bool failed(void)
 {
     switch (GetLastError()) {
@@ -173,7 +174,7 @@ os_kind os_kind_of(const char *path)
     return errno == ENOENT ? OS_NOTHING : OS_UNREACHABLE;
 }
 
-// What Windows would allow is a matter of lists that only an attempt tells.
+// Only creating a file shows whether the access lists of Windows allow it.
 bool os_is_writable(const char *folder)
 {
     return os_kind_of(folder) == OS_FOLDER;

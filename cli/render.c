@@ -1,4 +1,5 @@
-// kiln render: the scenes without a window.
+// kiln render. In: a scene's options and an environment. Out: a picture of the scene, rendered by
+// OpenGL ES 3.0 without a window or integrated by the reference (--reference), or their difference.
 #include "scene_setup.h"
 
 #include "headless.h"
@@ -21,7 +22,7 @@ enum {
 };
 
 typedef struct render {
-    scene_setup setup; // first: the shared rows write there
+    scene_setup setup; // must be the first member: the shared option rows write to it
     cli_arguments arguments;
     const char *output;
     int threads, bounces;
@@ -62,7 +63,7 @@ static const cli_option options[OPTIONS + 1] = {
     [QUIET] = CLI_QUIET_ROW(render),
 };
 
-// Options of the reference without one.
+// Checks that options of the reference are not given without --reference.
 static int check_reference(const render *r)
 {
     static const int of_reference[] = {NOISE, WALK, ALONE, BOUNCES};
@@ -150,7 +151,7 @@ static int integrate(cli_work *work, const render *r, const kiln_map *source, bo
     return CLI_GO;
 }
 
-// The picture that was asked for, and the words about it.
+// Renders or integrates the picture; `words` receives a description of the result.
 static int make(cli_work *work, const render *r, bool linear, kiln_image *image, char words[256],
                 view_error *errors)
 {

@@ -1,4 +1,4 @@
-// Options of a picture into numbers, and a name into an environment.
+// Converts the options of a view into numbers, and loads or computes the environment.
 #include "scene_setup.h"
 
 #include <stdio.h>
@@ -22,7 +22,7 @@ static int read_size(const cli_arguments *a, scene_setup *s)
     return CLI_GO;
 }
 
-// Which options mean something only together with others.
+// Checks options that have an effect only together with others.
 static int check(const cli_arguments *a, bool may_change, const scene_setup *s)
 {
     const view_options *o = &s->options;
@@ -50,7 +50,8 @@ int scene_read(const cli_arguments *a, bool may_change, scene_setup *s)
     s->input = a->rest_count ? a->rest[0] : NULL;
     if (s->scene < 0)
         s->scene = s->input ? VIEW_SCENE_IBL : VIEW_SCENE_ASSIGNMENT;
-    // The scene decides the defaults of others, whose values are then written once more.
+    // The scene sets the defaults of the other options, so the given values are written again after
+    // it.
     s->options = view_defaults((view_scene)s->scene);
     int code = cli_store_values(a, s);
     if (code == CLI_GO)
@@ -71,7 +72,7 @@ int scene_load(cli_work *work, const scene_setup *s, kiln_map *source)
         const char *names[] = {s->input};
         return cli_load(work, names, 1, KILN_LAYOUT_AUTO, source);
     }
-    // kcd/m2 to something near 1.
+    // Scales the sky's radiance from kcd/m2 to values near 1.
     kiln_sky_def def = {0};
     if (kiln_sky(work->context, &def, source, &work->error) != KILN_OK)
         return CLI_FAILED;

@@ -1,4 +1,4 @@
-// What `kiln render` and `kiln view` share: the options of a picture, and its environment.
+// Options that `kiln render` and `kiln view` share: the view, and the environment that lights it.
 #ifndef KILN_CLI_SCENE_SETUP_H
 #define KILN_CLI_SCENE_SETUP_H
 
@@ -6,7 +6,7 @@
 
 #include "viewer.h"
 
-/// The indices of the shared rows; a command's own follow.
+/// Indices of the shared rows. The rows of the command follow them.
 enum {
     SCENE,
     SCENE_METHOD,
@@ -31,19 +31,20 @@ enum {
     SCENE_OPTIONS
 };
 
-/// The first member of the structure that a command's rows write to.
+/// Values of the shared options. This must be the first member of the command's structure, because
+/// the shared rows' offsets refer to it.
 typedef struct scene_setup {
     view_options options;
-    int scene; ///< a view_scene; -1 while no option names one
+    int scene; ///< a view_scene; -1 if no option names a scene
     const char *size;
     int cube_diffuse;
     bool straight;
     int width, height;
-    int bake_size;     ///< edge of the environment's level 0
-    const char *input; ///< the environment's name, NULL for a sky
+    int bake_size;     ///< edge of the environment's level 0 in texels
+    const char *input; ///< name of the environment; NULL for a sky
 } scene_setup;
 
-/// The shared rows, for the head of a command's table.
+/// The shared rows; a command's table of options begins with them.
 #define SCENE_ROWS                                                                                 \
     [SCENE] =                                                                                      \
         {"scene",                                                                                  \
@@ -179,20 +180,22 @@ typedef struct scene_setup {
     [SCENE_BAKE_SIZE] = {                                                                          \
         "bake-size", CLI_INTEGER, offsetof(scene_setup, bake_size),       16, 2048,                \
         256,         "N",         .help = "edge of the baked environment"}
-/// The words of rows.
+/// Words of the choices in the shared rows.
 const char *scene_diffuse_word(int index);
 
-/// After cli_read_arguments: CLI_GO or an exit code. With `may_change`, as in a window, an environment is no
-/// mistake in a scene that has none.
+/// Converts and checks the shared options after cli_read_arguments. `may_change`: the user can
+/// change the scene later, so an environment is accepted for a scene that uses none. Returns CLI_GO
+/// or an exit code.
 int scene_read(const cli_arguments *a, bool may_change, scene_setup *s);
 /// Whether the scene needs an environment.
 bool scene_has_environment(const scene_setup *s);
-/// Loads the environment, or makes a sky. CLI_GO or CLI_FAILED.
+/// Loads the environment or computes a sky. Returns CLI_GO or CLI_FAILED.
 int scene_load(cli_work *work, const scene_setup *s, kiln_map *source);
-/// Samples a texel of the textbook's bake.
+/// Samples a texel of the importance-sampled bake in VIEW_SLOT_TEXTBOOK.
 enum { SCENE_TEXTBOOK_SAMPLES = 1024 };
-/// Bakes the environment for the renderer, one slot (`samples` 0: exactly) or all that the scene needs.
-/// CLI_GO or CLI_FAILED.
+/// Bakes the environment and sets it in the renderer. scene_bake_slot sets one slot, exactly if
+/// `samples` is 0; scene_bake sets every slot that the scene needs. Both return CLI_GO or
+/// CLI_FAILED.
 int scene_bake_slot(cli_work *work, const scene_setup *s, const kiln_map *source, view_slot slot,
                     int samples, view_renderer *renderer);
 int scene_bake(cli_work *work, const scene_setup *s, const kiln_map *source,

@@ -1,4 +1,4 @@
-// What the command says on standard error, and the end of standard output.
+// The command's messages on standard error, and the flush of standard output.
 #include "cli.h"
 #include "os.h"
 
@@ -54,7 +54,7 @@ int cli_close_output(int code)
         return code;
     int gone = os_reader_gone(errno);
     if (gone)
-        return gone; // the reader knows it
+        return gone; // the reader closed the pipe and needs no message
     if (code == CLI_DONE)
         cli_fail("standard output: %s", errno ? strerror(errno) : "cannot be written");
     return code == CLI_DONE ? CLI_FAILED : code;

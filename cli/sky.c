@@ -1,4 +1,4 @@
-// kiln sky: a daylight panorama, for when there is no other.
+// kiln sky: writes a panorama of daylight, for users without a panorama of their own.
 #include "work.h"
 
 #include <stdio.h>
@@ -42,7 +42,7 @@ static int read_options(sky *s, const cli_call *call)
     if (!cli_ends_in(s->output, "exr") && !cli_ends_in(s->output, "hdr"))
         return cli_wrong(&cli_sky, "--output %s: must end in .exr or .hdr", s->output);
     if (s->def.elevation == 0)
-        s->def.elevation = KILN_ZERO; // the library takes 0 for its default
+        s->def.elevation = KILN_ZERO; // the library reads 0 as its default, and KILN_ZERO as zero
     if (s->def.albedo == 0)
         s->def.albedo = KILN_ZERO;
     return cli_check_folder(s->output);
@@ -50,7 +50,7 @@ static int read_options(sky *s, const cli_call *call)
 
 static int make(cli_work *work, const sky *s, kiln_map *map)
 {
-    // A noon sun is beyond what half floats hold.
+    // The radiance of a high sun exceeds the largest half float.
     bool exr = cli_ends_in(s->output, "exr");
     kiln_save_def save = {.format = exr ? KILN_FORMAT_RGBA32F : KILN_FORMAT_AUTO};
     if (kiln_sky(work->context, &s->def, map, &work->error) ||

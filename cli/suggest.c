@@ -1,7 +1,7 @@
-// Words are compared by the optimal string alignment distance: the least number of letters inserted, left
-// out, replaced or swapped with their neighbour that turns one word into the other. Capitals count as
-// small letters. A word is near within a third of the letters typed; so is a word that begins with what
-// was typed, or the other way round, so that "thr" and "threejs" both find "three".
+// Measures how similar two words are by the optimal string alignment distance: the smallest number
+// of letters to insert, delete, replace or swap with a neighbour that turns one word into the
+// other. Case is ignored. A known word is near if the distance is at most a third of the typed
+// letters, or if one word begins with the other: both "thr" and "threejs" find "three".
 #include "suggest.h"
 
 #include <ctype.h>

@@ -1,19 +1,20 @@
-// The word that was probably meant.
+// Finds the known word that is most similar to a mistyped word.
 #ifndef KILN_CLI_SUGGEST_H
 #define KILN_CLI_SUGGEST_H
 
 #include <stddef.h>
 
-/// The search for the word that is nearest to one that was typed.
+/// The state of a search for the known word nearest to a typed word.
 typedef struct cli_suggestion {
     const char *typed;
-    const char *nearest; ///< NULL while no word is near enough
+    const char *nearest; ///< nearest word up to now; NULL if no word is similar enough
     int distance;
 } cli_suggestion;
 
-/// Considers one more word; NULL is none.
+/// Compares one more known word with the typed word; NULL is ignored.
 void cli_suggest(cli_suggestion *suggestion, const char *word);
-/// `between` and "did you mean --size?", or "" where no word is near; `dashes` stand before the word.
+/// Text for an error message: `between` and "did you mean --size?" with `dashes` before the word;
+/// "" if no word is similar enough.
 const char *cli_suggestion_text(const cli_suggestion *suggestion, const char *between,
                                 const char *dashes, char text[96]);
 

@@ -1,5 +1,6 @@
-// kiln tables: integrals of the BRDF that need no panorama. The options, and the tables by the textbook;
-// the exact ones are in tables_exact.c, the assignment's in assignment.c.
+// kiln tables: tables of BRDF integrals, which depend on no environment. In: options. Out: an exact
+// table (tables_exact.c), a split-sum table by importance sampling, or the GAMES202 assignment's
+// tables (assignment.c). This file holds the options and the importance-sampled table.
 #include "tables.h"
 #include "assignment.h"
 
@@ -93,7 +94,7 @@ static const cli_option options[TABLES_OPTIONS + 1] = {
     [TABLES_QUIET] = CLI_QUIET_ROW(tables),
 };
 
-// Every option that is given must be in `allowed`, which ends in -1.
+// Checks that each given option is in `allowed`, a list that ends in -1.
 static int check_options(const cli_arguments *a, const char *mode, const int *allowed)
 {
     for (int option = 0; option < TABLES_OPTIONS; option++) {
@@ -128,7 +129,8 @@ static int check_textbook(const tables *t, int *size)
     return code == CLI_GO ? cli_check_folder(t->output) : code;
 }
 
-// Two channels (A, B) as red and green with a blue of 0, which every format can hold.
+// Stores the channels (A, B) as red and green with blue 0, because every picture format can hold
+// three channels.
 static kiln_result widen(cli_work *work, const kiln_image *table, kiln_image *rgb)
 {
     kiln_result result =

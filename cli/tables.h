@@ -1,4 +1,5 @@
-// kiln tables: its options, and the three things it makes.
+// The options of kiln tables. The command makes exact tables, the tables of common sampling code,
+// or the GAMES202 assignment's tables.
 #ifndef KILN_CLI_TABLES_H
 #define KILN_CLI_TABLES_H
 
@@ -36,16 +37,16 @@ typedef struct tables {
     const char *output, *average, *size;
     kiln_table_def def;
     kiln_table_save_def save;
-    int engine; ///< index of tables_engines, -1 without --for
+    int engine; ///< index in tables_engines; -1 without --for
     int method, samples, threads;
     bool assignment, lookup, json, quiet;
-    char lookup_path[2][4096]; ///< the files of the code that reads the table
+    char lookup_path[2][4096]; ///< paths of the C and GLSL files with the code that reads the table
 } tables;
 
 /// The words of --for; NULL behind the last.
 const char *tables_engine_word(int index);
-/// The exact tables: a file, with --lookup the code that reads it, with --average its mean. The exit
-/// code.
+/// Writes an exact table, with --lookup the code that reads the table, with --average the table of
+/// E_avg. Returns the exit code.
 int tables_make_exact(tables *t);
 
 #endif

@@ -1,5 +1,6 @@
-// kiln tables --table KIND -o FILE: checks what the options mean together, integrates the table on all
-// threads, and writes it in the format that the file's ending has.
+// kiln tables --table KIND -o FILE. In: the options of kiln tables. Out: a table of an integral in
+// the format that the file's ending names, with code that reads it and a table of E_avg if asked
+// for. The options are checked together, then kiln_table_create integrates on all threads.
 #include "json.h"
 #include "tables.h"
 
@@ -7,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// "N", "WxH" or "WxHxD".
+// Reads a size of the form "N", "WxH" or "WxHxD".
 static int read_size(tables *t)
 {
     kiln_table_def *def = &t->def;
@@ -36,7 +37,7 @@ static int read_size(tables *t)
     return CLI_GO;
 }
 
-// Whether a file of that name can be written, and hold what is asked for.
+// Checks that a file with this name's ending can hold the table and can be written.
 static int check_output(const tables *t, const char *path)
 {
     kiln_error error = {0};
@@ -45,7 +46,7 @@ static int check_output(const tables *t, const char *path)
     return cli_check_folder(path);
 }
 
-// NAME_lookup.h and NAME_lookup.glsl.
+// Forms the paths NAME_lookup.h and NAME_lookup.glsl.
 static int name_lookup(tables *t)
 {
     size_t length = strlen(t->output) - strlen(cli_ending(t->output)) - 1;
@@ -59,7 +60,8 @@ static int name_lookup(tables *t)
 
 // ----------------------------------------------------------------------------------------- engines
 
-// Both engines look up the same three numbers, at n.v and roughness of texel centres.
+// The tables that engines look up. Both engines read three numbers at n.v and roughness of the
+// texel centres.
 static const struct {
     const char *name, *ending;
     int size;
@@ -97,12 +99,12 @@ static int apply_engine(tables *t)
 
 // ---------------------------------------------------------------------------------- contradictions
 
-// Options that not every kind has.
+// Checks options that apply only to some kinds of table.
 static int check_kind(const tables *t)
 {
     static const struct {
         int option;
-        unsigned kinds; // a bit each
+        unsigned kinds; // one bit for each kind of table that has the option
     } only[] = {
         {TABLES_AVERAGE, 1U << KILN_TABLE_E},
         {TABLES_SHEEN, 1U << KILN_TABLE_SHEEN},
@@ -126,7 +128,7 @@ static int check_kind(const tables *t)
     return CLI_GO;
 }
 
-// The average must not take the place of another output.
+// Checks that the file of --average is none of the other output files.
 static int check_average(const tables *t)
 {
     const char *average = t->average;
@@ -214,7 +216,7 @@ static void report_json(const cli_work *work, const tables *t, const kiln_table 
 
 // ------------------------------------------------------------------------------------------- work
 
-// Everything is computed before the first file is written.
+// Computes all tables before the first file is written.
 static kiln_result make(cli_work *work, const tables *t, kiln_table *table, kiln_table *average)
 {
     kiln_context *context = work->context;

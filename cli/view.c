@@ -1,4 +1,6 @@
-// kiln view: the scenes in a window.
+// kiln view. In: a scene's options and an environment. Out: a window that shows the scene
+// (viewer/window.h), or a screenshot of it. For scene compare a second thread bakes the
+// importance-sampled environment while the window is open.
 #include "os.h"
 #include "scene_setup.h"
 
@@ -12,7 +14,7 @@
 enum { SCREENSHOT = SCENE_OPTIONS, THREADS, OPTIONS };
 
 typedef struct view {
-    scene_setup setup; // first: the shared rows write there
+    scene_setup setup; // must be the first member: the shared option rows write to it
     const char *screenshot;
     int threads;
 } view;
@@ -25,7 +27,7 @@ static const cli_option options[OPTIONS + 1] = {
     [THREADS] = CLI_THREADS_ROW(view),
 };
 
-// The textbook's bake takes a minute or more: it goes on behind the window.
+// The importance-sampled bake, which takes a minute or more and runs in a thread of its own.
 typedef struct textbook {
     pthread_t thread;
     bool begun, set;
@@ -76,12 +78,13 @@ static void create_thread(void *user)
 static kiln_result begin_textbook(show *s, view_renderer *renderer, kiln_error *error)
 {
     textbook *t = &s->textbook;
-    // Until then both halves are exact.
+    // Until the sampled bake has finished, both halves show the exact environment.
     if (scene_bake_slot(s->work, s->setup, s->source, VIEW_SLOT_TEXTBOOK, 0, renderer) != CLI_GO) {
         *error = s->work->error;
         return error->result;
     }
-    os_without_signals(create_thread, s); // signals are for the window's thread
+    // the thread blocks signals, which must reach the window's thread
+    os_without_signals(create_thread, s);
     if (t->begun)
         return KILN_OK;
     *error = t->error;
@@ -97,7 +100,8 @@ static kiln_result ask_textbook(void *user, view_renderer *renderer, bool wait, 
     show *s = user;
     textbook *t = &s->textbook;
     kiln_result result = t->begun ? KILN_OK : begin_textbook(s, renderer, error);
-    *done = atomic_load(&t->thousandths) / 1001.0; // 1 is for when it is set
+    // at most 1000/1001: 1 means that the environment is set
+    *done = atomic_load(&t->thousandths) / 1001.0;
     if (result != KILN_OK || (!wait && !atomic_load(&t->finished)))
         return result;
     pthread_join(t->thread, NULL);
@@ -120,7 +124,7 @@ static void end_textbook(textbook *t)
     kiln_context_destroy(t->context);
 }
 
-// Where baking fails, the sentence is in the work's error.
+// If baking fails, the error message is in work->error.
 static kiln_result prepare(void *user, view_renderer *renderer, kiln_error *error)
 {
     const show *s = user;
@@ -157,7 +161,7 @@ static int open_window(cli_work *work, const view *v)
         code = view_window(work->context, &def, &work->error) ? CLI_FAILED : CLI_DONE;
     end_textbook(&s.textbook);
     if (code == CLI_DONE && cli_interrupted())
-        code = CLI_FAILED; // closed by a signal, as the exit code will say
+        code = CLI_FAILED; // a signal closed the window; the exit code will name it
     if (code == CLI_DONE && v->screenshot &&
         kiln_image_save(work->context, &image, v->screenshot, &work->error))
         code = CLI_FAILED;

@@ -1,4 +1,4 @@
-// Work with its progress line and signals.
+// The context, the progress line and the signals of a command's work.
 #include "work.h"
 #include "os.h"
 
@@ -29,7 +29,7 @@ bool cli_progress(void *user, const char *stage, double fraction)
 {
     cli_work *work = user;
     double now = os_seconds();
-    // Within a stage the line only goes forward.
+    // The progress line never goes backwards within a stage.
     if (!work->stage || strcmp(stage, work->stage) != 0 || fraction > work->furthest)
         work->furthest = fraction;
     work->stage = stage;
@@ -50,7 +50,8 @@ static void create_context(void *user)
         .thread_count = work->threads,
         .progress = cli_progress,
         .progress_user = work,
-        // Beyond what the machine has, a bake would be killed without a sentence.
+        // If a bake needed more than the physical memory, the system would kill it without an error
+        // message.
         .memory_limit = os_physical_memory(),
     };
     work->error.result = kiln_context_create(&def, &work->context, &work->error);

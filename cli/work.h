@@ -1,4 +1,5 @@
-// The work of a command: a context whose progress is drawn on a terminal and which stops on signals.
+// The work of a command: a kiln context with a progress line on the terminal, which stops on
+// signals.
 #ifndef KILN_CLI_WORK_H
 #define KILN_CLI_WORK_H
 
@@ -8,34 +9,37 @@ typedef struct cli_work {
     kiln_context *context;
     kiln_error error;
     int threads;
-    double began;      ///< in seconds, by os_seconds
-    double drawn;      ///< when the progress line was drawn last, 0 for never
-    bool on_terminal;  ///< standard error is a terminal, and progress is wanted
-    const char *stage; ///< the stage reported last, which is constant text
-    double furthest;   ///< how far that stage was, 0 to 1
+    double began;      ///< start of the work, os_seconds
+    double drawn;      ///< time of the last drawing of the progress line, os_seconds; 0 for never
+    bool on_terminal;  ///< progress is drawn: standard error is a terminal and --quiet is absent
+    const char *stage; ///< name of the last reported stage, a string constant
+    double furthest;   ///< largest fraction reported of that stage, 0 to 1
 } cli_work;
 
-/// CLI_GO or CLI_FAILED. `threads` 0 for one a core; `quiet`: no progress.
+/// Creates the context. `threads`: 0 for one thread a core. `quiet`: no progress line. Returns
+/// CLI_GO or CLI_FAILED.
 int cli_begin_work(cli_work *work, int threads, bool quiet);
-/// Clears the progress line, prints the sentence in work->error where `code` is CLI_FAILED and releases
-/// everything. Returns the exit code: 128 + N where signal N stopped the work.
+/// Clears the progress line, prints work->error if `code` is CLI_FAILED, and frees the context.
+/// Returns the exit code: `code`, or 128 + N if signal N stopped the work.
 int cli_end_work(cli_work *work, int code);
 /// Seconds since the work began.
 double cli_elapsed(const cli_work *work);
-/// Whether a signal asks to stop.
+/// Whether a signal has asked the process to stop.
 bool cli_interrupted(void);
 void cli_clear_progress(cli_work *work);
-/// Draws the progress line of `user`, a cli_work; false where a signal asks to stop.
+/// Progress callback: draws the progress line of `user`, a cli_work. Returns false if a signal has
+/// asked the process to stop.
 bool cli_progress(void *user, const char *stage, double fraction);
-/// "kiln: warning: SENTENCE" on standard error.
+/// Prints "kiln: warning: MESSAGE" on standard error.
 void cli_warn(cli_work *work, const char *format, ...) CLI_PRINTF(2, 3);
 
 // ------------------------------------------------------------------------------------------- input
 
-/// One name: a file, a folder, a pattern, "-". Six names: faces, by the px nx py ny pz nz (or
-/// right left top bottom front back) in their names or else in that order. CLI_GO or CLI_FAILED.
+/// Loads an environment. One name is a file, a folder, a pattern, or "-" for standard input. Six
+/// names are the cube's faces: px nx py ny pz nz (or right left top bottom front back) in the names
+/// tell the faces, else the names are in that order. Returns CLI_GO or CLI_FAILED.
 int cli_load(cli_work *work, const char **names, int count, kiln_layout layout, kiln_map *map);
-/// CLI_GO, or CLI_WRONG where the names cannot be an input.
+/// Checks the number and form of the names: CLI_GO, or CLI_WRONG if they cannot be an input.
 int cli_check_input(const cli_command *command, const char **names, int count);
 
 #endif
