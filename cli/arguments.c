@@ -1,9 +1,8 @@
 // The parser of command lines. In: words and a table of option rows. Out: the options' values and
 // defaults, and the words that are not options.
 //
-//   --size 64, --size=64     a long option. The next word is its value even if it begins with -, as
-// in
-//                            --rotate -30
+//   --size 64, --size=64     a long option. The next word is its value even if it begins with -,
+//                            as in --rotate -30
 //   -o out, -oout, -o=out    a short option; -qo out means -q -o out
 //   --zstd, --zstd=19        an option that may stand without a value takes a value only after =
 //   --                       the words after it are not options; a single - is not an option either

@@ -1,4 +1,6 @@
-// The page of the assignment: its figures as its methods give them, beside the integrals.
+// Writes assignment.html of the demo. In: a context and an output folder. Out: a web page with the
+// tables of the GAMES202 assignment, made by its methods (kiln/course.h), their errors against
+// exact integrals, and charts over roughness.
 #include "demo.h"
 
 #include <kiln/course.h>
@@ -9,7 +11,9 @@ enum { SIZE = 128, MC = 0, FREE, IS, SPLIT, EXACT, TABLES };
 typedef struct assignment {
     demo_page page;
     kiln_error *error;
-    kiln_g g; // the same masking twice: as exact tables name it, and as the assignment does
+    // the masking function for exact tables; `taught` is the same function for the assignment's
+    // methods
+    kiln_g g;
     kiln_assignment_g taught;
     kiln_image table[TABLES];
     kiln_difference difference[TABLES];
@@ -20,7 +24,7 @@ static const char *const captions[TABLES] = {
     "<b>importance sampling</b>: bonus 1, figure 2", "<b>split sum</b>: bonus 2",
     "<b>exact</b>: the integral"};
 
-// Two digits of a number, three from 100 on.
+// Number of significant digits for a percentage: two, or three from 100 on.
 static int digits(double number)
 {
     return number < 100 ? 2 : 3;
@@ -63,7 +67,8 @@ static double row_mean(const kiln_image *table, int row)
 
 // ----------------------------------------------------------------------------------------- pictures
 
-// The bytes that the assignment's framework writes; `figure3` is 1 - E, row 0 at roughness 0.
+// Shows a table as the assignment's framework writes it in bytes. With `figure3` the picture shows
+// 1 - E with roughness 0 in the top row.
 static kiln_result show_table(assignment *a, const kiln_image *table, bool figure3,
                               const char *caption)
 {
@@ -101,7 +106,8 @@ static kiln_result show_error(assignment *a, int t)
 
 // ------------------------------------------------------------------------------------------- charts
 
-// A curve over roughness of numbers from 0 to 1.2, one a row from the top.
+// Draws a curve over roughness, in SVG. `values` has one number from 0 to 1.2 for each table row,
+// from the top row down.
 static void show_curve(FILE *f, const double values[SIZE], const char *style)
 {
     fprintf(f, "<polyline fill=\"none\" %s points=\"", style);

@@ -1,5 +1,5 @@
-// Bakes a panorama for an engine, into files: what `kiln bake IN --for ENGINE -o OUT` does.
-//   bake IN.exr OUT [ENGINE]
+// Bakes a panorama into the files that an engine loads, as `kiln bake IN --for ENGINE -o OUT` does.
+// Usage: bake IN.exr OUT [ENGINE]
 #include <kiln/kiln.h>
 
 #include <stdio.h>

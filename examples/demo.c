@@ -1,5 +1,8 @@
-// demo OUTDIR [PANORAMA...]: bakes a sky, and each panorama, into a page that shows what kiln does
-// and how exact it is. demo --picture FILE.png: the row of balls only.
+// demo OUTDIR [PANORAMA...] writes the demo's web pages. In: a computed sky and any panoramas. Out:
+// index.html with the levels, errors and times of each bake; also the pages of assignment.c,
+// tables.c and gallery.c. The errors are relative to a numerical integration of the unfiltered map.
+//
+// demo --picture FILE.png draws only a row of balls.
 #include "demo.h"
 
 #include <errno.h>
@@ -11,14 +14,14 @@
 #include <time.h>
 
 enum {
-    SOFT = 64,     // texels along a face, at least, for balls
-    BALL = 240,    // pixels across
-    CROSS = 128,   // pixels along a face, at most
-    COMPARED = 16, // texels along a face of the compared maps
+    SOFT = 64,     // smallest edge, in texels, of a cube that a ball is drawn from
+    BALL = 240,    // diameter of a ball in pixels
+    CROSS = 128,   // largest edge of a cubemap face in pixels, in pictures of unfolded cubes
+    COMPARED = 16, // edge in texels of the cubes whose errors are measured
     COMPARED_TEXELS = 6 * COMPARED * COMPARED,
-    SAMPLES = 1024, // of the textbook's prefilter
-    STEPS = 100,    // of the textbook's irradiance, in phi and in theta
-    TIMED = 64,     // texels along a face where the methods are timed side by side
+    SAMPLES = 1024, // samples a texel of the importance-sampled prefilter
+    STEPS = 100,    // steps in phi and in theta of the irradiance by quadrature
+    TIMED = 64, // edge in texels of the cubes that both methods bake for the comparison of times
     TIMED_LEVELS = 7,
 };
 
@@ -30,29 +33,30 @@ typedef struct demo_time {
 } demo_time;
 
 typedef struct demo_figures {
-    double rms, max; ///< relative
+    double rms, max; ///< relative errors
 } demo_figures;
 
 typedef struct demo {
     kiln_context *context;
     kiln_error error;
-    demo_page page; ///< of the sections; its file is in memory
+    demo_page page; ///< collects the sections' HTML in memory
     char scratch[1024];
 
-    // Of the environment at hand.
+    // Data of the present environment.
     int index;
     kiln_map source;
     kiln_environment environment;
-    kiln_map soft[KILN_MAX_LEVELS]; ///< the smallest levels again, with more texels
+    /// the levels below SOFT texels, filtered again with more texels
+    kiln_map soft[KILN_MAX_LEVELS];
     demo_level balls[KILN_MAX_LEVELS];
     kiln_plan *plan;
     const kiln_spectrum *spectrum;
     demo_view view;
     demo_time load, bake, again, exact, textbook, irradiance_exact, irradiance_textbook;
 
-    // Of all.
+    // Data of the whole demo.
     bool has_gallery;
-    kiln_image row; ///< the first environment's balls
+    kiln_image row; ///< picture of the balls of the first environment
     demo_figures worst_exact, worst_textbook;
     double first_bake, first_textbook_ratio;
 } demo;
@@ -72,7 +76,8 @@ static demo_time since(demo_time start)
     return (demo_time){end.wall - start.wall, end.cpu - start.cpu};
 }
 
-// "0.08 %", "1.3e-6": percent where that reads well.
+// Writes an error as text: percent for larger errors ("0.08 %"), powers of ten for small ones
+// ("1.3e-6").
 static const char *error_text(double error, char text[64])
 {
     if (error >= 1e-3)
@@ -98,7 +103,7 @@ static const char *time_text(double seconds, char text[64])
     return text;
 }
 
-// A picture with a caption; the caption is HTML.
+// Writes a picture with a caption, which is HTML.
 static kiln_result figure(demo *d, kiln_image *image, const char *style_class, const char *alt,
                           const char *caption)
 {
@@ -308,7 +313,8 @@ static kiln_result show_textbook(demo *d)
         printf("  roughness %g\n", r);
         kiln_prefilter_def def = {
             .size = COMPARED, .level_count = 1, .roughness = &compared_roughness[i]};
-        // Level 1 of so many has this roughness.
+        // The sampled method spaces roughness evenly over the levels: with this number of levels,
+        // level 1 has roughness r.
         kiln_textbook_def taught = {.shape = KILN_SHAPE_CUBE,
                                     .size = 2 * COMPARED,
                                     .level_count = 1 + (int)lround(1 / r),
@@ -327,7 +333,8 @@ static kiln_result show_textbook(demo *d)
         if (!result)
             result = show_comparison(d, c, title, truth, "1024 samples");
     }
-    // Irradiance is the widest lobe: the truth of roughness 1 is its own.
+    // The cosine lobe of irradiance differs from the lobe of roughness 1: irradiance has its own
+    // true values.
     comparison *c = &all[COMPARED_LEVELS];
     kiln_prefilter_def def = {.size = COMPARED, .level_count = 1, .lobe = KILN_LOBE_LAMBERT};
     kiln_textbook_def taught = {.shape = KILN_SHAPE_CUBE,
@@ -507,7 +514,8 @@ static kiln_result bake(demo *d)
     if (result)
         return result;
     d->spectrum = kiln_plan_spectrum(d->plan);
-    // Few texels show on a ball: what is smaller is filtered once more onto larger faces.
+    // Small levels show their texels on a ball: levels with fewer than SOFT texels a side are
+    // filtered again onto larger faces.
     for (int k = 0; k < d->environment.levels.level_count && !result; k++) {
         double r = (double)d->environment.levels.roughness[k];
         kiln_lobe lobe = kiln_lobe_ggx(r * r);
@@ -565,7 +573,7 @@ static const char *base_name(const char *path)
     return slash ? slash + 1 : path;
 }
 
-// `path` NULL: the sky.
+// Writes the section of the panorama in file `path`, or of the computed sky if `path` is NULL.
 static kiln_result show_environment(demo *d, const char *path)
 {
     const char *title = path ? base_name(path) : "A computed sky";

@@ -1,4 +1,4 @@
-// The gallery's page around what gallery.mjs drew in the engines.
+// Writes gallery.html around the HTML that gallery.mjs made with the engines.
 #include "demo.h"
 
 #include <string.h>

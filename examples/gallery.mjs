@@ -1,7 +1,9 @@
-// The same panoramas in each engine, lit by kiln's file and by the engine's own filter, beside what the engine
-// would show were every light filtered exactly:
-//   node gallery.mjs BIN FOLDER FRAGMENT PANORAMA...
-// FRAGMENT is HTML, pictures inside, which the demo puts on a page of its own. FOLDER is for files on the way.
+// Compares engines that are lit by kiln's file with engines that filter the panorama themselves.
+// In: panoramas. Out: HTML with rows of balls as each engine draws them, and their errors against
+// the engine's shading of exactly filtered light.
+//     node gallery.mjs BIN FOLDER FRAGMENT PANORAMA...
+// BIN holds the kiln command; FOLDER receives temporary files; FRAGMENT receives the HTML with its
+// pictures inside, which gallery.c makes into a page.
 import { execFileSync } from 'node:child_process';
 import fs from 'node:fs';
 import path from 'node:path';
@@ -14,23 +16,24 @@ const [bin, folder, fragment, ...panoramas] = process.argv.slice(2).map((name) =
 const ROUGHNESS = [0.1, 0.25, 0.4, 0.6, 0.8, 1], PIXELS = 56, LOUDER = 8;
 const TITLES = { three: 'three.js', babylon: 'Babylon.js', filament: 'Filament', playcanvas: 'PlayCanvas' };
 
-// A ball of PIXELS across, seen from the +Z of kiln's panoramas' centre: a normal for each pixel inside.
+// A ball with a diameter of PIXELS, seen from direction toEye: the pixels inside it and their
+// normals.
 function makeBall(toEye, right, up) {
     const inside = [], normals = [];
     for (let i = 0; i < PIXELS * PIXELS; i++) {
         const x = 2 * (i % PIXELS + 0.5) / PIXELS - 1, y = 1 - 2 * (Math.floor(i / PIXELS) + 0.5) / PIXELS;
         const left = 1 - x * x - y * y;
         if (left < 0.02)
-            continue; // the last grazing pixels say more of the rim than of the light
+            continue; // skips pixels at the rim, where the error depends on the rim's exact place
         inside.push(i);
         normals.push(toEye.map((_, c) => x * right[c] + y * up[c] + Math.sqrt(left) * toEye[c]));
     }
-    // Patches lie along this right, which is the other one where the engine's world is left-handed.
+    // The patches' right-hand axis; in engines with a left-handed world it is opposite to `right`.
     const along = [0, 1, 2].map((i) => up[(i + 1) % 3] * toEye[(i + 2) % 3] - up[(i + 2) % 3] * toEye[(i + 1) % 3]);
     return { inside, view: { toEye, right: along, up, normals } };
 }
 
-// Exact levels, one a roughness, as kiln bakes them without --for.
+// Bakes one exact level for each roughness, as kiln does without --for.
 function exactLevels(panorama) {
     return ROUGHNESS.map((r, i) => {
         const file = `exact-${i}.ktx2`;
@@ -40,7 +43,7 @@ function exactLevels(panorama) {
     });
 }
 
-// What the engine's shading makes of exact light.
+// The engine's shading model, evaluated with exactly filtered light.
 function truth(engine, view, levels) {
     const { size, level_count: count } = engineOf(bin, engine.name);
     const model = engine.model(count, size), around = baked([levels.at(-1)]).irradiance;
@@ -58,7 +61,8 @@ const rms = (shown, wanted) => {
     return Math.sqrt(off / whole);
 };
 
-// A row of balls as a PNG: radiance through c / (c + 1) and 1 / 2.2; or differences from grey.
+// Draws a row of balls as a PNG: radiance c through c / (c + 1) and the power 1 / 2.2; with `grey`,
+// signed differences around middle grey.
 const drawRow = (page, inside, balls, exposure, grey) => page.evaluate(([pixels, at, all, scale, middle]) => {
     const canvas = document.createElement('canvas');
     canvas.width = all.length * (pixels + 4);
@@ -92,7 +96,8 @@ await withPage(folder, async (browser, address) => {
         html.push(`<h2>${name}</h2>`);
         for (const engine of [models.three, models.babylon, models.filament, models.playcanvas]) {
             console.log(`  ${name} in ${TITLES[engine.name]}`);
-            // All engines look at the same side: their own +X is kiln's -Z, and so on.
+            // The axes of all engines are converted to kiln's axes, so that every engine shows the
+            // same side.
             const { toKiln } = engine.model(6, 256);
             const axis = (d) => [0, 1, 2].map((i) => [0, 1, 2].reduce((sum, c) =>
                 sum + d[c] * toKiln([0, 1, 2].map((k) => Number(k === i)))[c], 0));

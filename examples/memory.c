@@ -1,5 +1,5 @@
-// Everything in memory: pixels of the program's own go in, texels for a graphics processor and the bytes
-// of a file come out, by an allocator that counts. No file is read or written.
+// Bakes without files. In: pixels in memory. Out: texels packed for a graphics processor, and the
+// bytes of a KTX2 file. All memory comes from an allocator that counts.
 #include <kiln/kiln.h>
 
 #include <stdio.h>
@@ -10,7 +10,7 @@ enum { WIDTH = 256, HEIGHT = 128 };
 static void *allocate(void *user, size_t size)
 {
     *(size_t *)user += size;
-    return aligned_alloc(64, (size + 63) / 64 * 64); // 64 is the alignment that kiln asks for
+    return aligned_alloc(64, (size + 63) / 64 * 64); // kiln requires an alignment of 64 bytes
 }
 
 static void release(void *user, void *memory, size_t size)
@@ -19,7 +19,7 @@ static void release(void *user, void *memory, size_t size)
     free(memory);
 }
 
-// What a renderer may have: RGBA floats, rows from the bottom up.
+// Draws the kind of picture that a renderer has: RGBA floats, bottom row first.
 static void draw_sky(float *rgba)
 {
     for (int y = 0; y < HEIGHT; y++)
@@ -32,7 +32,8 @@ static void draw_sky(float *rgba)
         }
 }
 
-// Each level as rgb9e5, rows 256 bytes apart as Direct3D 12 wants them. Returns the bytes in all.
+// Packs each level as rgb9e5 with rows 256 bytes apart, as Direct3D 12 requires. `all` receives the
+// total number of bytes.
 static kiln_result pack_levels(kiln_context *context, const kiln_map *levels, size_t *all,
                                kiln_error *error)
 {
@@ -45,7 +46,7 @@ static kiln_result pack_levels(kiln_context *context, const kiln_map *levels, si
         if (upload)
             result = kiln_map_pack(context, levels, k, KILN_FORMAT_RGB9E5, upload, stride,
                                    rows * stride, error);
-        free(upload); // a program would hand it to its graphics API here
+        free(upload); // a real program would upload the texels here
         *all += rows * stride;
     }
     return result;
@@ -56,7 +57,8 @@ static kiln_result work(kiln_context *context, kiln_error *error)
     static float rgba[4 * WIDTH * HEIGHT];
     draw_sky(rgba);
     const ptrdiff_t row = 4 * WIDTH * (ptrdiff_t)sizeof(float);
-    kiln_pixels pixels = {.data = rgba + 4 * WIDTH * (HEIGHT - 1), // the top row is the last
+    // row 0 of kiln_pixels is the top row, which is the last row of rgba
+    kiln_pixels pixels = {.data = rgba + 4 * WIDTH * (HEIGHT - 1),
                           .width = WIDTH,
                           .height = HEIGHT,
                           .channels = 4,

@@ -1,4 +1,5 @@
-// The page: style, words that never change, and pictures inside the HTML.
+// Writes the HTML of the demo's pages. In: sections' text and pictures. Out: self-contained HTML
+// files with style, script and constant text, whose pictures are PNGs in base64.
 #include "demo.h"
 
 #include <kiln/course.h>
@@ -100,7 +101,7 @@ static const char style_of_parts[] =
     ".card{padding:14px}.card strong{font-size:1.45rem}}\n"
     "</style>\n</head>\n<body>\n";
 
-// Layers a section's balls on each other and lets the slider fade from one to the next.
+// Lays the balls of a section on top of each other; a slider fades between neighbouring balls.
 static const char script[] =
     "<script>\n"
     "for (const turn of document.querySelectorAll('.turn')) {\n"
@@ -181,7 +182,7 @@ static void write_base64(FILE *file, const unsigned char *bytes, size_t size)
     }
 }
 
-// The PNG goes through a file, which is how kiln writes pictures.
+// Writes the PNG to a scratch file and reads it back, because kiln_image_save writes to files.
 kiln_result demo_page_picture(demo_page *page, kiln_image *image, const char *style_class,
                               const char *alt, kiln_error *error)
 {

@@ -1,4 +1,5 @@
-// Pictures: maps, balls and errors as pixels ready for a screen.
+// Draws the demo's pictures. In: maps, harmonics, tables and errors. Out: RGB pixels for a screen:
+// panoramas, unfolded cubes, balls in front of the environment, and error maps.
 #include "demo.h"
 
 #include <math.h>
@@ -51,7 +52,7 @@ kiln_result demo_view_choose(kiln_context *context, const kiln_map *panorama,
     kiln_map_free(&small);
     view->exposure = 0.2 / sqrt((mean[0] + 1e-30) * exp(mean[1]));
 
-    // Bands 0 and 1 of the spherical harmonics tell where most light comes from.
+    // Harmonics of bands 0 and 1 show from which azimuth most light comes.
     kiln_sh sh;
     result = kiln_spectrum_sh(spectrum, 2, false, 0, 0, &sh, error);
     view->yaw = 0;
@@ -102,7 +103,8 @@ static int clamp(int value, int high)
     return value < 0 ? 0 : value > high ? high : value;
 }
 
-// A texel that may lie one step outside of its face: then it is the neighbour's nearest.
+// A texel whose coordinates may lie one step outside of its face: then the nearest texel of the
+// neighbouring face is used.
 static const float *texel(const kiln_map *cube, int level, int face, int x, int y)
 {
     int n = kiln_map_level_size(cube, level);
@@ -135,7 +137,8 @@ void demo_cube_sample(const kiln_map *cube, int level, const double direction[3]
 
 // --------------------------------------------------------------------------------------- unfolding
 
-// Where the faces lie on the cross: +Y above and -Y below +Z in the row -X +Z +X -Z.
+// Column and row of each face in the unfolded cross: -X +Z +X -Z form a row, +Y is above +Z and -Y
+// is below +Z.
 static const int cross_x[6] = {2, 0, 1, 1, 1, 3}, cross_y[6] = {1, 1, 0, 2, 1, 1};
 
 kiln_result demo_picture_cross(kiln_context *context, const kiln_map *cube, int level, int largest,
@@ -204,7 +207,7 @@ static void cube_radiance(const void *data, const double direction[3], double va
     demo_cube_sample(at->cube, at->level, direction, value);
 }
 
-// Irradiance over pi is what a white matte surface reflects.
+// Irradiance / pi: the radiance that a white matte surface reflects.
 static void sh_irradiance(const void *data, const double direction[3], double value[3])
 {
     kiln_sh_evaluate(data, direction, value);
@@ -220,7 +223,7 @@ static void turn(const demo_view *view, const double v[3], double d[3])
     d[2] = c * v[2] - s * v[0];
 }
 
-// Blends a ball over the picture. The view is parallel: the eye looks along -z of its own frame.
+// Blends a ball over the picture by parallel projection. The eye looks along -z of its own frame.
 static void draw_ball(kiln_image *image, double center_x, double center_y, double radius,
                       bool matte, radiance_function radiance, const void *data,
                       const demo_view *view)
@@ -246,7 +249,8 @@ static void draw_ball(kiln_image *image, double center_x, double center_y, doubl
                 const double mirrored[3] = {2 * nz * nx, 2 * nz * ny, 2 * nz * nz - 1};
                 turn(view, matte ? normal : mirrored, d);
                 radiance(data, d, value);
-                // A sun may fill one subpixel: it may outshine its pixel, within reason.
+                // The sun may fill a single subpixel: the limit keeps a subpixel's share of its
+                // pixel reasonable.
                 for (int c = 0; c < 3; c++)
                     sum[c] += fmin(value[c] * view->exposure, BRIGHTEST);
                 hits++;
@@ -293,8 +297,9 @@ kiln_result demo_picture_row(kiln_context *context, const demo_level *levels, in
     kiln_result result = kiln_image_create(context, width, height, 3, image, error);
     if (result)
         return result;
-    // The background: what lies behind the balls, 70 degrees wide, the horizon below the middle,
-    // and dimmed: a mirror's rim shows what lies behind it and would vanish.
+    // The background is the environment behind the balls, 70 degrees wide, with the horizon below
+    // the middle. It is dimmed, because the rim of a mirror ball reflects exactly this part and
+    // would be invisible against it.
     const double reach = tan(35 * pi / 180);
     const demo_view dimmed = {view->exposure / 6, view->yaw};
     for (int y = 0; y < height; y++)

@@ -1,5 +1,5 @@
-// A probe that is rendered as a cube every frame: a plan bakes each frame into the same maps and allocates
-// nothing. A lamp that goes around stands for the scene.
+// Bakes a cube that a renderer draws anew in each frame, such as a reflection probe. A plan bakes
+// each frame into the same maps without allocation. The scene is a lamp that moves around the cube.
 #include <kiln/kiln.h>
 
 #include <math.h>
@@ -7,7 +7,8 @@
 
 enum { SIZE = 32, FRAMES = 4 };
 
-// Six faces of RGB floats, as a renderer would leave them: bright within 20 degrees of the lamp.
+// Fills six faces of RGB floats, as a renderer would: bright within 20 degrees of the lamp, dark
+// elsewhere.
 static void render(const kiln_map *cube, double azimuth)
 {
     const double lamp[3] = {sin(azimuth), 0.5, -cos(azimuth)}, length = sqrt(1.25);
@@ -23,7 +24,7 @@ static void render(const kiln_map *cube, double azimuth)
 int main(void)
 {
     static float texels[6 * SIZE * SIZE * 3];
-    // The cube's texels are the program's own.
+    // The cube's texels are in the program's own memory.
     kiln_map cube = {.shape = KILN_SHAPE_CUBE, .size = SIZE, .level_count = 1, .level = {texels}};
     kiln_bake_def def = {.levels = {.size = SIZE, .level_count = 5, .tolerance = 0.01},
                          .irradiance_size = KILN_NO_IRRADIANCE};

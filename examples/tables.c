@@ -1,4 +1,6 @@
-// The page of exact tables: what they hold, where looking them up errs, what they cost.
+// Writes tables.html of the demo. In: a context and an output folder. Out: a web page that shows
+// the kinds of exact tables, maps of the lookup error over n.v and roughness for several storages
+// (the furnace test), and the time to make tables.
 #include "demo.h"
 
 #include <errno.h>
@@ -19,7 +21,7 @@ static const char *const model_names[4] = {"smith", "smith-uncorrelated", "schli
 
 // ------------------------------------------------------------------------------------------- pictures
 
-// One channel as grey, two as red and green.
+// Draws a table: one channel as grey, two channels as red and green.
 static kiln_result show_table(tables *t, const kiln_table_def *def, const char *caption)
 {
     kiln_table table;
@@ -75,7 +77,7 @@ static kiln_result show_kinds(tables *t)
 
 // ------------------------------------------------------------------------------------------- furnace
 
-// The nearest half float: ten bits after the first, 2^-24 at least.
+// Rounds to the nearest half float: 11 significant bits, multiples of 2^-24 at least.
 static float to_half(float x)
 {
     int exponent;
@@ -96,15 +98,17 @@ typedef struct storage {
     const char *caption;
 } storage;
 
-// x of the map is (n.v)^3, so that half of it is grazing.
+// n.v of a map's column. The horizontal coordinate is cbrt(n.v) from 0 to 1, which gives grazing
+// angles more room.
 static double map_nov(int column)
 {
     double x = (column + 0.5) / MAP;
     return x * x * x;
 }
 
-// What a white surface sends back in white light: its single bounce and Kulla and Conty's lobe, which
-// integrates to the looked-up 1 - E, since E_avg is the table's own.
+// Light that a white surface reflects in a uniformly white environment: the single bounce E, plus
+// Kulla and Conty's lobe. That lobe integrates to 1 - E as the table stores it, because E_avg is
+// computed from the same table.
 static kiln_result furnace(tables *t, kiln_g g, const storage *s, kiln_image *light)
 {
     kiln_table table;

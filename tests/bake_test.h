@@ -1,4 +1,5 @@
-// What the programs of the bake, tune, table and course folders share: a context, reproducible numbers, directions.
+// Helpers of the test programs in the folders bake, tune, table and course: a context, reproducible
+// random numbers, and directions of panorama texels.
 #ifndef KILN_BAKE_TEST_H
 #define KILN_BAKE_TEST_H
 
@@ -45,7 +46,7 @@ static inline float *texel_at(const kiln_map *map, int x, int y)
     return map->level[0] + 3 * ((size_t)y * 2 * (size_t)map->size + (size_t)x);
 }
 
-/// Where texel (x, y) of a panorama is: a unit direction, for fractions of texels too.
+/// Unit direction of the point (x, y) of a panorama, in texels; x and y may have fractions.
 static inline void panorama_direction(int size, double x, double y, double d[3])
 {
     double theta = pi * y / size, phi = pi * x / size - pi;

@@ -1,4 +1,4 @@
-// cmocka with the headers it wants, and checks that print numbers.
+// Includes cmocka with the headers it needs, and defines checks that print the compared numbers.
 #ifndef KILN_CHECK_H
 #define KILN_CHECK_H
 
@@ -16,7 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/// |value - wanted| <= bound, all doubles.
+/// Checks that |value - wanted| <= bound. All three are doubles.
 #define CHECK_NEAR(value, wanted, bound)                                                           \
     do {                                                                                           \
         double check_v = (value), check_w = (wanted), check_b = (bound);                           \
@@ -32,7 +32,8 @@
             fail_msg("%s is %g, the bound is %g", #value, check_v, check_b);                       \
     } while (0)
 
-/// A call that must succeed; prints its sentence when it does not. `error` must be in scope.
+/// Checks that a call succeeds, and prints its error message if not. The caller must have a
+/// kiln_error named `error`.
 #define CHECK_OK(call)                                                                             \
     do {                                                                                           \
         if ((call) != KILN_OK)                                                                     \

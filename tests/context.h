@@ -1,5 +1,6 @@
-// A context for a whole test program, which fails if anything is still held at its end:
-// cmocka_run_group_tests(tests, set_up, tear_down). Included last: its names are everybody's.
+// A context for a whole test program. The tear-down fails if memory is still allocated:
+//     cmocka_run_group_tests(tests, set_up, tear_down)
+// Include this header last, because its names are common words.
 #ifndef KILN_TEST_CONTEXT_H
 #define KILN_TEST_CONTEXT_H
 

@@ -1,14 +1,14 @@
-// A context whose n-th allocation fails, with a count of the blocks that are held.
+// A context whose n-th allocation fails, with a count of the allocated blocks.
 #ifndef KILN_TEST_FAILING_H
 #define KILN_TEST_FAILING_H
 
 #include "check.h"
 
 typedef struct failing {
-    long calls;   // allocations asked for
-    long fail_at; // number of the allocation that fails, from 1; 0 for none
-    long held;    // blocks that are allocated now
-    long idle;    // blocks that the new context held before any call
+    long calls;   // number of allocations requested since the start
+    long fail_at; // number of the allocation that fails, from 1; 0 for no failure
+    long held;    // number of blocks allocated now
+    long idle;    // number of blocks that the context held when it was new
 } failing;
 
 static void *failing_allocate(void *user, size_t size)

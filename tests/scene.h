@@ -1,4 +1,4 @@
-// Synthetic environments, the same numbers on every machine. Needs no test framework.
+// Synthetic environments that are identical on every machine. Does not need a test framework.
 #ifndef KILN_SCENE_H
 #define KILN_SCENE_H
 
@@ -10,7 +10,8 @@ static inline double scene_random(uint32_t *state)
     return (double)(*state >> 8) / 16777216.0;
 }
 
-/// A sky, a ground, noise of a factor of four from texel to texel, and a sun of 5000 times the mean.
+/// Fills a panorama with a sky and a darker ground, multiplied by random factors from 0.5 to 2, and
+/// one texel of sun with radiance 5000. All other values are at most 2.4.
 static inline void scene_fill(kiln_map *map, uint32_t seed)
 {
     int size = map->size;
