@@ -75,8 +75,10 @@ static void write_part(png_writer *p, bool last)
     uint8_t *rows = p->rows + p->history;
     size_t bound = ki_deflate_bound(p->waiting), start = begin_chunk(p->out, "IDAT");
     uint8_t *room = ki_write_room(p->out, bound);
-    if (!room)
+    if (!room) { // the writer has failed; the rows make way for those that follow
+        p->waiting = 0;
         return;
+    }
     size_t size = ki_deflate_part(p->deflater, rows, p->history, p->waiting,
                                   p->place | (last ? KI_DEFLATE_LAST : 0), room, bound);
     p->out->size -= bound - size;
