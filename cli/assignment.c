@@ -132,8 +132,9 @@ kiln_result assignment_save(assignment *a, const kiln_image *image, const char *
     return kiln_image_save(a->work->context, image, path, &a->work->error);
 }
 
-// Writes a table as the assignment's framework does: three equal channels of (uint8)(255 x). With
-// `figure3` the picture shows 1 - E with roughness 0 in the top row, as in the handout's figure 3.
+// Writes a table as the GAMES202 assignment's framework does: three equal channels of (uint8)(255
+// x). With `figure3` the picture shows 1 - E with roughness 0 in the top row, as in the handout's
+// figure 3.
 static kiln_result save_table(assignment *a, const kiln_image *table, const char *name,
                               bool figure3)
 {

@@ -1,6 +1,6 @@
-// Writes report.md into the assignment's folder, and the same figures as JSON. In: the assignment's
-// tables and their differences from the exact tables. The report lists the files, the errors by
-// method and roughness, and their causes.
+// Writes report.md into the GAMES202 assignment's folder, and the same figures as JSON. In: the
+// assignment's tables and their differences from the exact tables. The report lists the files, the
+// errors by method and roughness, and their causes.
 #include "assignment.h"
 #include "json.h"
 #include "os.h"

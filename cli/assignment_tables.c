@@ -1,4 +1,4 @@
-// File names and descriptions of the assignment's tables.
+// File names and descriptions of the GAMES202 assignment's tables.
 #include "assignment.h"
 
 const char *const assignment_names[ASSIGNMENT_TABLES] = {

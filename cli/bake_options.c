@@ -395,7 +395,7 @@ int bake_read_options(bake *b, const cli_command *command, const cli_call *call)
 {
     cli_arguments *a = &b->arguments;
     int code = cli_read_arguments(a, command, call, b);
-    b->shape += KILN_SHAPE_PANORAMA; // word number 0 is the panorama
+    b->shape += KILN_SHAPE_PANORAMA; // word 0 of --shape is `panorama`, enumerator 1
     if (code == CLI_GO)
         code = cli_check_input(command, a->rest, a->rest_count);
     if (code != CLI_GO)

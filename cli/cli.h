@@ -91,7 +91,7 @@ int cli_choice(const cli_arguments *arguments, int option, const char *const *wo
 int cli_find_word(const cli_command *command, const char *what, const char *text,
                   const cli_option *words, int *index);
 
-// --------------------------------------------------------------------------------------- sentences
+// ---------------------------------------------------------------------------------------- messages
 
 /// Prints "kiln: MESSAGE" and a hint to --help; returns CLI_WRONG. `command` may be NULL.
 int cli_wrong(const cli_command *command, const char *format, ...) CLI_PRINTF(2, 3);

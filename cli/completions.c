@@ -63,7 +63,9 @@ static void print_bash_command(const cli_command *command)
     printf("    %s)\n        case $before in\n", command->name);
     for (int i = 0; options && options[i].name; i++) {
         if (!is_shown(&options[i]) || options[i].kind == CLI_FLAG || options[i].alone)
-            continue; // an option of this kind takes no value from the next word
+            // an option without a value, or with a value only after =, takes no value from the next
+            // word
+            continue;
         print_bash_names(&options[i]);
         if (options[i].kind == CLI_CHOICE) {
             fputs("words='", stdout);

@@ -6,7 +6,8 @@
 
 #include "viewer.h"
 
-/// Indices of the shared rows. The rows of the command follow them.
+/// Indices of the option rows that kiln render and kiln view share. The rows of the command follow
+/// them.
 enum {
     SCENE,
     SCENE_METHOD,
@@ -44,7 +45,8 @@ typedef struct scene_setup {
     const char *input; ///< name of the environment; NULL for a sky
 } scene_setup;
 
-/// The shared rows; a command's table of options begins with them.
+/// The option rows that kiln render and kiln view share. Each command's table of options begins
+/// with them.
 #define SCENE_ROWS                                                                                 \
     [SCENE] =                                                                                      \
         {"scene",                                                                                  \

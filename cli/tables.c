@@ -107,7 +107,7 @@ static int check_options(const cli_arguments *a, const char *mode, const int *al
     return CLI_GO;
 }
 
-// ---------------------------------------------------------------------------------------- textbook
+// ----------------------------------------------------------------------------- importance sampling
 
 static int check_textbook(const tables *t, int *size)
 {

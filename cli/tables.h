@@ -1,5 +1,5 @@
-// The options of kiln tables. The command makes exact tables, the tables of common sampling code,
-// or the GAMES202 assignment's tables.
+// The options of kiln tables. The command makes exact tables, split-sum tables by importance
+// sampling, or the GAMES202 assignment's tables.
 #ifndef KILN_CLI_TABLES_H
 #define KILN_CLI_TABLES_H
 

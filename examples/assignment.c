@@ -11,8 +11,8 @@ enum { SIZE = 128, MC = 0, FREE, IS, SPLIT, EXACT, TABLES };
 typedef struct assignment {
     demo_page page;
     kiln_error *error;
-    // the masking function for exact tables; `taught` is the same function for the assignment's
-    // methods
+    // the masking function for exact tables; `taught` is the same function for the GAMES202
+    // assignment's methods
     kiln_g g;
     kiln_assignment_g taught;
     kiln_image table[TABLES];
@@ -67,8 +67,8 @@ static double row_mean(const kiln_image *table, int row)
 
 // ----------------------------------------------------------------------------------------- pictures
 
-// Shows a table as the assignment's framework writes it in bytes. With `figure3` the picture shows
-// 1 - E with roughness 0 in the top row.
+// Shows a table as the GAMES202 assignment's framework writes it in bytes. With `figure3` the
+// picture shows 1 - E with roughness 0 in the top row.
 static kiln_result show_table(assignment *a, const kiln_image *table, bool figure3,
                               const char *caption)
 {

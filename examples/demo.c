@@ -42,7 +42,7 @@ typedef struct demo {
     demo_page page; ///< collects the sections' HTML in memory
     char scratch[1024];
 
-    // Data of the present environment.
+    // Data of the environment whose section is being written.
     int index;
     kiln_map source;
     kiln_environment environment;
@@ -54,7 +54,7 @@ typedef struct demo {
     demo_view view;
     demo_time load, bake, again, exact, textbook, irradiance_exact, irradiance_textbook;
 
-    // Data of the whole demo.
+    // Data of the whole demo, for all environments.
     bool has_gallery;
     kiln_image row; ///< picture of the balls of the first environment
     demo_figures worst_exact, worst_textbook;
@@ -333,8 +333,8 @@ static kiln_result show_textbook(demo *d)
         if (!result)
             result = show_comparison(d, c, title, truth, "1024 samples");
     }
-    // The cosine lobe of irradiance differs from the lobe of roughness 1: irradiance has its own
-    // true values.
+    // Irradiance is compared with true values of its own, because its cosine lobe differs from the
+    // lobe of roughness 1.
     comparison *c = &all[COMPARED_LEVELS];
     kiln_prefilter_def def = {.size = COMPARED, .level_count = 1, .lobe = KILN_LOBE_LAMBERT};
     kiln_textbook_def taught = {.shape = KILN_SHAPE_CUBE,

@@ -28,7 +28,8 @@ function makeBall(toEye, right, up) {
         inside.push(i);
         normals.push(toEye.map((_, c) => x * right[c] + y * up[c] + Math.sqrt(left) * toEye[c]));
     }
-    // The patches' right-hand axis; in engines with a left-handed world it is opposite to `right`.
+    // openEngine's page draws a patch for each normal; the patches' right-hand axis is up x toEye,
+    // which is opposite to `right` in engines with a left-handed world.
     const along = [0, 1, 2].map((i) => up[(i + 1) % 3] * toEye[(i + 2) % 3] - up[(i + 2) % 3] * toEye[(i + 1) % 3]);
     return { inside, view: { toEye, right: along, up, normals } };
 }

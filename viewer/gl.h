@@ -66,7 +66,8 @@ typedef struct view_gl {
 #undef VIEW_GL_MEMBER
 } view_gl;
 
-/// Looks all functions up; returns false where one is missing and stores its name in `missing`.
+/// Looks the functions of VIEW_GL_FUNCTIONS up by name. Returns false if one is missing and stores
+/// its name in `missing`.
 bool view_gl_load(view_gl *gl, view_lookup *lookup, const char **missing);
 /// Whether the current context offers this extension.
 bool view_gl_has(const view_gl *gl, const char *extension);

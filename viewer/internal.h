@@ -28,7 +28,7 @@ double view_edge(double roughness, double nov);
 KILN_CHECKED kiln_result view_edge_create(kiln_context *context, kiln_table *table,
                                           kiln_error *error);
 
-/// The handout's albedo texture of copper, which its figure 6 uses as E_avg.
+/// The GAMES202 handout's albedo texture of copper, which its figure 6 uses as E_avg.
 extern const double view_handout_albedo[3];
 
 #endif

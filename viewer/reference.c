@@ -298,7 +298,7 @@ static void estimate_one(const job *j, const view_point *p, int depth, view_rand
 // ------------------------------------------------------------------------------------------ pixels
 
 // Computes the radiance of rays that need no integration: the sky behind the balls, and balls under
-// the assignment's light. Returns false for a ball in an environment.
+// the GAMES202 assignment's light. Returns false for a ball in an environment.
 static bool shines(const job *j, const view_point *p, double radiance[3])
 {
     radiance[0] = radiance[1] = radiance[2] = 0;

@@ -139,7 +139,7 @@ void view_reflect(const view_ball *ball, const view_energy *energy, const view_p
     }
 }
 
-// The assignment's shader keeps the denominator 4 n.l n.v at 0.001 or more.
+// The GAMES202 assignment's shader keeps the denominator 4 n.l n.v at 0.001 or more.
 void view_reflect_light(const view_options *o, const view_ball *ball, const view_energy *energy,
                         const view_point *point, double radiance[3])
 {
@@ -160,7 +160,7 @@ void view_reflect_light(const view_options *o, const view_ball *ball, const view
     kiln_table_lookup(&energy->e, nol, r, 0, &e_i);
     for (int c = 0; c < 3; c++) {
         double f = lobe * kiln_fresnel_schlick(ball->f0[c], fmin(size / 2, 1));
-        // The handout's figure 6 uses the albedo in place of E_avg.
+        // The GAMES202 handout's figure 6 uses the albedo in place of E_avg.
         double e = o->as_printed ? view_handout_albedo[c] : average;
         if (is_kulla_conty(ball->method))
             f += kiln_kulla_conty(e_o, e_i, e) *

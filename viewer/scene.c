@@ -65,7 +65,7 @@ view_options view_defaults(view_scene scene)
         .bent = true,
     };
     if (scene == VIEW_SCENE_ASSIGNMENT) {
-        // The assignment's camera stands at (0, 80, 300) and looks at the origin.
+        // The GAMES202 assignment's camera stands at (0, 80, 300) and looks at the origin.
         o.camera = (view_camera){.elevation = atan2(80, 300) / degree,
                                  .distance = sqrt(80.0 * 80 + 300.0 * 300),
                                  .fov = 75};
@@ -111,7 +111,8 @@ static const substance substances[VIEW_MATERIAL_COUNT] = {
     [VIEW_MATERIAL_CHALK] = {.f0 = {0.04, 0.04, 0.04}, .albedo = {0.9, 0.9, 0.9}},
 };
 
-// The assignment's copper: its reflectivity before decoding by the power 2.2, and its edge tint.
+// The GAMES202 assignment's copper: its reflectivity before decoding by the power 2.2, and its edge
+// tint.
 const double view_handout_albedo[3] = {0.7216, 0.451, 0.2};
 static const double handout_edge[3] = {0.827, 0.792, 0.678};
 

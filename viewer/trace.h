@@ -90,7 +90,8 @@ typedef struct view_walk {
 void view_walk_add(const view_walk *walk, const view_point *point, view_random *random,
                    double sum[3]);
 
-/// Radiance that the point reflects towards the camera from the assignment's directional light.
+/// Radiance that the point reflects towards the camera from the GAMES202 assignment's directional
+/// light.
 void view_reflect_light(const view_options *options, const view_ball *ball,
                         const view_energy *energy, const view_point *point, double radiance[3]);
 

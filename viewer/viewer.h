@@ -7,7 +7,8 @@
 // window.h create contexts. It uses libkiln's public headers only.
 //
 // The command, the window and the web page compile this one source, so all three show the same
-// picture. Lengths are in the unit of the assignment's scene: balls of radius 36, 80 apart.
+// picture. Lengths are in the unit of the GAMES202 assignment's scene: balls of radius 36, 80
+// apart.
 #ifndef KILN_VIEWER_H
 #define KILN_VIEWER_H
 
@@ -17,10 +18,11 @@
 
 typedef enum view_scene {
     VIEW_SCENE_ASSIGNMENT, ///< two rows of five copper balls under one directional light
-    VIEW_SCENE_IBL,        ///< the same rows in the environment
-    VIEW_SCENE_FURNACE,    ///< the same rows, reflecting everything, in uniform white
-    VIEW_SCENE_GRID,       ///< 7 x 5 balls: roughness grows to the right, metallic grows upwards
-    /// VIEW_SCENE_IBL with the exact bake left of a handle and the sampled bake right of it
+    VIEW_SCENE_IBL,        ///< two rows of five balls of one material, lit by the environment
+    VIEW_SCENE_FURNACE, ///< two rows of five balls that reflect all light, in uniformly white light
+    VIEW_SCENE_GRID,    ///< 7 x 5 balls: roughness grows to the right, metallic grows upwards
+    /// VIEW_SCENE_IBL split by a vertical handle: the exact bake lights the left side, the
+    /// importance-sampled bake lights the right side
     VIEW_SCENE_COMPARE,
     VIEW_SCENE_COUNT
 } view_scene;
@@ -30,7 +32,8 @@ typedef enum view_method {
     VIEW_METHOD_SINGLE, ///< leaves that light out: one bounce only
     /// Kulla and Conty 2017; their Fresnel factor sums the bounces from the second one on
     VIEW_METHOD_KULLA_CONTY,
-    /// Kulla and Conty 2017 with the Fresnel factor F E / (1 - F (1 - E)) of the assignment
+    /// Kulla and Conty 2017 with the Fresnel factor F E / (1 - F (1 - E)) of the GAMES202
+    /// assignment
     VIEW_METHOD_KULLA_CONTY_HANDOUT,
     VIEW_METHOD_FDEZ_AGUERA, ///< Fdez-Aguera 2019
     VIEW_METHOD_TURQUIN,     ///< Turquin 2019
@@ -76,8 +79,8 @@ typedef struct view_camera {
 /// view_defaults.
 typedef struct view_options {
     view_scene scene;
-    /// method of the upper row, and of every ball in VIEW_SCENE_GRID; the lower row is always
-    /// single
+    /// compensation method of the upper row of balls, and of every ball in VIEW_SCENE_GRID; balls
+    /// of the lower row always have VIEW_METHOD_SINGLE
     view_method method;
     /// material of the balls; VIEW_SCENE_ASSIGNMENT and VIEW_SCENE_FURNACE have their own
     view_material material;
@@ -92,9 +95,10 @@ typedef struct view_options {
     double background;
     /// a pixel averages samples x samples rays on a regular grid before tone mapping; 1 to 8
     int samples;
-    /// VIEW_SCENE_ASSIGNMENT: repeats the handout's figure 6, which uses the albedo as E_avg
+    /// VIEW_SCENE_ASSIGNMENT: repeats the GAMES202 handout's figure 6, which uses the albedo as
+    /// E_avg
     bool as_printed;
-    bool one_row;   ///< leaves the upper row out, as in the handout's figure 5
+    bool one_row;   ///< leaves the upper row of balls out, as in the GAMES202 handout's figure 5
     bool occlusion; ///< balls block the environment's light from one another
     bool bent;      ///< looks a rough ball's reflection up nearer to its normal
     /// diffuse light comes from the irradiance cube instead of the spherical harmonics
@@ -167,7 +171,8 @@ const char *view_gl_name(const view_renderer *renderer);
 
 typedef enum view_slot {
     VIEW_SLOT_EXACT,
-    VIEW_SLOT_TEXTBOOK, ///< environment shown right of VIEW_SCENE_COMPARE's handle
+    /// importance-sampled environment, shown right of VIEW_SCENE_COMPARE's handle
+    VIEW_SLOT_TEXTBOOK,
     VIEW_SLOT_COUNT
 } view_slot;
 

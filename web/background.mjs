@@ -1,5 +1,6 @@
-// Work that takes long, run in a worker of its own while the page stays usable: the first steps give a
-// coarse result, later steps better ones, and work whose result is no longer wanted is stopped.
+// Work that takes long runs in a worker of its own while the page stays usable. The first steps
+// give a coarse result and later steps better results. Work whose result is no longer wanted is
+// stopped.
 import { Engine } from './engine.mjs';
 
 // Runs a series of steps, each of which gives a result to show. start() does nothing if the same

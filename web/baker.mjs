@@ -93,8 +93,8 @@ export class Baker {
         };
     }
 
-    // Integrates a view of the source to a relative noise. Returns RGB floats and the noise
-    // reached.
+    // Integrates a view until its pixels reach the relative standard error `noise`. Returns RGB
+    // floats and the noise reached.
     truth({ numbers, width, height, noise, alone }) {
         const { module, self } = this, at = module._malloc(8 * numbers.length);
         try {

@@ -226,7 +226,7 @@ function wantTruth() {
     }), 250);
 }
 
-// Keys of work that the user stopped: it starts again only after its key has changed.
+// Keys of the work that the user stopped. Work with such a key is not started again.
 const stopped = { textbook: '', truth: '' };
 get('stop').onclick = () => {
     if (textbook.busy)

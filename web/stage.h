@@ -20,7 +20,7 @@ STAGE const char *stage_message(const stage *s);
 STAGE const char *stage_gl_name(const stage *s);
 /// The array of view numbers (view_numbers.h) that stage_draw and the functions below read.
 STAGE double *stage_numbers(stage *s);
-/// Sets the numbers to the scene's defaults.
+/// Sets the array of view numbers to the scene's defaults.
 STAGE void stage_defaults(stage *s, int scene);
 /// Name of entry `index` of the scenes (kind 0), methods (1), materials (2) or debug views (3);
 /// NULL for an index beyond the last entry.
