@@ -193,7 +193,7 @@ int scene_read(const cli_arguments *a, bool may_change, scene_setup *s);
 bool scene_has_environment(const scene_setup *s);
 /// Loads the environment or computes a sky. Returns CLI_GO or CLI_FAILED.
 int scene_load(cli_work *work, const scene_setup *s, kiln_map *source);
-/// Samples a texel of the importance-sampled bake in VIEW_SLOT_TEXTBOOK.
+/// Number of samples for each texel of the importance-sampled bake in VIEW_SLOT_TEXTBOOK.
 enum { SCENE_TEXTBOOK_SAMPLES = 1024 };
 /// Bakes the environment and sets it in the renderer. scene_bake_slot sets one slot, exactly if
 /// `samples` is 0; scene_bake sets every slot that the scene needs. Both return CLI_GO or

@@ -43,7 +43,7 @@ typedef struct tables {
     char lookup_path[2][4096]; ///< paths of the C and GLSL files with the code that reads the table
 } tables;
 
-/// The words of --for; NULL behind the last.
+/// Word number `index` of --for, the name of an engine; NULL after the last word.
 const char *tables_engine_word(int index);
 /// Writes an exact table, with --lookup the code that reads the table, with --average the table of
 /// E_avg. Returns the exit code.

@@ -60,8 +60,8 @@ static int name_lookup(tables *t)
 
 // ----------------------------------------------------------------------------------------- engines
 
-// The tables that engines look up. Both engines read three numbers at n.v and roughness of the
-// texel centres.
+// The table that each engine of --for looks up. Each table holds three numbers at n.v and roughness
+// of the texel centres.
 static const struct {
     const char *name, *ending;
     int size;

@@ -2,7 +2,8 @@
 // edge voh (1 - voh)^6, which dips near 82 degrees. Their directional albedo is then F0 A + B -
 // edge C with
 //
-//     C(n.v) = int D G / (4 n.v n.l) voh (1 - voh)^6 (n.l) dl = int Dv(h) G / G1(v) voh (1 - voh)^6 dh
+//     C(n.v) = int D G / (4 n.v n.l) voh (1 - voh)^6 (n.l) dl
+//            = int Dv(h) G / G1(v) voh (1 - voh)^6 dh
 //
 // Dv is the density of the visible normals h. A uniform grid on the spherical cap of Dupuy and
 // Benyoub (2023) has that density.

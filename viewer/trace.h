@@ -48,7 +48,7 @@ typedef struct view_point {
     double n[3], t[3], b[3]; ///< unit normal and two unit tangents, in the world
     double v[3];             ///< unit vector towards the camera, in the frame (t, b, n)
     double specular[3]; ///< factor on the single-scattering lobe, besides Fresnel's reflectance
-    double lobe[3];     ///< Kulla and Conty's lobe is (1 - E(n.l)) / pi times this
+    double lobe[3];     ///< factor of Kulla and Conty's lobe, which is lobe (1 - E(n.l)) / pi
     double diffuse[3];  ///< albedo of the diffuse light
 } view_point;
 
