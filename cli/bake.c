@@ -177,14 +177,15 @@ static int run(const cli_call *call)
 }
 
 static const cli_example examples[] = {
-    {"kiln bake city.exr -o city.ktx2", "a cube of 256, nine levels of GGX, all in one file"},
+    {"kiln bake city.exr -o city.ktx2",
+     "one file with a cube of 256 and nine levels filtered by GGX"},
     {"kiln bake city.exr -o city.ktx2 --zstd --irradiance diffuse.ktx2 --sh sh.json",
-     "compressed, with an irradiance cube and spherical harmonics"},
+     "the cube compressed, an irradiance cube, and spherical harmonics"},
     {"kiln bake 'face_%s.png' -o out.dds --format b10g11r11 --roughness 0,0.25,0.5,1",
-     "six faces in, four levels of chosen roughness out"},
-    {"kiln bake city.exr --for three -o city.ktx2", "what three.js loads"},
+     "reads six faces, and writes four levels of the given roughnesses"},
+    {"kiln bake city.exr --for three -o city.ktx2", "the file that three.js loads"},
     {"kiln bake city.exr -o 'level_%d.hdr' --shape panorama --method textbook",
-     "what courses teach, on panoramas, to compare with"},
+     "panoramas by importance sampling as courses teach, for comparison"},
     {NULL, NULL}};
 
 const cli_command cli_bake = {
@@ -196,13 +197,11 @@ const cli_command cli_bake = {
         "or "
         "pattern of six faces, six files, or - for standard input. In a pattern, and in OUT, %s or "
         "{face} stands for px nx py ny pz nz; in OUT, %d or {level} stands for the level.",
-    .more =
-        "PNG is read as sRGB; KTX2 and DDS are those that kiln writes. Six files whose names end "
-        "in px "
-        "nx py ny pz nz, or in right left top bottom front back, may come in any order; others are "
-        "taken as +X, -X, +Y, -Y, +Z, -Z.\n\nWhile work lasts longer than half a second and "
-        "standard "
-        "error is a terminal, a line there shows how far it is.",
+    .more = "PNG files are read as sRGB. Of KTX2 and DDS files kiln reads those that kiln wrote. "
+            "Six files whose names end in px nx py ny pz nz, or in right left top bottom front "
+            "back, may come in any order; other six files are taken as +X, -X, +Y, -Y, +Z, "
+            "-Z.\n\nIf a bake takes longer than half a second and standard error is a terminal, a "
+            "line on standard error shows the progress.",
     .examples = examples,
     .options = bake_options,
     .run = run,

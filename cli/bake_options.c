@@ -62,21 +62,20 @@ static const char *engine_word(int index)
 
 const cli_option bake_options[OPTIONS + 1] = {
     [OUTPUT] = {"output", CLI_FILE, AT(output), .value = "OUT", .letter = 'o', .group = "Output",
-                .help =
-                    "what to write, by its ending: .ktx2 and .dds hold a cube with all its levels; "
-                    ".exr, .hdr and .png become one file a face and level; a folder, which ends in "
-                    "/, receives EXR files",
+                .help = "what to write, chosen by the ending: .ktx2 and .dds files hold a cube "
+                        "with all its levels; .exr, .hdr and .png files hold one face of one level "
+                        "each; a folder, whose name ends in /, receives EXR files",
                 .more = "Every file is written whole or not at all."},
     [ENGINE] = {"for", CLI_CHOICE, AT(engine_index), 0, 0, -1, "ENGINE", .word = engine_word,
-                .help = "write what an engine loads: its levels and their roughness, its axes, its "
-                        "encoding; kiln engines says more",
-                .more = "The size is then a power of two."},
+                .help = "write the files that an engine loads, with the engine's levels, "
+                        "roughnesses, axes and encoding; 'kiln engines' describes each engine",
+                .more = "With this option the size must be a power of two."},
     [TUNE] = {"tune", CLI_CHOICE, AT(tuning), 0, 0, -1, "WHICH", .words = bake_tunings,
-              .help =
-                  "with --for: choose the levels such that what the engine shows, two levels mixed "
-                  "and texels read bilinearly, errs least in this environment; sharp keeps level 0 "
-                  "a mirror, soft lets it soften, none writes exact levels",
-              .unset = "sharp where kiln engines says tuned, else none"},
+              .help = "with --for: choose the texels of the levels such that the engine's picture "
+                      "has the least error in this environment after the engine has mixed two "
+                      "levels and interpolated between texels; sharp leaves level 0 unfiltered, "
+                      "soft tunes level 0 too, none writes exactly filtered levels",
+              .unset = "sharp for engines that 'kiln engines' calls tuned, else none"},
     [FIT] = {"fit", CLI_RENAMED,
              .help = "this option is --tune sharp, --tune soft or "
                      "--tune none since version 0.2"},
@@ -85,69 +84,72 @@ const cli_option bake_options[OPTIONS + 1] = {
     [LEVELS] = {"levels", CLI_INTEGER, AT(level_count), 1, KILN_MAX_LEVELS, 0, "N",
                 .help = "mip levels to write", .unset = "all, down to 1 texel"},
     [SHAPE] = {"shape", CLI_CHOICE, AT(shape), 0, 0, KILN_SHAPE_CUBE - KILN_SHAPE_PANORAMA, "SHAPE",
-               .words = bake_shapes + KILN_SHAPE_PANORAMA,
-               .help = "how the sphere is laid on texels"},
+               .words = bake_shapes + KILN_SHAPE_PANORAMA, .help = "the kind of map to write"},
     [FORMAT] = {"format", CLI_CHOICE, AT(format), .value = "FORMAT", .word = format_word,
-                .help =
-                    "how texels are stored in KTX2 and DDS; the first two are half or float in EXR "
-                    "too; the last three are for PNG",
+                .help = "how texels are stored in KTX2 and DDS; rgba16f and rgba32f are half and "
+                        "float in EXR too; rgbm, rgbd and rgbp are for PNG",
                 .unset = "rgba16f",
                 .more =
-                    "bc6h takes a byte a texel, and keeps the order of a per cent. rgbm, rgbd and "
-                    "rgbp hold radiance up to 64, 255 and 64 in four bytes. With --for filament, "
-                    "b10g11r11 writes what cmgen does."},
+                    "bc6h takes one byte for each texel and has errors of about a per cent. rgbm, "
+                    "rgbd and rgbp hold radiance up to 64, 255 and 64 in four bytes. With --for "
+                    "filament, b10g11r11 writes the texel format that Filament's cmgen writes."},
     [ZSTD] = {"zstd", CLI_INTEGER, AT(zstd), 1, 22, 0, "LEVEL",
-              .help = "compress KTX2 by Zstandard", .alone = "3"},
+              .help = "compress KTX2 files by Zstandard", .alone = "3"},
     [LOBE] = {"lobe", CLI_CHOICE, AT(lobe), .value = "LOBE", .words = bake_lobes, .group = "Filter",
-              .help = "what each level is filtered by; alpha is the square of the roughness"},
+              .help = "the weight as a function of the angle by which each level is averaged; the "
+                      "width of a lobe is alpha, the square of the roughness"},
     [ROUGHNESS] = {"roughness", CLI_TEXT, AT(roughness_text), .value = "LIST",
-                   .help =
-                       "numbers from 0 to 1 with commas between them, one a level, or linear: from "
-                       "0 to 1 in equal steps",
+                   .help = "the roughness of each level, as numbers from 0 to 1 with commas "
+                           "between them, or the word linear for equal steps from 0 to 1",
                    .unset = "linear"},
     [METHOD] = {"method", CLI_CHOICE, AT(textbook), .value = "METHOD", .words = bake_methods,
-                .help = "how levels are computed; textbook is what courses teach: importance "
-                        "sampling on Hammersley points, or "
-                        "for --lobe lambert the uniform sum over two angles",
-                .more = "It is there to learn from and to compare with."},
+                .help = "how levels are computed: exact by spherical harmonics; textbook as "
+                        "courses teach, by importance sampling on Hammersley points, or for --lobe "
+                        "lambert by a uniform sum over two angles",
+                .more = "The textbook method is for learning and for comparison."},
     [SAMPLES] = {"samples", CLI_INTEGER, AT(samples), 1, 1 << 20, 1024, "N",
-                 .help = "points a texel of the textbook's prefilter"},
+                 .help = "with --method textbook: number of samples for each texel"},
     [PHI_STEPS] = {"phi-steps", CLI_INTEGER, AT(phi_steps), 1, 10000, 100, "N",
-                   .help = "steps around the normal of the textbook's irradiance"},
+                   .help =
+                       "with --method textbook --lobe lambert: number of steps around the normal"},
     [THETA_STEPS] = {"theta-steps", CLI_INTEGER, AT(theta_steps), 1, 10000, 100, "N",
-                     .help = "steps away from the normal of the textbook's irradiance"},
+                     .help = "with --method textbook --lobe lambert: number of steps from the "
+                             "normal to the horizon"},
     [IRRADIANCE] =
         {"irradiance", CLI_FILE, AT(irradiance_path), .value = "FILE", .group = "Diffuse light",
-         .help = "write a map of the diffuse irradiance, divided by pi so that white stays 1"},
-    [IRRADIANCE_SIZE] = {"irradiance-size", CLI_INTEGER, AT(irradiance_size), 1, KILN_MAX_SIZE, 64,
-                         "N", .help = "texels along the edge of a face of that map, or its rows"},
+         .help = "write a map of the irradiance divided by pi, in which a white environment is 1"},
+    [IRRADIANCE_SIZE] =
+        {"irradiance-size", CLI_INTEGER, AT(irradiance_size), 1, KILN_MAX_SIZE, 64, "N",
+         .help = "texels along the edge of a face of the irradiance map, or rows of a panorama"},
     [SH] = {"sh", CLI_FILE, AT(sh_path), .value = "FILE",
-            .help = "write spherical harmonics as .json, .txt or .h",
-            .more = "KTX2 files hold those of the radiance in their metadata in any case."},
+            .help = "write spherical harmonics to a .json, .txt or .h file",
+            .more = "The metadata of a KTX2 file hold the spherical harmonics of the radiance, "
+                    "with or without this option."},
     [SH_BANDS] = {"sh-bands", CLI_INTEGER, AT(sh_bands), 1, KILN_MAX_BANDS, 3, "N",
-                  .help = "bands of harmonics; n bands have n x n coefficients"},
+                  .help =
+                      "number of bands of spherical harmonics; N bands have N x N coefficients"},
     [SH_RADIANCE] = {"sh-radiance", CLI_FLAG, AT(sh_radiance),
-                     .help = "coefficients of the radiance, as without this option"},
+                     .help = "write the coefficients of the radiance, which is the default"},
     [SH_IRRADIANCE] = {"sh-irradiance", CLI_FLAG, AT(sh_irradiance),
-                       .help = "coefficients of the irradiance"},
+                       .help = "write the coefficients of the irradiance"},
     [SH_WINDOW] = {"sh-window", CLI_NUMBER, AT(sh_window), 1, 1000, 0, "W",
-                   .help = "multiply band l by (1 + cos(pi l / W)) / 2 against ringing",
+                   .help = "multiply band l by (1 + cos(pi l / W)) / 2, which reduces ringing",
                    .unset = "none"},
-    [LAYOUT] = {"layout", CLI_CHOICE, AT(layout), .value = "LAYOUT", .words = layouts,
-                .group = "Input",
-                .help = "how a flat picture lies on the sphere; auto tells by its proportions"},
+    [LAYOUT] =
+        {"layout", CLI_CHOICE, AT(layout), .value = "LAYOUT", .words = layouts, .group = "Input",
+         .help = "how a picture that is read lies on the sphere; auto decides by the proportions"},
     [ROTATE] = {"rotate", CLI_NUMBER, AT(rotation), -3600, 3600, 0, "DEGREES",
-                .help = "turn about the vertical axis, after mirroring; a panorama's content moves "
-                        "to the left"},
+                .help = "turn the environment about the vertical axis, after --mirror; the content "
+                        "of a panorama moves to the left"},
     [EXPOSURE] = {"exposure", CLI_NUMBER, AT(exposure), -64, 64, 0, "STOPS",
-                  .help = "multiply by 2^STOPS"},
-    [MIRROR] = {"mirror", CLI_FLAG, AT(mirror), .help = "swap left and right, before turning"},
+                  .help = "multiply the radiance by 2^STOPS"},
+    [MIRROR] = {"mirror", CLI_FLAG, AT(mirror), .help = "swap left and right, before --rotate"},
     [THREADS] = {"threads", CLI_INTEGER, AT(threads), 1, 256, 0, "N",
-                 .help = "threads to work on; their number never changes the result", .letter = 'j',
-                 .unset = "one a core", .group = "Work and report"},
+                 .help = "number of threads; the result is the same for every number",
+                 .letter = 'j', .unset = "one a core", .group = "Work and report"},
     [JSON] = {"json", CLI_FLAG, AT(json),
-              .help = "report as JSON on standard output: what was read and written, the levels, "
-                      "seconds by stage and the most memory held"},
+              .help = "report as JSON on standard output: files read and written, levels, seconds "
+                      "for each stage, and the most memory held"},
     [QUIET] = CLI_QUIET_ROW(bake),
     [VERBOSE] = {"verbose", CLI_FLAG, AT(verbose), .letter = 'v',
                  .help = "print levels, times and memory"},

@@ -139,20 +139,21 @@ int cli_check_source_name(const cli_arguments *arguments, int option);
 #define CLI_THREADS_ROW(type)                                                                      \
     {                                                                                              \
         "threads", CLI_INTEGER, offsetof(type, threads), 1, 256, 0, "N",                           \
-            "threads to work on; their number never changes the result", .letter = 'j',            \
-                                                                         .unset = "one a core"     \
+            "number of threads; the result is the same for every number", .letter = 'j',           \
+                                                                          .unset = "one a core"    \
     }
 #define CLI_D_ROW(type, field)                                                                     \
     {                                                                                              \
         "d", CLI_CHOICE, offsetof(type, field), .value = "D", .word = cli_d_word,                  \
-                                                .help = "distribution of the normals"              \
+                                                .help = "distribution of microfacet normals"       \
     }
 #define CLI_G_ROW(type, field)                                                                     \
     {                                                                                              \
         "g", CLI_CHOICE, offsetof(type, field),                                                    \
-            .value = "G", .word = cli_g_word, .help = "masking and shadowing",                     \
-            .more = "smith is height-correlated; k of Schlick's is roughness^2 / 2 or (roughness " \
-                    "+ 1)^2 / 8."                                                                  \
+            .value = "G", .word = cli_g_word, .help = "masking and shadowing function",            \
+            .more =                                                                                \
+                "smith is height-correlated Smith masking. The k of Schlick's approximation is "   \
+                "roughness^2 / 2 for schlick-k2 and (roughness + 1)^2 / 8 for schlick-text."       \
     }
 
 #endif

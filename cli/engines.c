@@ -125,8 +125,9 @@ static int run(const cli_call *call)
 }
 
 static const cli_example examples[] = {
-    {"kiln engines", "all, in short"},
-    {"kiln engines three", "one in full, with its levels and the page that shows how to load them"},
+    {"kiln engines", "every engine in a few lines"},
+    {"kiln engines three",
+     "one engine with all levels, and the page that shows how to load the file"},
     {"kiln bake city.exr --for three -o city.ktx2", NULL},
     {NULL, NULL}};
 
@@ -134,11 +135,11 @@ const cli_command cli_engines = {
     .name = "engines",
     .arguments = "[ENGINE] [OPTION...]",
     .summary = "Lists the engines that 'kiln bake --for' knows.",
-    .about = "Level k of n, of a size of w texels, is filtered for roughness r; tuned levels "
-             "differ from "
-             "that where the engine then shows less error (kiln bake --tune). The proof of a file "
-             "is what "
-             "the engine's own pixels show in kiln's tests, or else what was read of it.",
+    .about = "The line 'roughness' relates level k of n, or the width w of level 0, to the "
+             "roughness r for which the level is filtered. Tuned levels differ from exactly "
+             "filtered levels where this reduces the error of the engine's picture (kiln bake "
+             "--tune). The line 'proof' says whether kiln's tests check pixels drawn by the "
+             "engine, or against which source the file was checked.",
     .word = engine_word,
     .examples = examples,
     .options = options,

@@ -21,22 +21,23 @@ static const char *const forms[] = {"auto", "polynomial", "rational", NULL};
 
 static const cli_option options[OPTIONS + 1] = {
     [OUTPUT] = {"output", CLI_FILE, AT(output), .value = "FILE", .letter = 'o',
-                .help = "C (.h) or GLSL ES 3.00 (.glsl)",
-                .more = "The measured error stands in the comment."},
+                .help = "the file of source code, as C (.h) or GLSL ES 3.00 (.glsl)",
+                .more = "A comment in the file states the measured error."},
     [ERROR] = {"error", CLI_NUMBER, AT(def.error), 1e-6, 0.5, 1e-3, "E",
-               .help = "largest error wanted"},
+               .help = "largest error that the function may have"},
     [D] = CLI_D_ROW(fit, def.model.d),
     [G] = CLI_G_ROW(fit, def.model.g),
     [FORM] = {"form", CLI_CHOICE, AT(def.form), .value = "FORM", .words = forms,
-              .help = "of the function; auto takes whichever has fewer coefficients"},
+              .help = "kind of function; auto takes the kind that needs fewer coefficients"},
     [ROUGHNESS_MIN] = {"roughness-min", CLI_NUMBER, AT(def.roughness_min), 0, 0.9, 0, "R",
-                       .help = "smallest roughness asked for; smaller ones are taken as R",
-                       .unset = "0, and 0.1 for sheen, which rises steeply below"},
-    [MAX_COEFFICIENTS] = {"max-coefficients", CLI_INTEGER, AT(def.max_coefficients), 1,
-                          KILN_MAX_FIT, KILN_MAX_FIT, "N",
-                          .help = "coefficients of each part; dfg has two parts",
-                          .more = "When these do not suffice, the exit status is 1."},
-    [NAME] = {"name", CLI_TEXT, AT(name), .value = "NAME", .help = "of the function",
+                       .help = "smallest roughness for which the error holds; the function takes "
+                               "smaller roughnesses as R",
+                       .unset = "0, and 0.1 for sheen, whose albedo rises steeply below 0.1"},
+    [MAX_COEFFICIENTS] =
+        {"max-coefficients", CLI_INTEGER, AT(def.max_coefficients), 1, KILN_MAX_FIT, KILN_MAX_FIT,
+         "N", .help = "largest number of coefficients of each part; dfg has two parts",
+         .more = "If no function with so few coefficients is good enough, the exit code is 1."},
+    [NAME] = {"name", CLI_TEXT, AT(name), .value = "NAME", .help = "name of the function",
               .unset = "kiln_e, kiln_e_average, kiln_dfg or kiln_sheen"},
     [JSON] = {"json", CLI_FLAG, AT(json), .help = "report as JSON on standard output"},
     [QUIET] = CLI_QUIET_ROW(fit),
@@ -151,14 +152,13 @@ static const cli_example examples[] = {
 const cli_command cli_fit = {
     .name = "fit",
     .arguments = "QUANTITY -o FILE [OPTION...]",
-    .summary = "Finds closed forms of the integrals, as C or GLSL.",
-    .about = "The form with the fewest coefficients that errs by --error at most, for every mu and "
-             "roughness, is written as a function; its measured error stands in the comment.",
-    .more = "Polynomials and rational functions are tried, those with few coefficients first, "
-            "until a form "
-            "errs by the wanted error at most, in 32-bit floats, at some 40000 places. "
-            "Denominators are "
-            "proven to have no zero.",
+    .summary = "Fits polynomials or rational functions to albedo tables, as C or GLSL.",
+    .about = "kiln searches for the function with the fewest coefficients whose error is at most "
+             "--error for every cosine n.v (mu) and every roughness. A comment in the written code "
+             "states the measured error.",
+    .more = "kiln tries polynomials and rational functions, those with few coefficients first, "
+            "until the error in 32-bit floats at some 40000 points is at most --error. "
+            "Denominators are proven to have no zero.",
     .word = kind_word,
     .list_title = "Quantities",
     .list = list,

@@ -9,7 +9,8 @@ typedef struct info_values {
 } info_values;
 
 static const cli_option options[] = {
-    {"json", CLI_FLAG, offsetof(info_values, json), .help = "an array of objects, one a file"},
+    {"json", CLI_FLAG, offsetof(info_values, json),
+     .help = "print an array with one JSON object for each file"},
     {.name = NULL},
 };
 

@@ -35,30 +35,30 @@ typedef struct render {
 static const cli_option options[OPTIONS + 1] = {
     SCENE_ROWS,
     [OUTPUT] = {"output", CLI_FILE, AT(output), .value = "FILE", .letter = 'o', .group = "Output",
-                .help = "the picture: .png as a screen shows it; .exr or .hdr, linear light"},
-    [REFERENCE] =
-        {"reference", CLI_FLAG, AT(reference),
-         .help = "integrate the light on the CPU, without prefiltered levels or split sums, from "
-                 "the environment's own texels, with the light that balls throw on one another"},
-    [ERRORS] =
-        {"error", CLI_FLAG, AT(errors),
-         .help =
-             "show the real-time picture's error against the reference, relative to the mean of "
-             "the balls: red too bright, blue too dark, full at 25 %; signed numbers in .exr"},
-    [WALK] =
-        {"walk", CLI_FLAG, AT(walk),
-         .help =
-             "the reference's bounces from the second one on come from a random walk between the "
-             "microfacets (Heitz et al. 2016), not from --method",
-         .more = "With --error one sees what the method gets wrong too."},
+                .help = "the picture: a .png file with tone mapping as for a screen, or an .exr or "
+                        ".hdr file with linear light"},
+    [REFERENCE] = {"reference", CLI_FLAG, AT(reference),
+                   .help = "compute the reflected light by Monte Carlo integration on the CPU, "
+                           "from the texels of the environment, with the light that balls reflect "
+                           "on one another, and without prefiltered levels or the split sum"},
+    [ERRORS] = {"error", CLI_FLAG, AT(errors),
+                .help = "draw the error of the real-time picture against the reference, relative "
+                        "to the mean brightness of the balls: red is too bright, blue is too dark, "
+                        "and full colour is 25 %; an .exr file holds numbers with sign"},
+    [WALK] = {"walk", CLI_FLAG, AT(walk),
+              .help = "compute the reference's reflections between microfacets, from the second "
+                      "on, by random walks (Heitz et al. 2016) instead of by --method",
+              .more = "With --error the picture then shows the error of the method too."},
     [ALONE] = {"alone", CLI_FLAG, AT(alone),
-               .help = "the reference's balls do not see one another, as in the real-time picture",
-               .more = "With --occlusion they are black to one another."},
-    [BOUNCES] = {"bounces", CLI_INTEGER, AT(bounces), 1, 1000, 0, "N",
-                 .help = "the reference loses light that would meet more balls than N",
-                 .unset = "no limit"},
+               .help = "leave out of the reference the light that balls reflect on one another, as "
+                       "the real-time picture does",
+               .more = "With --occlusion a ball then sees the other balls as black."},
+    [BOUNCES] =
+        {"bounces", CLI_INTEGER, AT(bounces), 1, 1000, 0, "N",
+         .help = "drop from the reference the light that would be reflected by more than N balls",
+         .unset = "no limit"},
     [NOISE] = {"noise", CLI_NUMBER, AT(noise), 1e-4, 1, 0.01, "E",
-               .help = "relative standard error of a pixel at which the reference stops"},
+               .help = "stop the reference when the relative standard error of a pixel is E"},
     [THREADS] = CLI_THREADS_ROW(render),
     [QUIET] = CLI_QUIET_ROW(render),
 };
@@ -222,24 +222,24 @@ static int run(const cli_call *call)
 }
 
 static const cli_example examples[] = {
-    {"kiln render -o balls.png", "the assignment's two rows: Kulla-Conty above, one bounce below"},
-    {"kiln render city.exr -o gold.png --material gold --exposure -1", "gold in a city"},
+    {"kiln render -o balls.png", "two rows of copper balls: with Kulla and Conty's lobe above, "
+                                 "with light reflected once below"},
+    {"kiln render city.exr -o gold.png --material gold --exposure -1", "gold balls in a city"},
     {"kiln render city.exr -o compare.png --scene compare",
-     "the exact bake left, the textbook's right"},
+     "the exact bake at the left, the textbook's bake at the right"},
     {"kiln render city.exr -o error.png --error --size 640x360",
-     "what prefiltered levels and tables get wrong, and where"},
-    {"kiln render -o furnace.exr --scene furnace", "where nothing may be seen, in linear light"},
+     "the error of prefiltered levels and tables at each pixel"},
+    {"kiln render -o furnace.exr --scene furnace",
+     "white balls in white light, which a correct method makes invisible"},
     {NULL, NULL}};
 
 const cli_command cli_render = {
     .name = "render",
     .arguments = "[ENV] -o FILE [OPTION...]",
-    .summary = "Renders rows of balls, lit by the assignment's light or an environment.",
-    .about =
-        "ENV is a panorama or anything else that kiln bake reads; a baked .ktx2 is used as it is. "
-        "Without one, scenes that need an environment stand under a sky. Pictures are drawn by "
-        "OpenGL "
-        "ES 3.0, without a screen.",
+    .summary = "Renders balls in an environment into a file.",
+    .about = "ENV is a panorama or any other file that kiln bake reads; a baked .ktx2 file is used "
+             "without another bake. Without ENV, a sky by 'kiln sky' lights scenes that need an "
+             "environment. Pictures are drawn by OpenGL ES 3.0; no screen is needed.",
     .examples = examples,
     .options = options,
     .run = run,

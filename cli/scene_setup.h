@@ -58,10 +58,11 @@ typedef struct scene_setup {
          "SCENE",                                                                                  \
          .word = view_scene_name,                                                                  \
          .help =                                                                                   \
-             "assignment is two rows of five copper balls under one directional light, "           \
-             "compensated by Kulla and Conty above and with one bounce below; ibl the same rows "  \
-             "in the environment; furnace in uniform white; grid roughness to the right by "       \
-             "metallic upwards; compare the exact bake left of a line and the textbook's right",   \
+             "assignment: two rows of five copper balls under one directional light, the upper "   \
+             "row with Kulla and Conty's lobe, the lower row with light reflected once; ibl: the " \
+             "same rows in the environment; furnace: the same rows in uniform white light; grid: " \
+             "balls with roughness growing to the right and metallic upwards; compare: left of a " \
+             "line the exact bake, right of the line the textbook's bake",                         \
          .unset = "ibl with an ENV, else assignment",                                              \
          .group = "Picture"},                                                                      \
     [SCENE_METHOD] = {"method",                                                                    \
@@ -70,9 +71,11 @@ typedef struct scene_setup {
                       .value = "METHOD",                                                           \
                       .word = view_method_name,                                                    \
                       .keep = true,                                                                \
-                      .help = "how the upper row makes up for what a single bounce loses; "        \
-                              "handout is Kulla and Conty's with the assignment's factor",         \
-                      .unset = "kulla-conty, of the scene assignment handout"},                    \
+                      .help =                                                                      \
+                          "how the upper row returns the light that a single reflection between "  \
+                          "microfacets loses; single returns nothing; handout is Kulla and "       \
+                          "Conty's method with the factor of the GAMES202 assignment",             \
+                      .unset = "kulla-conty, and handout for the scene assignment"},               \
     [SCENE_MATERIAL] = {"material",                                                                \
                         CLI_CHOICE,                                                                \
                         offsetof(scene_setup, options.material),                                   \
@@ -85,7 +88,7 @@ typedef struct scene_setup {
                     CLI_TEXT,                                                                      \
                     offsetof(scene_setup, size),                                                   \
                     .value = "WxH",                                                                \
-                    .help = "pixels, each side 1 to 16384",                                        \
+                    .help = "width and height of the picture in pixels, each 1 to 16384",          \
                     .unset = "1280x720"},                                                          \
     [SCENE_SAMPLES] =                                                                              \
         {"samples",                                                                                \
@@ -95,11 +98,18 @@ typedef struct scene_setup {
          8,                                                                                        \
          4,                                                                                        \
          "N",                                                                                      \
-         .help = "N x N rays a pixel on a regular grid, whose mean is taken before tone mapping"}, \
-    [SCENE_EXPOSURE] = {"exposure", CLI_NUMBER, offsetof(scene_setup, options.exposure), -64, 64,  \
-                        0,          "STOPS",    .help = "brighter by this many stops"},            \
-    [SCENE_ROTATE] = {"rotate", CLI_NUMBER, offsetof(scene_setup, options.rotation), -3600, 3600,  \
-                      0,        "DEGREES",  .help = "turn the environment about +Y"},              \
+         .help = "cast N x N rays for each pixel, and average them before tone mapping"},          \
+    [SCENE_EXPOSURE] =                                                                             \
+        {"exposure", CLI_NUMBER, offsetof(scene_setup, options.exposure),     -64, 64,             \
+         0,          "STOPS",    .help = "multiply the brightness by 2^STOPS"},                    \
+    [SCENE_ROTATE] = {"rotate",                                                                    \
+                      CLI_NUMBER,                                                                  \
+                      offsetof(scene_setup, options.rotation),                                     \
+                      -3600,                                                                       \
+                      3600,                                                                        \
+                      0,                                                                           \
+                      "DEGREES",                                                                   \
+                      .help = "turn the environment about the vertical axis"},                     \
     [SCENE_BACKGROUND] = {"background",                                                            \
                           CLI_NUMBER,                                                              \
                           offsetof(scene_setup, options.background),                               \
@@ -107,7 +117,8 @@ typedef struct scene_setup {
                           1,                                                                       \
                           0,                                                                       \
                           "ROUGHNESS",                                                             \
-                          .help = "how blurred the environment is behind the balls",               \
+                          .help =                                                                  \
+                              "roughness by which the environment behind the balls is blurred",    \
                           .keep = true,                                                            \
                           .unset = "0"},                                                           \
     [SCENE_AZIMUTH] = {"azimuth",                                                                  \
@@ -117,7 +128,7 @@ typedef struct scene_setup {
                        360,                                                                        \
                        0,                                                                          \
                        "DEGREES",                                                                  \
-                       .help = "of the camera around the balls",                                   \
+                       .help = "angle of the camera around the balls",                             \
                        .keep = true,                                                               \
                        .unset = "that of the scene",                                               \
                        .group = "Camera"},                                                         \
@@ -128,7 +139,7 @@ typedef struct scene_setup {
                          89,                                                                       \
                          0,                                                                        \
                          "DEGREES",                                                                \
-                         .help = "of the camera above the balls",                                  \
+                         .help = "angle of the camera above the balls",                            \
                          .keep = true,                                                             \
                          .unset = "that of the scene"},                                            \
     [SCENE_DISTANCE] = {"distance",                                                                \
@@ -138,7 +149,7 @@ typedef struct scene_setup {
                         10000,                                                                     \
                         0,                                                                         \
                         "D",                                                                       \
-                        .help = "of the camera from the balls; a ball is 72 wide",                 \
+                        .help = "distance of the camera from the balls, each of which is 72 wide", \
                         .keep = true,                                                              \
                         .unset = "that of the scene"},                                             \
     [SCENE_FOV] = {"fov",                                                                          \
@@ -156,32 +167,46 @@ typedef struct scene_setup {
                      offsetof(scene_setup, options.debug),                                         \
                      .value = "VIEW",                                                              \
                      .word = view_debug_name,                                                      \
-                     .help = "show a level of the environment, a table, or E or Fresnel's "        \
-                             "reflectance on the balls",                                           \
+                     .help = "show instead of the picture: a level of the environment, a table, "  \
+                             "or on the balls the albedo E or Fresnel's reflectance F",            \
                      .group = "What is shown"},                                                    \
     [SCENE_LEVEL] = {"level", CLI_INTEGER, offsetof(scene_setup, options.debug_level),  0, 15,     \
                      0,       "K",         .help = "the level that --debug level shows"},          \
-    [SCENE_SPLIT] = {"split", CLI_NUMBER, offsetof(scene_setup, options.split),      0, 1,         \
-                     0.5,     "X",        .help = "where the scene compare is split"},             \
+    [SCENE_SPLIT] = {"split",                                                                      \
+                     CLI_NUMBER,                                                                   \
+                     offsetof(scene_setup, options.split),                                         \
+                     0,                                                                            \
+                     1,                                                                            \
+                     0.5,                                                                          \
+                     "X",                                                                          \
+                     .help = "position of the dividing line in the scene compare, from the left "  \
+                             "edge 0 to the right edge 1"},                                        \
     [SCENE_AS_PRINTED] = {"as-printed", CLI_FLAG, offsetof(scene_setup, options.as_printed),       \
-                          .help = "assignment: with the mistake of the handout's figure 6, whose " \
-                                  "sampler of the average albedo reads the colour of the balls"},  \
+                          .help = "draw the scene assignment with the mistake of figure 6 of the " \
+                                  "GAMES202 handout, in which the shader reads the balls' colour " \
+                                  "instead of the table of the average albedo"},                   \
     [SCENE_OCCLUSION] = {"occlusion", CLI_FLAG, offsetof(scene_setup, options.occlusion),          \
-                         .help = "balls shade one another's environment"},                         \
-    [SCENE_STRAIGHT] = {"straight", CLI_FLAG, offsetof(scene_setup, straight),                     \
-                        .help = "rough balls look the environment up in the mirror direction, "    \
-                                "and not nearer to their normal (Lagarde and de Rousiers 2014)"},  \
-    [SCENE_DIFFUSE] =                                                                              \
-        {"diffuse",                                                                                \
-         CLI_CHOICE,                                                                               \
-         offsetof(scene_setup, cube_diffuse),                                                      \
-         .value = "SOURCE",                                                                        \
-         .word = scene_diffuse_word,                                                               \
+                         .help = "let balls shade one another from the light of the environment"}, \
+    [SCENE_STRAIGHT] =                                                                             \
+        {"straight", CLI_FLAG, offsetof(scene_setup, straight),                                    \
          .help =                                                                                   \
-             "light of diffuse surfaces, from harmonics of three bands or a cube of irradiance"},  \
-    [SCENE_BAKE_SIZE] = {                                                                          \
-        "bake-size", CLI_INTEGER, offsetof(scene_setup, bake_size),       16, 2048,                \
-        256,         "N",         .help = "edge of the baked environment"}
+             "look the environment up in the mirror direction for rough balls too; without this "  \
+             "option the direction is bent towards the normal (Lagarde and de Rousiers 2014)"},    \
+    [SCENE_DIFFUSE] = {"diffuse",                                                                  \
+                       CLI_CHOICE,                                                                 \
+                       offsetof(scene_setup, cube_diffuse),                                        \
+                       .value = "SOURCE",                                                          \
+                       .word = scene_diffuse_word,                                                 \
+                       .help = "source of the light of diffuse surfaces: spherical harmonics of "  \
+                               "three bands (sh), or an irradiance cube (cube)"},                  \
+    [SCENE_BAKE_SIZE] = {"bake-size",                                                              \
+                         CLI_INTEGER,                                                              \
+                         offsetof(scene_setup, bake_size),                                         \
+                         16,                                                                       \
+                         2048,                                                                     \
+                         256,                                                                      \
+                         "N",                                                                      \
+                         .help = "texels along the edge of a face of the baked environment"}
 /// Words of the choices in the shared rows.
 const char *scene_diffuse_word(int index);
 

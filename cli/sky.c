@@ -15,17 +15,17 @@ typedef struct sky {
 
 static const cli_option options[OPTIONS + 1] = {
     [OUTPUT] = {"output", CLI_FILE, AT(output), .value = "FILE", .letter = 'o',
-                .help = "the panorama, .exr (32-bit floats) or .hdr"},
+                .help = "the panorama, as .exr (32-bit floats) or .hdr"},
     [ELEVATION] = {"elevation", CLI_NUMBER, AT(def.elevation), -5, 90, 30, "DEGREES",
-                   .help = "of the sun above the horizon"},
+                   .help = "angle of the sun above the horizon"},
     [AZIMUTH] = {"azimuth", CLI_NUMBER, AT(def.azimuth), -360, 360, 0, "DEGREES",
-                 .help = "of the sun, from the picture's centre to the right"},
+                 .help = "angle of the sun to the right of the centre of the panorama"},
     [TURBIDITY] = {"turbidity", CLI_NUMBER, AT(def.turbidity), 1.7, 10, 3, "T",
-                   .help = "haze of the air: 1.7 is clear"},
+                   .help = "haziness of the air; 1.7 is clear air"},
     [ALBEDO] = {"albedo", CLI_NUMBER, AT(def.albedo), 0, 1, 0.2, "A",
-                .help = "of the ground below"},
+                .help = "share of the light that the ground reflects"},
     [SIZE] = {"size", CLI_INTEGER, AT(def.size), 16, 8192, 512, "N",
-              .help = "rows; twice as many columns"},
+              .help = "rows of the panorama, which has twice as many columns"},
     [QUIET] = CLI_QUIET_ROW(sky),
 };
 
@@ -79,16 +79,17 @@ static int run(const cli_call *call)
 }
 
 static const cli_example examples[] = {
-    {"kiln sky -o sky.exr", "a clear sky, the sun 30 degrees high, 1024 x 512"},
+    {"kiln sky -o sky.exr",
+     "a clear sky with the sun 30 degrees high, as a panorama of 1024 x 512"},
     {"kiln sky -o evening.hdr --elevation 4 --azimuth 60 --turbidity 6",
-     "a low sun to the right, in haze"},
+     "a low sun in haze, to the right of the centre"},
     {NULL, NULL}};
 
 const cli_command cli_sky = {
     .name = "sky",
     .arguments = "-o FILE [OPTION...]",
     .summary = "Makes a daylight panorama with a sun.",
-    .about = "Radiance is in kcd/m2.",
+    .about = "Radiance is written in kcd/m2: a white texel of 1 has the luminance 1 kcd/m2.",
     .examples = examples,
     .options = options,
     .run = run,

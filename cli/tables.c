@@ -25,70 +25,80 @@ static const char *axis_word(int index)
 static const cli_option options[TABLES_OPTIONS + 1] = {
     [TABLES_OUTPUT] =
         {"output", CLI_FILE, AT(output), .value = "FILE", .letter = 'o',
-         .help = "the table: .ktx2, .exr, .hdr, .png, .raw (numbers alone), or source code, "
-                 ".h, .inc (halves) or .glsl; with --assignment a folder, made where missing"},
+         .help =
+             "the table as .ktx2, .exr, .hdr, .png or .raw (numbers only), or as source code in "
+             ".h, .inc (halves) or .glsl; with --assignment a folder, which is created if missing"},
     [TABLES_FOR] = {"for", CLI_CHOICE, AT(engine), 0, 0, -1, "ENGINE", .word = tables_engine_word,
-                    .help =
-                        "what an engine looks up in place of its own table: a .png for Babylon.js' "
-                        "PBRMaterial.environmentBRDFTexture, the dfg.inc that Filament's build "
-                        "compiles in"},
+                    .help = "write the table that an engine can use instead of its own: a .png for "
+                            "PBRMaterial.environmentBRDFTexture of Babylon.js, or the dfg.inc from "
+                            "which Filament is built"},
     [TABLES_TABLE] =
         {"table", CLI_CHOICE, AT(def.kind), .value = "KIND", .word = kind_word,
-         .help = "what the table holds",
-         .more = "e is the albedo of one bounce with F = 1; eavg its average over the cosine; "
-                 "dfg A and B of the split sum; dfg-multiscatter Filament's: B, A + B and the "
-                 "cloth's albedo; sheen the albedo of Charlie; e-dielectric e with exact "
-                 "Fresnel, over the index of refraction from 1 to 3; glass what is reflected "
-                 "and transmitted from outside and from inside, over the same. e-walk is what "
-                 "the bounces after the first add to the albedo F0 A + B, by random walk, over "
-                 "F0: the lobe times 1 + it / (F0 A + B) has the albedo of all bounces within "
-                 "2e-3, if A and B are exact or from a table with --axis grazing --corners, "
-                 "which e-walk always has."},
+         .help = "kind of table; docs/tables.md describes each kind",
+         .more = "e is the albedo of a specular lobe with F = 1, and eavg the cosine-weighted "
+                 "average of e. dfg holds A and B of the split sum. dfg-multiscatter holds B, A + "
+                 "B and the albedo of cloth in the order of Filament. sheen is the albedo of "
+                 "Charlie sheen. e-dielectric is e with the exact Fresnel term, for indices of "
+                 "refraction from 1 to 3. glass is the share of light that is reflected and "
+                 "transmitted, from outside and from inside, for the same indices. e-walk is the "
+                 "albedo that bounces after the first add to F0 A + B, computed by random walks "
+                 "for each F0. A lobe multiplied by 1 + e-walk / (F0 A + B) has the albedo of all "
+                 "bounces within 2e-3, if A and B are exact or from a table with --axis grazing "
+                 "--corners. Tables of e-walk always have that axis and corners."},
     [TABLES_G] = CLI_G_ROW(tables, def.model.g),
     [TABLES_D] = CLI_D_ROW(tables, def.model.d),
     [TABLES_SHEEN] = {"sheen", CLI_CHOICE, AT(def.sheen), .value = "MASKING",
-                      .word = cli_sheen_word, .help = "masking of --table sheen"},
+                      .word = cli_sheen_word, .help = "with --table sheen: the masking function"},
     [TABLES_SIZE] =
         {"size", CLI_TEXT, AT(size), .value = "SIZE",
-         .help = "texels as N, WxH or WxHxD, 1 to 4096 each; with --method textbook N is 2 to "
-                 "4096, with --assignment 2 to 1024",
-         .unset = "128, with a third axis 32, of e-walk 40x32x20; 512 and 128 with those two"},
+         .help = "number of texels as N, WxH or WxHxD, each 1 to 4096; with --method textbook N is "
+                 "2 to 4096, with --assignment 2 to 1024",
+         .unset =
+             "128, with 32 along a third axis; 40x32x20 for e-walk; 512 with --method textbook"},
     [TABLES_AXIS] = {"axis", CLI_CHOICE, AT(def.axis), .value = "AXIS", .word = axis_word,
-                     .help = "what u is of n.v; grazing errs least for e",
-                     .more =
-                         "grazing is sqrt(n.v (1 + alpha) / (n.v + alpha)); e-walk has no other."},
-    [TABLES_CORNERS] = {"corners", CLI_FLAG, AT(def.corners),
-                        .help = "the outermost texels stand on the edges, not half a texel inside"},
+                     .help = "the function of n.v that is the horizontal coordinate u; for the "
+                             "kind e, interpolation has the least error with grazing",
+                     .more = "grazing is sqrt(n.v (1 + alpha) / (n.v + alpha)). Tables of e-walk "
+                             "have no other axis."},
+    [TABLES_CORNERS] =
+        {"corners", CLI_FLAG, AT(def.corners),
+         .help =
+             "place the outermost texels on the edges of the table instead of half a texel inside"},
     [TABLES_COMPLEMENT] = {"complement", CLI_FLAG, AT(def.complement),
-                           .help = "1 - value, of kinds with one number"},
-    [TABLES_FLIP] = {"flip", CLI_FLAG, AT(def.flip), .help = "the first row is roughness 1"},
+                           .help = "store 1 - value, for kinds with one channel"},
+    [TABLES_FLIP] = {"flip", CLI_FLAG, AT(def.flip),
+                     .help = "begin with the row of roughness 1 instead of 0"},
     [TABLES_FORMAT] = {"format", CLI_CHOICE, AT(save.format), .value = "FORMAT", .words = formats,
-                       .help = "how numbers are stored; rgbd is for three of them in a PNG"},
+                       .help = "how numbers are stored; rgbd is for three channels in a PNG"},
     [TABLES_ZSTD] = {"zstd", CLI_INTEGER, AT(save.zstd), 1, 22, 0, "LEVEL",
-                     .help = "compress KTX2 by Zstandard", .alone = "3"},
+                     .help = "compress a KTX2 file by Zstandard", .alone = "3"},
     [TABLES_AVERAGE] =
         {"average", CLI_FILE, AT(average), .value = "FILE",
-         .help = "with --table e: E_avg of what looking the table up shows, into a file of "
-                 "its own; with that the white furnace errs by no more than the lookup"},
-    [TABLES_LOOKUP] = {"lookup", CLI_FLAG, AT(lookup),
-                       .help = "write the code that reads the table too: NAME_lookup.h and "
-                               "NAME_lookup.glsl"},
+         .help =
+             "with --table e: also write the cosine-weighted average of the interpolated table; "
+             "with this average a white furnace has only the error of the interpolation"},
+    [TABLES_LOOKUP] =
+        {"lookup", CLI_FLAG, AT(lookup),
+         .help = "also write code that reads the table, to NAME_lookup.h and NAME_lookup.glsl"},
     [TABLES_NAME] = {"name", CLI_TEXT, AT(save.name), .value = "NAME",
-                     .help = "what names in source code begin with", .unset = "the file's own"},
+                     .help = "beginning of the names in source code",
+                     .unset = "the name of the output file"},
     [TABLES_PATHS] = {"paths", CLI_INTEGER, AT(def.path_count), 16, 1 << 24, 0, "N",
-                      .help = "random walks a texel of e-walk", .unset = "8192"},
-    [TABLES_ASSIGNMENT] =
-        {"assignment", CLI_FLAG, AT(assignment),
-         .help = "all of GAMES202's assignment 4, part 1, into the folder -o DIR, with "
-                 "errors",
-         .more = "--size, --samples, --json and --quiet go with this, and --g schlick-k2, "
-                 "the default there, or schlick-text: k is roughness^2 / 2 as in the "
-                 "assignment's figures, or (roughness + 1)^2 / 8 as in its text."},
+                      .help = "number of random walks for each texel of e-walk", .unset = "8192"},
+    [TABLES_ASSIGNMENT] = {"assignment", CLI_FLAG, AT(assignment),
+                           .help = "write all tables of part 1 of assignment 4 of GAMES202 into "
+                                   "the folder -o DIR, with their errors",
+                           .more =
+                               "--size, --samples, --json and --quiet may be given too, and --g "
+                               "schlick-k2 or --g schlick-text. With schlick-k2, the default, k is "
+                               "roughness^2 / 2 as in the assignment's figures; with schlick-text "
+                               "k is (roughness + 1)^2 / 8 as in the assignment's text."},
     [TABLES_METHOD] = {"method", CLI_CHOICE, AT(method), 0, 0, -1, "METHOD", .words = methods,
-                       .help = "A and B of the split sum by sampling, as courses do"},
-    [TABLES_SAMPLES] = {"samples", CLI_INTEGER, AT(samples), 1, 1 << 20, 1024, "N",
-                        .help = "samples a texel, of --assignment and --method textbook",
-                        .more = "Monte Carlo takes the largest square up to that."},
+                       .help = "compute A and B of the split sum by sampling, as courses teach"},
+    [TABLES_SAMPLES] =
+        {"samples", CLI_INTEGER, AT(samples), 1, 1 << 20, 1024, "N",
+         .help = "with --assignment or --method textbook: number of samples for each texel",
+         .more = "Monte Carlo integration takes the largest square number that is not larger."},
     [TABLES_THREADS] = CLI_THREADS_ROW(tables),
     [TABLES_JSON] = {"json", CLI_FLAG, AT(json), .help = "report as JSON on standard output"},
     [TABLES_QUIET] = CLI_QUIET_ROW(tables),
@@ -215,43 +225,41 @@ static int run(const cli_call *call)
 
 static const cli_example examples[] = {
     {"kiln tables -o e.ktx2 --axis grazing --corners --average eavg.ktx2 --lookup",
-     "E and E_avg for Kulla and Conty's lobe, and the code that reads them"},
+     "the albedo and its average for Kulla and Conty's lobe, and the code that reads the tables"},
     {"kiln tables -o dfg.ktx2 --table dfg",
-     "the split sum, as three.js, glTF viewers and most engines look it up"},
-    {"kiln tables --for babylon -o brdf.png", "PBRMaterial.environmentBRDFTexture"},
+     "A and B of the split sum, in the layout of three.js, glTF viewers and most engines"},
+    {"kiln tables --for babylon -o brdf.png",
+     "a texture for PBRMaterial.environmentBRDFTexture of Babylon.js"},
     {"kiln tables -o walk.ktx2 --table e-walk --lookup",
-     "what later bounces add to A and B, grazing axis and corners; 2 s"},
+     "the albedo that later bounces between microfacets add; takes about 2 s"},
     {"kiln tables -o e.h --table e --size 32 --axis grazing --corners",
-     "an array for those who want no texture"},
+     "an array in C for use without a texture"},
     {"kiln tables --assignment -o images",
-     "what GAMES202's assignment 4 asks for, 128 x 128, and the exact ones"},
+     "the tables of assignment 4 of GAMES202, 128 x 128, and exact tables for comparison"},
     {"kiln tables --assignment -o text --g schlick-text",
-     "the same with the k of its text, with which a mirror glows"},
+     "the same tables with k as in the assignment's text, with which even a mirror loses light"},
     {"kiln tables --method textbook -o brdf.exr",
-     "the split sum as courses compute it, 512 x 512, 1024 samples a texel"},
+     "A and B by sampling, 512 x 512, with 1024 samples for each texel"},
     {NULL, NULL}};
 
 const cli_command cli_tables = {
     .name = "tables",
     .arguments = "[--table KIND] -o FILE [OPTION...] | --assignment -o DIR [OPTION...] | "
                  "--method textbook -o FILE [OPTION...]",
-    .summary = "Makes tables of a BRDF's integrals.",
+    .summary = "Makes tables of the albedo and the split sum of reflection models.",
     .about =
-        "u is n.v, v is roughness, 0 in the first row; a third axis goes along F0 (e-walk) or the "
-        "index of refraction from 1 to 3. What each kind holds: docs/tables.md.\n\n"
-        "--assignment writes E(mu) by Monte Carlo, importance sampling and split sum, E_avg, the "
-        "exact "
-        "ones, maps of the errors, and report.md; --method textbook A and B as courses sample "
-        "them. "
-        "There roughness is 1 at the top.",
+        "Columns of a table go along the cosine n.v and rows along the roughness, beginning with "
+        "0. A third axis goes along F0 (e-walk) or along the index of refraction from 1 to 3. "
+        "docs/tables.md describes each kind of table.\n\n--assignment writes the albedo E by Monte "
+        "Carlo integration, by importance sampling and by the split sum, the average E_avg, the "
+        "exact tables, maps of the errors, and report.md. --method textbook writes A and B as "
+        "courses sample them. In these tables the first row has roughness 1.",
     .more =
-        "With --assignment, pictures have the names and the orientation of GAMES202's fourth "
-        "assignment "
-        "(2021): Emu_MC.png, Emu_IS.png, Emu_split_sum.png, 1 - E(mu) unflipped, and Eavg.png. "
-        "With "
-        "them are the same integrals without sampling, maps of the errors, and report.md with all "
-        "figures and with the assignment's own contradictions. Bytes are cut as its framework cuts "
-        "them, not rounded.",
+        "With --assignment, pictures have the names and the orientation of the fourth assignment "
+        "of GAMES202 (2021): Emu_MC.png, Emu_IS.png, Emu_split_sum.png with 1 - E(mu) not flipped, "
+        "and Eavg.png. kiln adds the same integrals without sampling, maps of the errors, and "
+        "report.md with all numbers and with the contradictions in the assignment's text. Bytes "
+        "are truncated as the assignment's framework truncates them, and not rounded.",
     .examples = examples,
     .options = options,
     .run = run,

@@ -21,9 +21,9 @@ typedef struct view {
 
 static const cli_option options[OPTIONS + 1] = {
     SCENE_ROWS,
-    [SCREENSHOT] = {"screenshot", CLI_FILE, offsetof(view, screenshot), .value = "FILE",
-                    .group = "Window",
-                    .help = "draw once, write what the window holds as .png and leave"},
+    [SCREENSHOT] =
+        {"screenshot", CLI_FILE, offsetof(view, screenshot), .value = "FILE", .group = "Window",
+         .help = "draw one picture, write that picture to a .png file, and close the window"},
     [THREADS] = CLI_THREADS_ROW(view),
 };
 
@@ -197,20 +197,21 @@ static int run(const cli_call *call)
 }
 
 static const cli_example examples[] = {
-    {"kiln view city.exr", "gold in a city"},
+    {"kiln view city.exr", "gold balls in a city"},
     {"kiln view city.exr --scene compare",
-     "the exact bake and the textbook's, which bakes meanwhile; [ and ] move the handle"},
-    {"kiln view", "the assignment's two rows"},
+     "the exact bake and the textbook's bake, which is computed while the window is open; [ and ] "
+     "move the line between the two"},
+    {"kiln view", "two rows of copper balls under one light"},
     {NULL, NULL}};
 
 const cli_command cli_view = {
     .name = "view",
     .arguments = "[ENV] [OPTION...]",
-    .summary = "Shows the balls in a window.",
-    .about = "The key h prints what the keys do. Drag to orbit, with shift or the right button to "
-             "turn the "
-             "environment; the wheel zooms; 1 to 5 choose the scene (compare only where it was the "
-             "first).",
+    .summary = "Shows balls in an environment in a window.",
+    .about = "The key h prints the meaning of all keys. Drag with the mouse to move the camera, "
+             "and drag with shift or with the right button to turn the environment. The wheel "
+             "zooms. The keys 1 to 5 choose the scene; the scene compare can be chosen only if the "
+             "window was opened with --scene compare.",
     .examples = examples,
     .options = options,
     .run = run,

@@ -10,26 +10,26 @@ export function makeControls(container, state, words, changed) {
                       see: gui.addFolder('See') };
     const add = (folder, name, label, ...range) =>
         folders[folder].add(state, name, ...range).name(label).onChange(() => changed(name));
-    add('sky', 'sun', 'sun, degrees up', -5, 90, 0.5);
-    add('sky', 'bearing', 'sun, degrees right', -180, 180, 1);
-    add('sky', 'haze', 'haze', 1.7, 10, 0.1);
-    add('bake', 'size', 'face, texels', SIZES);
-    add('bake', 'turn', 'turn, degrees', -180, 180, 1);
+    add('sky', 'sun', 'sun elevation, degrees', -5, 90, 0.5);
+    add('sky', 'bearing', 'sun azimuth, degrees', -180, 180, 1);
+    add('sky', 'haze', 'haze (turbidity)', 1.7, 10, 0.1);
+    add('bake', 'size', 'face size, texels', SIZES);
+    add('bake', 'turn', 'rotation, degrees', -180, 180, 1);
     add('bake', 'stops', 'exposure, stops', -16, 16, 0.5);
     if (words) {
         add('see', 'scene', 'scene', words.scene);
         add('see', 'material', 'material', words.material);
-        add('see', 'method', 'second bounce by', words.method);
-        add('see', 'background', 'blur behind', 0, 1, 0.01);
-        add('see', 'split', 'handle', 0, 1, 0.01);
-        add('see', 'occlusion', 'balls shade balls');
-        add('see', 'cubeDiffuse', 'diffuse from the cube');
-        add('see', 'bent', 'bend rough reflections');
-        add('see', 'asPrinted', 'as the handout prints it');
-        add('see', 'auto', 'fit the brightness');
-        add('see', 'samples', 'rays a pixel, squared', 1, 8, 1);
-        add('see', 'debug', 'show instead', [...words.debug.filter((word) => word !== 'level'), 'error']);
-        add('see', 'noise', 'error: noise', 0.01, 0.5, 0.01);
+        add('see', 'method', 'lost energy returned by', words.method);
+        add('see', 'background', 'background blur', 0, 1, 0.01);
+        add('see', 'split', 'dividing line', 0, 1, 0.01);
+        add('see', 'occlusion', 'balls shade each other');
+        add('see', 'cubeDiffuse', 'diffuse light from a cube');
+        add('see', 'bent', 'bend towards the normal');
+        add('see', 'asPrinted', 'mistake of figure 6');
+        add('see', 'auto', 'automatic brightness');
+        add('see', 'samples', 'samples per pixel, N x N', 1, 8, 1);
+        add('see', 'debug', 'debug view', [...words.debug.filter((word) => word !== 'level'), 'error']);
+        add('see', 'noise', 'error: noise limit', 0.01, 0.5, 0.01);
         add('see', 'alone', 'error: balls alone');
     }
     const only = { split: 'compare', asPrinted: 'assignment', method: null };
