@@ -529,7 +529,10 @@ void ki_deflater_free(ki_deflater *d)
 
 size_t ki_deflate_bound(size_t size)
 {
-    return (size_t)(stored_bits(size) / 8) + 16;
+    // No block is longer than in its stored form. A block has at least 4 * LOOK items, each of at
+    // least one byte, except the last block, which may be shorter.
+    size_t blocks = size / (4 * LOOK) + 1;
+    return (size_t)(stored_bits(size) / 8) + 6 * blocks + 16;
 }
 
 size_t ki_deflate_part(ki_deflater *d, const uint8_t *plain, size_t history, size_t size, int place,

@@ -239,13 +239,14 @@ static bool stored(state *st)
     size_t count = take(s, 16), inverse = take(s, 16), left = (size_t)(st->end - st->out);
     if (count != (~inverse & 0xffff))
         return false;
-    st->full = left < count;
-    if (st->full)
+    bool full = left < count;
+    if (full)
         count = left;
     for (; count && s->held; count--)
         *st->out++ = (uint8_t)drop(s, 8);
     if (overdrawn(s) || (size_t)(s->in_end - s->in) < count)
         return false;
+    st->full = full; // only now is every byte of the output written
     if (count) {
         memcpy(st->out, s->in, count);
         s->bits = 0;

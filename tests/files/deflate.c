@@ -81,6 +81,21 @@ static void a_beginning_is_inflated(void **state)
         }
 }
 
+// A stored block that states more bytes than the output holds, but is cut off before the output is
+// filled: the bytes that are missing must not be taken for decompressed ones.
+static void a_stored_block_without_its_bytes_is_no_beginning(void **state)
+{
+    (void)state;
+    enum { HELD = 40, SIZE = 1000 };
+    uint8_t packed[7 + SIZE] = {0x78, 0x01, 0, 0xff, 0xff, 0, 0}, back[SIZE];
+    for (size_t held = 0; held < SIZE; held += HELD)
+        assert_false(ki_inflate_beginning(packed, 7 + held, back, SIZE));
+    memset(back, 77, sizeof back);
+    assert_true(ki_inflate_beginning(packed, 7 + SIZE, back, SIZE));
+    for (int i = 0; i < SIZE; i++)
+        assert_int_equal(back[i], 0);
+}
+
 static void check_packed(const uint8_t *packed, size_t length, const uint8_t *plain, size_t size)
 {
     static uint8_t back[MOST + 1];
@@ -148,6 +163,41 @@ static void parts_are_one_stream(void **state)
     ki_deflater_free(deflater);
 }
 
+// Noise whose highest bit is more often set in every other stretch. Each stretch becomes a block of its
+// own, and no block becomes shorter than its stored form.
+static void fill_stretches(uint8_t *plain, size_t size, size_t stretch)
+{
+    uint64_t random = 88172645463325252U;
+    for (size_t i = 0; i < size; i++) {
+        random ^= random << 13;
+        random ^= random >> 7;
+        random ^= random << 17;
+        uint8_t byte = (uint8_t)(random >> 44), high = (uint8_t)(i / stretch % 2 * 128);
+        bool skewed = (random >> 28 & 255) < 80;
+        plain[i] = skewed ? (uint8_t)((byte & 127) | high) : byte;
+    }
+}
+
+// The room of the bound is enough for data that cannot be compressed, whatever its number of blocks.
+static void the_bound_is_enough_for_many_blocks(void **state)
+{
+    (void)state;
+    enum { PART = 1 << 18 };
+    static uint8_t plain[PART], packed[2 * PART], back[PART];
+    ki_deflater *deflater = ki_deflater_create(context);
+    assert_non_null(deflater);
+    for (size_t stretch = 1024; stretch <= 8192; stretch += 1024) {
+        fill_stretches(plain, PART, stretch);
+        size_t needed = ki_deflate(deflater, plain, PART, packed, sizeof packed);
+        if (stretch == 2048)
+            assert_true(needed > PART + 600); // more than a hundred stored blocks
+        assert_int_equal(ki_deflate(deflater, plain, PART, packed, ki_deflate_bound(PART)), needed);
+        assert_true(ki_inflate_own(packed, needed, back, PART));
+        assert_memory_equal(back, plain, PART);
+    }
+    ki_deflater_free(deflater);
+}
+
 static void sums_are_those_of_zlib(void **state)
 {
     (void)state;
@@ -171,8 +221,12 @@ static void sums_are_those_of_zlib(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(inflates_what_zlib_deflates),    cmocka_unit_test(a_beginning_is_inflated),
-        cmocka_unit_test(zlib_inflates_what_is_deflated), cmocka_unit_test(parts_are_one_stream),
+        cmocka_unit_test(inflates_what_zlib_deflates),
+        cmocka_unit_test(a_beginning_is_inflated),
+        cmocka_unit_test(zlib_inflates_what_is_deflated),
+        cmocka_unit_test(parts_are_one_stream),
+        cmocka_unit_test(a_stored_block_without_its_bytes_is_no_beginning),
+        cmocka_unit_test(the_bound_is_enough_for_many_blocks),
         cmocka_unit_test(sums_are_those_of_zlib),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
