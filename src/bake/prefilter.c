@@ -201,8 +201,8 @@ kiln_result ki_prefilter_execute(ki_prefilter *p, const kiln_map *panorama, cons
     if (!ki_progress(p->context, stage, 0))
         return ki_fail_cancelled(error, stage);
     ki_intake_whole(p->intake, panorama->level[0], p->spectrum);
-    // Progress is reported in proportion to texels: each level has four times the texels of the
-    // next.
+    // The analysis counts as a quarter of the progress, and each level as half of the progress that
+    // remains, because levels get smaller.
     double done = 0.25;
     for (int i = 0; i < p->def.level_count && result == KILN_OK; i++) {
         if (!ki_progress(p->context, stage, done))

@@ -4,13 +4,18 @@
 
 #include "base/base.h"
 
-/// How finely texels are cut, as ratios of a cell's size to the length over which the lobe changes
-/// there. {0} stands for the defaults.
+/// By how many nodes the lobe is integrated over a cell, which is a texel or a part of a texel. All
+/// fields but `edge` are limits of a ratio: the size of the cell to the length over which the lobe
+/// changes there. {0} stands for the defaults.
 typedef struct ki_reference_rule {
-    double centre; ///< below this ratio one value at the texel's mean direction; default 1/300
-    double pairs;  ///< below this ratio 2 x 2 Gauss-Legendre nodes; default 1/20
-    /// Below this ratio 4 x 4 Gauss-Legendre nodes, above it the cell is cut into four; default
-    /// 1/2.
+    /// Greatest ratio of cell size to length of change at which the lobe is evaluated once, at the
+    /// texel's mean direction; default 1/300.
+    double centre;
+    /// Greatest ratio of cell size to length of change for 2 x 2 Gauss-Legendre nodes; default
+    /// 1/20.
+    double pairs;
+    /// Greatest ratio of cell size to length of change for 4 x 4 Gauss-Legendre nodes; default 1/2.
+    /// A cell with a greater ratio is cut into four.
     double quads;
     /// Size in radians above which cells are cut where the lobe's horizon crosses them; default
     /// 0.0025.

@@ -12,7 +12,7 @@ enum {
 
 typedef struct ki_row_geometry {
     double cos_centre, sin_centre;
-    // Means of cos theta and sin theta over the solid angle of the row's texels.
+    // Means over the solid angle of the row's texels of the cosine and sine of the angle to +Y.
     double cos_mean, sin_mean;
     double cos_pair[2], sin_pair[2];
     double area; // solid angle of one texel of the row in steradians
@@ -37,11 +37,12 @@ typedef struct ki_reference {
 
     kiln_lobe lobe;
     bool rational; // true: GGX, or Lambert, which is GGX with alpha = 1
-    // True: the lobe is linear in cos theta, so that one value at the mean direction is exact.
+    // True: the lobe is linear in the cosine of the angle to the lobe's axis. The lobe at a texel's
+    // mean direction is then exactly the mean of the lobe over the texel.
     bool linear;
     double a2;  // alpha^2 of a GGX lobe
-    double cut; // cos theta below which the lobe is 0 or negligible
-    bool kink;  // true: the lobe has an edge at cos theta = `cut`
+    double cut; // cosine of the angle to the axis below which the lobe is 0 or negligible
+    bool kink;  // true: the lobe has an edge where the cosine is `cut`
     double lobe_width;
     int depth_limit;
     ki_reference_rule rule;
@@ -55,8 +56,8 @@ typedef struct ki_reference {
 
 /// The length over which the lobe changes at a distance from its peak, both in radians.
 double ki_reference_scale(const ki_reference *r, double distance);
-/// The mean of lobe times sin theta over a cell of this depth, for the unit direction d. The angles are
-/// those of the cell's centre.
+/// The mean of lobe times sin theta over a cell of this depth, for the unit direction d. The angles
+/// are those of the cell's centre.
 double ki_reference_cell(const ki_reference *r, const double d[3], int depth, double sin_theta,
                          double cos_theta, double sin_phi, double cos_phi);
 

@@ -41,8 +41,8 @@ typedef enum part { REFLECTED, TRANSMITTED } part;
 typedef struct boundary {
     kiln_model model;
     double roughness, alpha, ior, eta; // eta = 1 / ior
-    double mu, sin_v, theta_v;         // the view's n.v, its sine and its angle to n
-    double critical; // cosine c at which total reflection begins; 0 from the thinner side
+    double mu, sin_v, theta_v;         // n.v, and the sine and angle of v to n
+    double critical; // cosine c at which total reflection begins; 0 for v on the thinner side
     double lambda_v; // Smith's Lambda(v), for masking in transmission
     double root_v;   // n.v (1 + 2 Lambda(v)) for GGX with KILN_G_SMITH, 0 for other models
     double pole;     // the pole of G nearest to 0 is at about n.l = -pole
@@ -80,8 +80,8 @@ static double fresnel(double contrast, double c, double beyond)
     return fmin(1, contrast * contrast * (product * product + s2 * s2) / (below * below));
 }
 
-// G / (n.v) of reflected light. The common case, GGX with KILN_G_SMITH, uses the stored root of the
-// view.
+// G / (n.v) of reflected light. For GGX with KILN_G_SMITH the formula uses root_v, which depends on
+// the view only.
 static double reflected_masking(const boundary *s, double nol)
 {
     if (s->root_v > 0) {

@@ -190,7 +190,7 @@ static void make_header(ki_deflater *d, header *h)
     h->literals = LITERALS;
     h->distances = DISTANCES;
     while (!d->literals.length[h->literals - 1])
-        h->literals--; // does not go below 257, because the end-of-block symbol always occurs
+        h->literals--; // h->literals stays at least 257: symbol 256, end of block, always occurs
     while (h->distances > 1 && !d->distances.length[h->distances - 1])
         h->distances--;
     memcpy(all, d->literals.length, (size_t)h->literals);
@@ -205,8 +205,10 @@ static void make_header(ki_deflater *d, header *h)
         counts[h->items[i] & 31]++;
     ki_huffman_make(&d->lengths, counts, LENGTH_CODES, 7);
     h->lengths = LENGTH_CODES;
+    // h->lengths stays at least 5: the end-of-block symbol has a length from 1 to 15, and these
+    // come after the first four numbers of length_order.
     while (!d->lengths.length[length_order[h->lengths - 1]])
-        h->lengths--; // does not go below 4, because some length is not 0
+        h->lengths--;
     h->bits = 14 + 3 * (uint64_t)h->lengths;
     for (int i = 0; i < LENGTH_CODES; i++)
         h->bits += counts[i] * (uint64_t)(d->lengths.length[i] + item_extra(i));
@@ -294,7 +296,7 @@ static void put_stored(ki_deflater *d, const uint8_t *bytes, size_t size, bool l
         put_flush(d, 0, -d->held & 7);
         put_flush(d, (uint32_t)count, 16);
         put_flush(d, (uint32_t)~count & 0xffff, 16);
-        memcpy(d->out, bytes, count); // no bits are held here
+        memcpy(d->out, bytes, count); // the buffer of bits is empty here
         d->out += count;
         bytes += count;
     } while (size);

@@ -1,8 +1,8 @@
-// The list of recipes, and the public functions of engines. In: a cube of prefiltered levels in
-// kiln's directions and harmonics of radiance. Out: the cube and the harmonics turned to the axes
-// of an engine (export.c) and passed to the engine's recipe, which adds its files to a set. Also
-// the checks of sizes, levels and formats, and kiln_engine_show, which computes what an engine's
-// shader reads.
+// The list of engines, and the public functions of engines. In: a cube of prefiltered levels in
+// kiln's directions and harmonics of radiance. Out: the files for one engine. Method: the cube and
+// the harmonics are turned to the engine's axes (export.c) and passed to the engine's function that
+// adds files to a set (`write` of ki_recipe). Also the checks of sizes, levels and formats, and
+// kiln_engine_show, which computes what an engine's shader reads.
 #include "engine/engine.h"
 
 #include "codec/pixel_format.h"
@@ -194,7 +194,7 @@ kiln_result kiln_engine_show(kiln_context *context, const kiln_engine *engine, c
     return KILN_OK;
 }
 
-// Fails unless the path has the ending that the recipe writes.
+// Fails unless the path has the ending of the engine's files.
 static kiln_result check_path(const ki_recipe *recipe, const char *path, kiln_error *error)
 {
     const char *ending = kiln_path_ending(path), *wanted = recipe->about.ending;
@@ -224,7 +224,7 @@ static kiln_result check_map(const ki_recipe *recipe, const kiln_map *map, const
     return check_levels(recipe, map->size, map->level_count, error);
 }
 
-// Turns a cube and harmonics to the engine's directions and calls the recipe to write the files.
+// Turns a cube and harmonics to the engine's axes and calls the function that writes the files.
 static kiln_result write_turned(ki_export *to, const ki_recipe *recipe, const kiln_map *map,
                                 const kiln_sh *sh, kiln_error *error)
 {

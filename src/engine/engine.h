@@ -1,5 +1,6 @@
-// How kiln writes environments for rendering engines: each engine has one file with a recipe, and
-// engine.c has the list of recipes.
+// How kiln writes environments for rendering engines. Each engine has one source file with its
+// ki_recipe: the settings of the engine, and the function that writes the engine's files. engine.c
+// lists the engines.
 #ifndef KI_ENGINE_H
 #define KI_ENGINE_H
 
@@ -14,19 +15,20 @@ typedef struct ki_axes {
     int axis[3], sign[3];
 } ki_axes;
 
-/// One export by a recipe. Map and harmonics (three bands of radiance) are already in the engine's
-/// directions.
+/// What the function that writes an engine's files gets. The map and the harmonics (three bands of
+/// radiance) are already turned to the engine's axes.
 typedef struct ki_export {
     kiln_context *context;
     const kiln_map *map;
     const kiln_sh *sh;
-    // One of the recipe's formats, or KILN_FORMAT_AUTO for a recipe without a choice.
+    // One of the formats that the engine reads, or KILN_FORMAT_AUTO if there is no choice.
     kiln_format format;
     const char *path;
     ki_file_set *set;
     int file_count;
 } ki_export;
 
+/// The settings of an engine, and the function that writes the engine's files.
 typedef struct ki_recipe {
     kiln_engine about;
     ki_axes axes;
@@ -42,7 +44,8 @@ typedef struct ki_recipe {
     /// that the shader reads for a roughness. NULL if the engine reads no levels.
     double (*level)(double roughness, int level_count, int size);
     bool keeps_last; ///< true: the engine uses the last level as its diffuse light
-    bool flat;       ///< true: the engine reads flat pictures, which the recipe draws from the cube
+    /// True: the engine reads no cube, but flat pictures into which `write` draws the levels.
+    bool flat;
     kiln_result (*write)(ki_export *to, kiln_error *error);
 } ki_recipe;
 
@@ -57,11 +60,11 @@ double ki_quadratic_level(double roughness, int level_count, int size);
 extern const ki_recipe ki_three, ki_babylon, ki_babylon_dds, ki_filament, ki_playcanvas,
     ki_playcanvas_dds, ki_three_cubeuv, ki_gltf, ki_bevy, ki_unity, ki_godot, ki_unreal;
 
-/// Returns the recipe at an index of the list, NULL after the last recipe.
+/// Returns the settings of the engine at an index of the list, NULL after the last engine.
 const ki_recipe *ki_recipe_at(int index);
 const ki_recipe *ki_recipe_of(const kiln_engine *engine);
-/// Returns the default number of levels of a cube of `size`: halved down to the recipe's last size,
-/// plus the levels that repeat that size.
+/// Returns the default number of levels of a cube of `size`. The size is halved from level to level
+/// down to `last_size`, and `extra_levels` more levels repeat that size.
 int ki_recipe_levels(const ki_recipe *recipe, int size);
 
 /// Copies the texels of a cube to the engine's directions. `turned` has the shape and sizes of
@@ -70,7 +73,7 @@ void ki_turn_cube(const kiln_map *source, const ki_axes *axes, kiln_map *turned)
 /// Turns harmonics of at most three bands to the engine's directions.
 void ki_turn_sh(const kiln_sh *source, const ki_axes *axes, kiln_sh *turned);
 
-/// Adds a file to the set of an export.
+/// Adds a file with the content `bytes` to the files that an export writes.
 kiln_result ki_export_add(ki_export *to, const char *path, const ki_writer *bytes,
                           kiln_error *error);
 

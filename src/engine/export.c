@@ -1,5 +1,5 @@
-// What all recipes use to write files: turns a cube and its harmonics to the axes of an engine, and
-// adds files to a set.
+// What the functions that write engines' files share: turning a cube and its harmonics to the axes
+// of an engine, and adding files to a set.
 #include "engine/engine.h"
 
 #include "codec/codec.h"

@@ -33,7 +33,7 @@
 typedef struct corner {
     double x, y, z;      // direction of the corner, not normalised
     double cosine, sine; // cosine and sine of phi
-    double height;       // z of the normalised direction
+    double height;       // z of the corner's direction as a unit vector
     double radius;       // length of (x, y)
     int column, row;     // column and row of the panorama that hold the corner
 } corner;
@@ -373,7 +373,7 @@ static bool add_stencil(builder *b, const trace *const arcs[4], bool pole)
     return true;
 }
 
-// Computes the corners first <= i <= end of line j of the grid.
+// Computes the corners first <= i <= end at the lower edge of row j of the grid.
 static void fill_corners(const builder *b, int j, int first, int end, corner *corners)
 {
     const ki_stencil_grid *grid = b->grid;
@@ -429,7 +429,8 @@ static bool build_rim(builder *b, int begin, int stop, entry *entries, size_t li
     return true;
 }
 
-// A line of corners of the grid and the arcs between them.
+// The corners along the lower or upper edge of a row of texels, and the arcs between neighbouring
+// corners.
 typedef struct grid_line {
     corner *corners;
     trace *arcs;
@@ -447,13 +448,13 @@ static void trace_line(const builder *b, int j, int first, int end, grid_line *l
     }
 }
 
-// Computes the stencils of the rows begin .. stop - 1. Each line of arcs is traced once, as the top
-// of a row and the bottom of the next row. Each arc between two lines is traced once too, as the
-// right side of a texel and the left side of the next texel.
+// Computes the stencils of the rows begin .. stop - 1. The arcs between two rows are traced once,
+// as the top of a row and the bottom of the next row. The arc between two texels of a row is traced
+// once too, as the right side of a texel and the left side of the next texel.
 static bool build_rows(builder *b, int begin, int stop, grid_line bottom, grid_line top,
                        entry *entries, size_t line)
 {
-    int skip = 0; // number of texels at the start of the bottom line that have no texel above them
+    int skip = 0; // number of texels at the start of the row below that have no texel above them
     for (int j = begin; j < stop; j++) {
         int first, end;
         ki_stencil_grid_range(b->grid, j, &first, &end);
@@ -495,8 +496,9 @@ static void build_chunk(void *data, int index)
         ki_stencil_grid_range(grid, j, &first, &end);
         texels += (size_t)(end - first);
     }
-    // Upper bound for the entries of a line of arcs: the line crosses every column once and every
-    // row at most twice, and has a node for each texel.
+    // `line` is an upper bound for the number of entries of the arcs along one edge of a row of
+    // texels. Together these arcs cross each column of the panorama once and each row at most
+    // twice, and each arc adds at most 3 entries for its ends and for its highest or lowest point.
     size_t count = 2 * (size_t)grid->half + 2;
     size_t line = (size_t)(b.end_border - b.first_border) + 2 * (size_t)grid->height + 3 * count;
     chunk->failed = true;

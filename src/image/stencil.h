@@ -28,8 +28,8 @@ typedef struct ki_stencil_chunk {
     bool failed; ///< true: memory ran out
 } ki_stencil_chunk;
 
-/// Where a grid lies on the map: texel (i, j) of the grid is texel base + i across + j down of the
-/// map.
+/// Where a grid lies on the map: texel (i, j) of the grid is texel base + i * across + j * down of
+/// the map.
 typedef struct ki_stencil_place {
     ptrdiff_t base, across, down;
     int column;        ///< added to a stencil's columns, modulo the width of the panorama

@@ -131,7 +131,8 @@ static bool plan_places(ki_level *v, const kiln_map *map)
         sine = sqrt(d[0] * d[0] + d[2] * d[2]);
         p->theta = ki_atan2(sine, fabs(d[1]));
         p->sign = d[1] < 0 ? -1 : 1;
-        p->cosine = sine > 0 ? d[2] / sine : 1; // phi is that of ki_panorama_direction
+        // Cosine and sine of phi, the azimuth as ki_panorama_direction defines it.
+        p->cosine = sine > 0 ? d[2] / sine : 1;
         p->sine = sine > 0 ? -d[0] / sine : 0;
         p->texel = i;
     }
@@ -229,8 +230,8 @@ void ki_level_destroy(ki_level *level)
     ki_free(level);
 }
 
-// Task of one thread: multiplies one order of the spectrum by the lobe's coefficients, turns it,
-// and scales it for the recurrence.
+// Task of one thread: multiplies the coefficients of one order of the spectrum by the lobe's
+// coefficients, applies the rotation, and scales the products for the recurrence.
 static void weigh_order(void *data, int m)
 {
     ki_level *v = data;

@@ -17,7 +17,8 @@ static const double sun_share = 1e-3;
 // A texel can be kept out of the spectrum as a sun only if it is at least this many times brighter
 // than the mean of the panorama.
 static const double sun_contrast = 200;
-// Texels that may be suns at a time: no more than 1000 hold their share of one channel's light.
+// Greatest number of texels that may be suns at a time. In one channel no more than 1000 texels can
+// hold the share sun_share of the light.
 enum { CANDIDATES = 4096 };
 
 // ---------------------------------------------------------------------------------------- the plan
@@ -186,7 +187,7 @@ int kiln_spectrum_degree(const kiln_spectrum *spectrum)
 
 struct ki_intake {
     const ki_analysis *analysis;
-    int row_count; // number of rows taken in so far
+    int row_count; // number of panorama rows added by earlier calls of ki_intake_rows
     // Sums of each latitude ring, [ring][2 size][3]; only for panoramas that come row by row.
     double *rings;
     double *row_sums;   // radiance summed over each row, [size][3]
@@ -201,8 +202,8 @@ struct ki_intake {
     double *scratch;
     size_t scratch_size;
 
-    const float *rows; // the rows that are being taken in
-    int rows_here;
+    const float *rows;       // panorama rows that are being added, RGB
+    int rows_here;           // number of the rows that are being added
     kiln_spectrum *spectrum; // the spectrum that is being written
 };
 
@@ -258,7 +259,7 @@ void ki_intake_destroy(ki_intake *intake)
     ki_free(intake);
 }
 
-// Adds the contributions of the panorama rows at hand to one piece of a latitude ring. Both halves
+// Adds the contributions of the panorama rows in->rows to one piece of a latitude ring. Both halves
 // of a row are cut at the same places, so that a ring half a turn away receives the same piece of
 // the other half. The sums are in the order of the rows, so that the result does not depend on how
 // many rows come at a time.
@@ -287,7 +288,7 @@ static void spread_piece(const ki_intake *in, int ring, int half, int piece, dou
         a->kernels->spread(accumulator + here, in->rows, offsets, weights, n, 3 * count);
 }
 
-// Task of one thread: adds the rows at hand to the same piece of all latitude rings.
+// Task of one thread: adds the panorama rows in->rows to the same piece of all latitude rings.
 static void spread_rows(void *data, int index)
 {
     ki_intake *in = data;
@@ -319,8 +320,8 @@ static bool is_sun(const float rgb[3], double solid, const double total[3])
     return false;
 }
 
-// Removes candidates that are no longer bright enough to be suns relative to the light of the later
-// rows.
+// Removes candidates that are not bright enough to be suns relative to the light of all rows so
+// far, which grows with every row.
 static void prune(ki_intake *in)
 {
     int kept = 0;
@@ -437,8 +438,8 @@ static void transform_channel(const ki_intake *in, int vector, int channel, doub
     }
 }
 
-// Task of one thread: transforms eight pairs of latitude rings, which are first summed from the
-// rows if the whole panorama is at hand.
+// Task of one thread: transforms eight pairs of latitude rings. If in->rows is the whole panorama,
+// the rings are first summed from these rows.
 static void transform_rings(void *data, int worker, int vector)
 {
     ki_intake *in = data;

@@ -1,9 +1,9 @@
 // Searches a closed form with few coefficients for an integral of the reflection model, and
 // evaluates it. In: the kind, the model and the wanted error. Out: polynomials P or quotients P / Q
 // in x, a function of n.v and roughness, and y, the roughness scaled to [-1, 1]. The search tries
-// all shapes of P and Q in the order of their number of coefficients, and takes the first whose
-// measured error is small enough. fit_points.c computes exact values and errors, fit_solve.c the
-// coefficients. docs/theory/fits.md.
+// P and Q with more and more coefficients, and takes the first form whose measured error is small
+// enough. fit_points.c computes exact values and errors, fit_solve.c the coefficients.
+// docs/theory/fits.md describes the method.
 #include "table/fit.h"
 
 #include "table/table_axis.h"
@@ -44,7 +44,7 @@ static kiln_result complete(kiln_fit_def *def, kiln_error *error)
 
 // ------------------------------------------------------------------------------------------ search
 
-// A shape that is tried for a part P or P / Q: P has x_count * y_count coefficients, and so has Q.
+// A form that is tried, P or P / Q: P has x_count * y_count coefficients, and Q has as many.
 typedef struct candidate {
     kiln_fit_axis axis;
     bool rational;
@@ -73,8 +73,8 @@ static int axes_of(ki_fit_target target, kiln_fit_axis axes[AXES])
     }
 }
 
-// Lists every allowed shape of P and Q, sorted by its number of coefficients. Returns the number of
-// shapes.
+// Lists every allowed form P or P / Q, sorted by the number of coefficients. Returns the number of
+// forms.
 static int list_candidates(const kiln_fit_def *def, ki_fit_target target, candidate *list)
 {
     kiln_fit_axis axes[AXES];
@@ -99,17 +99,18 @@ static int list_candidates(const kiln_fit_def *def, ki_fit_target target, candid
     return count;
 }
 
-// The search for one part. nodes[] belongs to the axes in the order of axes_of.
+// State of the search for one part of a fit, a P or P / Q. nodes[i] are the nodes for the i-th axis
+// that axes_of gives.
 typedef struct search {
     ki_fit_points nodes[AXES], checks;
     double *scratch;
     candidate list[MAX_CANDIDATES];
 } search;
 
-// Fits polynomials of one shape. A cheap fit by least squares comes first, and only a shape whose
-// error is then below `hopeful` times the wanted error gets the rounds that lower its greatest
-// error. Sets *reached to the error at the points of measurement. Returns true if that is at most
-// `wanted`.
+// Fits one form to the target function. A fit by least squares is cheap and comes first. If its
+// error is below `hopeful` times `wanted`, ROUNDS rounds of reweighting lower the greatest error.
+// Sets *reached to the greatest error at the points s->checks, or to infinity if the form is given
+// up earlier. Returns true if *reached is at most `wanted`.
 static bool try_candidate(search *s, const kiln_fit *fit, const candidate *c, double wanted,
                           kiln_fit_part *part, double *reached)
 {
@@ -150,8 +151,8 @@ static kiln_result begin(kiln_context *context, const kiln_fit *fit, ki_fit_targ
     return result;
 }
 
-// Finds the shape with the fewest coefficients whose error is at most `wanted`, and sets *part to
-// its fit and *reached to its error.
+// Finds the form with the fewest coefficients whose error is at most `wanted`. Sets *part to the
+// fit of that form and *reached to the error of the fit.
 static kiln_result find_part(kiln_context *context, const kiln_fit *fit, ki_fit_target target,
                              double wanted, search *s, kiln_fit_part *part, double *reached,
                              kiln_error *error)

@@ -15,8 +15,10 @@ typedef struct code_job {
     const char *name;
     bool c; // true: C; false: GLSL
     int channels;
-    bool nov;          // the function has the argument n.v, which E_avg lacks
-    const char *third; // name of the third argument, "ior" or "f0"; NULL for two arguments
+    bool nov; // true: the lookup function has the argument n.v, which only E_avg lacks
+    // Name of the lookup function's third argument, "ior" or "f0"; NULL if it has no third
+    // argument.
+    const char *third;
 } code_job;
 
 static const char *real(const code_job *j)

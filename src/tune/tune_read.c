@@ -61,7 +61,8 @@ static void add_up(const reads *r, size_t count, int which, double sum[3])
 
 // ------------------------------------------------------------------------------------------ set up
 
-// Task: sets the taps and the solid angles of a chunk of points.
+// Task: sets the four taps and the solid angle of each point of a chunk. The points are the
+// directions of the goal's texels.
 static void make_taps(void *data, int index)
 {
     reads *r = data;
