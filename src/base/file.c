@@ -233,8 +233,10 @@ kiln_result ki_file_set_add(ki_file_set *set, const char *path, const void *byte
     }
     int fd = create_temporary(entry->temporary, length + ROOM, path);
     if (fd < 0) {
+        kiln_result result =
+            ki_fail(error, KILN_ERROR_IO, "%s: cannot be created: %s", path, strerror(errno));
         ki_free(entry);
-        return ki_fail(error, KILN_ERROR_IO, "%s: cannot be created: %s", path, strerror(errno));
+        return result;
     }
     bool good = write_all(set->context, fd, bytes, size);
     int reason = errno;
