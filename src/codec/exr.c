@@ -194,7 +194,7 @@ static void describe_attributes(const exr_file *f, kiln_file_info *info)
     char text[sizeof info->table];
     read_string(f->part, "software", text, sizeof info->writer);
     if (!strncmp(text, "kiln ", 5))
-        memcpy(info->writer, text, sizeof info->writer);
+        ki_copy_printable(info->writer, sizeof info->writer, text);
     read_string(f->part, "kilnShape", text, sizeof text);
     if (!strcmp(text, "octahedron") && f->picture.width == f->picture.height)
         snprintf(info->layout, sizeof info->layout, "octahedron");

@@ -7,6 +7,7 @@
 // lines, which gives the original radiance.
 #include "codec/codec.h"
 #include "codec/decimal.h"
+#include "codec/file_info.h"
 
 #include <float.h>
 #include <math.h>
@@ -104,7 +105,7 @@ static kiln_result read_header(hdr_file *f, ki_reader *r, kiln_file_info *info, 
             f->exposure *= value;
         }
         if (info && !strncmp(line, "SOFTWARE=kiln ", 14))
-            snprintf(info->writer, sizeof info->writer, "%.63s", line + 9);
+            ki_copy_printable(info->writer, sizeof info->writer, line + 9);
     }
     if (!ended || !next_line(r, line, sizeof line))
         return ki_fail(error, KILN_ERROR_FORMAT, "%s: the HDR header has no end in %zu bytes",

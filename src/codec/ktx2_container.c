@@ -256,9 +256,9 @@ static void read_sh(const char *text, kiln_file_info *info)
 static void read_entry(const char *key, const char *value, kiln_file_info *info)
 {
     if (!strcmp(key, "KTXorientation"))
-        snprintf(info->orientation, sizeof info->orientation, "%.15s", value);
+        ki_copy_printable(info->orientation, sizeof info->orientation, value);
     if (!strcmp(key, "KTXwriter"))
-        snprintf(info->writer, sizeof info->writer, "%.63s", value);
+        ki_copy_printable(info->writer, sizeof info->writer, value);
     if (!strcmp(key, "kiln:sh"))
         read_sh(value, info);
     if (!strcmp(key, "kiln:table"))

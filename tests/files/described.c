@@ -342,6 +342,39 @@ static void texts_stand_in_a_png(void **state)
     kiln_map_free(&map);
 }
 
+// The writer that a file names is printed on terminals, which obey control characters: the name ends
+// before the first of them, in every format that has such a name.
+static void control_characters_end_a_writers_name(void **state)
+{
+    (void)state;
+    const ki_exr_options options = {.half = true, .roughness = -1};
+    const kiln_save_def def = {0};
+    kiln_map map = make_cube(4, 1);
+    for (int i = 0; i < 3; i++) {
+        ki_writer w = {.context = context};
+        kiln_file_info info;
+        if (i == 0)
+            CHECK_OK(ki_ktx2_encode(&map, &def, &w, &error));
+        else if (i == 1)
+            CHECK_OK(ki_exr_encode(map.level[0], 4, 4, 3, &options, &w, &error));
+        else
+            CHECK_OK(ki_hdr_encode(map.level[0], 4, 4, &w, &error));
+        char wanted[32];
+        snprintf(wanted, sizeof wanted, "kiln %s", kiln_version());
+        size_t at = 0, length = strlen(wanted);
+        while (at + length < w.size && memcmp(w.bytes + at, wanted, length) != 0)
+            at++;
+        CHECK_OK(describe(w.bytes, w.size, "w", &info));
+        assert_string_equal(info.writer, wanted);
+        w.bytes[at + 6] = 0x1b;
+        wanted[6] = 0;
+        CHECK_OK(describe(w.bytes, w.size, "w", &info));
+        assert_string_equal(info.writer, wanted);
+        ki_writer_free(&w);
+    }
+    kiln_map_free(&map);
+}
+
 // Harmonics of irradiance in a file are described as what they are.
 static void irradiance_is_not_called_radiance(void **state)
 {
@@ -430,6 +463,7 @@ int main(void)
         cmocka_unit_test(ktx1_is_checked),
         cmocka_unit_test(lines_are_taken_as_far_as_they_make_sense),
         cmocka_unit_test(texts_stand_in_a_png),
+        cmocka_unit_test(control_characters_end_a_writers_name),
         cmocka_unit_test(irradiance_is_not_called_radiance),
         cmocka_unit_test(harmonics_in_text_are_described),
         cmocka_unit_test(harmonics_in_text_are_checked),
