@@ -102,7 +102,8 @@ typedef struct kiln_context_def {
     void (*parallel_for)(void *user, int count, void (*task)(void *data, int index), void *data);
     void *parallel_user;
     /// Called from time to time with 0 <= fraction <= 1, on the thread that called the library. The
-    /// work in progress is cancelled when this function returns false. May be NULL.
+    /// work in progress is cancelled when this function returns false. The function may call kiln
+    /// with the same context, but not execute a plan that is being executed. May be NULL.
     bool (*progress)(void *user, const char *stage, double fraction);
     void *progress_user;
     /// Highest instruction set that may be used, for tests and benchmarks. Results are

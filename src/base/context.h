@@ -21,6 +21,7 @@ typedef struct ki_pool {
     atomic_int next; // the next index that no thread has taken
     int running;     // number of helpers that have not finished
     unsigned round;  // number of calls of ki_parallel_for so far
+    bool in_use;     // true while ki_parallel_for runs; only the calling thread uses the flag
     bool stop;
 } ki_pool;
 

@@ -65,18 +65,8 @@ void ki_threads_stop(kiln_context *context)
     ki_os_mutex_end(&pool->mutex);
 }
 
-void ki_parallel_for(kiln_context *context, int count, ki_task *task, void *data)
+static void run_on_pool(ki_pool *pool, int count, ki_task *task, void *data)
 {
-    if (context->def.parallel_for) {
-        context->def.parallel_for(context->def.parallel_user, count, task, data);
-        return;
-    }
-    ki_pool *pool = &context->pool;
-    if (pool->thread_count == 0 || count < 2) {
-        for (int i = 0; i < count; i++)
-            task(data, i);
-        return;
-    }
     ki_os_lock(&pool->mutex);
     pool->task = task;
     pool->data = data;
@@ -91,6 +81,24 @@ void ki_parallel_for(kiln_context *context, int count, ki_task *task, void *data
     while (pool->running)
         ki_os_wait(&pool->done, &pool->mutex);
     ki_os_unlock(&pool->mutex);
+}
+
+void ki_parallel_for(kiln_context *context, int count, ki_task *task, void *data)
+{
+    ki_pool *pool = &context->pool;
+    bool own = !context->def.parallel_for;
+    // The other threads are busy if a progress callback, which runs during a task, calls kiln.
+    if (pool->in_use || (own && (pool->thread_count == 0 || count < 2))) {
+        for (int i = 0; i < count; i++)
+            task(data, i);
+        return;
+    }
+    pool->in_use = true;
+    if (own)
+        run_on_pool(pool, count, task, data);
+    else
+        context->def.parallel_for(context->def.parallel_user, count, task, data);
+    pool->in_use = false;
 }
 
 typedef struct workers {

@@ -208,6 +208,51 @@ static void work_stops_wherever_it_reports(void **state)
     kiln_map_free(&cube);
 }
 
+typedef struct intruder {
+    kiln_context *own;
+    bool inside;
+    int calls;
+} intruder;
+
+// A callback that calls kiln itself, while the helper threads are at work for the bake.
+static bool intrude(void *user, const char *stage, double fraction)
+{
+    intruder *i = user;
+    kiln_map map;
+    (void)stage;
+    (void)fraction;
+    if (i->inside)
+        return true;
+    i->inside = true;
+    i->calls++;
+    CHECK_OK(kiln_map_create(i->own, KILN_SHAPE_PANORAMA, 1024, 1, &map, &error));
+    for (size_t k = 0; k < 3 * kiln_map_texels(&map, 0); k += 4001)
+        assert_true(map.level[0][k] == 0);
+    kiln_map_free(&map);
+    i->inside = false;
+    return true;
+}
+
+static void a_callback_may_call_kiln(void **state)
+{
+    (void)state;
+    intruder i = {0};
+    kiln_map source = random_map(KILN_SHAPE_PANORAMA, 64), map, wanted;
+    kiln_prefilter_def what = {.size = 32, .level_count = 2};
+    kiln_context_def def = {.thread_count = 4, .progress = intrude, .progress_user = &i};
+    CHECK_OK(kiln_context_create(&def, &i.own, &error));
+    CHECK_OK(kiln_prefilter(context, &source, &what, &wanted, &error));
+    CHECK_OK(kiln_prefilter(i.own, &source, &what, &map, &error));
+    assert_true(i.calls > 4);
+    for (int k = 0; k < 2; k++)
+        assert_memory_equal(map.level[k], wanted.level[k],
+                            3 * kiln_map_texels(&map, k) * sizeof(float));
+    kiln_map_free(&map);
+    kiln_map_free(&wanted);
+    kiln_map_free(&source);
+    kiln_context_destroy(i.own);
+}
+
 int main(void)
 {
     context = make_context(2);
@@ -216,6 +261,7 @@ int main(void)
         cmocka_unit_test(mirrors_of_other_sizes_come_from_the_source),
         cmocka_unit_test(roughness_is_stated),
         cmocka_unit_test(work_stops_wherever_it_reports),
+        cmocka_unit_test(a_callback_may_call_kiln),
     };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     kiln_context_destroy(context);
