@@ -177,8 +177,10 @@ static bool has_levels(ki_reader *r, const header *h)
 {
     for (uint32_t k = 0; k < h->level_count; k++) {
         uint64_t size = ki_pixels_size(h->pixel, (int)h->width >> k, (int)h->width >> k);
-        if (ki_read_u32(r) != size || !ki_read_bytes(r, (size_t)(6 * size)))
+        // Six faces may have more bytes than a size_t of 32 bits counts.
+        if (ki_read_u32(r) != size || 6 * size > ki_reader_left(r))
             return false;
+        ki_read_bytes(r, (size_t)(6 * size));
     }
     return true;
 }

@@ -279,6 +279,23 @@ static void ktx1_is_checked(void **state)
     }
 }
 
+// Six faces of 2^31 bytes, of which the file has none: 6 * 2^31 is 0 in 32 bits.
+static void faces_beyond_32_bits_are_missed(void **state)
+{
+    (void)state;
+    enum { WIDTH = 36, HEIGHT = 40, LEVELS = 56, PAIR_BYTES = 60, PAIRS = 64 };
+    ki_writer w = make_sample(KTX1);
+    kiln_file_info info;
+    ki_patch_u32(&w, WIDTH, 16384);
+    ki_patch_u32(&w, HEIGHT, 16384);
+    ki_patch_u32(&w, LEVELS, 1);
+    size_t levels = PAIRS + (size_t)w.bytes[PAIR_BYTES] + 256 * (size_t)w.bytes[PAIR_BYTES + 1];
+    ki_patch_u32(&w, levels, 0x80000000);
+    assert_int_equal(describe(w.bytes, levels + 4, "m.ktx", &info), KILN_ERROR_FORMAT);
+    assert_string_equal(error.message, "m.ktx: its 1 levels are cut off or damaged");
+    ki_writer_free(&w);
+}
+
 static void lines_are_taken_as_far_as_they_make_sense(void **state)
 {
     (void)state;
@@ -461,6 +478,7 @@ int main(void)
         cmocka_unit_test(manifests_are_checked),
         cmocka_unit_test(gltf_is_checked),
         cmocka_unit_test(ktx1_is_checked),
+        cmocka_unit_test(faces_beyond_32_bits_are_missed),
         cmocka_unit_test(lines_are_taken_as_far_as_they_make_sense),
         cmocka_unit_test(texts_stand_in_a_png),
         cmocka_unit_test(control_characters_end_a_writers_name),
