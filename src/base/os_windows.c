@@ -165,7 +165,11 @@ bool ki_os_list_folder(const char *path, void (*name)(void *user, const char *na
     char pattern[ROOM];
     wchar_t wide[ROOM];
     WIN32_FIND_DATAW entry;
-    if (snprintf(pattern, sizeof pattern, "%s/*", path) >= ROOM || !widen(pattern, wide))
+    if (snprintf(pattern, sizeof pattern, "%s/*", path) >= ROOM) {
+        errno = ENAMETOOLONG;
+        return false;
+    }
+    if (!widen(pattern, wide))
         return false;
     HANDLE search = FindFirstFileW(wide, &entry);
     if (search == INVALID_HANDLE_VALUE)

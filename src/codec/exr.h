@@ -143,8 +143,9 @@ typedef struct ki_exr_chunk {
 /// Returns the name of a known compression, for example "zip".
 const char *ki_exr_compression_name(int compression);
 
-/// Finds the chunks of a part and checks all their sizes, so that the memory allocated for the
-/// picture later is bounded by the size of the file. *chunks is allocated, or NULL on failure.
+/// Finds the chunks of a part and checks all their sizes, so that the texels of the data window
+/// are bounded by the size of the file. The picture itself has the size of the display window,
+/// which a cropped render may leave mostly empty. *chunks is allocated, or NULL on failure.
 kiln_result ki_exr_find_chunks(kiln_context *context, const ki_exr_header *header, int part,
                                const char *name, ki_exr_chunk **chunks, int *count,
                                kiln_error *error);

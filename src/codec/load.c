@@ -139,8 +139,10 @@ static const char *face_in(const char *name)
     const char *end = strrchr(name, '.');
     if (end - name > 2 && end[-1] == '0' && end[-2] == '_')
         end -= 2;
+    if (end - name < 2)
+        return NULL;
     const char *at = end - 2;
-    return at >= name && !strncmp(at, "px", 2) && (at == name || at[-1] == '_') ? at : NULL;
+    return !strncmp(at, "px", 2) && (at == name || at[-1] == '_') ? at : NULL;
 }
 
 // Orders face files: a name that is only the face comes first, then the byte order of the names

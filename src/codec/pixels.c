@@ -23,8 +23,9 @@ static kiln_result check_pixels(const kiln_pixels *p, size_t *row_bytes, kiln_er
     size_t sample = p->type == KILN_PIXEL_HALF ? 2 : 4;
     if (p->width < 0 || !ki_mul_size((size_t)p->width, sample * (size_t)p->channels, row_bytes))
         return ki_fail(error, KILN_ERROR_ARGUMENT, "pixels are %d wide", p->width);
-    ptrdiff_t stride = p->row_stride < 0 ? -p->row_stride : p->row_stride;
-    if (stride && (size_t)stride < *row_bytes)
+    // Negated as an unsigned number, because -PTRDIFF_MIN does not exist.
+    size_t stride = p->row_stride < 0 ? 0 - (size_t)p->row_stride : (size_t)p->row_stride;
+    if (stride && stride < *row_bytes)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "row_stride is %td bytes, a row has %zu",
                        p->row_stride, *row_bytes);
     return KILN_OK;
