@@ -122,7 +122,7 @@ static void many_suns_allocate_once(void **state)
     CHECK_OK(kiln_context_create(&def, &context, &error));
     CHECK_OK(kiln_map_create(context, KILN_SHAPE_PANORAMA, 256, 1, &source, &error));
     for (size_t i = 0; i < 200; i++)
-        source.level[0][3 * (i * 641 + 40000)] = 1000;
+        source.level[0][3 * (i * 551 + 20000)] = 1000; // of 131072 texels
     CHECK_OK(kiln_plan_create(context, KILN_SHAPE_PANORAMA, 256, &bake, &plan, &error));
     CHECK_OK(kiln_plan_environment(plan, &made, &error));
     long before = c.allocations;
