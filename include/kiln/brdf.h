@@ -232,9 +232,9 @@ typedef enum kiln_table_kind {
     KILN_TABLE_E_DIELECTRIC,     ///< E of a rough dielectric's reflection, with w along the ior
     /// Reflected and transmitted share from outside, then both from inside.
     KILN_TABLE_GLASS,
-    /// Albedo that bounces after the first add, by random walk, with w along F0. The albedo with
-    /// all bounces, E(n.v, roughness, F0), is F0 A + B plus the table's value, with an error below
-    /// 2e-3.
+    /// The part of the albedo that is due to light reflected twice or more between microfacets,
+    /// computed by random walks, with w along F0. The albedo of all bounces is F0 A + B plus the
+    /// table's value, with an error below 2e-3.
     KILN_TABLE_E_WALK
 } kiln_table_kind;
 
