@@ -34,7 +34,7 @@ enum {
 // An analysis of the panorama that is separate from the analysis for the levels.
 typedef struct analyzer {
     ki_analysis *analysis;
-    ki_intake *intake;
+    ki_analysis_workspace *workspace;
     kiln_spectrum *spectrum; // spectrum of the last execution
 } analyzer;
 
@@ -63,7 +63,7 @@ struct kiln_plan {
 static void analyzer_destroy(analyzer *a)
 {
     kiln_spectrum_destroy(a->spectrum);
-    ki_intake_destroy(a->intake);
+    ki_analysis_workspace_destroy(a->workspace);
     ki_analysis_destroy(a->analysis);
     *a = (analyzer){0};
 }
@@ -76,9 +76,9 @@ static kiln_result analyzer_create(kiln_context *context, int size, int degree, 
     ki_model_density(degree, density);
     kiln_result result = ki_analysis_create(context, size, degree, density, &a->analysis, error);
     if (result == KILN_OK)
-        result = ki_intake_create(a->analysis, true, &a->intake, error);
+        result = ki_analysis_workspace_create(context, a->analysis, true, &a->workspace, error);
     if (result == KILN_OK)
-        result = ki_spectrum_create(a->analysis, &a->spectrum, error);
+        result = ki_spectrum_create(context, a->analysis, &a->spectrum, error);
     if (result != KILN_OK)
         analyzer_destroy(a);
     return result;
@@ -91,7 +91,7 @@ static const kiln_spectrum *find_spectrum(const kiln_plan *p, const analyzer *a,
 {
     if (!a->spectrum)
         return p->prefilter->spectrum;
-    ki_intake_whole(a->intake, panorama->level[0], a->spectrum);
+    ki_analysis_execute(a->analysis, a->workspace, panorama->level[0], a->spectrum);
     return a->spectrum;
 }
 
@@ -430,7 +430,7 @@ kiln_result kiln_map_sh(kiln_context *context, const kiln_map *map, int bands, d
     if (result == KILN_OK)
         result = analyzer_create(context, map->size, SH_DEGREE, &a, error);
     if (result == KILN_OK)
-        ki_intake_whole(a.intake, map->level[0], a.spectrum);
+        ki_analysis_execute(a.analysis, a.workspace, map->level[0], a.spectrum);
     if (result == KILN_OK)
         result = ki_sh_project(a.spectrum, bands, rotation, sh, error);
     analyzer_destroy(&a);

@@ -169,9 +169,9 @@ kiln_result ki_prefilter_create(kiln_context *context, int panorama_size, const 
     ki_model_density(degree, density);
     result = ki_analysis_create(context, panorama_size, degree, density, &p->analysis, error);
     if (result == KILN_OK)
-        result = ki_intake_create(p->analysis, true, &p->intake, error);
+        result = ki_analysis_workspace_create(context, p->analysis, true, &p->workspace, error);
     if (result == KILN_OK)
-        result = ki_spectrum_create(p->analysis, &p->spectrum, error);
+        result = ki_spectrum_create(context, p->analysis, &p->spectrum, error);
     for (int i = 0; i < p->def.level_count && result == KILN_OK; i++) {
         int size = ki_max(ki_max(1, p->def.smallest), p->def.size >> i);
         if (!ki_progress(context, stage, (double)i / p->def.level_count))
@@ -200,7 +200,7 @@ kiln_result ki_prefilter_execute(ki_prefilter *p, const kiln_map *panorama, cons
     kiln_result result = KILN_OK;
     if (!ki_progress(p->context, stage, 0))
         return ki_fail_cancelled(error, stage);
-    ki_intake_whole(p->intake, panorama->level[0], p->spectrum);
+    ki_analysis_execute(p->analysis, p->workspace, panorama->level[0], p->spectrum);
     // The analysis counts as a quarter of the progress, and each level as half of the progress that
     // remains, because levels get smaller.
     double done = 0.25;
@@ -239,7 +239,7 @@ void ki_prefilter_destroy(ki_prefilter *plan)
     }
     ki_tune_destroy(plan->tune);
     kiln_spectrum_destroy(plan->spectrum);
-    ki_intake_destroy(plan->intake);
+    ki_analysis_workspace_destroy(plan->workspace);
     ki_analysis_destroy(plan->analysis);
     ki_free(plan);
 }

@@ -25,7 +25,7 @@ typedef struct ki_prefilter {
     int source_size;        // number of rows of the panorama
     float roughness[KILN_MAX_LEVELS];
     ki_analysis *analysis;
-    ki_intake *intake;
+    ki_analysis_workspace *workspace;
     kiln_spectrum *spectrum; // spectrum of the panorama in the last execution
     // Each level either is a mirror (`mirrors`), is filtered (`levels`) or is tuned (`tune`).
     // `direct` says that a mirror is resampled from the source itself, whose shape need not be a

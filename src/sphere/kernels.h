@@ -58,8 +58,8 @@ typedef struct ki_kernels {
 
     /// Adds weighted rows: accumulator[i] += weights[k] * (rows + offsets[k])[i] for i < count,
     /// with k = 0 .. row_count - 1 in this order.
-    void (*spread)(double *accumulator, const float *rows, const ptrdiff_t *offsets,
-                   const double *weights, int row_count, int count);
+    void (*add_weighted)(double *accumulator, const float *rows, const ptrdiff_t *offsets,
+                         const double *weights, int row_count, int count);
 
     /// Sums a row of `count` RGB texels by channel and returns the largest value of the row.
     float (*sum_row)(const float *row, int count, double sum[3]);

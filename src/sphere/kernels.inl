@@ -217,8 +217,8 @@ static double *fft(const ki_fft *plan, double *data, double *work)
 
 // ------------------------------------------------------------------------------------------ rings
 
-static void spread(double *accumulator, const float *rows, const ptrdiff_t *offsets,
-                   const double *weights, int row_count, int count)
+static void add_weighted(double *accumulator, const float *rows, const ptrdiff_t *offsets,
+                         const double *weights, int row_count, int count)
 {
     enum { AT_ONCE = 4 }; // number of vectors summed at once, which hides the latency of additions
     int i = 0;
@@ -500,5 +500,5 @@ static void suns_ggx(const ki_sun_points *suns, double alpha, const double *dire
     }
 }
 
-const ki_kernels KI_TABLE = {fft,        spread,     sum_row,     analyze,
-                             synthesize, sum_orders, interpolate, suns_ggx};
+const ki_kernels KI_TABLE = {fft,        add_weighted, sum_row,     analyze,
+                             synthesize, sum_orders,   interpolate, suns_ggx};

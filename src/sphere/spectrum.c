@@ -25,11 +25,12 @@ enum { CANDIDATES = 4096 };
 
 enum { ROW_NODES = 6 };
 
-// Integrates the interpolating function of each latitude ring, times sin theta, over the row from
-// theta0 to theta1. Rings k < 0 or k >= ring_count lie beyond a pole. Returns the number of
-// weights; with `weights` NULL the weights are only counted.
-static int spread_row(double theta0, double theta1, int ring_count, const double *taps,
-                      const double rule[2][ROW_NODES], int *first, double *weights)
+// Computes the weights of a row for the latitude rings from ring *first on: the integral over the
+// row, from theta0 to theta1, of each ring's interpolating function times sin theta. Rings k < 0 or
+// k >= ring_count lie beyond a pole. Returns the number of weights; with `weights` NULL the weights
+// are only counted.
+static int weigh_row(double theta0, double theta1, int ring_count, const double *taps,
+                     const double rule[2][ROW_NODES], int *first, double *weights)
 {
     double scale = ring_count / KI_PI; // latitude ring k lies at scale * theta = k + 1/2
     int low = (int)floor(theta0 * scale - 0.5), high = (int)floor(theta1 * scale - 0.5);
@@ -51,15 +52,18 @@ static int spread_row(double theta0, double theta1, int ring_count, const double
     return count;
 }
 
-// Returns the real index of a latitude ring that may lie beyond a pole. *turned says whether the
-// ring then lies half a turn away.
-static int real_ring(int ring, int count, bool *turned)
+// Returns the index of the latitude ring with which a ring k < 0 or k >= count, beyond a pole,
+// coincides. *half_turn says whether the ring lies beyond a pole: its points are then half a turn
+// away in longitude.
+static int real_ring(int ring, int count, bool *half_turn)
 {
-    *turned = ring < 0 || ring >= count;
+    *half_turn = ring < 0 || ring >= count;
     return ring < 0 ? -1 - ring : ring >= count ? 2 * count - 1 - ring : ring;
 }
 
-static bool plan_shares(ki_analysis *a, const double *taps)
+// Fills in the list of weights, sorted by latitude ring: the first pass counts the weights of each
+// ring, the second pass stores them. Returns false when memory runs out.
+static bool plan_row_weights(kiln_context *context, ki_analysis *a, const double *taps)
 {
     int size = a->size, rings = 2 * a->rings.pair_count, first;
     double rule[2][ROW_NODES];
@@ -68,20 +72,20 @@ static bool plan_shares(ki_analysis *a, const double *taps)
     // A row contributes to at most as many latitude rings as its height covers, plus those of the
     // interpolation weights at both ends.
     int most = rings / size + KI_TAPS + 2;
-    double *weights = ki_alloc_raw(a->context, (size_t)most, sizeof *weights);
-    int *filled = ki_alloc(a->context, (size_t)rings, sizeof *filled);
-    a->ring_start = ki_alloc(a->context, (size_t)rings + 1, sizeof *a->ring_start);
+    double *weights = ki_alloc_raw(context, (size_t)most, sizeof *weights);
+    int *filled = ki_alloc(context, (size_t)rings, sizeof *filled);
+    a->ring_start = ki_alloc(context, (size_t)rings + 1, sizeof *a->ring_start);
     bool good = weights && filled && a->ring_start;
     for (int pass = 0; good && pass < 2; pass++) {
         for (int j = 0; j < size; j++) {
-            int count = spread_row(j * KI_PI / size, (j + 1) * KI_PI / size, rings, taps, nodes,
-                                   &first, pass ? weights : NULL);
+            int count = weigh_row(j * KI_PI / size, (j + 1) * KI_PI / size, rings, taps, nodes,
+                                  &first, pass ? weights : NULL);
             for (int i = 0; i < count; i++) {
-                bool turned;
-                int ring = real_ring(first + i, rings, &turned);
+                bool half_turn;
+                int ring = real_ring(first + i, rings, &half_turn);
                 if (pass)
-                    a->shares[a->ring_start[ring] + filled[ring]++] =
-                        (ki_share){j, turned, weights[i]};
+                    a->row_weights[a->ring_start[ring] + filled[ring]++] =
+                        (ki_row_weight){j, half_turn, weights[i]};
                 else
                     a->ring_start[ring + 1]++;
             }
@@ -89,8 +93,9 @@ static bool plan_shares(ki_analysis *a, const double *taps)
         for (int k = 0; !pass && k < rings; k++)
             a->ring_start[k + 1] += a->ring_start[k];
         if (!pass)
-            a->shares = ki_alloc_raw(a->context, (size_t)a->ring_start[rings], sizeof *a->shares);
-        good = a->shares != NULL;
+            a->row_weights =
+                ki_alloc_raw(context, (size_t)a->ring_start[rings], sizeof *a->row_weights);
+        good = a->row_weights != NULL;
     }
     ki_free(weights);
     ki_free(filled);
@@ -104,7 +109,6 @@ kiln_result ki_analysis_create(kiln_context *context, int size, int degree, cons
     double *taps = ki_alloc_raw(context, KI_TAP_TABLE, sizeof *taps);
     if (!a || !taps)
         goto failed;
-    a->context = context;
     a->kernels = ki_sphere_kernels(context);
     a->size = size;
     a->degree = degree;
@@ -125,7 +129,7 @@ kiln_result ki_analysis_create(kiln_context *context, int size, int degree, cons
         column[1] = sine * width;
     }
     ki_taps_design(KI_PI / (2 * a->rings.pair_count), density, degree, taps);
-    if (!plan_shares(a, taps))
+    if (!plan_row_weights(context, a, taps))
         goto failed;
     ki_free(taps);
     return KILN_OK;
@@ -146,14 +150,13 @@ void ki_analysis_destroy(ki_analysis *analysis)
     ki_fft_destroy(&analysis->fft);
     ki_free(analysis->column);
     ki_free(analysis->ring_start);
-    ki_free(analysis->shares);
+    ki_free(analysis->row_weights);
     ki_free(analysis);
 }
 
-kiln_result ki_spectrum_create(const ki_analysis *analysis, kiln_spectrum **spectrum,
-                               kiln_error *error)
+kiln_result ki_spectrum_create(kiln_context *context, const ki_analysis *analysis,
+                               kiln_spectrum **spectrum, kiln_error *error)
 {
-    kiln_context *context = analysis->context;
     kiln_spectrum *s = *spectrum = ki_alloc(context, 1, sizeof *s);
     if (s) {
         *s =
@@ -183,13 +186,12 @@ int kiln_spectrum_degree(const kiln_spectrum *spectrum)
     return spectrum->degree;
 }
 
-// ------------------------------------------------------------------------------------------ intake
+// ------------------------------------------------------------------------------------- the workspace
 
-struct ki_intake {
-    const ki_analysis *analysis;
-    int row_count; // number of panorama rows added by earlier calls of ki_intake_rows
-    // Sums of each latitude ring, [ring][2 size][3]; only for panoramas that come row by row.
-    double *rings;
+struct ki_analysis_workspace {
+    kiln_context *context;
+    int row_count;      // number of panorama rows added by earlier calls of ki_analysis_add_rows
+    double *rings;      // sums of each latitude ring, [ring][2 size][3]; NULL for whole panoramas
     double *row_sums;   // radiance summed over each row, [size][3]
     float *row_peaks;   // largest value of each row, [size]
     double total[3];    // radiance times solid angle, summed over the rows so far
@@ -201,108 +203,114 @@ struct ki_intake {
     // Legendre recurrence.
     double *scratch;
     size_t scratch_size;
-
-    const float *rows;       // panorama rows that are being added, RGB
-    int rows_here;           // number of the rows that are being added
-    kiln_spectrum *spectrum; // the spectrum that is being written
 };
+
+// What the tasks of one call share.
+typedef struct run {
+    const ki_analysis *analysis;
+    ki_analysis_workspace *work;
+    const float *rows;       // panorama rows that are added, RGB; or the whole panorama
+    int row_count;           // number of rows in `rows`
+    kiln_spectrum *spectrum; // the spectrum that is written
+} run;
 
 enum {
     PIECES = 16,             // number of pieces into which each half of a panorama row is cut
     RING_SET = 2 * KI_LANES, // number of latitude rings in a vector
 };
 
-kiln_result ki_intake_create(const ki_analysis *analysis, bool whole, ki_intake **intake,
-                             kiln_error *error)
+kiln_result ki_analysis_workspace_create(kiln_context *context, const ki_analysis *analysis,
+                                         bool whole, ki_analysis_workspace **workspace,
+                                         kiln_error *error)
 {
-    kiln_context *context = analysis->context;
     size_t width = 2 * (size_t)analysis->size, rings = 2 * (size_t)analysis->rings.pair_count;
     size_t threads = (size_t)ki_context_threads(context), row, ring_bytes;
     size_t vectors = (size_t)analysis->rings.vector_count;
-    ki_intake *in = *intake = ki_alloc(context, 1, sizeof *in);
-    if (!in)
-        return ki_fail_memory(context, error, "an analysis", sizeof *in);
-    in->analysis = analysis;
-    in->scratch_size = width * 16 * 2 + (whole ? width * 3 * RING_SET : 0);
-    if (in->scratch_size < 16 * vectors)
-        in->scratch_size = 16 * vectors;
+    ki_analysis_workspace *w = *workspace = ki_alloc(context, 1, sizeof *w);
+    if (!w)
+        return ki_fail_memory(context, error, "an analysis", sizeof *w);
+    w->context = context;
+    w->scratch_size = width * 16 * 2 + (whole ? width * 3 * RING_SET : 0);
+    if (w->scratch_size < 16 * vectors)
+        w->scratch_size = 16 * vectors;
     if (!ki_mul_size(width, 3 * sizeof(double), &row) || !ki_mul_size(row, rings, &ring_bytes))
         ring_bytes = SIZE_MAX;
-    in->rings = whole ? NULL : ki_alloc_raw(context, ring_bytes, 1);
-    in->row_sums = ki_alloc_raw(context, (size_t)analysis->size, 3 * sizeof(double));
-    in->row_peaks = ki_alloc_raw(context, (size_t)analysis->size, sizeof(float));
-    in->candidates = ki_alloc_raw(context, CANDIDATES, sizeof *in->candidates);
-    in->orders =
+    w->rings = whole ? NULL : ki_alloc(context, ring_bytes, 1);
+    w->row_sums = ki_alloc_raw(context, (size_t)analysis->size, 3 * sizeof(double));
+    w->row_peaks = ki_alloc_raw(context, (size_t)analysis->size, sizeof(float));
+    w->candidates = ki_alloc_raw(context, CANDIDATES, sizeof *w->candidates);
+    w->orders =
         ki_alloc_raw(context, ((size_t)analysis->degree + 1) * vectors, 96 * sizeof(double));
-    in->scratch = ki_alloc_raw(context, threads * in->scratch_size, sizeof(double));
-    if ((in->rings || whole) && in->row_sums && in->row_peaks && in->candidates && in->orders &&
-        in->scratch) {
-        if (!whole)
-            memset(in->rings, 0, ring_bytes);
+    w->scratch = ki_alloc_raw(context, threads * w->scratch_size, sizeof(double));
+    if ((w->rings || whole) && w->row_sums && w->row_peaks && w->candidates && w->orders &&
+        w->scratch)
         return KILN_OK;
-    }
-    ki_intake_destroy(in);
-    *intake = NULL;
+    ki_analysis_workspace_destroy(w);
+    *workspace = NULL;
     return ki_fail_memory(context, error, "the rings of an analysis", whole ? row : ring_bytes);
 }
 
-void ki_intake_destroy(ki_intake *intake)
+void ki_analysis_workspace_destroy(ki_analysis_workspace *workspace)
 {
-    if (!intake)
+    if (!workspace)
         return;
-    ki_free(intake->rings);
-    ki_free(intake->row_sums);
-    ki_free(intake->row_peaks);
-    ki_free(intake->candidates);
-    ki_free(intake->orders);
-    ki_free(intake->scratch);
-    ki_free(intake);
+    ki_free(workspace->rings);
+    ki_free(workspace->row_sums);
+    ki_free(workspace->row_peaks);
+    ki_free(workspace->candidates);
+    ki_free(workspace->orders);
+    ki_free(workspace->scratch);
+    ki_free(workspace);
 }
 
-// Adds the contributions of the panorama rows in->rows to one piece of a latitude ring. Both halves
+// ------------------------------------------------------------------------------------------ the rows
+
+// Adds the contributions of the panorama rows r->rows to one piece of a latitude ring. Both halves
 // of a row are cut at the same places, so that a ring half a turn away receives the same piece of
 // the other half. The sums are in the order of the rows, so that the result does not depend on how
 // many rows come at a time.
-static void spread_piece(const ki_intake *in, int ring, int half, int piece, double *accumulator)
+static void add_to_piece(const run *r, int ring, int half, int piece, double *accumulator)
 {
     enum { MOST = 32 };
-    const ki_analysis *a = in->analysis;
+    const ki_analysis *a = r->analysis;
     int size = a->size, from = piece * size / PIECES, count = (piece + 1) * size / PIECES - from;
     ptrdiff_t here = 3 * ((ptrdiff_t)half * size + from);
     ptrdiff_t there = 3 * ((ptrdiff_t)(1 - half) * size + from), offsets[MOST];
     double weights[MOST];
     int n = 0;
     for (int i = a->ring_start[ring]; i < a->ring_start[ring + 1]; i++) {
-        const ki_share *share = &a->shares[i];
-        int row = share->row - in->row_count;
-        if (row < 0 || row >= in->rows_here)
+        const ki_row_weight *from_row = &a->row_weights[i];
+        int row = from_row->row - r->work->row_count;
+        if (row < 0 || row >= r->row_count)
             continue;
-        offsets[n] = (ptrdiff_t)row * size * 6 + (share->turned ? there : here);
-        weights[n++] = share->weight;
+        offsets[n] = (ptrdiff_t)row * size * 6 + (from_row->half_turn ? there : here);
+        weights[n++] = from_row->weight;
         if (n == MOST) {
-            a->kernels->spread(accumulator + here, in->rows, offsets, weights, n, 3 * count);
+            a->kernels->add_weighted(accumulator + here, r->rows, offsets, weights, n, 3 * count);
             n = 0;
         }
     }
     if (n)
-        a->kernels->spread(accumulator + here, in->rows, offsets, weights, n, 3 * count);
+        a->kernels->add_weighted(accumulator + here, r->rows, offsets, weights, n, 3 * count);
 }
 
-// Task of one thread: adds the panorama rows in->rows to the same piece of all latitude rings.
-static void spread_rows(void *data, int index)
+// Task of one thread: adds the panorama rows r->rows to the same piece of all latitude rings.
+static void add_to_rings(void *data, int index)
 {
-    ki_intake *in = data;
-    for (int ring = 0; ring < 2 * in->analysis->rings.pair_count; ring++)
-        spread_piece(in, ring, index / PIECES, index % PIECES,
-                     in->rings + (ptrdiff_t)ring * in->analysis->size * 6);
+    const run *r = data;
+    for (int ring = 0; ring < 2 * r->analysis->rings.pair_count; ring++)
+        add_to_piece(r, ring, index / PIECES, index % PIECES,
+                     r->work->rings + (ptrdiff_t)ring * r->analysis->size * 6);
 }
 
+// Task of one thread: computes the sum and the largest value of one of the rows r->rows.
 static void sum_one_row(void *data, int index)
 {
-    ki_intake *in = data;
-    int size = in->analysis->size, row = in->row_count + index;
-    in->row_peaks[row] = in->analysis->kernels->sum_row(in->rows + (size_t)index * (size_t)size * 6,
-                                                        2 * size, in->row_sums + 3 * (size_t)row);
+    const run *r = data;
+    ki_analysis_workspace *w = r->work;
+    int size = r->analysis->size, row = w->row_count + index;
+    w->row_peaks[row] = r->analysis->kernels->sum_row(r->rows + (size_t)index * (size_t)size * 6,
+                                                      2 * size, w->row_sums + 3 * (size_t)row);
 }
 
 static double row_solid_angle(int row, int size)
@@ -312,7 +320,9 @@ static double row_solid_angle(int row, int size)
     return KI_PI / size * 2 * high;
 }
 
-static bool is_sun(const float rgb[3], double solid, const double total[3])
+// Returns true if a texel of this radiance and solid angle holds the share sun_share of the total
+// light in some channel.
+static bool is_candidate(const float rgb[3], double solid, const double total[3])
 {
     for (int c = 0; c < 3; c++)
         if ((double)rgb[c] * solid > sun_share * total[c] && total[c] > 0)
@@ -320,67 +330,70 @@ static bool is_sun(const float rgb[3], double solid, const double total[3])
     return false;
 }
 
-// Removes candidates that are not bright enough to be suns relative to the light of all rows so
-// far, which grows with every row.
-static void prune(ki_intake *in)
+// Removes the candidates that hold too small a share of the light of all rows so far, which grows
+// with every row.
+static void drop_candidates(ki_analysis_workspace *w, int size)
 {
-    int kept = 0;
-    for (int i = 0; i < in->candidate_count; i++) {
-        ki_sun sun = in->candidates[i];
-        if (is_sun(sun.radiance, row_solid_angle(sun.row, in->analysis->size), in->total))
-            in->candidates[kept++] = sun;
+    int count = 0;
+    for (int i = 0; i < w->candidate_count; i++) {
+        ki_sun sun = w->candidates[i];
+        if (is_candidate(sun.radiance, row_solid_angle(sun.row, size), w->total))
+            w->candidates[count++] = sun;
     }
-    in->candidate_count = kept;
+    w->candidate_count = count;
 }
 
-static void gather_candidates(ki_intake *in)
+// Adds the light of the rows r->rows to the total, and their brightest texels to the candidates.
+static void gather_candidates(const run *r)
 {
-    int size = in->analysis->size;
-    for (int j = 0; j < in->rows_here; j++) {
-        int row = in->row_count + j;
+    ki_analysis_workspace *w = r->work;
+    int size = r->analysis->size;
+    for (int j = 0; j < r->row_count; j++) {
+        int row = w->row_count + j;
         double solid = row_solid_angle(row, size);
         for (int c = 0; c < 3; c++)
-            in->total[c] += solid * in->row_sums[3 * row + c];
-        float peak = in->row_peaks[row], peaks[3] = {peak, peak, peak};
-        if (!is_sun(peaks, solid, in->total))
+            w->total[c] += solid * w->row_sums[3 * row + c];
+        float peak = w->row_peaks[row], peaks[3] = {peak, peak, peak};
+        if (!is_candidate(peaks, solid, w->total))
             continue;
         for (int x = 0; x < 2 * size; x++) {
-            const float *rgb = in->rows + 3 * ((size_t)j * 2 * (size_t)size + (size_t)x);
-            if (!is_sun(rgb, solid, in->total))
+            const float *rgb = r->rows + 3 * ((size_t)j * 2 * (size_t)size + (size_t)x);
+            if (!is_candidate(rgb, solid, w->total))
                 continue;
-            if (in->candidate_count == CANDIDATES)
-                prune(in);
-            if (in->candidate_count < CANDIDATES)
-                in->candidates[in->candidate_count++] = (ki_sun){row, x, {rgb[0], rgb[1], rgb[2]}};
+            if (w->candidate_count == CANDIDATES)
+                drop_candidates(w, size);
+            if (w->candidate_count < CANDIDATES)
+                w->candidates[w->candidate_count++] = (ki_sun){row, x, {rgb[0], rgb[1], rgb[2]}};
         }
     }
 }
 
-kiln_result ki_intake_rows(ki_intake *in, const float *rows, int count, kiln_error *error)
+kiln_result ki_analysis_add_rows(const ki_analysis *analysis, ki_analysis_workspace *w,
+                                 const float *rows, int count, kiln_error *error)
 {
-    if (count < 0 || count > in->analysis->size - in->row_count)
+    if (count < 0 || count > analysis->size - w->row_count)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "%d rows after %d: the panorama has %d", count,
-                       in->row_count, in->analysis->size);
-    in->rows = rows;
-    in->rows_here = count;
-    ki_parallel_for(in->analysis->context, count, sum_one_row, in);
-    gather_candidates(in);
-    ki_parallel_for(in->analysis->context, 2 * PIECES, spread_rows, in);
-    in->row_count += count;
+                       w->row_count, analysis->size);
+    run r = {.analysis = analysis, .work = w, .rows = rows, .row_count = count};
+    ki_parallel_for(w->context, count, sum_one_row, &r);
+    gather_candidates(&r);
+    ki_parallel_for(w->context, 2 * PIECES, add_to_rings, &r);
+    w->row_count += count;
     return KILN_OK;
 }
 
-// Decides which candidates are suns and moves these to the spectrum.
-static void settle_suns(ki_intake *in, kiln_spectrum *spectrum)
+// Writes the list of suns of the spectrum: the candidates that hold enough of the whole panorama's
+// light and are bright enough relative to the mean.
+static void select_suns(ki_analysis_workspace *w, kiln_spectrum *spectrum)
 {
     int count = 0;
-    prune(in);
-    for (int i = 0; i < in->candidate_count; i++) {
-        const ki_sun *sun = &in->candidates[i];
+    drop_candidates(w, spectrum->size);
+    for (int i = 0; i < w->candidate_count; i++) {
+        const ki_sun *sun = &w->candidates[i];
         bool bright = false;
         for (int c = 0; c < 3; c++)
-            bright |= (double)sun->radiance[c] * 4 * KI_PI > sun_contrast * in->total[c] &&
-                      in->total[c] > 0;
+            bright |= (double)sun->radiance[c] * 4 * KI_PI > sun_contrast * w->total[c] &&
+                      w->total[c] > 0;
         if (bright)
             spectrum->suns[count++] = *sun;
     }
@@ -389,29 +402,29 @@ static void settle_suns(ki_intake *in, kiln_spectrum *spectrum)
 
 // ---------------------------------------------------------------------------------------- analysis
 
-// Subtracts the texels that are kept as suns from the sums of a latitude ring.
-static void dim_ring(const ki_intake *in, int ring, double *accumulator)
+// Subtracts the suns, which the spectrum leaves out, from the sums of a latitude ring.
+static void subtract_suns(const run *r, int ring, double *accumulator)
 {
-    const ki_analysis *a = in->analysis;
+    const ki_analysis *a = r->analysis;
     for (int k = a->ring_start[ring]; k < a->ring_start[ring + 1]; k++)
-        for (int i = 0; i < in->spectrum->sun_count; i++) {
-            const ki_share *share = &a->shares[k];
-            const ki_sun *sun = &in->spectrum->suns[i];
-            if (sun->row != share->row)
+        for (int i = 0; i < r->spectrum->sun_count; i++) {
+            const ki_row_weight *from_row = &a->row_weights[k];
+            const ki_sun *sun = &r->spectrum->suns[i];
+            if (sun->row != from_row->row)
                 continue;
-            int column = (sun->column + (share->turned ? a->size : 0)) % (2 * a->size);
+            int column = (sun->column + (from_row->half_turn ? a->size : 0)) % (2 * a->size);
             for (int c = 0; c < 3; c++)
-                accumulator[3 * column + c] -= share->weight * (double)sun->radiance[c];
+                accumulator[3 * column + c] -= from_row->weight * (double)sun->radiance[c];
         }
 }
 
 // Computes the Fourier transforms of eight pairs of latitude rings for one channel. The real part
 // of the data is the northern ring, the imaginary part the southern ring. The sum of the two
 // transforms goes to the functions even about the equator, their difference to the odd functions.
-static void transform_channel(const ki_intake *in, int vector, int channel, double *const *rings,
+static void transform_channel(const run *r, int vector, int channel, double *const *rings,
                               double *buffer)
 {
-    const ki_analysis *a = in->analysis;
+    const ki_analysis *a = r->analysis;
     int width = 2 * a->size;
     size_t vectors = (size_t)a->rings.vector_count;
     for (int x = 0; x < width; x++)
@@ -422,7 +435,7 @@ static void transform_channel(const ki_intake *in, int vector, int channel, doub
         if (vector < a->rings.first[m])
             continue;
         const double *p = z + 16 * (size_t)i, *q = z + 16 * (size_t)(i ? width - i : 0);
-        double *orders = in->orders + 96 * ((size_t)m * vectors + (size_t)vector);
+        double *orders = r->work->orders + 96 * ((size_t)m * vectors + (size_t)vector);
         double *even = orders + 16 * (size_t)channel, *odd = even + 48;
         const double *column = a->column + 2 * (size_t)m;
         double fr = column[0] * 0.5, fi = column[1] * 0.5;
@@ -438,78 +451,84 @@ static void transform_channel(const ki_intake *in, int vector, int channel, doub
     }
 }
 
-// Task of one thread: transforms eight pairs of latitude rings. If in->rows is the whole panorama,
+// Task of one thread: transforms eight pairs of latitude rings. If r->rows is the whole panorama,
 // the rings are first summed from these rows.
 static void transform_rings(void *data, int worker, int vector)
 {
-    ki_intake *in = data;
-    const ki_analysis *a = in->analysis;
+    const run *r = data;
+    const ki_analysis *a = r->analysis;
+    ki_analysis_workspace *w = r->work;
     size_t width = 2 * (size_t)a->size, pitch = 3 * width, buffers = width * 16 * 2;
-    double *buffer = in->scratch + (size_t)worker * in->scratch_size, *rings[RING_SET];
+    double *buffer = w->scratch + (size_t)worker * w->scratch_size, *rings[RING_SET];
     int number[RING_SET];
     for (int j = 0; j < KI_LANES; j++) {
         number[j] = KI_LANES * vector + j;
         number[KI_LANES + j] = 2 * a->rings.pair_count - 1 - number[j];
     }
     for (int j = 0; j < RING_SET; j++)
-        rings[j] = in->rings ? in->rings + (size_t)number[j] * pitch
-                             : buffer + buffers + (size_t)j * pitch;
-    if (!in->rings) {
+        rings[j] =
+            w->rings ? w->rings + (size_t)number[j] * pitch : buffer + buffers + (size_t)j * pitch;
+    if (!w->rings) {
         memset(rings[0], 0, RING_SET * pitch * sizeof(double));
         for (int piece = 0; piece < 2 * PIECES; piece++)
             for (int j = 0; j < RING_SET; j++)
-                spread_piece(in, number[j], piece / PIECES, piece % PIECES, rings[j]);
+                add_to_piece(r, number[j], piece / PIECES, piece % PIECES, rings[j]);
     }
     for (int j = 0; j < RING_SET; j++)
-        dim_ring(in, number[j], rings[j]);
+        subtract_suns(r, number[j], rings[j]);
     for (int channel = 0; channel < 3; channel++)
-        transform_channel(in, vector, channel, rings, buffer);
+        transform_channel(r, vector, channel, rings, buffer);
 }
 
 // Task of one thread: computes the coefficients of one order m.
 static void analyze_order(void *data, int worker, int m)
 {
-    ki_intake *in = data;
-    const ki_analysis *a = in->analysis;
+    const run *r = data;
+    const ki_analysis *a = r->analysis;
+    ki_analysis_workspace *w = r->work;
     size_t vectors = (size_t)a->rings.vector_count, row = ki_legendre_row(&a->legendre, m);
     int count = a->degree - m + 1;
-    double *out = in->spectrum->a + ki_coefficient_row(a->degree, m);
-    a->kernels->analyze(
-        a->legendre.f + row, count, a->rings.twice_cos, a->rings.start + 8 * vectors * (size_t)m,
-        in->orders + 96 * vectors * (size_t)m, a->rings.first[m], a->rings.vector_count,
-        in->scratch + (size_t)worker * in->scratch_size, out);
+    double *out = r->spectrum->a + ki_coefficient_row(a->degree, m);
+    a->kernels->analyze(a->legendre.f + row, count, a->rings.twice_cos,
+                        a->rings.start + 8 * vectors * (size_t)m,
+                        w->orders + 96 * vectors * (size_t)m, a->rings.first[m],
+                        a->rings.vector_count, w->scratch + (size_t)worker * w->scratch_size, out);
     for (int i = 0; i < count; i++)
         for (int c = 0; c < KI_COMPONENTS; c++)
             out[KI_COMPONENTS * i + c] *= a->legendre.scale[row + (size_t)i];
 }
 
-static void analyze_rings(ki_intake *in, kiln_spectrum *spectrum)
+static void analyze_rings(run *r)
 {
-    const ki_analysis *a = in->analysis;
-    settle_suns(in, spectrum);
-    in->spectrum = spectrum;
-    ki_parallel_workers(a->context, a->rings.vector_count, transform_rings, in);
-    ki_parallel_workers(a->context, a->degree + 1, analyze_order, in);
+    ki_analysis_workspace *w = r->work;
+    select_suns(w, r->spectrum);
+    ki_parallel_workers(w->context, r->analysis->rings.vector_count, transform_rings, r);
+    ki_parallel_workers(w->context, r->analysis->degree + 1, analyze_order, r);
 }
 
-kiln_result ki_intake_finish(ki_intake *in, kiln_spectrum *spectrum, kiln_error *error)
+kiln_result ki_analysis_finish(const ki_analysis *analysis, ki_analysis_workspace *w,
+                               kiln_spectrum *spectrum, kiln_error *error)
 {
-    if (in->row_count != in->analysis->size)
+    if (w->row_count != analysis->size)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "the panorama has %d rows, only %d came",
-                       in->analysis->size, in->row_count);
-    analyze_rings(in, spectrum);
+                       analysis->size, w->row_count);
+    analyze_rings(&(run){.analysis = analysis, .work = w, .spectrum = spectrum});
     return KILN_OK;
 }
 
-void ki_intake_whole(ki_intake *in, const float *rows, kiln_spectrum *spectrum)
+void ki_analysis_execute(const ki_analysis *analysis, ki_analysis_workspace *w, const float *rows,
+                         kiln_spectrum *spectrum)
 {
-    in->row_count = in->candidate_count = 0;
-    memset(in->total, 0, sizeof in->total);
-    in->rows = rows;
-    in->rows_here = in->analysis->size;
-    ki_parallel_for(in->analysis->context, in->rows_here, sum_one_row, in);
-    gather_candidates(in);
-    analyze_rings(in, spectrum);
+    run r = {.analysis = analysis,
+             .work = w,
+             .rows = rows,
+             .row_count = analysis->size,
+             .spectrum = spectrum};
+    w->row_count = w->candidate_count = 0;
+    memset(w->total, 0, sizeof w->total);
+    ki_parallel_for(w->context, r.row_count, sum_one_row, &r);
+    gather_candidates(&r);
+    analyze_rings(&r);
 }
 
 // -------------------------------------------------------------------------------------------- suns

@@ -28,15 +28,16 @@ struct kiln_spectrum {
 };
 
 /// The weight with which a row of the panorama contributes to a latitude ring.
-typedef struct ki_share {
+typedef struct ki_row_weight {
     int row;
-    bool turned; // true: the ring lies across a pole and takes the texels half a turn away
+    bool half_turn; // true: the ring lies across a pole and takes the texels half a turn away
     double weight;
-} ki_share;
+} ki_row_weight;
 
-/// Everything about an analysis that depends only on the size of the panorama and the degree.
+/// Everything about an analysis that depends only on the size of the panorama and the degree. An
+/// execution changes nothing in the analysis, so that any number of threads may execute one
+/// analysis at the same time, each with a workspace of its own.
 typedef struct ki_analysis {
-    kiln_context *context;
     const ki_kernels *kernels;
     int size, degree;
     ki_legendre legendre;
@@ -44,33 +45,44 @@ typedef struct ki_analysis {
     ki_fft fft; // transform of one row
     // Integral of exp(-i m phi) over the texel column 0 for each order m, [degree + 1][2].
     double *column;
-    int *ring_start;  // index in `shares` of the first share of each latitude ring, [rings + 1]
-    ki_share *shares; // shares, sorted by latitude ring and then by row
+    int *
+        ring_start; // index in `row_weights` of the first weight of each latitude ring, [rings + 1]
+    ki_row_weight *row_weights; // sorted by latitude ring and then by row
 } ki_analysis;
 
 /// Prepares the analysis of panoramas with `size` rows. `density` is the model of the spectrum for
 /// which the interpolation is designed, see ki_taps_design.
 kiln_result ki_analysis_create(kiln_context *context, int size, int degree, const double *density,
                                ki_analysis **analysis, kiln_error *error);
+/// Frees an analysis. `analysis` may be NULL.
 void ki_analysis_destroy(ki_analysis *analysis);
 
 /// Creates a spectrum of the analysis' degree, with coefficients 0 and an empty list of suns.
-kiln_result ki_spectrum_create(const ki_analysis *analysis, kiln_spectrum **spectrum,
-                               kiln_error *error);
+kiln_result ki_spectrum_create(kiln_context *context, const ki_analysis *analysis,
+                               kiln_spectrum **spectrum, kiln_error *error);
 
-/// A panorama that is being analysed: with `whole`, any number of whole panoramas one after the
-/// other, else one panorama in rows from north to south. The analysis by rows keeps all latitude
-/// rings in memory, that of whole panoramas only the rings of one vector for each thread.
-typedef struct ki_intake ki_intake;
-kiln_result ki_intake_create(const ki_analysis *analysis, bool whole, ki_intake **intake,
-                             kiln_error *error);
-void ki_intake_destroy(ki_intake *intake);
-/// Writes the spectrum of a whole panorama of `size` rows.
-void ki_intake_whole(ki_intake *intake, const float *rows, kiln_spectrum *spectrum);
-/// Adds the next `count` rows of the panorama.
-kiln_result ki_intake_rows(ki_intake *intake, const float *rows, int count, kiln_error *error);
-/// Writes the spectrum once all rows have been passed.
-kiln_result ki_intake_finish(ki_intake *intake, kiln_spectrum *spectrum, kiln_error *error);
+/// What executions of one analysis work on, one panorama after the other: buffers, and sums over
+/// the rows that have been added so far. The threads are those of the workspace's context.
+typedef struct ki_analysis_workspace ki_analysis_workspace;
+
+/// Creates a workspace for an analysis. With `whole`, panoramas are analysed by
+/// ki_analysis_execute, and the workspace has the latitude rings of one vector for each thread.
+/// Else the workspace has all latitude rings, and one panorama is analysed by ki_analysis_add_rows
+/// and ki_analysis_finish.
+kiln_result ki_analysis_workspace_create(kiln_context *context, const ki_analysis *analysis,
+                                         bool whole, ki_analysis_workspace **workspace,
+                                         kiln_error *error);
+/// Frees a workspace. `workspace` may be NULL.
+void ki_analysis_workspace_destroy(ki_analysis_workspace *workspace);
+/// Writes the spectrum of a whole panorama of `size` rows. The function allocates nothing.
+void ki_analysis_execute(const ki_analysis *analysis, ki_analysis_workspace *workspace,
+                         const float *rows, kiln_spectrum *spectrum);
+/// Adds the next `count` rows of a panorama, which come from north to south.
+kiln_result ki_analysis_add_rows(const ki_analysis *analysis, ki_analysis_workspace *workspace,
+                                 const float *rows, int count, kiln_error *error);
+/// Writes the spectrum after all rows have been added. Fails if rows are missing.
+kiln_result ki_analysis_finish(const ki_analysis *analysis, ki_analysis_workspace *workspace,
+                               kiln_spectrum *spectrum, kiln_error *error);
 
 /// Adds the harmonics of the suns (bright texels kept out of the spectrum) up to `degree` to the
 /// coefficients `a`, whose rows are those of that degree.

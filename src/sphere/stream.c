@@ -9,14 +9,14 @@
 struct kiln_stream {
     kiln_context *context;
     ki_analysis *analysis;
-    ki_intake *intake;
+    ki_analysis_workspace *workspace;
 };
 
 void kiln_stream_cancel(kiln_stream *stream)
 {
     if (!stream)
         return;
-    ki_intake_destroy(stream->intake);
+    ki_analysis_workspace_destroy(stream->workspace);
     ki_analysis_destroy(stream->analysis);
     ki_free(stream);
 }
@@ -45,7 +45,7 @@ kiln_result kiln_stream_begin(kiln_context *context, int size, int degree, kiln_
     ki_model_density(degree, density);
     kiln_result result = ki_analysis_create(context, size, degree, density, &s->analysis, error);
     if (result == KILN_OK)
-        result = ki_intake_create(s->analysis, false, &s->intake, error);
+        result = ki_analysis_workspace_create(context, s->analysis, false, &s->workspace, error);
     ki_free(density);
     if (result == KILN_OK)
         *stream = s;
@@ -57,14 +57,14 @@ kiln_result kiln_stream_begin(kiln_context *context, int size, int degree, kiln_
 kiln_result kiln_stream_rows(kiln_stream *stream, const float *rows, int row_count,
                              kiln_error *error)
 {
-    return ki_intake_rows(stream->intake, rows, row_count, error);
+    return ki_analysis_add_rows(stream->analysis, stream->workspace, rows, row_count, error);
 }
 
 kiln_result kiln_stream_finish(kiln_stream *stream, kiln_spectrum **spectrum, kiln_error *error)
 {
-    kiln_result result = ki_spectrum_create(stream->analysis, spectrum, error);
+    kiln_result result = ki_spectrum_create(stream->context, stream->analysis, spectrum, error);
     if (result == KILN_OK)
-        result = ki_intake_finish(stream->intake, *spectrum, error);
+        result = ki_analysis_finish(stream->analysis, stream->workspace, *spectrum, error);
     if (result != KILN_OK) {
         kiln_spectrum_destroy(*spectrum);
         *spectrum = NULL;
