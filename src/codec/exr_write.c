@@ -1,5 +1,7 @@
 // Writing of EXR files. In: floats of one to four channels and the file's options. Out: a file of
-// scan lines, half or float, compressed by ZIP in chunks of 16 lines.
+// scan lines, half or float, compressed by ZIP in chunks of 16 lines. The context's threads compress
+// several chunks at once. A chunk is compressed without regard to the others, and the chunks are
+// written in their order, which makes the file the same for any number of threads.
 #include "codec/codec.h"
 #include "codec/deflate.h"
 #include "image/pack.h"
@@ -93,6 +95,7 @@ static void header(ki_writer *w, int width, int height, int channels, const ki_e
     const char *version = kiln_version();
     attribute(w, "software", "string", (uint32_t)strlen(version) + 5);
     ki_write_text(w, "kiln %s", version);
+    ki_write_u8(w, 0); // the end of the header
 }
 
 // Reorders lines of pixels as the file stores them: in each line, channel by channel.
@@ -130,46 +133,144 @@ static void predict(const uint8_t *raw, size_t size, uint8_t *restrict bytes)
         bytes[i] = (uint8_t)(bytes[i] - bytes[i - 1] + 128);
 }
 
+// Memory in which one chunk is compressed, and what became of the chunk.
+typedef struct lane {
+    ki_deflater *deflater;
+    float *plane;                  // one line of one channel
+    uint8_t *raw, *sorted, *other; // a chunk as gathered, after predict(), and compressed
+    const uint8_t *bytes;          // the `size` bytes that the file stores
+    size_t size;
+} lane;
+
+// The chunks are compressed in batches: as many at once as there are lanes.
+typedef struct packer {
+    const float *pixels;
+    int width, height, channels;
+    bool half;
+    size_t line, most; // bytes of a line, and of a chunk of LINES lines
+    size_t chunks;
+    lane *lanes;
+    int count;    // number of lanes
+    size_t first; // the chunk in the first lane
+} packer;
+
+static void free_lanes(packer *p)
+{
+    for (int i = 0; p->lanes && i < p->count; i++) {
+        ki_deflater_free(p->lanes[i].deflater);
+        ki_free(p->lanes[i].plane);
+        ki_free(p->lanes[i].raw);
+    }
+    ki_free(p->lanes);
+    p->lanes = NULL;
+}
+
+static bool make_lanes(kiln_context *context, packer *p, int count)
+{
+    p->count = count;
+    p->lanes = ki_alloc(context, (size_t)count, sizeof *p->lanes);
+    bool complete = p->lanes;
+    for (int i = 0; complete && i < count; i++) {
+        lane *l = &p->lanes[i];
+        l->deflater = ki_deflater_create(context);
+        l->plane = ki_alloc_raw(context, (size_t)p->width, sizeof(float));
+        l->raw = ki_alloc_raw(context, p->most, 3);
+        complete = l->deflater && l->plane && l->raw;
+        l->sorted = complete ? l->raw + p->most : NULL;
+        l->other = complete ? l->raw + 2 * p->most : NULL;
+    }
+    if (!complete)
+        free_lanes(p);
+    return complete;
+}
+
+// Returns the number of lanes to try first: two for each thread, so that a thread whose chunk is
+// done early takes a second one.
+static int most_lanes(kiln_context *context, size_t chunks)
+{
+    int threads = ki_context_threads(context), count = threads > 1 ? 2 * threads : 1;
+    return chunks < (size_t)count ? (int)chunks : count;
+}
+
+static void pack_chunk(void *data, int index)
+{
+    const packer *p = data;
+    lane *l = &p->lanes[index];
+    int y = (int)(p->first + (size_t)index) * LINES, lines = ki_min(LINES, p->height - y);
+    size_t size = p->line * (size_t)lines;
+    gather(p->pixels + (size_t)y * (size_t)p->width * (size_t)p->channels, p->width, lines,
+           p->channels, p->half, l->plane, l->raw);
+    predict(l->raw, size, l->sorted);
+    // The room is less than `size`, because a chunk that does not become smaller is stored
+    // uncompressed.
+    size_t packed = ki_deflate(l->deflater, l->sorted, size, l->other, size - 1);
+    l->bytes = packed ? l->other : l->raw;
+    l->size = packed ? packed : size;
+}
+
+// Writes the chunks in their order, and the table of their positions, which precedes them.
+static kiln_result write_chunks(packer *p, size_t file_start, ki_writer *w)
+{
+    size_t table = w->size;
+    if (ki_write_room(w, 8 * p->chunks))
+        memset(w->bytes + table, 0, 8 * p->chunks);
+    for (p->first = 0; p->first < p->chunks && !w->failed; p->first += (size_t)p->count) {
+        if (!ki_go_on(w->context))
+            return KILN_ERROR_CANCELLED;
+        size_t left = p->chunks - p->first;
+        int count = left < (size_t)p->count ? (int)left : p->count;
+        ki_parallel_for(w->context, count, pack_chunk, p);
+        for (int i = 0; i < count; i++) {
+            size_t chunk = p->first + (size_t)i;
+            ki_patch_u64(w, table + 8 * chunk, w->size - file_start);
+            ki_write_u32(w, (uint32_t)chunk * LINES);
+            ki_write_u32(w, (uint32_t)p->lanes[i].size);
+            ki_write(w, p->lanes[i].bytes, p->lanes[i].size);
+        }
+    }
+    return w->failed ? KILN_ERROR_MEMORY : KILN_OK;
+}
+
+// Appends the file by this number of lanes, or nothing on failure. Writes no error message.
+static kiln_result write_by(packer *p, int lanes, const ki_exr_options *options, ki_writer *w)
+{
+    size_t start = w->size;
+    kiln_result result = KILN_ERROR_MEMORY;
+    if (make_lanes(w->context, p, lanes)) {
+        header(w, p->width, p->height, p->channels, options);
+        result = write_chunks(p, start, w);
+    }
+    free_lanes(p);
+    if (result != KILN_OK)
+        w->size = start;
+    return result;
+}
+
 kiln_result ki_exr_encode(const float *pixels, int width, int height, int channels,
                           const ki_exr_options *options, ki_writer *writer, kiln_error *error)
 {
     size_t line = (size_t)width * (size_t)channels * (options->half ? 2 : 4);
-    size_t most = line * LINES, chunks = ((size_t)height + LINES - 1) / LINES;
-    size_t file_start = writer->size;
-    kiln_result result = KILN_OK;
-    ki_deflater *deflater = ki_deflater_create(writer->context);
-    uint8_t *raw = ki_alloc_raw(writer->context, most, 3);
-    float *plane = ki_alloc_raw(writer->context, (size_t)width, sizeof(float));
-    if (!deflater || !raw || !plane)
-        goto done;
-    header(writer, width, height, channels, options);
-    ki_write_u8(writer, 0);
-    size_t table = writer->size;
-    if (ki_write_room(writer, 8 * chunks))
-        memset(writer->bytes + table, 0, 8 * chunks);
-    for (size_t i = 0; i < chunks && !writer->failed; i++) {
-        if (!ki_go_on(writer->context)) {
-            result = ki_fail_cancelled(error, "writing");
-            break;
-        }
-        int y = (int)(i * LINES), lines = ki_min(LINES, height - y);
-        size_t size = line * (size_t)lines;
-        gather(pixels + (size_t)y * (size_t)width * (size_t)channels, width, lines, channels,
-               options->half, plane, raw);
-        predict(raw, size, raw + most);
-        // The room is less than `size`, because a chunk that does not become smaller is stored
-        // uncompressed.
-        size_t packed = ki_deflate(deflater, raw + most, size, raw + 2 * most, size - 1);
-        ki_patch_u64(writer, table + 8 * i, writer->size - file_start);
-        ki_write_u32(writer, (uint32_t)y);
-        ki_write_u32(writer, (uint32_t)(packed ? packed : size));
-        ki_write(writer, packed ? raw + 2 * most : raw, packed ? packed : size);
+    packer p = {.pixels = pixels,
+                .width = width,
+                .height = height,
+                .channels = channels,
+                .half = options->half,
+                .line = line,
+                .most = line * LINES,
+                .chunks = ((size_t)height + LINES - 1) / LINES};
+    int lanes = most_lanes(writer->context, p.chunks);
+    if (writer->failed)
+        lanes = 0; // an earlier write failed, and nothing is added
+    kiln_result result = lanes ? write_by(&p, lanes, options, writer) : KILN_ERROR_MEMORY;
+    // Where memory is too short for the file and all lanes, the file is begun again with fewer.
+    for (; result == KILN_ERROR_MEMORY && lanes > 1;
+         result = write_by(&p, lanes, options, writer)) {
+        lanes /= 2;
+        writer->failed = false;
     }
-done:
-    if (!deflater || !raw || !plane || writer->failed)
-        result = ki_fail_memory(writer->context, error, "an EXR file", 3 * most + writer->size);
-    ki_deflater_free(deflater);
-    ki_free(raw);
-    ki_free(plane);
-    return result;
+    if (result == KILN_ERROR_CANCELLED)
+        return ki_fail_cancelled(error, "writing");
+    if (result == KILN_ERROR_MEMORY)
+        return ki_fail_memory(writer->context, error, "an EXR file", 3 * p.most + writer->size);
+    return KILN_OK;
 }
