@@ -72,13 +72,27 @@ need() {
     fail "please install what is missing, named by Debian$debian; by Fedora$fedora; by Arch$arch; by Homebrew$homebrew"
 }
 
-# build PRESET TARGET... [-D...]
+# build PRESET [-D...]
 build() {
     preset=$1
     shift
     say "building $preset"
     cmake --preset "$preset" "$@" >"build/$preset.log" 2>&1 || { cat "build/$preset.log"; exit 1; }
     cmake --build --preset "$preset"
+}
+
+# build_release [PART...]: the command, and of TESTS, GOLDEN, BENCH and EXAMPLES the named parts only. All
+# commands of this script share build/release, so that each source is compiled once.
+build_release() {
+    parts=$*
+    set --
+    for part in TESTS GOLDEN BENCH EXAMPLES; do
+        case " $parts " in
+        *" $part "*) set -- "$@" "-DKILN_$part=ON" ;;
+        *) set -- "$@" "-DKILN_$part=OFF" ;;
+        esac
+    done
+    build release "$@"
 }
 
 panoramas() {
@@ -122,15 +136,15 @@ command=${1:-help}
 [ $# = 0 ] || shift
 case $command in
 build)
-    need build
-    build release
+    need build render
+    build_release
     say "the command is build/release/bin/kiln"
     ;;
 test)
-    need build web test
+    need build render web test
     panoramas
     npm_packages web tests/web tests/files/ktx tests/brdf/witness tests/engines
-    build release
+    build_release TESTS GOLDEN BENCH EXAMPLES
     build wasm
     run_tests release
     build asan -DKILN_BENCH=OFF -DKILN_EXAMPLES=OFF
@@ -147,12 +161,12 @@ web)
 demo)
     need build
     panoramas || echo "No real panorama can be had: the demo shows the sky alone."
-    build release
+    build_release EXAMPLES
     set -- build/data/blender/city.exr
     [ -e "$1" ] || shift
     mkdir -p build/demo
     if [ $# -gt 0 ]; then
-        need web demo
+        need demo
         npm_packages tests/web tests/engines
         say "drawing in the engines"
         node examples/gallery.mjs build/release/bin build/gallery build/demo/gallery.part \
@@ -167,7 +181,7 @@ bench)
     need build web bench
     panoramas
     npm_packages web tests/web tests/engines bench/blocks
-    build release
+    build_release BENCH
     build wasm
     bench/run.sh "$@"
     ;;
