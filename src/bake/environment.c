@@ -31,68 +31,74 @@ enum {
     RESERVED_SUNS = 64
 };
 
-// An analysis of the panorama that is separate from the analysis for the levels.
-typedef struct analyzer {
-    ki_analysis *analysis;
-    ki_analysis_workspace *workspace;
-    kiln_spectrum *spectrum; // spectrum of the last execution
-} analyzer;
+// What executions of a separate, low analysis work on, and the spectrum of the last execution.
+typedef struct low_workspace {
+    ki_analysis_workspace *analysis;
+    kiln_spectrum *spectrum;
+} low_workspace;
 
+// What executions of a plan work on, one execution after the other.
+typedef struct plan_workspace {
+    kiln_map changed;  // the source mirrored and exposed; empty if it is neither
+    kiln_map panorama; // made from a source of another shape; empty if the source is a panorama
+    ki_prefilter_workspace prefilter;
+    low_workspace for_sh, for_irradiance; // empty where the plan has no such analysis
+    bool has_scratch;
+    ki_scratch scratch; // memory for what lives during an execution
+} plan_workspace;
+
+// All fields but `workspace` are constant after the plan is made.
 struct kiln_plan {
     kiln_context *context;
     kiln_shape source_shape;
     int source_size;
     bool mirror;
     double exposure, rotation;
-    // Size of the irradiance map and number of bands; 0 for none of either.
+    // Size of the irradiance map and number of bands; 0 where the plan computes no irradiance or no
+    // harmonics.
     int irradiance_size, sh_bands;
-    // The source mirrored and exposed; empty if it is neither mirrored nor exposed.
-    kiln_map changed;
-    // Converts the source to a panorama; NULL if the source is a panorama.
-    ki_resample_plan *to_panorama;
-    kiln_map panorama;
+    ki_resample_plan *to_panorama; // NULL if the source is a panorama
     ki_prefilter *prefilter;
-    analyzer for_sh, for_irradiance; // empty where the spectrum of `prefilter` is used
-    ki_level *irradiance;            // the level that is filtered by the cosine lobe
-    bool has_scratch;
-    ki_scratch scratch; // the memory that an execution uses
+    // The low analyses for harmonics and for irradiance; NULL where the spectrum of `prefilter` is
+    // used.
+    ki_analysis *for_sh, *for_irradiance;
+    ki_level *irradiance; // the level that is filtered by the cosine lobe
+    plan_workspace workspace;
 };
 
 // ---------------------------------------------------------------------------------------- analysis
 
-static void analyzer_destroy(analyzer *a)
+static void low_free(low_workspace *w)
 {
-    kiln_spectrum_destroy(a->spectrum);
-    ki_analysis_workspace_destroy(a->workspace);
-    ki_analysis_destroy(a->analysis);
-    *a = (analyzer){0};
+    kiln_spectrum_destroy(w->spectrum);
+    ki_analysis_workspace_destroy(w->analysis);
+    *w = (low_workspace){0};
 }
 
-static kiln_result analyzer_create(kiln_context *context, int size, int degree, analyzer *a,
-                                   kiln_error *error)
+// Creates an analysis of panoramas of `size` rows to a low degree, and its workspace. The caller
+// frees the two, also on failure.
+static kiln_result low_create(kiln_context *context, int size, int degree, ki_analysis **analysis,
+                              low_workspace *w, kiln_error *error)
 {
-    *a = (analyzer){0};
     double density[IRRADIANCE_DEGREE + 1];
     ki_model_density(degree, density);
-    kiln_result result = ki_analysis_create(context, size, degree, density, &a->analysis, error);
+    kiln_result result = ki_analysis_create(context, size, degree, density, analysis, error);
     if (result == KILN_OK)
-        result = ki_analysis_workspace_create(context, a->analysis, true, &a->workspace, error);
+        result = ki_analysis_workspace_create(context, *analysis, true, &w->analysis, error);
     if (result == KILN_OK)
-        result = ki_spectrum_create(context, a->analysis, &a->spectrum, error);
-    if (result != KILN_OK)
-        analyzer_destroy(a);
+        result = ki_spectrum_create(context, *analysis, &w->spectrum, error);
     return result;
 }
 
-// Returns the spectrum of the analyzer, computed from the panorama, or that of the prefilter if the
-// analyzer is empty.
-static const kiln_spectrum *find_spectrum(const kiln_plan *p, const analyzer *a,
-                                          const kiln_map *panorama)
+// Returns the spectrum that a low analysis computes from the panorama, or that of the prefilter if
+// `analysis` is NULL.
+static const kiln_spectrum *find_spectrum(const plan_workspace *w, const ki_analysis *analysis,
+                                          const low_workspace *low, const kiln_map *panorama)
 {
-    if (!a->spectrum)
-        return p->prefilter->spectrum;
-    ki_analysis_execute(a->analysis, a->workspace, panorama->level[0], a->spectrum);
-    return a->spectrum;
+    if (!analysis)
+        return w->prefilter.spectrum;
+    ki_analysis_execute(analysis, low->analysis, panorama->level[0], low->spectrum);
+    return low->spectrum;
 }
 
 // -------------------------------------------------------------------------------------------- plan
@@ -126,22 +132,40 @@ static kiln_result check_def(const ki_plan_def *def, kiln_error *error)
     return KILN_OK;
 }
 
-// Allocates memory for the mirrored and exposed source and for the panorama made from it.
+// Allocates memory for the mirrored and exposed source and for the panorama made from it, and plans
+// the conversion to a panorama.
 static kiln_result plan_source(kiln_plan *p, kiln_error *error)
 {
     kiln_result result = KILN_OK;
+    plan_workspace *w = &p->workspace;
     if (p->mirror || p->exposure != 0) {
-        p->changed = (kiln_map){.shape = p->source_shape, .size = p->source_size, .level_count = 1};
-        result = ki_map_allocate(p->context, &p->changed, error);
+        w->changed = (kiln_map){.shape = p->source_shape, .size = p->source_size, .level_count = 1};
+        result = ki_map_allocate(p->context, &w->changed, error);
     }
     if (result != KILN_OK || p->source_shape == KILN_SHAPE_PANORAMA)
         return result;
     int rows = panorama_rows(p->source_shape, p->source_size);
-    p->panorama = (kiln_map){.shape = KILN_SHAPE_PANORAMA, .size = rows, .level_count = 1};
-    result = ki_map_allocate(p->context, &p->panorama, error);
+    w->panorama = (kiln_map){.shape = KILN_SHAPE_PANORAMA, .size = rows, .level_count = 1};
+    result = ki_map_allocate(p->context, &w->panorama, error);
     if (result == KILN_OK)
         result = ki_resample_plan_create(p->context, p->source_shape, p->source_size,
                                          KILN_SHAPE_PANORAMA, rows, 0, &p->to_panorama, error);
+    return result;
+}
+
+// Plans the levels, and allocates what their executions and the conversion to a panorama work on.
+static kiln_result plan_levels(kiln_plan *p, const ki_plan_def *def, int rows, kiln_error *error)
+{
+    kiln_map source = {.shape = def->source_shape, .size = def->source_size, .level_count = 1};
+    ki_prefilter_workspace *w = &p->workspace.prefilter;
+    kiln_result result = ki_prefilter_create(p->context, rows, p->to_panorama ? &source : NULL,
+                                             def->levels, def->reading, &p->prefilter, error);
+    if (result == KILN_OK)
+        result = ki_prefilter_workspace_create(p->context, p->prefilter, w, error);
+    if (result == KILN_OK && p->to_panorama)
+        result = ki_resample_reserve(p->context, p->to_panorama, &w->resampling, error);
+    if (result == KILN_OK)
+        p->rotation = p->prefilter->def.rotation;
     return result;
 }
 
@@ -150,8 +174,9 @@ static kiln_result plan_irradiance(kiln_plan *p, int rows, kiln_error *error)
     const ki_analysis *analysis = p->prefilter->analysis;
     kiln_result result = KILN_OK;
     if (p->to_panorama || analysis->degree < IRRADIANCE_DEGREE) {
-        result = analyzer_create(p->context, rows, IRRADIANCE_DEGREE, &p->for_irradiance, error);
-        analysis = p->for_irradiance.analysis;
+        result = low_create(p->context, rows, IRRADIANCE_DEGREE, &p->for_irradiance,
+                            &p->workspace.for_irradiance, error);
+        analysis = p->for_irradiance;
     }
     kiln_lobe lambert = kiln_lobe_lambert();
     ki_zonal zonal;
@@ -163,6 +188,8 @@ static kiln_result plan_irradiance(kiln_plan *p, int rows, kiln_error *error)
         result =
             ki_level_create(p->context, &analysis->legendre, &zonal, &lobe, p->prefilter->def.shape,
                             p->irradiance_size, &p->irradiance, error);
+    if (result == KILN_OK)
+        result = ki_level_reserve(p->context, p->irradiance, &p->workspace.prefilter.levels, error);
     return result;
 }
 
@@ -183,16 +210,12 @@ kiln_result ki_plan_create(kiln_context *context, const ki_plan_def *def, kiln_p
                      .exposure = def->exposure,
                      .irradiance_size = def->irradiance_size,
                      .sh_bands = def->sh_bands};
-    kiln_map source = {.shape = def->source_shape, .size = def->source_size, .level_count = 1};
     int rows = panorama_rows(def->source_shape, def->source_size);
     result = plan_source(p, error);
     if (result == KILN_OK)
-        result = ki_prefilter_create(context, rows, p->to_panorama ? &source : NULL, def->levels,
-                                     def->reading, &p->prefilter, error);
-    if (result == KILN_OK)
-        p->rotation = p->prefilter->def.rotation;
+        result = plan_levels(p, def, rows, error);
     if (result == KILN_OK && p->sh_bands && p->to_panorama)
-        result = analyzer_create(context, rows, SH_DEGREE, &p->for_sh, error);
+        result = low_create(context, rows, SH_DEGREE, &p->for_sh, &p->workspace.for_sh, error);
     if (result == KILN_OK && p->irradiance_size)
         result = plan_irradiance(p, rows, error);
     if (result == KILN_OK)
@@ -206,14 +229,18 @@ void kiln_plan_destroy(kiln_plan *plan)
 {
     if (!plan)
         return;
-    ki_scratch_free(&plan->scratch);
+    plan_workspace *w = &plan->workspace;
+    ki_scratch_free(&w->scratch);
+    low_free(&w->for_sh);
+    low_free(&w->for_irradiance);
+    ki_prefilter_workspace_free(&w->prefilter);
+    kiln_map_free(&w->panorama);
+    kiln_map_free(&w->changed);
     ki_level_destroy(plan->irradiance);
-    analyzer_destroy(&plan->for_sh);
-    analyzer_destroy(&plan->for_irradiance);
+    ki_analysis_destroy(plan->for_sh);
+    ki_analysis_destroy(plan->for_irradiance);
     ki_prefilter_destroy(plan->prefilter);
     ki_resample_plan_destroy(plan->to_panorama);
-    kiln_map_free(&plan->panorama);
-    kiln_map_free(&plan->changed);
     ki_free(plan);
 }
 
@@ -244,7 +271,7 @@ kiln_result kiln_plan_environment(const kiln_plan *plan, kiln_environment *envir
 
 const kiln_spectrum *kiln_plan_spectrum(const kiln_plan *plan)
 {
-    return plan->prefilter->spectrum;
+    return plan->workspace.prefilter.spectrum;
 }
 
 // --------------------------------------------------------------------------------------- execution
@@ -291,40 +318,64 @@ static kiln_result check_target(const kiln_plan *p, const kiln_environment *envi
 
 // Mirrors and exposes the source and converts it to a panorama, as far as the plan says. *source
 // then points to the changed map.
-static kiln_result take_source(kiln_plan *p, const kiln_map **source, const kiln_map **panorama,
-                               kiln_error *error)
+static kiln_result take_source(const kiln_plan *p, plan_workspace *w, const kiln_map **source,
+                               const kiln_map **panorama, kiln_error *error)
 {
     static const ki_stage stage = {"converting", 0, 1};
-    if (p->changed.size) {
-        memcpy(p->changed.level[0], (*source)->level[0],
+    if (w->changed.size) {
+        memcpy(w->changed.level[0], (*source)->level[0],
                3 * sizeof(float) * kiln_map_texels(*source, 0));
         if (p->mirror)
-            kiln_map_mirror(&p->changed);
-        kiln_map_expose(&p->changed, p->exposure);
-        *source = &p->changed;
+            kiln_map_mirror(&w->changed);
+        kiln_map_expose(&w->changed, p->exposure);
+        *source = &w->changed;
     }
     *panorama = *source;
     if (!p->to_panorama)
         return KILN_OK;
-    *panorama = &p->panorama;
-    return ki_resample_execute(p->to_panorama, (*source)->level[0], p->panorama.level[0], &stage)
+    *panorama = &w->panorama;
+    return ki_resample_execute(p->context, p->to_panorama, &w->prefilter.resampling,
+                               (*source)->level[0], w->panorama.level[0], &stage)
                ? KILN_OK
                : ki_fail_cancelled(error, stage.name);
 }
 
-static kiln_result execute(kiln_plan *p, const kiln_map *source, kiln_environment *environment,
-                           kiln_error *error)
+static kiln_result execute_all(const kiln_plan *p, plan_workspace *w, const kiln_map *source,
+                               bool rehearses, kiln_environment *environment, kiln_error *error)
 {
     const kiln_map *panorama;
-    kiln_result result = take_source(p, &source, &panorama, error);
+    kiln_result result = take_source(p, w, &source, &panorama, error);
     if (result == KILN_OK)
-        result = ki_prefilter_execute(p->prefilter, panorama, source, &environment->levels, error);
+        result = ki_prefilter_execute(p->prefilter, &w->prefilter, panorama, source, rehearses,
+                                      &environment->levels, error);
     if (result == KILN_OK && p->sh_bands)
-        result = ki_sh_project(find_spectrum(p, &p->for_sh, panorama), p->sh_bands, p->rotation,
-                               &environment->sh, error);
+        result = ki_sh_project(find_spectrum(w, p->for_sh, &w->for_sh, panorama), p->sh_bands,
+                               p->rotation, &environment->sh, error);
     if (result == KILN_OK && p->irradiance_size)
-        result = ki_level_execute(p->irradiance, find_spectrum(p, &p->for_irradiance, panorama),
+        result = ki_level_execute(p->irradiance, &w->prefilter.levels,
+                                  find_spectrum(w, p->for_irradiance, &w->for_irradiance, panorama),
                                   NULL, p->rotation, &environment->irradiance, 0, NULL, error);
+    return result;
+}
+
+// Executes a plan for a checked source and environment. Memory for the execution comes from the
+// workspace's scratch, if the workspace has one.
+static kiln_result execute(const kiln_plan *p, plan_workspace *w, const kiln_map *source,
+                           bool rehearses, kiln_environment *environment, kiln_error *error)
+{
+    environment->lobe = p->prefilter->def.lobe;
+    environment->degree = p->prefilter->analysis->degree;
+    environment->irradiance.roughness[0] = p->irradiance_size ? 1 : 0;
+    if (w->has_scratch)
+        ki_scratch_begin(p->context, &w->scratch);
+    kiln_result result = execute_all(p, w, source, rehearses, environment, error);
+    if (!w->has_scratch)
+        return result;
+    ki_scratch_end(p->context);
+    // With more suns than ever before, some memory came from the context. The scratch grows, so
+    // that the next execution allocates nothing.
+    if (w->scratch.memory && w->scratch.peak > w->scratch.capacity)
+        (void)ki_scratch_reserve(p->context, &w->scratch, 0);
     return result;
 }
 
@@ -336,24 +387,12 @@ kiln_result kiln_plan_execute(kiln_plan *plan, const kiln_map *source,
         result = check_target(plan, environment, error);
     if (result != KILN_OK)
         return result;
-    environment->lobe = plan->prefilter->def.lobe;
-    environment->degree = plan->prefilter->spectrum->degree;
-    environment->irradiance.roughness[0] = plan->irradiance_size ? 1 : 0;
-    if (plan->has_scratch)
-        ki_scratch_begin(plan->context, &plan->scratch);
-    result = execute(plan, source, environment, error);
-    if (!plan->has_scratch)
-        return result;
-    ki_scratch_end(plan->context);
-    // More suns than ever before: the next execution finds room for them.
-    if (plan->scratch.memory && plan->scratch.peak > plan->scratch.capacity)
-        (void)ki_scratch_reserve(plan->context, &plan->scratch, 0);
-    return result;
+    return execute(plan, &plan->workspace, source, false, environment, error);
 }
 
 // ----------------------------------------------------------------------------------------- scratch
 
-// Noise, so that every degree has light, and a sun.
+// Fills a source with noise, which gives every degree of the spectrum light, and a sun.
 static void fill_rehearsal(kiln_map *source)
 {
     uint32_t state = 1;
@@ -365,7 +404,7 @@ static void fill_rehearsal(kiln_map *source)
     source->level[0][count / 2] = (float)count;
 }
 
-// An execution without memory of its own measures what executions need.
+// Executes the plan while its scratch is empty, which measures the memory that executions need.
 static kiln_result rehearse(kiln_plan *p, kiln_error *error)
 {
     kiln_map source = {.shape = p->source_shape, .size = p->source_size, .level_count = 1};
@@ -375,9 +414,7 @@ static kiln_result rehearse(kiln_plan *p, kiln_error *error)
         result = kiln_plan_environment(p, &made, error);
     if (result == KILN_OK) {
         fill_rehearsal(&source);
-        ki_prefilter_rehearse(p->prefilter, true);
-        result = kiln_plan_execute(p, &source, &made, error);
-        ki_prefilter_rehearse(p->prefilter, false);
+        result = execute(p, &p->workspace, &source, true, &made, error);
     }
     kiln_environment_free(&made);
     kiln_map_free(&source);
@@ -388,27 +425,29 @@ kiln_result ki_plan_reserve(kiln_plan *p, kiln_error *error)
 {
     kiln_sh sh;
     kiln_result result = KILN_OK;
-    p->has_scratch = true;
+    plan_workspace *w = &p->workspace;
+    w->has_scratch = true;
     if (p->prefilter->tune) {
         result = rehearse(p, error);
     } else if (p->sh_bands) {
-        ki_scratch_begin(p->context, &p->scratch);
-        result = ki_sh_project(p->prefilter->spectrum, p->sh_bands, 0, &sh, error);
+        ki_scratch_begin(p->context, &w->scratch);
+        result = ki_sh_project(w->prefilter.spectrum, p->sh_bands, 0, &sh, error);
         ki_scratch_end(p->context);
     }
     if (result != KILN_OK)
         return result;
     size_t suns = ki_prefilter_suns_size(p->prefilter, RESERVED_SUNS);
     if (p->irradiance) {
-        int rows = p->to_panorama ? p->panorama.size : p->source_size;
+        int rows = panorama_rows(p->source_shape, p->source_size);
         size_t own = ki_level_suns_size(p->irradiance, rows, RESERVED_SUNS);
         suns = own > suns ? own : suns;
     }
-    // Tables of transforms are not always larger for a larger degree: a sixteenth more suffices.
-    size_t more = suns + p->scratch.peak / 16;
-    return ki_scratch_reserve(p->context, &p->scratch, more)
+    // A table for a Fourier transform of one length may be larger than the table for a greater
+    // length. A sixteenth of the measured memory is added for that.
+    size_t more = suns + w->scratch.peak / 16;
+    return ki_scratch_reserve(p->context, &w->scratch, more)
                ? KILN_OK
-               : ki_fail_memory(p->context, error, "a plan's scratch", p->scratch.peak + more);
+               : ki_fail_memory(p->context, error, "a plan's scratch", w->scratch.peak + more);
 }
 
 // --------------------------------------------------------------------------------------- harmonics
@@ -418,7 +457,8 @@ kiln_result kiln_map_sh(kiln_context *context, const kiln_map *map, int bands, d
 {
     *sh = (kiln_sh){0};
     kiln_map converted = {0};
-    analyzer a = {0};
+    ki_analysis *analysis = NULL;
+    low_workspace low = {0};
     kiln_result result = ki_map_check(map, error);
     if (result == KILN_OK)
         result = ki_sh_check_bands(bands, 0, rotation, error);
@@ -428,12 +468,13 @@ kiln_result kiln_map_sh(kiln_context *context, const kiln_map *map, int bands, d
         map = &converted;
     }
     if (result == KILN_OK)
-        result = analyzer_create(context, map->size, SH_DEGREE, &a, error);
+        result = low_create(context, map->size, SH_DEGREE, &analysis, &low, error);
     if (result == KILN_OK)
-        ki_analysis_execute(a.analysis, a.workspace, map->level[0], a.spectrum);
+        ki_analysis_execute(analysis, low.analysis, map->level[0], low.spectrum);
     if (result == KILN_OK)
-        result = ki_sh_project(a.spectrum, bands, rotation, sh, error);
-    analyzer_destroy(&a);
+        result = ki_sh_project(low.spectrum, bands, rotation, sh, error);
+    low_free(&low);
+    ki_analysis_destroy(analysis);
     kiln_map_free(&converted);
     return result;
 }

@@ -19,8 +19,8 @@ typedef struct ki_plan_def {
 kiln_result ki_plan_create(kiln_context *context, const ki_plan_def *def, kiln_plan **plan,
                            kiln_error *error);
 
-/// Allocates what executions need, so that they allocate nothing. For tuned levels this takes as long as an
-/// execution.
+/// Allocates what executions need, so that executions allocate nothing. For tuned levels this takes
+/// as long as an execution.
 kiln_result ki_plan_reserve(kiln_plan *plan, kiln_error *error);
 
 #endif

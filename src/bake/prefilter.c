@@ -88,8 +88,8 @@ kiln_result ki_prefilter_resolve(const kiln_prefilter_def *def, kiln_prefilter_d
 // Plans a mirror level. A mirror is resampled directly from the source, which keeps a source cube
 // as sharp as it was. If the texels of the source are much finer than those of the level, the
 // panorama is used instead: it contains every texel of the source, and the level is as sharp.
-static kiln_result plan_mirror(ki_prefilter *p, int level, const kiln_map *source,
-                               kiln_error *error)
+static kiln_result plan_mirror(kiln_context *context, ki_prefilter *p, int level,
+                               const kiln_map *source, kiln_error *error)
 {
     kiln_map panorama = {.shape = KILN_SHAPE_PANORAMA, .size = p->source_size, .level_count = 1};
     kiln_map target = {.shape = p->def.shape,
@@ -103,7 +103,7 @@ static kiln_result plan_mirror(ki_prefilter *p, int level, const kiln_map *sourc
             exact || kiln_map_texels(source, 0) < 4 * kiln_map_texels(&target, level);
     }
     const kiln_map *from = source && p->direct[level] ? source : &panorama;
-    return ki_resample_plan_create(p->context, from->shape, from->size, target.shape,
+    return ki_resample_plan_create(context, from->shape, from->size, target.shape,
                                    kiln_map_level_size(&target, level), p->def.rotation,
                                    &p->mirrors[level], error);
 }
@@ -113,15 +113,15 @@ static bool is_tuned(const ki_prefilter *p, int level)
     return p->tune && ki_tune_makes(p->tune, level);
 }
 
-static kiln_result plan_tuning(ki_prefilter *p, const ki_reading *reading, const kiln_lobe *first,
-                               kiln_error *error)
+static kiln_result plan_tuning(kiln_context *context, ki_prefilter *p, const ki_reading *reading,
+                               const kiln_lobe *first, kiln_error *error)
 {
     if (!ki_is_mirror(first))
         return ki_fail(error, KILN_ERROR_ARGUMENT, "tuned levels are of GGX, the first a mirror");
     if (p->def.size & (p->def.size - 1))
         return ki_fail(error, KILN_ERROR_ARGUMENT,
                        "size is %d, for tuned levels it must be a power of two", p->def.size);
-    return ki_tune_create(p->context, &p->def, p->roughness, reading, &p->tune, error);
+    return ki_tune_create(context, &p->def, p->roughness, reading, &p->tune, error);
 }
 
 kiln_result ki_prefilter_create(kiln_context *context, int panorama_size, const kiln_map *source,
@@ -137,7 +137,6 @@ kiln_result ki_prefilter_create(kiln_context *context, int panorama_size, const 
     ki_prefilter *p = *plan = ki_alloc(context, 1, sizeof *p);
     if (!p)
         return ki_fail_memory(context, error, "a plan", sizeof *p);
-    p->context = context;
     p->source_size = panorama_size;
     result = ki_prefilter_resolve(def, &p->def, p->roughness, lobes, error);
     if (result != KILN_OK)
@@ -147,7 +146,7 @@ kiln_result ki_prefilter_create(kiln_context *context, int panorama_size, const 
     // latitude rings a constant environment stays constant to the last bit of a float.
     int degree = p->def.tolerance < 1e-3 ? 192 : 64;
     if (reading) {
-        result = plan_tuning(p, reading, &lobes[0], error);
+        result = plan_tuning(context, p, reading, &lobes[0], error);
         if (result != KILN_OK)
             goto done;
         degree = ki_max(degree, ki_tune_degree(p->tune));
@@ -168,16 +167,12 @@ kiln_result ki_prefilter_create(kiln_context *context, int panorama_size, const 
     }
     ki_model_density(degree, density);
     result = ki_analysis_create(context, panorama_size, degree, density, &p->analysis, error);
-    if (result == KILN_OK)
-        result = ki_analysis_workspace_create(context, p->analysis, true, &p->workspace, error);
-    if (result == KILN_OK)
-        result = ki_spectrum_create(context, p->analysis, &p->spectrum, error);
     for (int i = 0; i < p->def.level_count && result == KILN_OK; i++) {
         int size = ki_max(ki_max(1, p->def.smallest), p->def.size >> i);
         if (!ki_progress(context, stage, (double)i / p->def.level_count))
             result = ki_fail_cancelled(error, stage);
         else if (ki_is_mirror(&lobes[i]))
-            result = plan_mirror(p, i, source, error);
+            result = plan_mirror(context, p, i, source, error);
         else if (!is_tuned(p, i))
             result = ki_level_create(context, &p->analysis->legendre, &zonals[i], &spectra[i],
                                      p->def.shape, size, &p->levels[i], error);
@@ -193,38 +188,74 @@ done:
     return result;
 }
 
-kiln_result ki_prefilter_execute(ki_prefilter *p, const kiln_map *panorama, const kiln_map *source,
+kiln_result ki_prefilter_workspace_create(kiln_context *context, const ki_prefilter *p,
+                                          ki_prefilter_workspace *workspace, kiln_error *error)
+{
+    *workspace = (ki_prefilter_workspace){.context = context};
+    kiln_result result =
+        ki_analysis_workspace_create(context, p->analysis, true, &workspace->analysis, error);
+    if (result == KILN_OK)
+        result = ki_spectrum_create(context, p->analysis, &workspace->spectrum, error);
+    for (int i = 0; i < p->def.level_count && result == KILN_OK; i++)
+        if (p->levels[i])
+            result = ki_level_reserve(context, p->levels[i], &workspace->levels, error);
+        else if (p->mirrors[i])
+            result = ki_resample_reserve(context, p->mirrors[i], &workspace->resampling, error);
+    if (result != KILN_OK)
+        ki_prefilter_workspace_free(workspace);
+    return result;
+}
+
+void ki_prefilter_workspace_free(ki_prefilter_workspace *workspace)
+{
+    ki_analysis_workspace_destroy(workspace->analysis);
+    kiln_spectrum_destroy(workspace->spectrum);
+    ki_level_workspace_free(&workspace->levels);
+    ki_buffer_free(&workspace->resampling);
+    *workspace = (ki_prefilter_workspace){0};
+}
+
+// Computes level `index` unless the level is tuned, which has neither a level nor a mirror in the
+// plan: tuned levels are computed after all others.
+static kiln_result execute_level(const ki_prefilter *p, ki_prefilter_workspace *w,
+                                 const kiln_map *panorama, const kiln_map *source, int index,
+                                 const ki_stage *stage, kiln_map *map, kiln_error *error)
+{
+    const ki_resample_plan *mirror = p->mirrors[index];
+    if (p->levels[index])
+        return ki_level_execute(p->levels[index], &w->levels, w->spectrum, panorama,
+                                p->def.rotation, map, index, stage, error);
+    const kiln_map *from = p->direct[index] ? source : panorama;
+    if (mirror && !ki_resample_execute(w->context, mirror, &w->resampling, from->level[0],
+                                       map->level[index], stage))
+        return ki_fail_cancelled(error, stage->name);
+    return KILN_OK;
+}
+
+kiln_result ki_prefilter_execute(const ki_prefilter *p, ki_prefilter_workspace *w,
+                                 const kiln_map *panorama, const kiln_map *source, bool rehearses,
                                  kiln_map *map, kiln_error *error)
 {
     static const char stage[] = "filtering";
     kiln_result result = KILN_OK;
-    if (!ki_progress(p->context, stage, 0))
+    if (!ki_progress(w->context, stage, 0))
         return ki_fail_cancelled(error, stage);
-    ki_analysis_execute(p->analysis, p->workspace, panorama->level[0], p->spectrum);
+    ki_analysis_execute(p->analysis, w->analysis, panorama->level[0], w->spectrum);
     // The analysis counts as a quarter of the progress, and each level as half of the progress that
     // remains, because levels get smaller.
     double done = 0.25;
     for (int i = 0; i < p->def.level_count && result == KILN_OK; i++) {
-        if (!ki_progress(p->context, stage, done))
+        if (!ki_progress(w->context, stage, done))
             return ki_fail_cancelled(error, stage);
         ki_stage part = {stage, done, done + (1 - done) / 2};
-        // A tuned level has neither a level nor a mirror in the plan: tuned levels are computed
-        // after all others.
-        if (p->levels[i])
-            result = ki_level_execute(p->levels[i], p->spectrum, panorama, p->def.rotation, map, i,
-                                      &part, error);
-        else if (p->mirrors[i] &&
-                 !ki_resample_execute(p->mirrors[i],
-                                      p->direct[i] ? source->level[0] : panorama->level[0],
-                                      map->level[i], &part))
-            result = ki_fail_cancelled(error, stage);
+        result = execute_level(p, w, panorama, source, i, &part, map, error);
         map->roughness[i] = p->roughness[i];
         done = part.to;
     }
     if (result == KILN_OK && p->tune)
-        result = ki_tune_execute(p->tune, &p->analysis->legendre, p->spectrum, p->def.rotation, map,
-                                 NULL, error);
-    if (result == KILN_OK && !ki_progress(p->context, stage, 1))
+        result = ki_tune_execute(p->tune, &p->analysis->legendre, w->spectrum, p->def.rotation,
+                                 rehearses, map, error);
+    if (result == KILN_OK && !ki_progress(w->context, stage, 1))
         return ki_fail_cancelled(error, stage);
     return result;
 }
@@ -238,16 +269,8 @@ void ki_prefilter_destroy(ki_prefilter *plan)
         ki_level_destroy(plan->levels[i]);
     }
     ki_tune_destroy(plan->tune);
-    kiln_spectrum_destroy(plan->spectrum);
-    ki_analysis_workspace_destroy(plan->workspace);
     ki_analysis_destroy(plan->analysis);
     ki_free(plan);
-}
-
-void ki_prefilter_rehearse(ki_prefilter *prefilter, bool rehearses)
-{
-    if (prefilter->tune)
-        ki_tune_rehearse(prefilter->tune, rehearses);
 }
 
 size_t ki_prefilter_suns_size(const ki_prefilter *p, size_t count)

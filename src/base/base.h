@@ -57,6 +57,17 @@ static inline kiln_result ki_fail_memory(kiln_context *context, kiln_error *erro
 /// Bytes that a block of that size takes from the context, or SIZE_MAX.
 size_t ki_block_size(size_t count, size_t size);
 
+/// A block of memory that can grow. {0} is an empty buffer.
+typedef struct ki_buffer {
+    void *memory;
+    size_t size; ///< in bytes
+} ki_buffer;
+
+/// Makes a buffer at least `count` times `size` bytes large. A buffer that must grow loses its
+/// content. Returns false, and leaves an empty buffer, when memory runs out.
+bool ki_buffer_reserve(kiln_context *context, ki_buffer *buffer, size_t count, size_t size);
+void ki_buffer_free(ki_buffer *buffer);
+
 /// Memory for what lives during one execution of a plan, so that an execution allocates nothing. Between
 /// begin and end, blocks are taken from it one behind the other; a block that is freed makes room once
 /// all blocks behind it are freed. The calling thread alone may allocate then. What does not fit comes

@@ -191,6 +191,24 @@ void ki_free(void *memory)
         heap_give(block);
 }
 
+bool ki_buffer_reserve(kiln_context *context, ki_buffer *buffer, size_t count, size_t size)
+{
+    size_t bytes;
+    bool fits = ki_mul_size(count, size, &bytes);
+    if (fits && bytes <= buffer->size)
+        return true;
+    ki_buffer_free(buffer);
+    buffer->memory = fits ? ki_alloc_raw(context, bytes, 1) : NULL;
+    buffer->size = buffer->memory ? bytes : 0;
+    return buffer->memory != NULL;
+}
+
+void ki_buffer_free(ki_buffer *buffer)
+{
+    ki_free(buffer->memory);
+    *buffer = (ki_buffer){0};
+}
+
 void ki_describe_memory(kiln_context *context, kiln_error *error, const char *what,
                         size_t byte_count)
 {

@@ -42,7 +42,6 @@ kiln_result ki_resample_plan_create(kiln_context *context, kiln_shape source_sha
     ki_resample_plan *p = ki_alloc(context, 1, sizeof *p);
     if (!p)
         return ki_fail_memory(context, error, "resampling", sizeof *p);
-    p->context = context;
     p->source_shape = source_shape;
     p->shape = shape;
     p->source_size = source_size;
@@ -53,23 +52,17 @@ kiln_result ki_resample_plan_create(kiln_context *context, kiln_shape source_sha
     bool quarter = fmod(rotation, 90) == 0;
     if (source_shape == KILN_SHAPE_PANORAMA && shape == KILN_SHAPE_PANORAMA) {
         p->method = KI_RESAMPLE_SEPARABLE;
-        result = ki_resample_plan_separable(p, error);
+        result = ki_resample_plan_separable(context, p, error);
     } else if (source_shape == KILN_SHAPE_PANORAMA) {
         p->method = KI_RESAMPLE_GATHER;
-        result = ki_resample_plan_stencils(p, shape, size, source_size, rotation, error);
+        result = ki_resample_plan_stencils(context, p, shape, size, source_size, rotation, error);
         if (!result && p->factor > 1)
-            result = ki_resample_plan_fine(p, error);
+            result = ki_resample_plan_fine(context, p, error);
     } else if (shape == KILN_SHAPE_PANORAMA) {
         p->method = KI_RESAMPLE_SCATTER;
-        result = ki_resample_plan_stencils(p, source_shape, source_size, size, -rotation, error);
+        result = ki_resample_plan_stencils(context, p, source_shape, source_size, size, -rotation,
+                                           error);
         p->band_rows = ki_max(1, (size + 4 * KI_RESAMPLE_BANDS - 1) / (4 * KI_RESAMPLE_BANDS));
-        size_t count = (size_t)KI_RESAMPLE_BANDS * (size_t)p->band_rows * 6 * (size_t)size;
-        if (!result) {
-            p->scratch.bands = ki_alloc_raw(context, count, sizeof *p->scratch.bands);
-            if (!p->scratch.bands)
-                result =
-                    ki_fail_memory(context, error, "resampling", count * sizeof *p->scratch.bands);
-        }
     } else if (shape == KILN_SHAPE_CUBE && source_shape == shape && source_size != size &&
                quarter) {
         p->method = KI_RESAMPLE_FACES;
@@ -86,34 +79,71 @@ kiln_result ki_resample_plan_create(kiln_context *context, kiln_shape source_sha
     return result;
 }
 
-bool ki_resample_execute(ki_resample_plan *plan, const float *source, float *target,
-                         const ki_stage *stage)
+// Sets *bytes to the size of the buffer that an execution of the plan needs: for the finer map of a
+// gather, or the bands of a scatter. Returns false on overflow.
+static bool buffer_bytes(const ki_resample_plan *plan, size_t *bytes)
 {
-    kiln_context *context = plan->context;
-    ki_resample_job job = {.plan = plan, .source = source, .target = target};
-    int rows = plan->size * (plan->shape == KILN_SHAPE_CUBE ? 6 : 1), count = 0;
+    size_t size = (size_t)plan->size, faces = plan->shape == KILN_SHAPE_CUBE ? 6 : 1, texels;
+    *bytes = 0;
+    if (plan->method == KI_RESAMPLE_SCATTER)
+        *bytes = KI_RESAMPLE_BANDS * (size_t)plan->band_rows * 6 * size * sizeof(double);
+    if (plan->method != KI_RESAMPLE_GATHER || plan->factor == 1)
+        return true;
+    size_t fine = size * (size_t)plan->factor;
+    return ki_mul_size(fine, fine, &texels) &&
+           ki_mul_size(texels, 3 * faces * sizeof(float), bytes);
+}
+
+kiln_result ki_resample_reserve(kiln_context *context, const ki_resample_plan *plan,
+                                ki_buffer *buffer, kiln_error *error)
+{
+    size_t bytes;
+    bool fits = buffer_bytes(plan, &bytes);
+    if (fits && ki_buffer_reserve(context, buffer, bytes, 1))
+        return KILN_OK;
+    return ki_fail_memory(context, error, "resampling", fits ? bytes : SIZE_MAX);
+}
+
+// Computes each texel from the source texels under it: directly, or on the finer map, whose texels
+// are then averaged.
+static bool gather(kiln_context *context, ki_resample_run *r, int rows, const ki_stage *stage)
+{
+    int count = 0;
+    for (int k = 0; k < r->plan->grid_count; k++)
+        count += r->plan->grid[k].chunk_count;
+    if (!ki_parallel_steps(context, stage, count, ki_resample_gather, r))
+        return false;
+    if (r->fine != r->target)
+        ki_parallel_for(context, rows, ki_resample_coarsen, r);
+    return true;
+}
+
+static bool scatter(kiln_context *context, ki_resample_run *r)
+{
+    for (; r->first_band * r->plan->band_rows < r->plan->size; r->first_band += KI_RESAMPLE_BANDS)
+        if (!ki_parallel_steps(context, NULL, KI_RESAMPLE_BANDS, ki_resample_scatter, r))
+            return false;
+    return true;
+}
+
+bool ki_resample_execute(kiln_context *context, const ki_resample_plan *plan, ki_buffer *buffer,
+                         const float *source, float *target, const ki_stage *stage)
+{
+    ki_resample_run r = {.plan = plan, .source = source, .target = target};
+    int rows = plan->size * (plan->shape == KILN_SHAPE_CUBE ? 6 : 1);
     switch (plan->method) {
     case KI_RESAMPLE_GATHER:
-        for (int k = 0; k < plan->grid_count; k++)
-            count += plan->grid[k].chunk_count;
-        job.target = plan->scratch.fine ? plan->scratch.fine : target;
-        if (!ki_parallel_steps(context, stage, count, ki_resample_gather, &job))
-            return false;
-        job.target = target;
-        if (plan->scratch.fine)
-            ki_parallel_for(context, rows, ki_resample_coarsen, &job);
-        return true;
+        r.fine = plan->factor > 1 ? buffer->memory : target;
+        return gather(context, &r, rows, stage);
     case KI_RESAMPLE_SCATTER:
-        for (; job.first * plan->band_rows < plan->size; job.first += KI_RESAMPLE_BANDS)
-            if (!ki_parallel_steps(context, NULL, KI_RESAMPLE_BANDS, ki_resample_scatter, &job))
-                return false;
-        return true;
+        r.bands = buffer->memory;
+        return scatter(context, &r);
     case KI_RESAMPLE_SEPARABLE:
-        return ki_parallel_steps(context, stage, rows, ki_resample_separable, &job);
+        return ki_parallel_steps(context, stage, rows, ki_resample_separable, &r);
     case KI_RESAMPLE_FACES:
-        return ki_parallel_steps(context, stage, rows, ki_resample_faces, &job);
+        return ki_parallel_steps(context, stage, rows, ki_resample_faces, &r);
     default:
-        return ki_parallel_steps(context, stage, rows, ki_resample_subsample, &job);
+        return ki_parallel_steps(context, stage, rows, ki_resample_subsample, &r);
     }
 }
 
@@ -129,8 +159,6 @@ void ki_resample_plan_destroy(ki_resample_plan *plan)
         ki_free(plan->columns);
         ki_free(plan->weights);
     }
-    ki_free(plan->scratch.fine);
-    ki_free(plan->scratch.bands);
     ki_free(plan);
 }
 
@@ -143,14 +171,18 @@ kiln_result ki_map_resample(kiln_context *context, const kiln_map *source, doubl
         return ki_fail(error, KILN_ERROR_ARGUMENT, "level is %d, it must be 0 to %d", level,
                        target->level_count - 1);
     ki_resample_plan *plan;
+    ki_buffer buffer = {0};
     kiln_result result =
         ki_resample_plan_create(context, source->shape, source->size, target->shape,
                                 kiln_map_level_size(target, level), rotation, &plan, error);
     if (result || !plan)
         return result;
     static const ki_stage stage = {"converting", 0, 1};
-    if (!ki_resample_execute(plan, source->level[0], target->level[level], &stage))
+    result = ki_resample_reserve(context, plan, &buffer, error);
+    if (!result && !ki_resample_execute(context, plan, &buffer, source->level[0],
+                                        target->level[level], &stage))
         result = ki_fail_cancelled(error, stage.name);
+    ki_buffer_free(&buffer);
     ki_resample_plan_destroy(plan);
     return result;
 }

@@ -28,12 +28,11 @@ typedef struct ki_resample_span {
 } ki_resample_span;
 
 struct ki_resample_plan {
-    kiln_context *context;
     kiln_shape source_shape, shape;
     int source_size, size;
     double rotation;
 
-    // Constant after creation; the method says which member is in use.
+    // The method says which member of the union is in use.
     ki_resample_method method;
     union {
         struct
@@ -50,21 +49,17 @@ struct ki_resample_plan {
         };
         int sub; // subsample: points along a texel's side
     };
-
-    // Written by each execution, allocated with the plan so that executions allocate nothing.
-    struct {
-        float *fine;   // gather: the finer map
-        double *bands; // scatter: sums of bands of rows of a panorama
-    } scratch;
 };
 
 /// One execution, which the tasks below share.
-typedef struct ki_resample_job {
+typedef struct ki_resample_run {
     const ki_resample_plan *plan;
     const float *source;
     float *target;
-    int first; // index of the first band, for scattering
-} ki_resample_job;
+    float *fine;    ///< gather: the finer map, or `target` where the factor is 1
+    double *bands;  ///< scatter: sums of KI_RESAMPLE_BANDS bands of rows of a panorama
+    int first_band; ///< scatter: index of the first of these bands
+} ki_resample_run;
 
 // Wraps a column into the range 0 .. width - 1, without a division. The column must not be far
 // outside the range.
@@ -83,20 +78,26 @@ static inline bool ki_is_whole(double x)
     return fabs(x - floor(x + 0.5)) < 1e-9;
 }
 
-/// Sets grids and factor for a cube or octahedron of size n beside a panorama of `height` rows.
-kiln_result ki_resample_plan_stencils(ki_resample_plan *plan, kiln_shape shape, int n, int height,
-                                      double rotation, kiln_error *error);
-/// Allocates the finer map of a gather, and its texels' solid angles.
-kiln_result ki_resample_plan_fine(ki_resample_plan *plan, kiln_error *error);
-kiln_result ki_resample_plan_separable(ki_resample_plan *plan, kiln_error *error);
+/// Sets grids and factor for resampling between a cube or octahedron of size n and a panorama of
+/// `height` rows.
+kiln_result ki_resample_plan_stencils(kiln_context *context, ki_resample_plan *plan,
+                                      kiln_shape shape, int n, int height, double rotation,
+                                      kiln_error *error);
+/// Computes the solid angles of the texels of a gather's finer map.
+kiln_result ki_resample_plan_fine(kiln_context *context, ki_resample_plan *plan, kiln_error *error);
+/// Sets the columns, rows and weights of a separable resampling.
+kiln_result ki_resample_plan_separable(kiln_context *context, ki_resample_plan *plan,
+                                       kiln_error *error);
 
-/// Tasks; `data` is a ki_resample_job. The index is a chunk of stencils,
+// The tasks of threads; `data` is a ki_resample_run.
+
+/// Gathers the texels of one chunk of stencils; `index` counts the chunks of all grids.
 void ki_resample_gather(void *data, int index);
-/// a row of the map that is made from `factor` rows of the finer one,
+/// Averages `factor` rows of the finer map to row `index` of the target.
 void ki_resample_coarsen(void *data, int index);
-/// a band from the job's first one on,
+/// Computes band first_band + index of a panorama.
 void ki_resample_scatter(void *data, int index);
-/// and a row of the target, all faces one below the other.
+/// Compute row `index` of the target; the rows of all faces are counted one face after the other.
 void ki_resample_separable(void *data, int index);
 void ki_resample_faces(void *data, int index);
 void ki_resample_subsample(void *data, int index);

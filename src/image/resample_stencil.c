@@ -78,8 +78,8 @@ static void add_place(ki_stencil_grid *grid, int quarter, bool mirror, bool flip
 
 // Adds the grids of stencils of one kind. Quarters of the map whose first directions lie at the
 // same position within a panorama column share a grid.
-static kiln_result add_grids(ki_resample_plan *plan, ki_stencil_kind kind, int half, int height,
-                             double turn, kiln_error *error)
+static kiln_result add_grids(kiln_context *context, ki_resample_plan *plan, ki_stencil_kind kind,
+                             int half, int height, double turn, kiln_error *error)
 {
     double width = 2.0 * height;
     for (int quarter = 0; quarter < 4; quarter++) {
@@ -114,15 +114,16 @@ static kiln_result add_grids(ki_resample_plan *plan, ki_stencil_kind kind, int h
         ki_stencil_grid *grid = &plan->grid[k];
         if (grid->kind != kind)
             continue;
-        kiln_result result = ki_stencil_grid_build(plan->context, grid, error);
+        kiln_result result = ki_stencil_grid_build(context, grid, error);
         if (result)
             return result;
     }
     return KILN_OK;
 }
 
-kiln_result ki_resample_plan_stencils(ki_resample_plan *plan, kiln_shape shape, int n, int height,
-                                      double rotation, kiln_error *error)
+kiln_result ki_resample_plan_stencils(kiln_context *context, ki_resample_plan *plan,
+                                      kiln_shape shape, int n, int height, double rotation,
+                                      kiln_error *error)
 {
     // The number of texels along a face must be even, so that the middle of the face lies between
     // texels. It must not be too small, so that stencils stay small. A finer map is averaged
@@ -136,13 +137,13 @@ kiln_result ki_resample_plan_stencils(ki_resample_plan *plan, kiln_shape shape, 
         turn = floor(turn + 0.5);
     kiln_result result;
     if (shape == KILN_SHAPE_CUBE) {
-        result = add_grids(plan, KI_STENCIL_SIDE, half, height, turn, error);
+        result = add_grids(context, plan, KI_STENCIL_SIDE, half, height, turn, error);
         if (!result)
-            result = add_grids(plan, KI_STENCIL_TOP, half, height, turn, error);
+            result = add_grids(context, plan, KI_STENCIL_TOP, half, height, turn, error);
     } else {
-        result = add_grids(plan, KI_STENCIL_OCTAHEDRON, half, height, turn, error);
+        result = add_grids(context, plan, KI_STENCIL_OCTAHEDRON, half, height, turn, error);
         if (!result)
-            result = add_grids(plan, KI_STENCIL_RIM, half, height, turn, error);
+            result = add_grids(context, plan, KI_STENCIL_RIM, half, height, turn, error);
     }
     return result;
 }
@@ -339,30 +340,30 @@ ALWAYS_INLINE void gather_place(const ki_stencil_grid *grid, int chunk,
 // grid is used.
 void ki_resample_gather(void *data, int index)
 {
-    const ki_resample_job *job = data;
-    const ki_resample_plan *plan = job->plan;
+    const ki_resample_run *run = data;
+    const ki_resample_plan *plan = run->plan;
     const ki_stencil_grid *grid = plan->grid;
     while (index >= grid->chunk_count)
         index -= (grid++)->chunk_count;
     for (int k = 0; k < grid->place_count; k++) {
         const ki_stencil_place *place = &grid->place[k];
         if (place->mirror)
-            gather_place(grid, index, place, true, job->source, job->target);
+            gather_place(grid, index, place, true, run->source, run->fine);
         else
-            gather_place(grid, index, place, false, job->source, job->target);
+            gather_place(grid, index, place, false, run->source, run->fine);
     }
 }
 
 // Task of one thread: averages `factor` rows of the finer map to one row of the map.
 void ki_resample_coarsen(void *data, int index)
 {
-    const ki_resample_job *job = data;
-    const ki_resample_plan *plan = job->plan;
+    const ki_resample_run *run = data;
+    const ki_resample_plan *plan = run->plan;
     int n = plan->size, factor = plan->factor;
     size_t fine = (size_t)n * (size_t)factor;
-    const float *from = plan->scratch.fine + (size_t)index * (size_t)factor * fine * 3;
+    const float *from = run->fine + (size_t)index * (size_t)factor * fine * 3;
     const float *areas = plan->fine_area + (size_t)(index % n) * (size_t)factor * fine;
-    float *out = job->target + (size_t)index * (size_t)n * 3;
+    float *out = run->target + (size_t)index * (size_t)n * 3;
     for (int x = 0; x < n; x++) {
         double rgb[3] = {0, 0, 0}, total = 0;
         for (int j = 0; j < factor; j++) {
@@ -385,15 +386,15 @@ void ki_resample_coarsen(void *data, int index)
 // texel to the panorama texels that it covers.
 void ki_resample_scatter(void *data, int index)
 {
-    const ki_resample_job *job = data;
-    const ki_resample_plan *plan = job->plan;
+    const ki_resample_run *run = data;
+    const ki_resample_plan *plan = run->plan;
     int height = plan->size, width = 2 * height;
-    int first = (job->first + index) * plan->band_rows;
+    int first = (run->first_band + index) * plan->band_rows;
     int end = ki_min(first + plan->band_rows, height);
     if (first >= end)
         return;
     size_t line = 3 * (size_t)width;
-    double *band = plan->scratch.bands + (size_t)index * (size_t)plan->band_rows * line;
+    double *band = run->bands + (size_t)index * (size_t)plan->band_rows * line;
     memset(band, 0, (size_t)(end - first) * line * sizeof *band);
 
     ptrdiff_t n = plan->source_size, factor = plan->factor, fine = n * factor;
@@ -422,7 +423,7 @@ void ki_resample_scatter(void *data, int index)
                         texel = texel / fine / factor * n + texel % fine / factor;
                     double rgb[3];
                     for (int i = 0; i < 3; i++)
-                        rgb[i] = (double)s->area * (double)job->source[3 * texel + i];
+                        rgb[i] = (double)s->area * (double)run->source[3 * texel + i];
                     int columns = 4 * s->blocks, column = first_column(s, place, width);
                     for (int r = from; r < to; r++) {
                         int own = place->flip ? row + s->rows - 1 - r : r - row;
@@ -445,7 +446,7 @@ void ki_resample_scatter(void *data, int index)
         double tall = 2 * ki_sin((r + 0.5) * step) * ki_sin(0.5 * step);
         double scale = width / (2 * KI_PI * tall);
         const double *in = band + (size_t)(r - first) * line;
-        float *out = job->target + (size_t)r * line;
+        float *out = run->target + (size_t)r * line;
         for (size_t i = 0; i < line; i++)
             out[i] = (float)(in[i] * scale);
     }
@@ -453,18 +454,14 @@ void ki_resample_scatter(void *data, int index)
 
 // ------------------------------------------------------------------------------------- finer maps
 
-kiln_result ki_resample_plan_fine(ki_resample_plan *plan, kiln_error *error)
+kiln_result ki_resample_plan_fine(kiln_context *context, ki_resample_plan *plan, kiln_error *error)
 {
     size_t fine = (size_t)plan->size * (size_t)plan->factor;
-    size_t faces = plan->shape == KILN_SHAPE_CUBE ? 6 : 1, area, texels;
-    bool fits = ki_mul_size(fine, fine, &area) && ki_mul_size(area, 3 * faces, &texels);
-    if (fits) {
-        plan->scratch.fine = ki_alloc_raw(plan->context, texels, sizeof *plan->scratch.fine);
-        plan->fine_area = ki_alloc_raw(plan->context, area, sizeof *plan->fine_area);
-    }
-    if (!plan->scratch.fine || !plan->fine_area)
-        return ki_fail_memory(plan->context, error, "resampling",
-                              fits ? (texels + area) * sizeof(float) : SIZE_MAX);
+    size_t area = 0;
+    bool fits = ki_mul_size(fine, fine, &area);
+    plan->fine_area = fits ? ki_alloc_raw(context, area, sizeof *plan->fine_area) : NULL;
+    if (!plan->fine_area)
+        return ki_fail_memory(context, error, "resampling", fits ? area * sizeof(float) : SIZE_MAX);
     // All faces of a cube have the same solid angles, so those of +Y are used.
     ptrdiff_t before = plan->shape == KILN_SHAPE_CUBE ? 2 * (ptrdiff_t)area : 0;
     for (int g = 0; g < plan->grid_count; g++) {

@@ -13,18 +13,18 @@
 
 void ki_resample_separable(void *data, int y)
 {
-    const ki_resample_job *job = data;
-    const ki_resample_plan *plan = job->plan;
+    const ki_resample_run *run = data;
+    const ki_resample_plan *plan = run->plan;
     int width = 2 * plan->size, source_width = 2 * plan->source_size;
     ki_resample_span row = plan->rows[y];
     const float *row_weights = plan->weights + row.weight;
-    float *out = job->target + 3 * (size_t)y * (size_t)width;
+    float *out = run->target + 3 * (size_t)y * (size_t)width;
     for (int x = 0; x < width; x++) {
         ki_resample_span column = plan->columns[x];
         const float *weights = plan->weights + column.weight;
         double rgb[3] = {0, 0, 0};
         for (int j = 0; j < row.count; j++) {
-            const float *line = job->source + 3 * (size_t)(row.first + j) * (size_t)source_width;
+            const float *line = run->source + 3 * (size_t)(row.first + j) * (size_t)source_width;
             double sum[3] = {0, 0, 0};
             for (int i = 0, at = column.first; i < column.count; i++) {
                 for (int c = 0; c < 3; c++)
@@ -39,8 +39,9 @@ void ki_resample_separable(void *data, int y)
     }
 }
 
-// Fills a ki_resample_span with the weights for the range [low, high], in units of source rows or columns. Rows
-// are weighted by the difference of cos theta.
+// Makes the span of the range [low, high], in units of source rows or columns, and writes the
+// weights of its rows or columns from weights[at] on. Rows are weighted by the difference of cos
+// theta.
 static ki_resample_span make_span(double low, double high, int count, bool rows, float *weights,
                                   size_t at)
 {
@@ -64,15 +65,16 @@ static ki_resample_span make_span(double low, double high, int count, bool rows,
     return s;
 }
 
-kiln_result ki_resample_plan_separable(ki_resample_plan *plan, kiln_error *error)
+kiln_result ki_resample_plan_separable(kiln_context *context, ki_resample_plan *plan,
+                                       kiln_error *error)
 {
     int rows = plan->size, source_rows = plan->source_size;
     size_t spans = 3 * (size_t)rows;
     size_t count = 3 * (size_t)source_rows + 3 * spans;
-    plan->columns = ki_alloc_raw(plan->context, spans, sizeof *plan->columns);
-    plan->weights = ki_alloc_raw(plan->context, count, sizeof *plan->weights);
+    plan->columns = ki_alloc_raw(context, spans, sizeof *plan->columns);
+    plan->weights = ki_alloc_raw(context, count, sizeof *plan->weights);
     if (!plan->columns || !plan->weights)
-        return ki_fail_memory(plan->context, error, "resampling",
+        return ki_fail_memory(context, error, "resampling",
                               spans * sizeof *plan->columns + count * sizeof *plan->weights);
     plan->rows = plan->columns + 2 * (size_t)rows;
     double turn = fmod(plan->rotation, 360) * (2.0 * source_rows) / 360;
@@ -106,8 +108,8 @@ static double corner_angle(double s, double t)
 // Quarter turns map squares to squares.
 void ki_resample_faces(void *data, int index)
 {
-    const ki_resample_job *job = data;
-    const ki_resample_plan *plan = job->plan;
+    const ki_resample_run *run = data;
+    const ki_resample_plan *plan = run->plan;
     int n = plan->size, from = plan->source_size, face = index / n, y = index % n;
     for (int x = 0; x < n; x++) {
         double d[3], s, t, rgb[3] = {0, 0, 0}, total = 0;
@@ -124,7 +126,7 @@ void ki_resample_faces(void *data, int index)
             double b1 = j + 1 == y1 ? t1 : 2.0 * (j + 1) / from - 1;
             double left = corner_angle(s0, b1) - corner_angle(s0, b0);
             const float *line =
-                job->source + 3 * ((size_t)source_face * (size_t)from + (size_t)j) * (size_t)from;
+                run->source + 3 * ((size_t)source_face * (size_t)from + (size_t)j) * (size_t)from;
             for (int i = x0; i < x1; i++) {
                 double a1 = i + 1 == x1 ? s1 : 2.0 * (i + 1) / from - 1;
                 double right = corner_angle(a1, b1) - corner_angle(a1, b0);
@@ -135,7 +137,7 @@ void ki_resample_faces(void *data, int index)
                 left = right;
             }
         }
-        float *out = job->target + 3 * ((size_t)index * (size_t)n + (size_t)x);
+        float *out = run->target + 3 * ((size_t)index * (size_t)n + (size_t)x);
         for (int c = 0; c < 3; c++)
             out[c] = (float)(rgb[c] / total);
     }
@@ -162,15 +164,15 @@ static size_t texel_towards(kiln_shape shape, int n, const double direction[3])
 // samples along each side. The error is smaller where neighbouring texels are similar.
 void ki_resample_subsample(void *data, int index)
 {
-    const ki_resample_job *job = data;
-    const ki_resample_plan *plan = job->plan;
+    const ki_resample_run *run = data;
+    const ki_resample_plan *plan = run->plan;
     int n = plan->size, sub = plan->sub, face = index / n, y = index % n;
     bool cube = plan->shape == KILN_SHAPE_CUBE;
     double turned[3]; // cosine and sine of the rotation, see ki_turn
     ki_turn((const double[3]){1, 0, 0}, plan->rotation, turned);
     for (int x = 0; x < n; x++) {
         double rgb[3] = {0, 0, 0}, total = 0;
-        float *out = job->target + 3 * ((size_t)index * (size_t)n + (size_t)x);
+        float *out = run->target + 3 * ((size_t)index * (size_t)n + (size_t)x);
         for (int j = 0; j < sub; j++) {
             for (int i = 0; i < sub; i++) {
                 double u = (x + (i + 0.5) / sub) / n, v = (y + (j + 0.5) / sub) / n, d[3], area;
@@ -189,7 +191,7 @@ void ki_resample_subsample(void *data, int index)
                 d[2] = d[2] * turned[0] + d[0] * turned[2];
                 d[0] = right;
                 const float *texel =
-                    job->source + 3 * texel_towards(plan->source_shape, plan->source_size, d);
+                    run->source + 3 * texel_towards(plan->source_shape, plan->source_size, d);
                 if (sub == 1) {
                     memcpy(out, texel, 3 * sizeof *out);
                     continue;

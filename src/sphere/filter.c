@@ -22,6 +22,7 @@ kiln_result kiln_spectrum_filter(kiln_context *context, const kiln_spectrum *spe
     ki_zonal_spectrum zonal_spectrum;
     ki_legendre legendre = {0};
     ki_level *plan = NULL;
+    ki_level_workspace workspace = {0};
     result =
         ki_lobe_spectrum(context, lobe, ki_lobe_tolerance, false, &zonal, &zonal_spectrum, error);
     if (result != KILN_OK)
@@ -42,7 +43,11 @@ kiln_result kiln_spectrum_filter(kiln_context *context, const kiln_spectrum *spe
     result = ki_level_create(context, &legendre, &zonal, &zonal_spectrum, map->shape,
                              kiln_map_level_size(map, level), &plan, error);
     if (result == KILN_OK)
-        result = ki_level_execute(plan, spectrum, NULL, rotation, map, level, NULL, error);
+        result = ki_level_reserve(context, plan, &workspace, error);
+    if (result == KILN_OK)
+        result =
+            ki_level_execute(plan, &workspace, spectrum, NULL, rotation, map, level, NULL, error);
+    ki_level_workspace_free(&workspace);
     ki_level_destroy(plan);
     ki_legendre_destroy(&legendre);
     return result;

@@ -28,7 +28,6 @@ typedef struct place {
 } place;
 
 struct ki_level {
-    kiln_context *context;
     const ki_kernels *kernels;
     const ki_legendre *legendre;
     ki_zonal zonal;
@@ -36,9 +35,7 @@ struct ki_level {
     kiln_shape shape;
     int size, degree;
     ki_rings rings;
-    double *coefficients;
-    double *scratch;
-    size_t scratch_size;
+    size_t scratch_size; // number of doubles of scratch memory that each thread needs
 
     // The fields up to ring_start are for small levels.
     place *places; // texels, sorted by the latitude ring on which they lie
@@ -48,28 +45,33 @@ struct ki_level {
     // The fields up to `positions` are for other levels, which are interpolated on a grid.
     ki_fft fft;
     float *ring_taps, *column_taps;
-    size_t pitch, plane;
-    float *grid; // [3][PAD + rings + PAD][pitch]
+    size_t pitch, plane; // the grid is [3][PAD + rings + PAD][pitch], and a plane one channel of it
     // Position of each texel on the grid as {index of the latitude ring, column}, both with
     // fractions: of the faces +X and +Y of a cube, or of all texels.
     double *positions;
+};
 
-    // The fields from here on are set during an execution.
+// What the tasks of one execution share.
+typedef struct run {
+    const ki_level *level;
     const kiln_spectrum *spectrum;
     const kiln_map *panorama;
     double rotation;
     ki_points points;
-    kiln_map *map;
+    kiln_map *map; // level `index` of the map is written
     int index;
-};
+    double *coefficients; // product of the spectrum and the lobe, rows as ki_coefficient_row says
+    float *grid;
+    double *scratch; // scratch memory of all threads
+} run;
 
-static bool design_taps(ki_level *level)
+static bool design_taps(kiln_context *context, ki_level *level)
 {
-    double *density = ki_alloc_raw(level->context, (size_t)level->degree + 1, sizeof *density);
-    double *taps = ki_alloc_raw(level->context, KI_TAP_TABLE, sizeof *taps);
+    double *density = ki_alloc_raw(context, (size_t)level->degree + 1, sizeof *density);
+    double *taps = ki_alloc_raw(context, KI_TAP_TABLE, sizeof *taps);
     size_t count = KI_TAP_TABLE + KI_TAPS; // one entry more, since a fraction may round up to 1
-    level->ring_taps = ki_alloc(level->context, count, sizeof(float));
-    level->column_taps = ki_alloc(level->context, count, sizeof(float));
+    level->ring_taps = ki_alloc(context, count, sizeof(float));
+    level->column_taps = ki_alloc(context, count, sizeof(float));
     bool good = density && taps && level->ring_taps && level->column_taps;
     for (int axis = 0; good && axis < 2; axis++) {
         double step = axis ? 2 * KI_PI / level->fft.length : KI_PI / (2 * level->rings.pair_count);
@@ -116,13 +118,13 @@ static int by_theta(const void *a, const void *b)
     return x->texel - y->texel;
 }
 
-// Sorts the texels by latitude. Texels that lie on one ring by symmetry have theta that differ only
+// Prepares a small level: sorts the texels by latitude. Texels that lie on one ring by symmetry have theta that differ only
 // by rounding.
-static bool plan_places(ki_level *v, const kiln_map *map)
+static bool plan_places(kiln_context *context, ki_level *v, const kiln_map *map)
 {
     int count = v->place_count = (int)kiln_map_texels(map, 0), ring = -1;
-    v->places = ki_alloc(v->context, (size_t)count, sizeof *v->places);
-    double *theta = ki_alloc(v->context, (size_t)count, sizeof *theta);
+    v->places = ki_alloc(context, (size_t)count, sizeof *v->places);
+    double *theta = ki_alloc(context, (size_t)count, sizeof *theta);
     bool good = v->places && theta;
     for (int i = 0; good && i < count; i++) {
         double d[3], sine;
@@ -143,10 +145,10 @@ static bool plan_places(ki_level *v, const kiln_map *map)
             theta[++ring] = v->places[i].theta;
         v->places[i].ring = ring;
     }
-    good = good && ki_rings_create(v->context, theta, ring + 1, v->degree, &v->rings);
+    good = good && ki_rings_create(context, theta, ring + 1, v->degree, &v->rings);
     if (good) {
         int lanes = KI_LANES * v->rings.vector_count;
-        v->ring_start = ki_alloc(v->context, (size_t)lanes + 1, sizeof *v->ring_start);
+        v->ring_start = ki_alloc(context, (size_t)lanes + 1, sizeof *v->ring_start);
         good = v->ring_start != NULL;
         for (int i = 0, k = 0; good && k <= lanes; k++) {
             while (i < count && v->places[i].ring < k)
@@ -158,23 +160,23 @@ static bool plan_places(ki_level *v, const kiln_map *map)
     return good;
 }
 
-static bool plan_grid(ki_level *v, const kiln_map *map)
+// Prepares a level that is interpolated on a grid. `map` has the shape and size of the level.
+static bool plan_grid(kiln_context *context, ki_level *v, const kiln_map *map)
 {
     size_t texels = kiln_map_texels(map, 0) / (v->shape == KILN_SHAPE_CUBE ? 3 : 1);
-    if (!ki_rings_create_grid(v->context, v->degree, &v->rings) ||
-        !ki_fft_create(v->context, ki_fft_good_length(4 * v->rings.pair_count), &v->fft))
+    if (!ki_rings_create_grid(context, v->degree, &v->rings) ||
+        !ki_fft_create(context, ki_fft_good_length(4 * v->rings.pair_count), &v->fft))
         return false;
     int width = v->fft.length + 2 * PAD, rows = 2 * v->rings.pair_count + 2 * PAD;
     v->pitch = ((size_t)width + 15) / 16 * 16;
     v->plane = v->pitch * (size_t)rows;
     v->scratch_size += (size_t)v->fft.length * 16 * 2;
-    v->grid = ki_alloc_raw(v->context, 3 * v->plane, sizeof(float));
-    v->positions = ki_alloc_raw(v->context, texels, 2 * sizeof(double));
-    if (!v->grid || !v->positions || !design_taps(v))
+    v->positions = ki_alloc_raw(context, texels, 2 * sizeof(double));
+    if (!v->positions || !design_taps(context, v))
         return false;
     int row, height;
     ki_level_extent(map, 0, &row, &height);
-    ki_parallel_for(v->context, (int)(texels / (size_t)row), place_row, v);
+    ki_parallel_for(context, (int)(texels / (size_t)row), place_row, v);
     return true;
 }
 
@@ -187,8 +189,7 @@ kiln_result ki_level_create(kiln_context *context, const ki_legendre *legendre,
         ki_zonal_free(spectrum);
         return ki_fail_memory(context, error, "a level's plan", sizeof *v);
     }
-    *v = (ki_level){.context = context,
-                    .kernels = ki_sphere_kernels(context),
+    *v = (ki_level){.kernels = ki_sphere_kernels(context),
                     .legendre = legendre,
                     .zonal = *zonal,
                     .lobe = *spectrum,
@@ -199,12 +200,7 @@ kiln_result ki_level_create(kiln_context *context, const ki_legendre *legendre,
     kiln_map map = {.shape = shape, .size = size, .level_count = 1};
     bool small = kiln_map_texels(&map, 0) <= SMALL;
     v->scratch_size = (size_t)(v->degree + 1) * 2 * 96;
-    if (small ? plan_places(v, &map) : plan_grid(v, &map)) {
-        size_t threads = (size_t)ki_context_threads(context);
-        v->coefficients = ki_alloc(context, ki_coefficient_count(v->degree), sizeof(double));
-        v->scratch = ki_alloc_raw(context, threads * v->scratch_size, sizeof(double));
-    }
-    if (v->coefficients && v->scratch)
+    if (small ? plan_places(context, v, &map) : plan_grid(context, v, &map))
         return KILN_OK;
     ki_level_destroy(v);
     *level = NULL;
@@ -221,24 +217,44 @@ void ki_level_destroy(ki_level *level)
     ki_fft_destroy(&level->fft);
     ki_free(level->ring_taps);
     ki_free(level->column_taps);
-    ki_free(level->coefficients);
-    ki_free(level->grid);
-    ki_free(level->scratch);
     ki_free(level->positions);
     ki_free(level->places);
     ki_free(level->ring_start);
     ki_free(level);
 }
 
+kiln_result ki_level_reserve(kiln_context *context, const ki_level *level,
+                             ki_level_workspace *workspace, kiln_error *error)
+{
+    size_t count = ki_coefficient_count(level->degree), grid = level->places ? 0 : 3 * level->plane;
+    size_t scratch = (size_t)ki_context_threads(context) * level->scratch_size;
+    workspace->context = context;
+    if (ki_buffer_reserve(context, &workspace->coefficients, count, sizeof(double)) &&
+        ki_buffer_reserve(context, &workspace->grid, grid, sizeof(float)) &&
+        ki_buffer_reserve(context, &workspace->scratch, scratch, sizeof(double)))
+        return KILN_OK;
+    return ki_fail_memory(context, error, "a level's buffers",
+                          (count + scratch) * sizeof(double) + grid * sizeof(float));
+}
+
+void ki_level_workspace_free(ki_level_workspace *workspace)
+{
+    ki_buffer_free(&workspace->coefficients);
+    ki_buffer_free(&workspace->grid);
+    ki_buffer_free(&workspace->scratch);
+    *workspace = (ki_level_workspace){0};
+}
+
 // Task of one thread: multiplies the coefficients of one order of the spectrum by the lobe's
 // coefficients, applies the rotation, and scales the products for the recurrence.
 static void weigh_order(void *data, int m)
 {
-    ki_level *v = data;
-    const double *from = v->spectrum->a + ki_coefficient_row(v->spectrum->degree, m);
+    const run *r = data;
+    const ki_level *v = r->level;
+    const double *from = r->spectrum->a + ki_coefficient_row(r->spectrum->degree, m);
     const double *scale = v->legendre->scale + ki_legendre_row(v->legendre, m);
-    double *to = v->coefficients + ki_coefficient_row(v->degree, m), sine, cosine;
-    ki_sincos(m * v->rotation * KI_PI / 180, &sine, &cosine);
+    double *to = r->coefficients + ki_coefficient_row(v->degree, m), sine, cosine;
+    ki_sincos(m * r->rotation * KI_PI / 180, &sine, &cosine);
     for (int i = 0; i <= v->degree - m; i++) {
         double weight = v->lobe.k[m + i] * scale[i];
         for (int c = 0; c < 3; c++) {
@@ -247,6 +263,10 @@ static void weigh_order(void *data, int m)
             to[6 * i + 2 * c + 1] = re * sine + im * cosine;
         }
     }
+    // The kernel reads an even number of degrees, so the padding of the row must be 0.
+    int count = v->degree - m + 1;
+    if (count % 2)
+        memset(to + 6 * count, 0, 6 * sizeof *to);
 }
 
 // Copies one channel of a vector's orders to a buffer for the Fourier transform: the northern ring
@@ -279,9 +299,10 @@ static void place_orders(const ki_level *v, const double *orders, int vector, in
 }
 
 // Synthesises all orders of the vectors 2 index and 2 index + 1, as [m][2][12][8].
-static const double *synthesize_orders(const ki_level *v, int worker, int index)
+static const double *synthesize_orders(const run *r, int worker, int index)
 {
-    double *orders = v->scratch + (size_t)worker * v->scratch_size;
+    const ki_level *v = r->level;
+    double *orders = r->scratch + (size_t)worker * v->scratch_size;
     int vectors = v->rings.vector_count;
     for (int m = 0; m <= v->degree; m++) {
         size_t row = ki_legendre_row(v->legendre, m);
@@ -293,7 +314,7 @@ static const double *synthesize_orders(const ki_level *v, int worker, int index)
         v->kernels->synthesize(
             v->legendre->f + row, v->degree - m + 1, v->rings.twice_cos + 16 * (size_t)index,
             v->rings.start + 8 * ((size_t)m * (size_t)vectors + 2 * (size_t)index),
-            v->coefficients + ki_coefficient_row(v->degree, m), out, out + 96);
+            r->coefficients + ki_coefficient_row(v->degree, m), out, out + 96);
     }
     return orders;
 }
@@ -302,9 +323,10 @@ static const double *synthesize_orders(const ki_level *v, int worker, int index)
 // grid.
 static void fill_grid(void *data, int worker, int index)
 {
-    ki_level *v = data;
-    const double *orders = synthesize_orders(v, worker, index);
-    double *buffer = v->scratch + (size_t)worker * v->scratch_size + 192 * (size_t)(v->degree + 1);
+    const run *r = data;
+    const ki_level *v = r->level;
+    const double *orders = synthesize_orders(r, worker, index);
+    double *buffer = r->scratch + (size_t)worker * v->scratch_size + 192 * (size_t)(v->degree + 1);
     int length = v->fft.length, rings = 2 * v->rings.pair_count;
     for (int half = 0; half < 2; half++)
         for (int c = 0; c < 3; c++) {
@@ -312,7 +334,7 @@ static void fill_grid(void *data, int worker, int index)
             place_orders(v, orders + 96 * (size_t)half, vector, c, buffer);
             const double *z = v->kernels->fft(&v->fft, buffer, buffer + 16 * (size_t)length);
             // The values are transposed in blocks that fit in the first-level cache.
-            float *plane = v->grid + (size_t)c * v->plane + TAP_OFFSET;
+            float *plane = r->grid + (size_t)c * v->plane + TAP_OFFSET;
             for (int from = 0; from < length; from += 32)
                 for (int j = 0; j < KI_LANES; j++) {
                     int k = KI_LANES * vector + j;
@@ -329,8 +351,9 @@ static void fill_grid(void *data, int worker, int index)
 // Task of one thread: evaluates the texels that lie on the latitude rings of two vectors.
 static void fill_places(void *data, int worker, int index)
 {
-    ki_level *v = data;
-    const double *orders = synthesize_orders(v, worker, index);
+    const run *r = data;
+    const ki_level *v = r->level;
+    const double *orders = synthesize_orders(r, worker, index);
     for (int half = 0; half < 2; half++) {
         size_t vector = 2 * (size_t)index + (size_t)half;
         const int *start = v->ring_start + KI_LANES * vector;
@@ -351,7 +374,7 @@ static void fill_places(void *data, int worker, int index)
             v->kernels->sum_orders(here, 192, v->degree + 1, cosine, sine, sign, rgb);
             for (int j = 0; j < KI_LANES; j++)
                 for (int c = 0; start[j] + n < start[j + 1] && c < 3; c++)
-                    v->map->level[v->index][3 * v->places[start[j] + n].texel + c] =
+                    r->map->level[r->index][3 * v->places[start[j] + n].texel + c] =
                         (float)rgb[KI_LANES * c + j];
         }
     }
@@ -359,11 +382,12 @@ static void fill_places(void *data, int worker, int index)
 
 // Copies rows beyond the poles, where the grid continues half a turn away, and columns around the
 // ends of each row.
-static void pad_grid(ki_level *v)
+static void pad_grid(const run *r)
 {
+    const ki_level *v = r->level;
     int length = v->fft.length, rings = 2 * v->rings.pair_count;
     for (int c = 0; c < 3; c++) {
-        float *plane = v->grid + (size_t)c * v->plane + TAP_OFFSET;
+        float *plane = r->grid + (size_t)c * v->plane + TAP_OFFSET;
         for (int k = 0; k < PAD; k++) {
             size_t half = (size_t)length / 2 * sizeof *plane;
             float *ends[2] = {plane + (size_t)(PAD - 1 - k) * v->pitch,
@@ -413,10 +437,11 @@ static void find_positions(const ki_level *v, size_t first, int count, double *p
 }
 
 // Finds the direction of a texel as kiln_map_direction does, but faster for cubes.
-static void find_direction(const ki_level *v, size_t texel, double d[3])
+static void find_direction(const run *r, size_t texel, double d[3])
 {
+    const ki_level *v = r->level;
     if (v->shape != KILN_SHAPE_CUBE) {
-        kiln_map_direction(v->map, v->index, texel, d);
+        kiln_map_direction(r->map, r->index, texel, d);
         return;
     }
     size_t n = (size_t)v->size, row = texel / n;
@@ -427,30 +452,33 @@ static void find_direction(const ki_level *v, size_t texel, double d[3])
         d[k] *= scale;
 }
 
-static void add_suns(const ki_level *v, size_t first, int count, float *rgb)
+// Adds the light of the suns through the lobe to `count` texels.
+static void add_suns(const run *r, size_t first, int count, float *rgb)
 {
     for (int i = 0; i < count; i += KI_LANES) {
         double directions[3 * KI_LANES], sum[3 * KI_LANES] = {0};
         for (int j = 0; j < KI_LANES; j++) {
             double d[3];
-            find_direction(v, first + (size_t)(i + j < count ? i + j : count - 1), d);
+            find_direction(r, first + (size_t)(i + j < count ? i + j : count - 1), d);
             for (int k = 0; k < 3; k++)
                 directions[KI_LANES * k + j] = d[k];
         }
-        ki_points_add(&v->points, directions, sum);
+        ki_points_add(&r->points, directions, sum);
         for (int j = 0; j < KI_LANES && i + j < count; j++)
             for (int c = 0; c < 3; c++)
                 rgb[3 * (i + j) + c] += (float)sum[KI_LANES * c + j];
     }
 }
 
-static void add_surroundings(const ki_level *v, size_t first, int count, float *rgb)
+// Adds to `count` texels the light near the lobe's axis that the lobe's spectrum leaves out.
+static void add_surroundings(const run *r, size_t first, int count, float *rgb)
 {
+    const ki_level *v = r->level;
     for (int i = 0; i < count; i++) {
         double direction[3], turned[3], sum[3] = {0};
-        kiln_map_direction(v->map, v->index, first + (size_t)i, direction);
-        ki_turn(direction, v->rotation, turned);
-        ki_surroundings_add(v->panorama, &v->zonal, v->lobe.integral, turned, sum);
+        kiln_map_direction(r->map, r->index, first + (size_t)i, direction);
+        ki_turn(direction, r->rotation, turned);
+        ki_surroundings_add(r->panorama, &v->zonal, v->lobe.integral, turned, sum);
         for (int c = 0; c < 3; c++)
             rgb[3 * i + c] += (float)sum[c];
     }
@@ -460,54 +488,61 @@ static void add_surroundings(const ki_level *v, size_t first, int count, float *
 // is already there, and adds the suns and the surroundings.
 static void fill_row(void *data, int index)
 {
-    ki_level *v = data;
+    const run *r = data;
+    const ki_level *v = r->level;
     int width, height;
-    ki_level_extent(v->map, v->index, &width, &height);
+    ki_level_extent(r->map, r->index, &width, &height);
     for (int x = 0; x < width; x += CHUNK) {
         int count = width - x < CHUNK ? width - x : CHUNK;
         size_t first = (size_t)index * (size_t)width + (size_t)x;
-        float rgb[3 * CHUNK] = {0}, *out = v->map->level[v->index] + 3 * first;
+        float rgb[3 * CHUNK] = {0}, *out = r->map->level[r->index] + 3 * first;
         if (v->places) {
             memcpy(rgb, out, 3 * (size_t)count * sizeof *rgb);
         } else {
             double positions[2 * CHUNK];
             find_positions(v, first, count, positions);
-            v->kernels->interpolate(v->grid, v->plane, v->pitch, v->ring_taps, v->column_taps,
+            v->kernels->interpolate(r->grid, v->plane, v->pitch, v->ring_taps, v->column_taps,
                                     positions, count, rgb);
         }
-        if (v->points.suns.count)
-            add_suns(v, first, count, rgb);
+        if (r->points.suns.count)
+            add_suns(r, first, count, rgb);
         if (v->zonal.outer > 0)
-            add_surroundings(v, first, count, rgb);
+            add_surroundings(r, first, count, rgb);
         // Only a mixture of lobes may be negative.
         for (int i = 0; i < 3 * count; i++)
             out[i] = rgb[i] < 0 && !v->zonal.mixture ? 0 : rgb[i];
     }
 }
 
-kiln_result ki_level_execute(ki_level *v, const kiln_spectrum *spectrum, const kiln_map *panorama,
+kiln_result ki_level_execute(const ki_level *level, const ki_level_workspace *workspace,
+                             const kiln_spectrum *spectrum, const kiln_map *panorama,
                              double rotation, kiln_map *map, int index, const ki_stage *stage,
                              kiln_error *error)
 {
+    kiln_context *context = workspace->context;
+    run r = {.level = level,
+             .spectrum = spectrum,
+             .panorama = panorama,
+             .rotation = rotation,
+             .map = map,
+             .index = index,
+             .coefficients = workspace->coefficients.memory,
+             .grid = workspace->grid.memory,
+             .scratch = workspace->scratch.memory};
     kiln_result result =
-        ki_points_create(spectrum, &v->zonal, v->lobe.integral, rotation, &v->points, error);
+        ki_points_create(spectrum, &level->zonal, level->lobe.integral, rotation, &r.points, error);
     if (result != KILN_OK)
         return result;
-    v->spectrum = spectrum;
-    v->panorama = panorama;
-    v->rotation = rotation;
-    v->map = map;
-    v->index = index;
     int width, height;
     ki_level_extent(map, index, &width, &height);
-    ki_parallel_for(v->context, v->degree + 1, weigh_order, v);
-    ki_parallel_workers(v->context, v->rings.vector_count / 2, v->places ? fill_places : fill_grid,
-                        v);
-    if (!v->places)
-        pad_grid(v);
-    if (!ki_parallel_steps(v->context, stage, height, fill_row, v))
+    ki_parallel_for(context, level->degree + 1, weigh_order, &r);
+    ki_parallel_workers(context, level->rings.vector_count / 2,
+                        level->places ? fill_places : fill_grid, &r);
+    if (!level->places)
+        pad_grid(&r);
+    if (!ki_parallel_steps(context, stage, height, fill_row, &r))
         result = ki_fail_cancelled(error, stage ? stage->name : "filtering");
-    ki_points_destroy(&v->points);
+    ki_points_destroy(&r.points);
     return result;
 }
 

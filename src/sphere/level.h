@@ -5,7 +5,9 @@
 #include "sphere/spectrum.h"
 #include "sphere/zonal.h"
 
-/// Everything about a level that depends only on sizes and on the lobe.
+/// Everything about a level that depends only on sizes and on the lobe. An execution changes nothing
+/// in the level, so that any number of threads may execute one level at the same time, each with a
+/// workspace of its own.
 typedef struct ki_level ki_level;
 
 /// Prepares a level of `size` in the given shape, filtered by the lobe of `zonal`. The level takes
@@ -14,12 +16,28 @@ typedef struct ki_level ki_level;
 kiln_result ki_level_create(kiln_context *context, const ki_legendre *legendre,
                             const ki_zonal *zonal, ki_zonal_spectrum *spectrum, kiln_shape shape,
                             int size, ki_level **level, kiln_error *error);
+/// Frees a level. `level` may be NULL.
 void ki_level_destroy(ki_level *level);
-/// Writes level `index` of `map`. `panorama` is needed if the zonal has an outer angle > 0. `stage`
-/// is described at ki_parallel_steps.
-kiln_result ki_level_execute(ki_level *level, const kiln_spectrum *spectrum,
-                             const kiln_map *panorama, double rotation, kiln_map *map, int index,
-                             const ki_stage *stage, kiln_error *error);
+
+/// The buffers that executions of levels work on, one level after the other. {0} is an empty
+/// workspace. The threads are those of the context that reserved the buffers.
+typedef struct ki_level_workspace {
+    kiln_context *context;
+    ki_buffer coefficients, grid, scratch;
+} ki_level_workspace;
+
+/// Makes the workspace large enough for a level, and for all levels of earlier calls.
+kiln_result ki_level_reserve(kiln_context *context, const ki_level *level,
+                             ki_level_workspace *workspace, kiln_error *error);
+void ki_level_workspace_free(ki_level_workspace *workspace);
+
+/// Writes level `index` of `map`, in a workspace that was reserved for the level. `panorama` is
+/// needed if the zonal has an outer angle > 0. `stage` is described at ki_parallel_steps. Only the
+/// suns take memory, ki_level_suns_size.
+kiln_result ki_level_execute(const ki_level *level, const ki_level_workspace *workspace,
+                             const kiln_spectrum *spectrum, const kiln_map *panorama,
+                             double rotation, kiln_map *map, int index, const ki_stage *stage,
+                             kiln_error *error);
 
 /// Bytes that an execution takes for `count` suns of a panorama of `source_size` rows, and all.
 size_t ki_level_suns_size(const ki_level *level, int source_size, size_t count);

@@ -24,18 +24,29 @@ static const double rounding = 1e-14;
 enum { MOST_READS = 256, COARSE = 32 };
 
 struct ki_tune {
-    kiln_context *context;
     ki_reading reading;
     kiln_shape shape;
     int size, smallest, level_count;
     double tolerance;
     bool pinned[KILN_MAX_LEVELS];
     ki_nodes nodes;
-    // Results for the environment of the last ki_tune_execute.
+};
+
+// One execution: the environment, and what is found for it.
+typedef struct run {
+    kiln_context *context;
+    const ki_tune *tune;
+    const ki_legendre *legendre;
+    const kiln_spectrum *spectrum;
+    double rotation;
+    bool rehearses; // see ki_tune_execute
     ki_mixtures mixtures;
     double (*power)[3]; // power of each degree: [degree + 1] without the suns, then with the suns
-    bool rehearses;     // see ki_tune_rehearse
-};
+    kiln_map mirror;    // level 0 of `map`, and its means over ever larger texels (ki_make_mirrors)
+    kiln_map *map;      // the levels that are written
+    // What each level solved for bilinear reads should show; empty for other levels.
+    kiln_map targets[KILN_MAX_LEVELS];
+} run;
 
 static int size_at(const ki_tune *t, int level)
 {
@@ -49,13 +60,13 @@ static int most_degree(int size)
     return ki_min(ki_max(4 * size, KI_LEAST_DEGREE), KILN_MAX_DEGREE);
 }
 
-static kiln_result analyze_lobes(ki_tune *t, kiln_error *error)
+static kiln_result analyze_lobes(kiln_context *context, ki_tune *t, kiln_error *error)
 {
     kiln_result result = KILN_OK;
     ki_nodes *nodes = &t->nodes;
     for (int n = 0; n <= nodes->count && result == KILN_OK; n++) {
         ki_zonal zonal = {.lobe = kiln_lobe_ggx(nodes->roughness[n] * nodes->roughness[n])};
-        result = ki_zonal_analyze(t->context, &zonal, t->tolerance, most_degree(t->size),
+        result = ki_zonal_analyze(context, &zonal, t->tolerance, most_degree(t->size),
                                   &nodes->spectra[n], error);
     }
     return result;
@@ -68,7 +79,6 @@ kiln_result ki_tune_create(kiln_context *context, const kiln_prefilter_def *def,
     ki_tune *t = *tune = ki_alloc(context, 1, sizeof *t);
     if (!t)
         return ki_fail_memory(context, error, "a tuning", sizeof *t);
-    t->context = context;
     t->reading = *reading;
     t->shape = def->shape;
     t->size = def->size;
@@ -94,7 +104,7 @@ kiln_result ki_tune_create(kiln_context *context, const kiln_prefilter_def *def,
                 fabs(nodes->roughness[nodes->nearest[i]] - (double)roughness[i]))
                 nodes->nearest[i] = n;
     }
-    kiln_result result = analyze_lobes(t, error);
+    kiln_result result = analyze_lobes(context, t, error);
     if (result != KILN_OK) {
         ki_tune_destroy(t);
         *tune = NULL;
@@ -124,43 +134,44 @@ bool ki_tune_makes(const ki_tune *t, int level)
     return t->nodes.tuned[level];
 }
 
-static kiln_result choose_mixtures(ki_tune *t, const kiln_spectrum *spectrum, kiln_error *error)
+static kiln_result choose_mixtures(run *r, kiln_error *error)
 {
-    size_t count = (size_t)spectrum->degree + 1;
-    t->power = ki_alloc(t->context, 2 * count, sizeof *t->power);
-    if (!t->power)
-        return ki_fail_memory(t->context, error, "a spectrum's power",
-                              2 * count * sizeof *t->power);
-    kiln_result result = ki_spectrum_power(spectrum, false, t->power, error);
+    size_t count = (size_t)r->spectrum->degree + 1;
+    r->power = ki_alloc(r->context, 2 * count, sizeof *r->power);
+    if (!r->power)
+        return ki_fail_memory(r->context, error, "a spectrum's power",
+                              2 * count * sizeof *r->power);
+    kiln_result result = ki_spectrum_power(r->spectrum, false, r->power, error);
     if (result == KILN_OK)
-        result = ki_spectrum_power(spectrum, true, t->power + count, error);
+        result = ki_spectrum_power(r->spectrum, true, r->power + count, error);
     if (result == KILN_OK)
-        result = ki_mixtures_find(t->context, &t->nodes, spectrum, (const double(*)[3])t->power,
-                                  &t->mixtures, error);
+        result = ki_mixtures_find(r->context, &r->tune->nodes, r->spectrum,
+                                  (const double(*)[3])r->power, &r->mixtures, error);
     return result;
 }
 
 // ------------------------------------------------------------------------------------------ levels
 
-static double power_at(const ki_tune *t, int l)
+static double power_at(const run *r, int l)
 {
-    return t->power[l][0] + t->power[l][1] + t->power[l][2];
+    return r->power[l][0] + r->power[l][1] + r->power[l][2];
 }
 
 // Makes the kernel of a level from its mixture: the mixture as a function of the angle, and its
 // spectrum, cut at the degree beyond which the error is below the tolerance.
-static kiln_result make_kernel(const ki_tune *t, int level, ki_zonal *zonal, ki_mixture *mixture,
+static kiln_result make_kernel(const run *r, int level, ki_zonal *zonal, ki_mixture *mixture,
                                ki_zonal_spectrum *spectrum, kiln_error *error)
 {
+    const ki_tune *t = r->tune;
     double alphas[KI_MOST_LOBES], weights[KI_MOST_LOBES], integrals[KI_MOST_LOBES];
     int count = 0, degree = ki_tune_degree(t);
     *spectrum = (ki_zonal_spectrum){.integral = 1};
-    spectrum->k = ki_alloc(t->context, (size_t)degree + 1, sizeof *spectrum->k);
+    spectrum->k = ki_alloc(r->context, (size_t)degree + 1, sizeof *spectrum->k);
     if (!spectrum->k)
-        return ki_fail_memory(t->context, error, "a level's kernel",
+        return ki_fail_memory(r->context, error, "a level's kernel",
                               (size_t)degree * sizeof *spectrum->k);
     for (int n = 0; n <= t->nodes.count; n++) {
-        double weight = t->mixtures.weights[level][n];
+        double weight = r->mixtures.weights[level][n];
         if (weight == 0)
             continue;
         alphas[count] = t->nodes.roughness[n] * t->nodes.roughness[n];
@@ -171,15 +182,15 @@ static kiln_result make_kernel(const ki_tune *t, int level, ki_zonal *zonal, ki_
     }
     double all = 0, left = 0;
     for (int l = 0; l <= degree; l++)
-        all += spectrum->k[l] * spectrum->k[l] * power_at(t, l);
+        all += spectrum->k[l] * spectrum->k[l] * power_at(r, l);
     int l = ki_min(degree, most_degree(size_at(t, level)));
     for (; l > ki_min(degree, KI_LEAST_DEGREE); l--) {
-        left += spectrum->k[l] * spectrum->k[l] * power_at(t, l);
-        if (t->rehearses || left > t->tolerance * t->tolerance * all)
+        left += spectrum->k[l] * spectrum->k[l] * power_at(r, l);
+        if (r->rehearses || left > t->tolerance * t->tolerance * all)
             break;
     }
     for (int i = 1; i <= degree; i++)
-        if (i > l || power_at(t, i) < rounding * power_at(t, 0))
+        if (i > l || power_at(r, i) < rounding * power_at(r, 0))
             spectrum->k[i] = 0;
     spectrum->degree = l;
     ki_mixture_create(mixture, alphas, weights, integrals, count);
@@ -193,27 +204,29 @@ static kiln_result make_kernel(const ki_tune *t, int level, ki_zonal *zonal, ki_
 }
 
 // Evaluates the environment filtered by the mixture of `level`, at the texels of level `index` of
-// `map`, whose size may be another.
-static kiln_result make_target(ki_tune *t, const ki_legendre *legendre,
-                               const kiln_spectrum *spectrum, double rotation, int level,
-                               const kiln_map *mirror, kiln_map *map, int index,
-                               const ki_stage *stage, kiln_error *error)
+// `map`, whose size may differ from that of the level.
+static kiln_result make_target(const run *r, int level, kiln_map *map, int index, kiln_error *error)
 {
     ki_zonal zonal;
     ki_zonal_spectrum kernel;
     ki_level *plan = NULL;
-    ki_mixture *mixture = ki_alloc(t->context, 1, sizeof *mixture);
+    ki_level_workspace workspace = {0};
+    ki_mixture *mixture = ki_alloc(r->context, 1, sizeof *mixture);
     if (!mixture)
-        return ki_fail_memory(t->context, error, "a level's kernel", sizeof *mixture);
-    kiln_result result = make_kernel(t, level, &zonal, mixture, &kernel, error);
+        return ki_fail_memory(r->context, error, "a level's kernel", sizeof *mixture);
+    kiln_result result = make_kernel(r, level, &zonal, mixture, &kernel, error);
     if (result == KILN_OK)
-        result = ki_level_create(t->context, legendre, &zonal, &kernel, t->shape,
+        result = ki_level_create(r->context, r->legendre, &zonal, &kernel, r->tune->shape,
                                  kiln_map_level_size(map, index), &plan, error);
     if (result == KILN_OK)
-        result = ki_level_execute(plan, spectrum, NULL, rotation, map, index, stage, error);
+        result = ki_level_reserve(r->context, plan, &workspace, error);
     if (result == KILN_OK)
-        ki_add_mirror(t->context, mirror, t->mixtures.weights[level][t->nodes.count + 1], map,
-                      index);
+        result = ki_level_execute(plan, &workspace, r->spectrum, NULL, r->rotation, map, index,
+                                  NULL, error);
+    if (result == KILN_OK)
+        ki_add_mirror(r->context, &r->mirror, r->mixtures.weights[level][r->tune->nodes.count + 1],
+                      map, index);
+    ki_level_workspace_free(&workspace);
     ki_level_destroy(plan);
     ki_free(mixture);
     return result;
@@ -254,82 +267,80 @@ static void correct_row(void *data, int row)
 }
 
 // Makes a level by solving for bilinear reads. The goal is the level's mixture on a finer grid,
-// corrected to make up for the error that the next, coarser level has already. targets[level] keeps
-// the uncorrected goal for the next finer level, and is freed by the caller.
-static kiln_result make_read(ki_tune *t, const ki_legendre *legendre, const kiln_spectrum *spectrum,
-                             double rotation, int level, const kiln_map *mirror, kiln_map *map,
-                             kiln_map *targets, const ki_stage *stage, kiln_error *error)
+// corrected to make up for the error that the next, coarser level has already. r->targets[level]
+// keeps the uncorrected goal for the next finer level.
+static kiln_result make_read(run *r, int level, kiln_error *error)
 {
+    const ki_tune *t = r->tune;
     int size = size_at(t, level);
-    kiln_map *target = &targets[level], goal;
+    kiln_map *target = &r->targets[level], goal;
     *target = (kiln_map){
         .shape = KILN_SHAPE_CUBE, .size = size * (size > COARSE ? 2 : 4), .level_count = 1};
     goal = *target;
-    kiln_result result = ki_map_allocate(t->context, target, error);
+    kiln_result result = ki_map_allocate(r->context, target, error);
     if (result == KILN_OK)
-        result =
-            make_target(t, legendre, spectrum, rotation, level, mirror, target, 0, stage, error);
+        result = make_target(r, level, target, 0, error);
     if (result == KILN_OK)
-        result = ki_map_allocate(t->context, &goal, error);
+        result = ki_map_allocate(r->context, &goal, error);
     if (result != KILN_OK)
         return result;
     memcpy(goal.level[0], target->level[0], 3 * kiln_map_texels(target, 0) * sizeof(float));
     if (t->nodes.tuned[level] && is_read(t, level + 1)) {
-        correction a = {&goal, map, &targets[level + 1], level + 1, t->mixtures.coupling[level]};
-        ki_parallel_for(t->context, 6 * goal.size, correct_row, &a);
+        correction a = {&goal, r->map, &r->targets[level + 1], level + 1,
+                        r->mixtures.coupling[level]};
+        ki_parallel_for(r->context, 6 * goal.size, correct_row, &a);
     }
-    result = ki_solve_texels(t->context, &goal, map, level, error);
+    result = ki_solve_texels(r->context, &goal, r->map, level, error);
     kiln_map_free(&goal);
     return result;
 }
 
-static kiln_result make_levels(ki_tune *t, const ki_legendre *legendre,
-                               const kiln_spectrum *spectrum, double rotation, kiln_map *map,
-                               const ki_stage *stage, kiln_error *error)
+static kiln_result make_levels(run *r, kiln_error *error)
 {
-    kiln_map mirror = {.shape = t->shape, .size = t->size, .level_count = 1};
-    while (t->size >> mirror.level_count >= t->smallest && mirror.level_count < t->level_count)
-        mirror.level_count++;
-    kiln_map targets[KILN_MAX_LEVELS] = {{0}};
-    kiln_result result = ki_map_allocate(t->context, &mirror, error);
+    const ki_tune *t = r->tune;
+    r->mirror = (kiln_map){.shape = t->shape, .size = t->size, .level_count = 1};
+    while (t->size >> r->mirror.level_count >= t->smallest &&
+           r->mirror.level_count < t->level_count)
+        r->mirror.level_count++;
+    kiln_result result = ki_map_allocate(r->context, &r->mirror, error);
     if (result != KILN_OK)
         return result;
-    ki_make_mirrors(t->context, map, &mirror);
+    ki_make_mirrors(r->context, r->map, &r->mirror);
     // The order is from coarse to fine, because a fine level can make up for an error of a coarse
     // level.
     for (int i = t->level_count - 1; i >= 0 && result == KILN_OK; i--) {
         if (is_read(t, i)) {
-            result =
-                make_read(t, legendre, spectrum, rotation, i, &mirror, map, targets, stage, error);
+            result = make_read(r, i, error);
             if (i + 1 < t->level_count)
-                kiln_map_free(&targets[i + 1]);
+                kiln_map_free(&r->targets[i + 1]);
         } else if (t->nodes.tuned[i]) {
-            result = make_target(t, legendre, spectrum, rotation, i, &mirror, map, i, stage, error);
+            result = make_target(r, i, r->map, i, error);
             if (result == KILN_OK)
-                result = ki_clear_negative(t->context, map, i, error);
+                result = ki_clear_negative(r->context, r->map, i, error);
         }
     }
-    for (int i = 0; i < t->level_count; i++)
-        kiln_map_free(&targets[i]);
-    kiln_map_free(&mirror);
     return result;
 }
 
-kiln_result ki_tune_execute(ki_tune *t, const ki_legendre *legendre, const kiln_spectrum *spectrum,
-                            double rotation, kiln_map *map, const ki_stage *stage,
-                            kiln_error *error)
+kiln_result ki_tune_execute(const ki_tune *tune, const ki_legendre *legendre,
+                            const kiln_spectrum *spectrum, double rotation, bool rehearses,
+                            kiln_map *map, kiln_error *error)
 {
-    kiln_result result = choose_mixtures(t, spectrum, error);
+    run r = {.context = spectrum->context,
+             .tune = tune,
+             .legendre = legendre,
+             .spectrum = spectrum,
+             .rotation = rotation,
+             .rehearses = rehearses,
+             .map = map};
+    kiln_result result = choose_mixtures(&r, error);
     if (result == KILN_OK)
-        result = make_levels(t, legendre, spectrum, rotation, map, stage, error);
-    ki_free(t->power);
-    t->power = NULL;
+        result = make_levels(&r, error);
+    for (int i = 0; i < tune->level_count; i++)
+        kiln_map_free(&r.targets[i]);
+    kiln_map_free(&r.mirror);
+    ki_free(r.power);
     return result;
-}
-
-void ki_tune_rehearse(ki_tune *t, bool rehearses)
-{
-    t->rehearses = rehearses;
 }
 
 size_t ki_tune_suns_size(const ki_tune *t, int source_size, size_t count)

@@ -33,7 +33,7 @@ typedef struct ki_reading {
 } ki_reading;
 
 /// The part of tuning that depends on the sizes and roughnesses of levels, but not on the
-/// environment.
+/// environment. An execution changes nothing in the tuning.
 typedef struct ki_tune ki_tune;
 
 /// Prepares tuning for a layout of levels. No field of `def` is 0 for a default: its lobe is GGX,
@@ -49,14 +49,14 @@ int ki_tune_degree(const ki_tune *tune);
 /// content of all other levels and, even if it is tuned, of level 0.
 bool ki_tune_makes(const ki_tune *tune, int level);
 /// Writes the tuned levels to `map`. `legendre` has been made for the degree ki_tune_degree or
-/// more. The environment is turned by `rotation` degrees about +Y.
-kiln_result ki_tune_execute(ki_tune *tune, const ki_legendre *legendre,
-                            const kiln_spectrum *spectrum, double rotation, kiln_map *map,
-                            const ki_stage *stage, kiln_error *error);
+/// more. The environment is turned by `rotation` degrees about +Y. With `rehearses`, every level is
+/// computed to the highest degree that any environment may need, so that the execution takes as
+/// much memory as any other, except for the suns. Threads and memory are those of the spectrum's
+/// context.
+kiln_result ki_tune_execute(const ki_tune *tune, const ki_legendre *legendre,
+                            const kiln_spectrum *spectrum, double rotation, bool rehearses,
+                            kiln_map *map, kiln_error *error);
 
-/// While a tuning rehearses, its executions make every level to the highest degree that any source may
-/// need, and so take as much memory as any execution but for the suns.
-void ki_tune_rehearse(ki_tune *tune, bool rehearses);
 /// Bytes that an execution takes at most for `count` suns of a panorama of `source_size` rows.
 size_t ki_tune_suns_size(const ki_tune *tune, int source_size, size_t count);
 

@@ -466,15 +466,19 @@ static void plans_are_small_and_repeat(void **state)
     size_t before, after;
     kiln_context_memory(context, &before, NULL);
     ki_resample_plan *plan;
+    ki_buffer buffer = {0};
     CHECK_OK(ki_resample_plan_create(context, KILN_SHAPE_PANORAMA, 1024, KILN_SHAPE_CUBE, 256, 0,
                                      &plan, &error));
+    CHECK_OK(ki_resample_reserve(context, plan, &buffer, &error));
     kiln_context_memory(context, &after, NULL);
     CHECK_BELOW((double)(after - before), 4e6);
     for (int k = 0; k < 2; k++)
-        assert_true(ki_resample_execute(plan, source.level[0], map[k].level[0], NULL));
+        assert_true(
+            ki_resample_execute(context, plan, &buffer, source.level[0], map[k].level[0], NULL));
     assert_memory_equal(map[0].level[0], map[1].level[0],
                         kiln_map_texels(&map[0], 0) * 3 * sizeof(float));
     ki_resample_plan_destroy(plan);
+    ki_buffer_free(&buffer);
     for (int k = 0; k < 2; k++)
         kiln_map_free(&map[k]);
     kiln_map_free(&source);
