@@ -1,38 +1,17 @@
 // A plan executes without an allocation: of panoramas and cubes, exact and tuned levels, on one thread and
 // on several.
-#include "../sphere/scenes.h"
-
-#include <stdatomic.h>
+#include "kit/kit.h"
 
 static kiln_error error;
-
-typedef struct counter {
-    atomic_long allocations, blocks; // threads may allocate, too, while a plan is made
-} counter;
-
-static void *count_allocate(void *user, size_t size)
-{
-    counter *c = user;
-    c->allocations++;
-    c->blocks++;
-    return aligned_alloc(64, (size + 63) & ~(size_t)63);
-}
-
-static void count_release(void *user, void *memory, size_t size)
-{
-    (void)size;
-    ((counter *)user)->blocks--;
-    free(memory);
-}
 
 // The fill of a source: a sun and noise, black, white, light of the highest frequency, or many suns.
 static void fill(kiln_map *map, int kind)
 {
     size_t texels = kiln_map_texels(map, 0);
-    uint32_t seed = 5;
+    uint64_t seed = 5;
     for (size_t i = 0; i < texels; i++)
         for (size_t c = 0; c < 3; c++) {
-            double noise = scene_random(&seed);
+            double noise = random_number(&seed);
             float value[] = {(float)noise, 0, 1, (float)(i & 1), 1e-6f};
             map->level[0][3 * i + c] = value[kind];
         }
@@ -42,30 +21,27 @@ static void fill(kiln_map *map, int kind)
         map->level[0][3 * i] = 1;
 }
 
-static void execute_all(kiln_context *context, counter *c, kiln_shape shape, int size,
+static void execute_all(kiln_context *context, failing *f, kiln_shape shape, int size,
                         const kiln_bake_def *def)
 {
-    kiln_map source;
     kiln_plan *plan;
     kiln_environment made;
-    CHECK_OK(kiln_map_create(context, shape, size, 1, &source, &error));
+    kiln_map source = make_map(context, shape, size, 1);
     CHECK_OK(kiln_plan_create(context, shape, size, def, &plan, &error));
     CHECK_OK(kiln_plan_environment(plan, &made, &error));
-    long before = c->allocations;
+    long before = f->calls;
     for (int i = 0; i < 5; i++) {
         fill(&source, i);
         CHECK_OK(kiln_plan_execute(plan, &source, &made, &error));
-        if (c->allocations != before)
+        if (f->calls != before)
             fail_msg("fill %d of shape %d, size %d%s: %ld allocations", i, (int)shape, size,
-                     def->engine ? ", tuned" : "", c->allocations - before);
+                     def->engine ? ", tuned" : "", f->calls - before);
         kiln_environment wanted; // the plan's scratch changes nothing
         CHECK_OK(kiln_bake(context, &source, def, &wanted, &error));
-        for (int k = 0; k < wanted.levels.level_count; k++)
-            assert_memory_equal(wanted.levels.level[k], made.levels.level[k],
-                                3 * kiln_map_texels(&made.levels, k) * sizeof(float));
+        check_same_levels(&wanted.levels, &made.levels);
         assert_memory_equal(&wanted.sh, &made.sh, sizeof made.sh);
         kiln_environment_free(&wanted);
-        before = c->allocations;
+        before = f->calls;
     }
     kiln_environment_free(&made);
     kiln_plan_destroy(plan);
@@ -86,22 +62,17 @@ static void plans_execute_without_allocations(void **state)
                            .tune = KILN_TUNE_SHARP,
                            .irradiance_size = 8};
     for (int i = 0; i < 2; i++) {
-        counter c = {0, 0};
-        kiln_context_def def = {.allocate = count_allocate,
-                                .release = count_release,
-                                .allocator_user = &c,
-                                .thread_count = threads[i]};
-        kiln_context *context;
-        CHECK_OK(kiln_context_create(&def, &context, &error));
-        execute_all(context, &c, KILN_SHAPE_PANORAMA, 32, &exact);
-        execute_all(context, &c, KILN_SHAPE_CUBE, 16, &exact);
-        execute_all(context, &c, KILN_SHAPE_OCTAHEDRON, 16, &exact);
-        execute_all(context, &c, KILN_SHAPE_PANORAMA, 32, &changed);
-        execute_all(context, &c, KILN_SHAPE_CUBE, 16, &changed);
-        execute_all(context, &c, KILN_SHAPE_PANORAMA, 16, &tuned);
-        execute_all(context, &c, KILN_SHAPE_CUBE, 8, &tuned);
+        failing f;
+        kiln_context *context = failing_context_of(&f, threads[i]);
+        execute_all(context, &f, KILN_SHAPE_PANORAMA, 32, &exact);
+        execute_all(context, &f, KILN_SHAPE_CUBE, 16, &exact);
+        execute_all(context, &f, KILN_SHAPE_OCTAHEDRON, 16, &exact);
+        execute_all(context, &f, KILN_SHAPE_PANORAMA, 32, &changed);
+        execute_all(context, &f, KILN_SHAPE_CUBE, 16, &changed);
+        execute_all(context, &f, KILN_SHAPE_PANORAMA, 16, &tuned);
+        execute_all(context, &f, KILN_SHAPE_CUBE, 8, &tuned);
         kiln_context_destroy(context);
-        assert_int_equal(c.blocks, 0);
+        assert_int_equal(f.held, 0);
     }
 }
 
@@ -109,38 +80,30 @@ static void plans_execute_without_allocations(void **state)
 static void many_suns_allocate_once(void **state)
 {
     (void)state;
-    counter c = {0, 0};
-    kiln_context_def def = {.allocate = count_allocate,
-                            .release = count_release,
-                            .allocator_user = &c,
-                            .thread_count = 1};
-    kiln_context *context;
-    kiln_map source;
+    failing f;
+    kiln_context *context = failing_context(&f);
     kiln_plan *plan;
     kiln_environment made, wanted;
     kiln_bake_def bake = {.levels = {.size = 8}, .irradiance_size = 2};
-    CHECK_OK(kiln_context_create(&def, &context, &error));
-    CHECK_OK(kiln_map_create(context, KILN_SHAPE_PANORAMA, 256, 1, &source, &error));
+    kiln_map source = make_panorama(context, 256);
     for (size_t i = 0; i < 200; i++)
         source.level[0][3 * (i * 551 + 20000)] = 1000; // of 131072 texels
     CHECK_OK(kiln_plan_create(context, KILN_SHAPE_PANORAMA, 256, &bake, &plan, &error));
     CHECK_OK(kiln_plan_environment(plan, &made, &error));
-    long before = c.allocations;
+    long before = f.calls;
     CHECK_OK(kiln_plan_execute(plan, &source, &made, &error));
-    assert_true(c.allocations > before);
-    before = c.allocations;
+    assert_true(f.calls > before);
+    before = f.calls;
     CHECK_OK(kiln_plan_execute(plan, &source, &made, &error));
-    assert_int_equal(c.allocations, before);
+    assert_int_equal(f.calls, before);
     CHECK_OK(kiln_bake(context, &source, &bake, &wanted, &error));
-    for (int k = 0; k < made.levels.level_count; k++)
-        assert_memory_equal(wanted.levels.level[k], made.levels.level[k],
-                            3 * kiln_map_texels(&made.levels, k) * sizeof(float));
+    check_same_levels(&wanted.levels, &made.levels);
     kiln_environment_free(&wanted);
     kiln_environment_free(&made);
     kiln_plan_destroy(plan);
     kiln_map_free(&source);
     kiln_context_destroy(context);
-    assert_int_equal(c.blocks, 0);
+    assert_int_equal(f.held, 0);
 }
 
 int main(void)

@@ -1,19 +1,6 @@
 // What kiln_bake promises: levels, irradiance and harmonics are those of the functions that make each
 // alone, whatever the source's shape, and a plan repeats them.
-#include "../sphere/scenes.h"
-#include "context.h"
-
-static kiln_error error;
-
-static bool same_map(const kiln_map *a, const kiln_map *b)
-{
-    bool same = a->shape == b->shape && a->size == b->size && a->level_count == b->level_count &&
-                a->smallest == b->smallest &&
-                !memcmp(a->roughness, b->roughness, (size_t)a->level_count * sizeof(float));
-    for (int k = 0; same && k < a->level_count; k++)
-        same = !memcmp(a->level[k], b->level[k], 3 * kiln_map_texels(a, k) * sizeof(float));
-    return same;
-}
+#include "kit/context.h"
 
 static bool same_environment(const kiln_environment *a, const kiln_environment *b)
 {
@@ -89,10 +76,10 @@ static void the_irradiance_is_the_integral_over_the_cosine(void **state)
         kiln_sh diffuse;
         CHECK_OK(kiln_sh_filter(&made.sh, 3, true, 0, &diffuse, &error));
         for (size_t i = 0; i < kiln_map_texels(&made.irradiance, 0); i += 7) {
-            double direction[3], value[3], mean = diffuse.c[0][0] * 0.28209479177387814 / SCENE_PI;
+            double direction[3], value[3], mean = diffuse.c[0][0] * 0.28209479177387814 / pi;
             kiln_map_direction(&made.irradiance, 0, i, direction);
             kiln_sh_evaluate(&diffuse, direction, value);
-            CHECK_NEAR(value[0] / SCENE_PI, (double)made.irradiance.level[0][3 * i], 0.375 * mean);
+            CHECK_NEAR(value[0] / pi, (double)made.irradiance.level[0][3 * i], 0.375 * mean);
         }
         kiln_environment_free(&made);
         kiln_map_free(&source);
@@ -106,9 +93,8 @@ static void white_stays_white(void **state)
     kiln_map white;
     kiln_environment made;
     kiln_bake_def def = {.levels = {.size = 8}, .exposure = 1, .mirror = true};
-    CHECK_OK(kiln_map_create(context, KILN_SHAPE_CUBE, 8, 1, &white, &error));
-    for (size_t i = 0; i < 3 * kiln_map_texels(&white, 0); i++)
-        white.level[0][i] = 1;
+    white = make_map(context, KILN_SHAPE_CUBE, 8, 1);
+    fill_constant(&white, 1);
     CHECK_OK(kiln_bake(context, &white, &def, &made, &error));
     CHECK_NEAR((double)white.level[0][0], 1, 0); // the source is as it was
     assert_int_equal(made.irradiance.size, 64);
@@ -116,7 +102,7 @@ static void white_stays_white(void **state)
         CHECK_NEAR((double)made.irradiance.level[0][i], 2, 2e-6);
     assert_int_equal(made.sh.bands, 3);
     for (int c = 0; c < 3; c++) {
-        CHECK_NEAR(made.sh.c[0][c], 2 * sqrt(4 * SCENE_PI), 2e-6);
+        CHECK_NEAR(made.sh.c[0][c], 2 * sqrt(4 * pi), 2e-6);
         for (int k = 1; k < 9; k++)
             CHECK_NEAR(made.sh.c[k][c], 0, 1e-6);
     }
@@ -166,7 +152,7 @@ static void a_plan_makes_the_same_of_every_shape(void **state)
         assert_int_equal(kiln_plan_execute(plan, &source[0], &made, &error), KILN_ERROR_ARGUMENT);
         static const char *const said[] = {"", "panoramas of size 32", "cubes of size 16",
                                            "octahedra of size 32"};
-        assert_non_null(strstr(error.message, said[shape]));
+        CHECK_SAYS(error.message, said[shape]);
         kiln_plan_destroy(plan);
         kiln_environment_free(&made);
         for (int i = 0; i < 2; i++) {
@@ -198,7 +184,7 @@ static void filtered_harmonics_are_the_spectrums(void **state)
     // What was filtered is not filtered again, and there are no more bands than there were.
     CHECK_OK(kiln_sh_filter(&all, 3, true, 0, &made, &error));
     assert_int_equal(kiln_sh_filter(&made, 3, true, 0, &wanted, &error), KILN_ERROR_ARGUMENT);
-    assert_non_null(strstr(error.message, "3 bands of irradiance"));
+    CHECK_SAYS(error.message, "3 bands of irradiance");
     CHECK_OK(kiln_sh_filter(&all, 2, false, 0, &made, &error));
     assert_int_equal(kiln_sh_filter(&made, 3, false, 0, &wanted, &error), KILN_ERROR_ARGUMENT);
     assert_int_equal(wanted.bands, 0);
@@ -245,7 +231,7 @@ static void numbers_out_of_range_are_named(void **state)
         kiln_environment made = {.degree = 1};
         assert_int_equal(kiln_bake(context, &source, &wrong[i].def, &made, &error),
                          KILN_ERROR_ARGUMENT);
-        assert_non_null(strstr(error.message, wrong[i].said));
+        CHECK_SAYS(error.message, wrong[i].said);
         assert_int_equal(made.degree, 0);
         assert_null(made.levels.level[0]);
     }

@@ -1,19 +1,10 @@
 // Mirror levels of cubes and octahedra, and stopping wherever progress is reported.
-#include "bake_test.h"
-
-#include <dirent.h>
-#include <unistd.h>
-
-static kiln_context *context;
-static kiln_error error;
+#include "kit/context.h"
 
 static kiln_map random_map(kiln_shape shape, int size)
 {
-    kiln_map map;
-    CHECK_OK(kiln_map_create(context, shape, size, 1, &map, &error));
-    uint64_t seed = 7;
-    for (size_t i = 0; i < 3 * kiln_map_texels(&map, 0); i++)
-        map.level[0][i] = (float)random_number(&seed);
+    kiln_map map = make_map(context, shape, size, 1);
+    fill_noise(&map, 7, 0, 1);
     return map;
 }
 
@@ -79,8 +70,7 @@ static void mirrors_of_other_sizes_come_from_the_source(void **state)
         kiln_map_free(&converted);
     }
     // A lone bright texel that few sub-samples of a coarse, turned mirror would meet.
-    kiln_map source;
-    CHECK_OK(kiln_map_create(context, KILN_SHAPE_CUBE, 256, 1, &source, &error));
+    kiln_map source = make_map(context, KILN_SHAPE_CUBE, 256, 1);
     source.level[0][(size_t)3 * (256 * 256 * 4 + 256 * 128 + 128)] = 1e6f;
     kiln_map coarse = mirror(&source, KILN_SHAPE_CUBE, 1, 45);
     double sum = 0, wanted = 1e6 * (4.0 / (256 * 256)) / (4 * pi) * 6; // at a face's centre
@@ -126,28 +116,16 @@ static bool count_down(void *user, const char *stage, double fraction)
     return c->left-- > 0;
 }
 
-static int files_in(const char *folder)
-{
-    int count = 0;
-    DIR *dir = opendir(folder);
-    assert_non_null(dir);
-    while (readdir(dir))
-        count++;
-    closedir(dir);
-    return count - 2; // itself and its parent
-}
-
 // Stops at each report in turn: all memory comes back, no file is left, and the sentence says so.
 // Returns how many reports there are.
-static int stop_everywhere(const kiln_map *source, kiln_shape shape, const char *folder,
-                           const char *ending)
+static int stop_everywhere(const kiln_map *source, kiln_shape shape, const char *ending)
 {
     countdown c = {0};
     kiln_context *own;
     kiln_context_def def = {.thread_count = 1, .progress = count_down, .progress_user = &c};
     CHECK_OK(kiln_context_create(&def, &own, &error));
-    char path[256];
-    snprintf(path, sizeof path, "%s/out%s", folder, ending);
+    char name[16];
+    snprintf(name, sizeof name, "out%s", ending);
     kiln_result result = KILN_ERROR_CANCELLED;
     for (int stop = 0; result != KILN_OK; stop += 1 + stop / 8) {
         c = (countdown){.left = stop};
@@ -158,7 +136,7 @@ static int stop_everywhere(const kiln_map *source, kiln_shape shape, const char 
         kiln_context_memory(own, &before, NULL);
         result = kiln_prefilter(own, source, &what, &map, &error);
         if (result == KILN_OK)
-            result = kiln_map_save(own, &map, path, &how, NULL, &error);
+            result = kiln_map_save(own, &map, in_folder(name), &how, NULL, &error);
         else
             assert_null(map.owner);
         kiln_map_free(&map);
@@ -168,42 +146,27 @@ static int stop_everywhere(const kiln_map *source, kiln_shape shape, const char 
             break;
         assert_int_equal(result, KILN_ERROR_CANCELLED);
         assert_int_equal(c.calls, stop + 1); // nothing goes on after it
-        assert_non_null(strstr(error.message, "stopped while "));
-        assert_int_equal(files_in(folder), 0);
+        CHECK_SAYS(error.message, "stopped while ");
+        assert_int_equal(file_count(folder_path()), 0);
     }
     kiln_context_destroy(own);
     return c.calls;
 }
 
-static void remove_files(const char *folder)
-{
-    DIR *dir = opendir(folder);
-    assert_non_null(dir);
-    for (struct dirent *entry; (entry = readdir(dir));) {
-        char path[600];
-        snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
-        unlink(path);
-    }
-    closedir(dir);
-}
-
 static void work_stops_wherever_it_reports(void **state)
 {
     (void)state;
-    char folder[] = "/tmp/kiln-test-XXXXXX";
-    assert_non_null(mkdtemp(folder));
     kiln_map panorama = random_map(KILN_SHAPE_PANORAMA, 64), cube = random_map(KILN_SHAPE_CUBE, 32);
     static const char *const endings[] = {".ktx2", ".dds", ".exr", ".hdr", ".png"};
     for (int i = 0; i < 5; i++) {
         // Dozens of reports a level and some a file: a bake of any size stops soon.
-        int calls = stop_everywhere(i % 2 ? &cube : &panorama, KILN_SHAPE_CUBE, folder, endings[i]);
+        int calls = stop_everywhere(i % 2 ? &cube : &panorama, KILN_SHAPE_CUBE, endings[i]);
         assert_true(calls > 80);
-        remove_files(folder);
+        folder_empty();
     }
-    int calls = stop_everywhere(&panorama, KILN_SHAPE_PANORAMA, folder, ".exr");
+    int calls = stop_everywhere(&panorama, KILN_SHAPE_PANORAMA, ".exr");
     assert_true(calls > 80);
-    remove_files(folder);
-    assert_int_equal(rmdir(folder), 0);
+    folder_empty();
     kiln_map_free(&panorama);
     kiln_map_free(&cube);
 }
@@ -244,9 +207,7 @@ static void a_callback_may_call_kiln(void **state)
     CHECK_OK(kiln_prefilter(context, &source, &what, &wanted, &error));
     CHECK_OK(kiln_prefilter(i.own, &source, &what, &map, &error));
     assert_true(i.calls > 4);
-    for (int k = 0; k < 2; k++)
-        assert_memory_equal(map.level[k], wanted.level[k],
-                            3 * kiln_map_texels(&map, k) * sizeof(float));
+    check_same_levels(&map, &wanted);
     kiln_map_free(&map);
     kiln_map_free(&wanted);
     kiln_map_free(&source);
@@ -255,7 +216,6 @@ static void a_callback_may_call_kiln(void **state)
 
 int main(void)
 {
-    context = make_context(2);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(mirrors_of_the_same_size_are_copies),
         cmocka_unit_test(mirrors_of_other_sizes_come_from_the_source),
@@ -263,7 +223,5 @@ int main(void)
         cmocka_unit_test(work_stops_wherever_it_reports),
         cmocka_unit_test(a_callback_may_call_kiln),
     };
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    kiln_context_destroy(context);
-    return failed;
+    return cmocka_run_group_tests(tests, set_up_folder, tear_down_empty_folder);
 }

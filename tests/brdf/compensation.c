@@ -1,6 +1,6 @@
 // Errors of the compensations of lost energy, and of a table of KILN_TABLE_E_WALK, against random
 // walks.
-#include "brdf_test.h"
+#include "kit/kit.h"
 
 #include "brdf/walk.h"
 
@@ -104,7 +104,7 @@ static void scale_at(scaled *s, double r, double nov, int paths)
 // n.v of the order of alpha.
 static void random_place(int lump, uint64_t *random, double *r, double *nov)
 {
-    double x = uniform(random), y = uniform(random);
+    double x = random_number(random), y = random_number(random);
     *r = lump == 2 || lump == 3 ? 0.12 * x : lump == 4 ? pow(10, -6 * x) : x;
     *nov = lump == 1 ? 0.3 * y * y * y : lump == 2 ? y * y : y;
     if (lump >= 3)
@@ -118,12 +118,11 @@ static void scaled_lobe_has_the_albedo_of_the_walk(void **state)
 {
     (void)state;
     static const double rs[] = {0, 1e-6, 1e-4, 0.01, 0.5, 1}, novs[] = {1e-9, 1e-6, 1e-3, 1};
-    kiln_context *context;
+    kiln_context *context = make_context(0);
     kiln_error error;
     scaled s = {.worst = 0};
     kiln_table_def def = {.kind = KILN_TABLE_E_WALK};
     kiln_table_def split = {.kind = KILN_TABLE_DFG, .axis = KILN_AXIS_GRAZING, .corners = true};
-    CHECK_OK(kiln_context_create(NULL, &context, &error));
     CHECK_OK(kiln_table_create(context, &def, &s.walk, &error));
     CHECK_OK(kiln_table_create(context, &split, &s.split, &error));
     assert_true(s.walk.def.axis == KILN_AXIS_GRAZING && s.walk.def.corners);

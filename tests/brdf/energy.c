@@ -1,7 +1,7 @@
 // The albedo E, its average E_avg and the split sum's A and B: against integrals over half vectors,
 // against closed forms, in a white furnace with Kulla and Conty's lobe, and through tables.
-#include "brdf_test.h"
-#include "half.h"
+#include "kit/kit.h"
+#include "kit/quadrature.h"
 
 #include "brdf/brdf.h"
 #include "brdf/energy.h"
@@ -66,7 +66,7 @@ static void agree_with_the_two_dimensional_rule(void **unused)
         for (size_t j = 0; j < sizeof nov / sizeof *nov; j++)
             compare(roughness[i], nov[j], &worst);
     for (int i = 0; i < 60; i++)
-        compare(uniform(&state), uniform(&state), &worst);
+        compare(random_number(&state), random_number(&state), &worst);
     print_message("E, A and B: largest difference from the two-dimensional rule %.1e\n", worst);
 }
 
@@ -207,9 +207,8 @@ static void make(kiln_context *context, const kiln_table_def *def, kiln_table *t
 static void furnace_closes_through_a_table(void **unused)
 {
     (void)unused;
-    kiln_context *context;
+    kiln_context *context = make_context(0);
     kiln_error error;
-    CHECK_OK(kiln_context_create(NULL, &context, &error));
     for (int g = 0; g < MASKINGS; g++) {
         kiln_table_def def = {
             .model = models[g], .axis = KILN_AXIS_GRAZING, .corners = true, .complement = true};
@@ -235,9 +234,7 @@ static void furnace_closes_through_a_table(void **unused)
 static void texels_are_the_integrals(void **unused)
 {
     (void)unused;
-    kiln_context *context;
-    kiln_error error;
-    CHECK_OK(kiln_context_create(NULL, &context, &error));
+    kiln_context *context = make_context(0);
     for (int i = 0; i < 4 * 2 * 2 * 3; i++) {
         kiln_table_def def = {.kind = (kiln_table_kind)(i % 3),
                               .model.g = (kiln_g)(i % 4),
@@ -277,9 +274,7 @@ static void texels_are_the_integrals(void **unused)
 static void large_tables_are_the_integrals_too(void **unused)
 {
     (void)unused;
-    kiln_context *context;
-    kiln_error error;
-    CHECK_OK(kiln_context_create(NULL, &context, &error));
+    kiln_context *context = make_context(0);
     for (int i = 0; i < 4 * MASKINGS; i++) {
         kiln_table_def def = {.model = models[i % MASKINGS],
                               .axis = (kiln_axis)(i / MASKINGS),
@@ -309,12 +304,9 @@ static void same_bits_on_every_instruction_set(void **unused)
         for (int g = 0; g < MASKINGS; g++) {
             kiln_table first = {0};
             for (size_t i = 0; i < sizeof cpus / sizeof *cpus; i++) {
-                kiln_context_def setup = {.cpu = cpus[i], .thread_count = 1 + (int)i};
-                kiln_context *context;
-                kiln_error error;
+                kiln_context *context = make_context_for(1 + (int)i, cpus[i]);
                 kiln_table_def def = {.kind = (kiln_table_kind)kind, .model = models[g]};
                 kiln_table table;
-                CHECK_OK(kiln_context_create(&setup, &context, &error));
                 make(context, &def, &table);
                 size_t size = sizeof(float) * (size_t)table.image.width *
                               (size_t)table.image.height * (size_t)table.image.channels;
@@ -347,9 +339,8 @@ static void wrong_tables_are_named(void **unused)
         {{.kind = KILN_TABLE_DFG, .complement = true}, "this one has 2"},
         {{.kind = KILN_TABLE_E_WALK, .axis = KILN_AXIS_CBRT}, "of walks it must be 3, or 0"},
     };
-    kiln_context *context;
+    kiln_context *context = make_context(0);
     kiln_error error;
-    CHECK_OK(kiln_context_create(NULL, &context, &error));
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         kiln_table table;
         assert_int_equal(kiln_table_create(context, &wrong[i].def, &table, &error),

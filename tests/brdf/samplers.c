@@ -1,8 +1,10 @@
 // Samplers draw directions with the densities that the pdf functions return: the samples in bins of
 // the sphere are compared with integrals of the pdf over the bins.
-#include "brdf_test.h"
+#include "kit/kit.h"
 
 #include "brdf/brdf.h"
+
+enum { DISTRIBUTIONS = KILN_D_BECKMANN + 1 };
 
 enum { ROWS = 12, COLUMNS = 16, BINS = ROWS * COLUMNS, SAMPLES = 200000, CELLS = 64 };
 
@@ -75,8 +77,8 @@ static void check_sampler(const sampler *s, double bound)
     uint64_t random = 88172645463325252u;
     for (int i = 0; i < SAMPLES; i++) {
         double xi[2], w[3];
-        xi[0] = uniform(&random);
-        xi[1] = uniform(&random);
+        xi[0] = random_number(&random);
+        xi[1] = random_number(&random);
         s->sample(s, xi, w);
         CHECK_NEAR(dot(w, w), 1, 1e-12);
         double phi = atan2(w[1], w[0]) / (2 * pi);

@@ -1,6 +1,6 @@
 // Each texel of tables of sheen, multiscatter DFG and rough glass has the value of the public
 // function at the arguments that kiln_table_texel returns.
-#include "check.h"
+#include "kit/kit.h"
 
 #include <kiln/brdf.h>
 
@@ -47,9 +47,8 @@ static void tables_hold_the_integrals(void **unused)
                  {KILN_TABLE_DFG_MULTISCATTER, 3, 1},
                  {KILN_TABLE_E_DIELECTRIC, 1, 3},
                  {KILN_TABLE_GLASS, 4, 3}};
-    kiln_context *context;
+    kiln_context *context = make_context(0);
     kiln_error error;
-    CHECK_OK(kiln_context_create(NULL, &context, &error));
     for (int i = 0; i < 8; i++) {
         kiln_table_def def = {.kind = kinds[i / 2].kind,
                               .sheen = (kiln_sheen)(i % 2),

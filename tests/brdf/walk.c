@@ -1,6 +1,6 @@
 // The random walk between microfacets conserves energy, is reciprocal, agrees with the exact albedo
 // of a single bounce, and returns a correct standard error.
-#include "brdf_test.h"
+#include "kit/kit.h"
 
 #include "brdf/walk.h"
 
@@ -157,13 +157,13 @@ static void walks_are_reciprocal(void **state)
         double flux[BANDS][BANDS][2] = {{{0}}}, square[BANDS][BANDS] = {{0}};
         uint64_t random = 0x9e3779b97f4a7c15u;
         for (int i = 0; i < PATHS; i++) {
-            double y = uniform(&random);
+            double y = random_number(&random);
             int from = (int)(y * BANDS);
-            ki_ray ray = ki_walk_enter(alphas[a], sqrt(y), uniform(&random));
+            ki_ray ray = ki_walk_enter(alphas[a], sqrt(y), random_number(&random));
             for (int bounce = 0; ray.inside > 0; bounce++) {
                 double xi[3];
                 for (int c = 0; c < 3; c++)
-                    xi[c] = uniform(&random);
+                    xi[c] = random_number(&random);
                 (void)ki_walk_bounce(alphas[a], xi, &ray);
                 double leaves = ki_walk_on(alphas[a], xi[2], &ray);
                 int to = (int)(fmax(ray.cosine, 0) * fmax(ray.cosine, 0) * BANDS);

@@ -1,17 +1,14 @@
 // The assignment's methods estimate the integrals that they are meant to, and err where
 // docs/theory/assignment.md says that they do.
-#include "bake_test.h"
-
 #include "image/pack.h"
 
 #include <kiln/course.h>
 #include <unistd.h>
 
-#include "context.h"
+#include "kit/context.h"
 
 static kiln_image make(kiln_assignment_method method, const kiln_assignment_def *def)
 {
-    kiln_error error = {0};
     kiln_image table;
     CHECK_OK(kiln_assignment_energy(context, method, def, &table, &error));
     return table;
@@ -19,7 +16,6 @@ static kiln_image make(kiln_assignment_method method, const kiln_assignment_def 
 
 static kiln_image make_exact(int size, kiln_assignment_g g)
 {
-    kiln_error error = {0};
     kiln_table table;
     kiln_table_def def = {
         .model = {.g = kiln_assignment_masking(g)}, .width = size, .height = size, .flip = true};
@@ -29,7 +25,6 @@ static kiln_image make_exact(int size, kiln_assignment_g g)
 
 static kiln_difference compare(const kiln_image *table, const kiln_image *exact)
 {
-    kiln_error error = {0};
     kiln_difference difference;
     CHECK_OK(kiln_assignment_compare(context, table, exact, &difference, NULL, &error));
     return difference;
@@ -242,7 +237,6 @@ static void averages_are_twice_the_mean(void **state)
 {
     (void)state;
     enum { SIZE = 32 };
-    kiln_error error = {0};
     kiln_image e = make(KILN_ASSIGNMENT_IMPORTANCE, &(kiln_assignment_def){.size = SIZE}), average;
     CHECK_OK(kiln_assignment_average(context, &e, &average, &error));
     assert_int_equal(average.width, SIZE);
@@ -299,7 +293,6 @@ static void bytes_are_cut(void **state)
 {
     (void)state;
     enum { COUNT = 1024 };
-    kiln_error error = {0};
     kiln_image image, back;
     CHECK_OK(kiln_image_create(context, COUNT, 1, 1, &image, &error));
     float values[COUNT] = {0};
@@ -342,7 +335,6 @@ static double lightness(const float rgb[3])
 static void differences_are_measured(void **state)
 {
     (void)state;
-    kiln_error error = {0};
     kiln_image a, b, map;
     kiln_difference d;
     CHECK_OK(kiln_image_create(context, 2, 2, 1, &a, &error));
@@ -366,7 +358,6 @@ static void colours_darken_evenly(void **state)
 {
     (void)state;
     enum { COUNT = 41 };
-    kiln_error error = {0};
     for (int sign = -1; sign <= 1; sign += 2) {
         kiln_image off, none, map;
         kiln_difference d;
@@ -391,7 +382,6 @@ static void colours_darken_evenly(void **state)
 static void threads_do_not_matter(void **state)
 {
     (void)state;
-    kiln_error error = {0};
     kiln_context *other = make_context(5);
     for (int m = KILN_ASSIGNMENT_MONTE_CARLO; m <= KILN_ASSIGNMENT_SPLIT_SUM; m++) {
         kiln_assignment_def def = {.size = 33, .sample_count = 100};
@@ -406,11 +396,10 @@ static void threads_do_not_matter(void **state)
 
 static void refuse(kiln_assignment_method method, const kiln_assignment_def *def, const char *words)
 {
-    kiln_error error = {0};
     kiln_image table = {.width = 7};
     assert_int_equal(kiln_assignment_energy(context, method, def, &table, &error),
                      KILN_ERROR_ARGUMENT);
-    assert_non_null(strstr(error.message, words));
+    CHECK_SAYS(error.message, words);
     assert_null(table.pixels);
     assert_int_equal(table.width, 0);
 }
@@ -425,32 +414,19 @@ static void wrong_arguments_are_sentences(void **state)
     refuse(KILN_ASSIGNMENT_IMPORTANCE, &(kiln_assignment_def){.g = (kiln_assignment_g)4}, "is 4");
     refuse((kiln_assignment_method)3, NULL, "method is 3");
 
-    kiln_error error = {0};
     kiln_image a, b, average;
     kiln_difference d;
     CHECK_OK(kiln_image_create(context, 2, 3, 1, &a, &error));
     CHECK_OK(kiln_image_create(context, 2, 2, 1, &b, &error));
     assert_int_equal(kiln_assignment_compare(context, &a, &b, &d, NULL, &error),
                      KILN_ERROR_ARGUMENT);
-    assert_non_null(strstr(error.message, "2 x 3"));
+    CHECK_SAYS(error.message, "2 x 3");
     a.channels = 3;
     assert_int_equal(kiln_assignment_average(context, &a, &average, &error), KILN_ERROR_ARGUMENT);
     assert_null(average.pixels);
     a.channels = 1;
     kiln_image_free(&a);
     kiln_image_free(&b);
-}
-
-static void *refusing(void *user, size_t size)
-{
-    int *left = user;
-    return (*left)-- > 0 ? aligned_alloc(64, (size + 63) / 64 * 64) : NULL;
-}
-
-static void releasing(void *user, void *memory, size_t size)
-{
-    (void)user, (void)size;
-    free(memory);
 }
 
 static bool stop(void *user, const char *stage, double fraction)
@@ -463,17 +439,14 @@ static bool stop(void *user, const char *stage, double fraction)
 static void failing_leaves_nothing(void **state)
 {
     (void)state;
-    kiln_error error = {0};
     kiln_assignment_def def = {.size = 64, .sample_count = 16};
     int refused = 0;
     for (int count = 1; count < 100; count++) {
-        int left = count;
-        kiln_context *small = NULL;
+        failing f;
+        kiln_context *small = failing_context(&f);
         kiln_image table = {0};
-        kiln_context_def limits = {
-            .allocate = refusing, .release = releasing, .allocator_user = &left, .thread_count = 1};
-        if (kiln_context_create(&limits, &small, &error))
-            continue;
+        f.fail_at = f.calls + count;
+        f.and_later = true;
         kiln_result result =
             kiln_assignment_energy(small, KILN_ASSIGNMENT_IMPORTANCE, &def, &table, &error);
         if (result) {

@@ -1,33 +1,8 @@
 // What is written for each engine is described as what it is: format, layout, levels, roughness, harmonics.
-#include "check.h"
 #include "codec/formats.h"
 #include "engine/engine.h"
 
-#include <unistd.h>
-
-#include "context.h"
-
-static kiln_error error;
-static char folder[] = "/tmp/kiln-describe-XXXXXX";
-
-static int set_up_folder(void **state)
-{
-    return !mkdtemp(folder) || set_up(state);
-}
-
-static int tear_down_folder(void **state)
-{
-    char command[64];
-    snprintf(command, sizeof command, "rm -r %s", folder);
-    return system(command) || tear_down(state);
-}
-
-static const char *in_folder(const char *name)
-{
-    static char path[128];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    return path;
-}
+#include "kit/context.h"
 
 // Harmonics no two of which are alike, up to a fourth band, which no engine's file keeps.
 static kiln_sh harmonics(void)

@@ -1,13 +1,10 @@
 // Engines: their table, their levels, and a cube and harmonics turned to their axes.
-#include "check.h"
 #include "engine/engine.h"
 
 #include <string.h>
 #include <unistd.h>
 
-#include "context.h"
-
-static kiln_error error;
+#include "kit/context.h"
 
 static void every_engine_is_found_and_makes_sense(void **state)
 {

@@ -1,35 +1,12 @@
 // Engines that no test runs here: what kiln writes for them, read again and looked up as their own
 // sources say that they do. Level k in direction d holds the radiance (1 + k) (2 + d).
-#include "check.h"
 #include "engine/engine.h"
 
 #include <unistd.h>
 
-#include "context.h"
-
-static kiln_error error;
-static char folder[] = "/tmp/kiln-read-XXXXXX";
+#include "kit/context.h"
 
 enum { LEVELS_SHOWN = 40, WAYS = 60 };
-static const double pi = 3.14159265358979323846;
-
-static int set_up_folder(void **state)
-{
-    return !mkdtemp(folder) || set_up(state);
-}
-
-static int tear_down_folder(void **state)
-{
-    return rmdir(folder) || tear_down(state);
-}
-
-static const char *path_of(const char *name)
-{
-    static char path[64];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    return path;
-}
-
 // Writes the coded cube for an engine, then `name` is what to load of it.
 static kiln_map written(const char *engine_name, kiln_format format, int size, const char *output,
                         const char *name)
@@ -42,14 +19,9 @@ static kiln_map written(const char *engine_name, kiln_format format, int size, c
     CHECK_OK(kiln_engine_levels(engine, size, 0, roughness, &def, &error));
     CHECK_OK(kiln_map_create(context, KILN_SHAPE_CUBE, size, def.level_count, &map, &error));
     for (int k = 0; k < map.level_count; k++)
-        for (size_t i = 0; i < kiln_map_texels(&map, k); i++) {
-            double d[3];
-            kiln_map_direction(&map, k, i, d);
-            for (int c = 0; c < 3; c++)
-                map.level[k][3 * i + (size_t)c] = (float)((1 + k) * (2 + d[c]));
-        }
-    CHECK_OK(kiln_engine_save(context, engine, &map, &sh, format, path_of(output), NULL, &error));
-    CHECK_OK(kiln_map_load(context, path_of(name), NULL, &loaded, &error));
+        fill_gradient(&map, k, 1 + k);
+    CHECK_OK(kiln_engine_save(context, engine, &map, &sh, format, in_folder(output), NULL, &error));
+    CHECK_OK(kiln_map_load(context, in_folder(name), NULL, &loaded, &error));
     kiln_map_free(&map);
     return loaded;
 }
@@ -75,7 +47,7 @@ static void sample(const kiln_map *map, const double way[3], double lod, double 
 }
 
 // A panorama's (u, v), v downwards, in kiln's directions: the centre is -Z, +X to its right.
-static void panorama_direction(double u, double v, double d[3])
+static void direction_at(double u, double v, double d[3])
 {
     double around = 2 * pi * (u - 0.5), down = pi * v;
     d[0] = sin(around) * sin(down);
@@ -116,7 +88,7 @@ static void bevy_shows(const double world[3], double d[3])
 // Skybox-Panoramic.shader, ToRadialCoords: (0.5, 1) - (atan2(z, x) / 2 pi, acos(y) / pi), v upwards.
 static void unity_shows(const double world[3], double d[3])
 {
-    panorama_direction(0.5 - atan2(world[2], world[0]) / (2 * pi), acos(world[1]) / pi, d);
+    direction_at(0.5 - atan2(world[2], world[0]) / (2 * pi), acos(world[1]) / pi, d);
 }
 
 static void check_shown(const char *name, const kiln_map *map, kiln_format format, looks look,
@@ -165,8 +137,8 @@ static void bevy_reads_each_level_where_it_lies(void **state)
             CHECK_NEAR(rgb[c] / 5, 2 + world[c], 0.015);
     }
     kiln_map_free(&map);
-    unlink(path_of("b_specular.ktx2"));
-    unlink(path_of("b_diffuse.ktx2"));
+    unlink(in_folder("b_specular.ktx2"));
+    unlink(in_folder("b_diffuse.ktx2"));
 }
 
 static void unity_reads_each_level_where_it_lies(void **state)
@@ -179,7 +151,7 @@ static void unity_reads_each_level_where_it_lies(void **state)
         check_shown("unity", &map, format[i], unity_looks, unity_shows);
         kiln_map_free(&map);
     }
-    unlink(path_of("u.dds"));
+    unlink(in_folder("u.dds"));
 }
 
 // Godot's sky.glsl: SKY_COORDS = (atan2(x, -z) / 2 pi, wrapped to 0 to 1; acos(y) / pi). The picture that
@@ -198,13 +170,13 @@ static void panoramas_lie_as_they_were_read(void **state)
             spiral(i, world);
             double u = atan2(world[0], -world[2]) / (2 * pi), v = acos(world[1]) / pi;
             u = u < 0 ? u + 1 : u;
-            panorama_direction(u, v, d);
+            direction_at(u, v, d);
             size_t x = (size_t)(u * 256), y = (size_t)(v * 128);
             for (size_t c = 0; c < 3; c++)
                 CHECK_NEAR((double)map.level[0][3 * (y * 256 + x) + c], 2 + d[c], 0.03);
         }
         kiln_map_free(&map);
-        unlink(path_of(names[n][1]));
+        unlink(in_folder(names[n][1]));
     }
 }
 
@@ -215,5 +187,5 @@ int main(void)
         cmocka_unit_test(unity_reads_each_level_where_it_lies),
         cmocka_unit_test(panoramas_lie_as_they_were_read),
     };
-    return cmocka_run_group_tests(tests, set_up_folder, tear_down_folder);
+    return cmocka_run_group_tests(tests, set_up_folder, tear_down_empty_folder);
 }

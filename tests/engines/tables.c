@@ -1,24 +1,9 @@
 // Tables for engines: what --for writes, decoded again, is the integrals.
-#include "check.h"
-
 #include <kiln/brdf.h>
 #include <png.h>
 #include <unistd.h>
 
-#include "context.h"
-
-static kiln_error error;
-static char folder[] = "/tmp/kiln-tables-XXXXXX";
-
-static int set_up_folder(void **state)
-{
-    return !mkdtemp(folder) || set_up(state);
-}
-
-static int tear_down_folder(void **state)
-{
-    return rmdir(folder) || tear_down(state);
-}
+#include "kit/context.h"
 
 static void save(int size, kiln_table_format format, const char *path)
 {
@@ -54,8 +39,8 @@ static void filaments_halves_are_the_integrals(void **state)
 {
     (void)state;
     enum { SIZE = 128 };
-    char path[64], line[256];
-    snprintf(path, sizeof path, "%s/dfg.inc", folder);
+    const char *path = in_folder("dfg.inc");
+    char line[256];
     save(SIZE, KILN_TABLE_FORMAT_AUTO, path);
     FILE *file = fopen(path, "r");
     assert_non_null(file);
@@ -85,8 +70,7 @@ static void babylons_picture_is_the_integrals(void **state)
 {
     (void)state;
     enum { SIZE = 256 };
-    char path[64];
-    snprintf(path, sizeof path, "%s/brdf.png", folder);
+    const char *path = in_folder("brdf.png");
     save(SIZE, KILN_TABLE_FORMAT_RGBD, path);
     png_image image = {.version = PNG_IMAGE_VERSION};
     assert_true(png_image_begin_read_from_file(&image, path));
@@ -113,8 +97,7 @@ static void babylons_picture_is_the_integrals(void **state)
 static void other_numbers_of_channels_are_refused(void **state)
 {
     (void)state;
-    char path[64];
-    snprintf(path, sizeof path, "%s/e.png", folder);
+    const char *path = in_folder("e.png");
     kiln_table table = {0};
     kiln_table_def def = {.width = 4, .height = 4};
     CHECK_OK(kiln_table_create(context, &def, &table, &error));
@@ -131,5 +114,5 @@ int main(void)
         cmocka_unit_test(babylons_picture_is_the_integrals),
         cmocka_unit_test(other_numbers_of_channels_are_refused),
     };
-    return cmocka_run_group_tests(tests, set_up_folder, tear_down_folder);
+    return cmocka_run_group_tests(tests, set_up_folder, tear_down_empty_folder);
 }

@@ -1,24 +1,16 @@
 // BC6H: its bits, what is decoded, and how near the encoder comes.
 #include "codec/bc6h.h"
-#include "check.h"
 #include "image/pack.h"
+#include "kit/kit.h"
 
 static kiln_error error;
 
 enum { TEXELS = 16, CODES = 0x7c00 };
 
-static uint32_t next_random(uint32_t *state)
-{
-    *state ^= *state << 13;
-    *state ^= *state >> 17;
-    *state ^= *state << 5;
-    return *state;
-}
-
-static void random_bytes(uint32_t *seed, uint8_t bytes[16])
+static void random_bytes(uint64_t *seed, uint8_t bytes[16])
 {
     for (int i = 0; i < 16; i++)
-        bytes[i] = (uint8_t)(next_random(seed) >> 8);
+        bytes[i] = (uint8_t)(random_bits(seed) >> 8);
 }
 
 // -------------------------------------------------------------------------------------------- bits
@@ -27,7 +19,7 @@ static void random_bytes(uint32_t *seed, uint8_t bytes[16])
 static void every_bit_comes_back(void **state)
 {
     (void)state;
-    uint32_t seed = 7;
+    uint64_t seed = 7;
     int seen[KI_BC6H_MODES] = {0};
     for (int n = 0; n < 200000; n++) {
         uint8_t bytes[16], again[16];
@@ -181,16 +173,16 @@ static double plain_error(int code[TEXELS][3])
 static void random_blocks_beat_a_plain_encoder(void **state)
 {
     (void)state;
-    uint32_t seed = 99;
+    uint64_t seed = 99;
     int worse = 0;
     double ours = 0, plain = 0;
     enum { BLOCKS = 20000 };
     for (int n = 0; n < BLOCKS; n++) {
         int code[TEXELS][3], back[TEXELS][3], range = 1 << (n % 15);
         for (int c = 0; c < 3; c++) {
-            int base = (int)(next_random(&seed) % (unsigned)(CODES - range + 1));
+            int base = (int)(random_bits(&seed) % (unsigned)(CODES - range + 1));
             for (int i = 0; i < TEXELS; i++)
-                code[i][c] = base + (int)(next_random(&seed) % (unsigned)range);
+                code[i][c] = base + (int)(random_bits(&seed) % (unsigned)range);
         }
         there_and_back(code, back);
         double a = squared(code, back), b = plain_error(code);
@@ -208,18 +200,18 @@ static void random_blocks_beat_a_plain_encoder(void **state)
 static void two_colours_are_two_lines(void **state)
 {
     (void)state;
-    uint32_t seed = 5;
+    uint64_t seed = 5;
     for (int n = 0; n < 32 * 200; n++) {
         int code[TEXELS][3], back[TEXELS][3], color[2][2][3], far = n % 3;
         for (int c = 0; c < 3; c++) {
-            color[0][0][c] = 8000 + (int)(next_random(&seed) % 8000);
-            color[0][1][c] = color[0][0][c] + (int)(next_random(&seed) % 200);
+            color[0][0][c] = 8000 + (int)(random_bits(&seed) % 8000);
+            color[0][1][c] = color[0][0][c] + (int)(random_bits(&seed) % 200);
             int away = far == 0 ? 180 : far == 1 ? 1600 : 12000;
-            color[1][0][c] = color[0][0][c] + (int)(next_random(&seed) % (unsigned)away);
-            color[1][1][c] = color[1][0][c] + (int)(next_random(&seed) % 200);
+            color[1][0][c] = color[0][0][c] + (int)(random_bits(&seed) % (unsigned)away);
+            color[1][1][c] = color[1][0][c] + (int)(random_bits(&seed) % 200);
         }
         for (int i = 0; i < TEXELS; i++) {
-            int subset = ki_bc6h_partitions[n % 32] >> i & 1, along = (int)(next_random(&seed) % 8);
+            int subset = ki_bc6h_partitions[n % 32] >> i & 1, along = (int)(random_bits(&seed) % 8);
             for (int c = 0; c < 3; c++)
                 code[i][c] =
                     color[subset][0][c] + along * (color[subset][1][c] - color[subset][0][c]) / 7;
@@ -233,11 +225,11 @@ static void two_colours_are_two_lines(void **state)
 
 static void make_picture(int width, int height, float *rgb)
 {
-    uint32_t seed = 3;
+    uint64_t seed = 3;
     for (int i = 0; i < width * height * 3; i++) {
         int x = i / 3 % width, y = i / 3 / width;
         rgb[i] =
-            (float)exp2((double)(next_random(&seed) % 4000) / 1000 + sin(x / 9.0) + cos(y / 7.0));
+            (float)exp2((double)(random_bits(&seed) % 4000) / 1000 + sin(x / 9.0) + cos(y / 7.0));
     }
     rgb[0] = -1;
     rgb[1] = NAN;
@@ -256,9 +248,7 @@ static void same_bits_for_every_machine_and_thread_count(void **state)
     uint8_t *first = calloc(size, 1), *next = calloc(size, 1);
     for (int cpu = KILN_CPU_SCALAR; cpu <= KILN_CPU_AVX512; cpu++)
         for (int threads = 1; threads <= 5; threads += 2) {
-            kiln_context *context;
-            kiln_context_def def = {.thread_count = threads, .cpu = (enum kiln_cpu)cpu};
-            CHECK_OK(kiln_context_create(&def, &context, &error));
+            kiln_context *context = make_context_for(threads, (enum kiln_cpu)cpu);
             bool begin = cpu == KILN_CPU_SCALAR && threads == 1;
             uint8_t *bytes = begin ? first : next;
             assert_true(ki_bc6h_encode(context, rgb, WIDTH, HEIGHT, FACES, bytes));
@@ -273,8 +263,7 @@ static void same_bits_for_every_machine_and_thread_count(void **state)
 static void any_size_comes_back(void **state)
 {
     (void)state;
-    kiln_context *context;
-    CHECK_OK(kiln_context_create(NULL, &context, &error));
+    kiln_context *context = make_context(0);
     for (int height = 1; height <= 6; height++)
         for (int width = 1; width <= 9; width++) {
             float rgb[3 * 54], back[3 * 54];
@@ -299,8 +288,7 @@ static void any_size_comes_back(void **state)
 static void a_sky_errs_little(void **state)
 {
     (void)state;
-    kiln_context *context;
-    CHECK_OK(kiln_context_create(NULL, &context, &error));
+    kiln_context *context = make_context(0);
     kiln_sky_def sky = {.size = 256, .elevation = 20};
     kiln_prefilter_def def = {.size = 64, .level_count = 4};
     kiln_map panorama, cube;

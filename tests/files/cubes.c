@@ -1,6 +1,5 @@
 // KTX2 and DDS: every format and compression there and back, and the bytes that specifications
 // fix.
-#include "check.h"
 #include "codec/bc6h.h"
 #include "codec/codec.h"
 #include "codec/pixel_format.h"
@@ -8,9 +7,7 @@
 
 #include <zstd.h>
 
-#include "context.h"
-
-static kiln_error error;
+#include "kit/context.h"
 
 static void make_cube(int size, int levels, kiln_map *map)
 {

@@ -1,23 +1,19 @@
 // zlib data: what zlib packs comes back, what kiln packs is read by zlib, and what is damaged does not
 // pass for whole.
 #include "codec/deflate.h"
-#include "check.h"
 
 #include <zlib.h>
 
-#include "context.h"
+#include "kit/context.h"
 
 enum { MOST = 70000, KINDS = 6 };
 
 // Noise, steps, few symbols, text with far matches, zeros, and two kinds one after the other.
 static void fill(uint8_t *plain, size_t size, int kind)
 {
-    uint64_t random = 88172645463325252U; // Marsaglia's xorshift
+    uint64_t seed = 1;
     for (size_t i = 0; i < size; i++) {
-        random ^= random << 13;
-        random ^= random >> 7;
-        random ^= random << 17;
-        uint32_t n = (uint32_t)(random >> 20);
+        uint32_t n = (uint32_t)random_bits(&seed);
         uint8_t few = n & 1U << 27 ? (uint8_t)(n >> 28) : 0;
         uint8_t far = i % 33000 < 100 ? (uint8_t)(i % 33000) : (uint8_t)(n >> 24 & 7);
         plain[i] = kind == 0      ? (uint8_t)(n >> 24)
@@ -167,11 +163,9 @@ static void parts_are_one_stream(void **state)
 // own, and no block becomes shorter than its stored form.
 static void fill_stretches(uint8_t *plain, size_t size, size_t stretch)
 {
-    uint64_t random = 88172645463325252U;
+    uint64_t seed = 1;
     for (size_t i = 0; i < size; i++) {
-        random ^= random << 13;
-        random ^= random >> 7;
-        random ^= random << 17;
+        uint64_t random = random_bits(&seed);
         uint8_t byte = (uint8_t)(random >> 44), high = (uint8_t)(i / stretch % 2 * 128);
         bool skewed = (random >> 28 & 255) < 80;
         plain[i] = skewed ? (uint8_t)((byte & 127) | high) : byte;

@@ -1,15 +1,12 @@
 // EXR: what OpenEXRCore writes is read, what kiln writes comes back, and what cannot be read is
 // said.
-#include "check.h"
 #include "codec/codec.h"
 #include "exr_make.h"
 #include "image/pack.h"
 
 #include <float.h>
 
-#include "context.h"
-
-static kiln_error error;
+#include "kit/context.h"
 
 // Smooth with some noise below, different for every channel, never negative.
 static float ramp(int x, int y, const char *channel)
@@ -333,8 +330,9 @@ static void what_is_written_comes_back(void **state)
     (void)state;
     enum { W = 45, H = 37 };
     float pixels[W * H * 4];
+    uint64_t seed = 1;
     for (int i = 0; i < W * H * 4; i++)
-        pixels[i] = (float)(((uint32_t)i * 2654435761U >> 8) % 4096) / 1024;
+        pixels[i] = (float)random_between(&seed, 0, 4);
     for (int channels = 1; channels <= 4; channels++)
         for (int half = 0; half < 2; half++) {
             ki_writer w = {.context = context};
@@ -364,8 +362,7 @@ static void threads_do_not_matter(void **state)
     kiln_image images[2];
     kiln_context *contexts[2];
     for (int i = 0; i < 2; i++) {
-        CHECK_OK(kiln_context_create(&(kiln_context_def){.thread_count = i ? 7 : 1}, &contexts[i],
-                                     &error));
+        contexts[i] = make_context(i ? 7 : 1);
         CHECK_OK(
             kiln_image_load(contexts[i], KILN_GOOD_FILES "/dwab-float.exr", &images[i], &error));
     }

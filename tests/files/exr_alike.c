@@ -1,15 +1,12 @@
 // kiln's EXR reader beside OpenEXRCore's: every compression, type of sample, order of chunks and kind of
 // window, to the same bits.
-#include "check.h"
 #include "codec/codec.h"
 #include "exr_make.h"
 #include "exr_witness.h"
 
 #include <dirent.h>
 
-#include "context.h"
-
-static kiln_error error;
+#include "kit/context.h"
 
 // What kiln reads of a file whose display window is its data window, against what OpenEXRCore does.
 // Returns whether both read the file.
@@ -38,9 +35,8 @@ static bool check_alike(const uint8_t *bytes, size_t size, const char *name)
 
 static float noise(int x, int y, const char *channel)
 {
-    uint32_t n = (uint32_t)x * 7919U + (uint32_t)y * 104729U + (uint32_t)channel[0] * 31U;
-    n = (n ^ n >> 7) * 2654435761U;
-    return (float)(n >> 12) / (float)(1 << ((x + 64) / 7 + (y + 64) / 5) % 24);
+    uint64_t place = (uint64_t)(x + 64) << 32 | (uint64_t)(y + 64) << 8 | (uint64_t)channel[0];
+    return (float)(random_hash(place) >> 44) / (float)(1 << ((x + 64) / 7 + (y + 64) / 5) % 24);
 }
 
 static float smooth(int x, int y, const char *channel)
@@ -139,20 +135,14 @@ static void check_folder(const char *folder, bool good)
             continue;
         char path[512];
         snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
-        FILE *file = fopen(path, "rb");
-        assert_non_null(file);
-        static uint8_t bytes[1 << 16];
-        size_t size = fread(bytes, 1, sizeof bytes, file);
-        fclose(file);
-        uint8_t *exact = malloc(size + 1);
-        assert_non_null(exact);
-        memcpy(exact, bytes, size);
+        size_t size;
+        uint8_t *bytes = read_file(path, &size);
         kiln_image image;
         kiln_result result =
-            ki_exr_decode(context, exact, size, entry->d_name, &image, NULL, &error);
+            ki_exr_decode(context, bytes, size, entry->d_name, &image, NULL, &error);
         assert_true((result == KILN_OK) == good);
         kiln_image_free(&image);
-        free(exact);
+        free(bytes);
         count++;
     }
     closedir(listing);

@@ -1,7 +1,7 @@
 #include "exr_make.h"
 
-#include "check.h"
 #include "image/pack.h"
+#include "kit/check.h"
 
 typedef struct stream {
     uint8_t *bytes;

@@ -1,8 +1,8 @@
 #include "exr_witness.h"
 
-#include "check.h"
 #include "exr_make.h"
 #include "image/pack.h"
+#include "kit/check.h"
 
 #include <float.h>
 #include <openexr.h>

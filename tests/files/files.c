@@ -1,75 +1,13 @@
 // Loading and saving by path: layouts, faces, names, and that nothing is half written.
-#include "check.h"
 #include "codec/codec.h"
 #include "image/image.h"
 
-#include <dirent.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-static kiln_context *context;
-static kiln_error error;
-static char folder[64];
-
-static int set_up(void **state)
-{
-    (void)state;
-    strcpy(folder, "/tmp/kiln-files-XXXXXX");
-    return !mkdtemp(folder) || kiln_context_create(NULL, &context, &error) != KILN_OK;
-}
-
-static int file_count(const char *path)
-{
-    DIR *open = opendir(path);
-    int count = 0;
-    for (struct dirent *entry; open && (entry = readdir(open));)
-        count += entry->d_name[0] != '.';
-    if (open)
-        closedir(open);
-    return count;
-}
-
-static void empty(const char *path)
-{
-    DIR *open = opendir(path);
-    for (struct dirent *entry; open && (entry = readdir(open));) {
-        char name[400];
-        snprintf(name, sizeof name, "%s/%s", path, entry->d_name);
-        struct stat status;
-        if (entry->d_name[0] == '.' || stat(name, &status))
-            continue;
-        if (S_ISDIR(status.st_mode)) {
-            empty(name);
-            rmdir(name);
-        } else {
-            unlink(name);
-        }
-    }
-    if (open)
-        closedir(open);
-}
-
-static int tear_down(void **state)
-{
-    (void)state;
-    empty(folder);
-    rmdir(folder);
-    size_t held = 0;
-    kiln_context_memory(context, &held, NULL);
-    kiln_context_destroy(context);
-    return held != 0;
-}
-
-static const char *in_folder(const char *name)
-{
-    static char paths[4][200];
-    static int next;
-    char *path = paths[next++ % 4];
-    snprintf(path, sizeof paths[0], "%s/%s", folder, name);
-    return path;
-}
+#include "kit/context.h"
 
 // A cube whose texels say where they are; exact in half floats.
 static float mark(int face, int x, int y, int c)
@@ -88,13 +26,6 @@ static void make_cube(int levels, kiln_map *map)
         for (int i = 0; i < 6 * n * n * 3; i++)
             map->level[k][i] = mark(i / 3 / n / n, i / 3 % n, i / 3 / n % n, i % 3) + (float)k / 8;
     }
-}
-
-static void check_same(const kiln_map *a, const kiln_map *b)
-{
-    assert_int_equal(a->shape, b->shape);
-    assert_int_equal(a->size, b->size);
-    assert_memory_equal(a->level[0], b->level[0], kiln_map_texels(a, 0) * 3 * sizeof(float));
 }
 
 // Draws the cube as a picture whose face f lies at column places[f][0], row places[f][1].
@@ -137,7 +68,7 @@ static void crosses_and_strips(void **state)
     kiln_map_free(&hung);
     for (int i = 0; i < 4; i++) {
         CHECK_OK(kiln_map_load(context, in_folder(names[i]), NULL, &back, &error));
-        check_same(&cube, &back);
+        check_same_levels(&cube, &back);
         kiln_map_free(&back);
     }
     kiln_map_free(&cube);
@@ -228,8 +159,8 @@ static void layouts_can_be_said(void **state)
         kiln_result result = kiln_map_load(context, in_folder("a.hdr"), &def, &map, &error);
         if (cases[i].sentence) {
             assert_int_equal(result, KILN_ERROR_FORMAT);
-            assert_non_null(strstr(error.message, cases[i].sentence));
-            assert_non_null(strstr(error.message, "a.hdr"));
+            CHECK_SAYS(error.message, cases[i].sentence);
+            CHECK_SAYS(error.message, "a.hdr");
         } else {
             CHECK_OK(result);
             assert_int_equal(map.shape, cases[i].shape);
@@ -242,7 +173,7 @@ static void layouts_can_be_said(void **state)
         KILN_ERROR_ARGUMENT);
     assert_int_equal(kiln_map_load(context, in_folder("none.hdr"), NULL, &map, &error),
                      KILN_ERROR_IO);
-    assert_non_null(strstr(error.message, "none.hdr"));
+    CHECK_SAYS(error.message, "none.hdr");
 }
 
 static void check_names(const char *path, int levels, const char *const *names, int count)
@@ -312,7 +243,7 @@ static void faces_are_found_again(void **state)
     for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
         CHECK_OK(kiln_map_save(context, &cube, in_folder(ways[i].save), NULL, NULL, &error));
         CHECK_OK(kiln_map_load(context, in_folder(ways[i].load), NULL, &back, &error));
-        check_same(&cube, &back);
+        check_same_levels(&cube, &back);
         kiln_map_free(&back);
     }
     mkdir(in_folder("g"), 0777);
@@ -322,10 +253,10 @@ static void faces_are_found_again(void **state)
     // Two sets in one folder: which is meant must be said; a set with plain names is preferred.
     CHECK_OK(kiln_map_save(context, &cube, in_folder("g/sky.hdr"), NULL, NULL, &error));
     assert_int_equal(kiln_map_load(context, in_folder("g"), NULL, &back, &error), KILN_ERROR_IO);
-    assert_non_null(strstr(error.message, "env_px.hdr and sky_px.hdr"));
+    CHECK_SAYS(error.message, "env_px.hdr and sky_px.hdr");
     CHECK_OK(kiln_map_save(context, &cube, in_folder("g/"), NULL, NULL, &error));
     CHECK_OK(kiln_map_load(context, in_folder("g"), NULL, &back, &error));
-    check_same(&cube, &back);
+    check_same_levels(&cube, &back);
     kiln_map_free(&back);
     // A face of another size, and one that is not square.
     kiln_image image;
@@ -333,13 +264,13 @@ static void faces_are_found_again(void **state)
     CHECK_OK(kiln_image_save(context, &image, in_folder("g/ny.exr"), &error));
     assert_int_equal(kiln_map_load(context, in_folder("g"), NULL, &back, &error),
                      KILN_ERROR_FORMAT);
-    assert_non_null(strstr(error.message, "ny.exr: is 5 x 5, the first face 6 x 6"));
+    CHECK_SAYS(error.message, "ny.exr: is 5 x 5, the first face 6 x 6");
     kiln_image_free(&image);
     CHECK_OK(kiln_image_create(context, 6, 5, 3, &image, &error));
     CHECK_OK(kiln_image_save(context, &image, in_folder("g/px.exr"), &error));
     assert_int_equal(kiln_map_load(context, in_folder("g"), NULL, &back, &error),
                      KILN_ERROR_FORMAT);
-    assert_non_null(strstr(error.message, "px.exr: is 6 x 5, a face must be square"));
+    CHECK_SAYS(error.message, "px.exr: is 6 x 5, a face must be square");
     kiln_image_free(&image);
     kiln_map_free(&cube);
 }
@@ -373,11 +304,10 @@ static void nothing_is_half_written(void **state)
     kiln_map cube, big, back;
     make_cube(1, &cube);
     CHECK_OK(kiln_map_create(context, KILN_SHAPE_CUBE, 64, 1, &big, &error));
-    for (size_t i = 0; i < kiln_map_texels(&big, 0) * 3; i++)
-        big.level[0][i] = (float)(i * 2654435761U >> 12 & 1023);
+    fill_noise(&big, 1, 0, 1000);
     CHECK_OK(kiln_map_save(context, &cube, in_folder("a.ktx2"), NULL, NULL, &error));
     CHECK_OK(kiln_map_save(context, &cube, in_folder("a.exr"), NULL, NULL, &error));
-    int before = file_count(folder);
+    int before = file_count(folder_path());
     struct rlimit limit, small;
     assert_int_equal(getrlimit(RLIMIT_FSIZE, &limit), 0);
     small = limit;
@@ -391,17 +321,17 @@ static void nothing_is_half_written(void **state)
     assert_int_equal(one, KILN_ERROR_IO);
     assert_int_equal(six, KILN_ERROR_IO);
     assert_int_equal(fresh, KILN_ERROR_IO);
-    assert_non_null(strstr(error.message, "new/px.exr: cannot write"));
-    assert_int_equal(file_count(folder), before); // "new" is gone too
+    CHECK_SAYS(error.message, "new/px.exr: cannot write");
+    assert_int_equal(file_count(folder_path()), before); // "new" is gone too
     CHECK_OK(kiln_map_load(context, in_folder("a.ktx2"), NULL, &back, &error));
-    check_same(&cube, &back);
+    check_same_levels(&cube, &back);
     kiln_map_free(&back);
     CHECK_OK(kiln_map_load(context, in_folder("a_%s.exr"), NULL, &back, &error));
-    check_same(&cube, &back);
+    check_same_levels(&cube, &back);
     kiln_map_free(&back);
     assert_int_equal(kiln_map_save(context, &cube, in_folder("missing/a.ktx2"), NULL, NULL, &error),
                      KILN_ERROR_IO);
-    assert_non_null(strstr(error.message, "missing/a.ktx2"));
+    CHECK_SAYS(error.message, "missing/a.ktx2");
     kiln_map_free(&cube);
     kiln_map_free(&big);
 }
@@ -409,13 +339,10 @@ static void nothing_is_half_written(void **state)
 static void check_text(const char *name, const kiln_sh *sh, const char *wanted)
 {
     CHECK_OK(kiln_sh_save(context, sh, in_folder(name), &error));
-    FILE *file = fopen(in_folder(name), "r");
-    assert_non_null(file);
-    char text[2048] = "";
-    size_t size = fread(text, 1, sizeof text - 1, file);
-    text[size] = 0;
-    fclose(file);
+    size_t size;
+    char *text = (char *)read_file(in_folder(name), &size);
     assert_string_equal(text, wanted);
+    free(text);
 }
 
 static void harmonics_are_text(void **state)
@@ -454,8 +381,7 @@ static void memory_is_the_picture(void **state)
     ki_exr_options options = {.half = true, .roughness = -1};
     CHECK_OK(ki_exr_encode(pixels, WIDE, HIGH, 3, &options, &w, &error));
     ki_free(pixels);
-    kiln_context *fresh;
-    CHECK_OK(kiln_context_create(&(kiln_context_def){.thread_count = 2}, &fresh, &error));
+    kiln_context *fresh = make_context(2);
     kiln_map map;
     CHECK_OK(kiln_map_decode(fresh, w.bytes, w.size, "large.exr", NULL, &map, &error));
     size_t peak;
@@ -470,15 +396,15 @@ static void memory_is_the_picture(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(crosses_and_strips, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(crosses_have_no_seams, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(layouts_can_be_said, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(names_say_face_and_level, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(faces_are_found_again, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_file_is_described, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(nothing_is_half_written, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(harmonics_are_text, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(memory_is_the_picture, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(crosses_and_strips, set_up_folder, tear_down_folder),
+        cmocka_unit_test_setup_teardown(crosses_have_no_seams, set_up_folder, tear_down_folder),
+        cmocka_unit_test_setup_teardown(layouts_can_be_said, set_up_folder, tear_down_folder),
+        cmocka_unit_test_setup_teardown(names_say_face_and_level, set_up_folder, tear_down_folder),
+        cmocka_unit_test_setup_teardown(faces_are_found_again, set_up_folder, tear_down_folder),
+        cmocka_unit_test_setup_teardown(a_file_is_described, set_up_folder, tear_down_folder),
+        cmocka_unit_test_setup_teardown(nothing_is_half_written, set_up_folder, tear_down_folder),
+        cmocka_unit_test_setup_teardown(harmonics_are_text, set_up_folder, tear_down_folder),
+        cmocka_unit_test_setup_teardown(memory_is_the_picture, set_up_folder, tear_down_folder),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,40 +1,12 @@
 // The table of formats: what an ending may hold is asked and saved by one rule, in letters of either case.
-#include "check.h"
-#include "context.h"
-
 #include <kiln/brdf.h>
 
-#include <unistd.h>
+#include "kit/context.h"
 
-static kiln_error error;
-static char folder[] = "/tmp/kiln-formats-XXXXXX";
-
-static int set_up_folder(void **state)
+static kiln_map make_ramp(kiln_shape shape)
 {
-    return !mkdtemp(folder) || set_up(state);
-}
-
-static int tear_down_folder(void **state)
-{
-    char command[64];
-    snprintf(command, sizeof command, "rm -r %s", folder);
-    return system(command) || tear_down(state);
-}
-
-static const char *in_folder(const char *name)
-{
-    static char paths[2][128];
-    static int next;
-    char *path = paths[next++ % 2];
-    snprintf(path, sizeof paths[0], "%s/%s", folder, name);
-    return path;
-}
-
-static kiln_map make_map(kiln_shape shape)
-{
-    kiln_map map;
-    CHECK_OK(kiln_map_create(context, shape, 4, 1, &map, &error));
-    for (size_t i = 0; i < 3 * kiln_map_texels(&map, 0); i++)
+    kiln_map map = make_map(context, shape, 4, 1);
+    for (size_t i = 0; i < value_count(&map, 0); i++)
         map.level[0][i] = (float)i / 256;
     return map;
 }
@@ -48,7 +20,7 @@ static void saving_does_what_the_check_says(void **state)
     int good = 0, bad = 0;
     for (size_t n = 0; n < sizeof names / sizeof *names; n++)
         for (int shape = KILN_SHAPE_PANORAMA; shape <= KILN_SHAPE_OCTAHEDRON; shape++) {
-            kiln_map map = make_map((kiln_shape)shape);
+            kiln_map map = make_ramp((kiln_shape)shape);
             for (int format = 0; format <= KILN_FORMAT_RGBP + 1; format++)
                 for (int zstd = 0; zstd < 2; zstd++) {
                     const kiln_save_def def = {.format = (kiln_format)format, .zstd = zstd};
@@ -127,23 +99,6 @@ static void limits_are_those_of_the_file(void **state)
         assert_true(kiln_map_save_limit(cases[i].path, cases[i].format) == cases[i].limit);
 }
 
-static void check_same_file(const char *a, const char *b)
-{
-    uint8_t bytes[2][8192];
-    size_t size[2];
-    const char *names[2] = {a, b};
-    for (int i = 0; i < 2; i++) {
-        FILE *file = fopen(in_folder(names[i]), "rb");
-        if (!file)
-            fail_msg("%s was not written", names[i]);
-        size[i] = fread(bytes[i], 1, sizeof bytes[i], file);
-        fclose(file);
-    }
-    assert_int_equal(size[0], size[1]);
-    assert_in_range(size[0], 1, sizeof bytes[0] - 1);
-    assert_memory_equal(bytes[0], bytes[1], size[0]);
-}
-
 static void endings_may_have_capitals(void **state)
 {
     (void)state;
@@ -153,7 +108,7 @@ static void endings_may_have_capitals(void **state)
     for (size_t i = 0; i < sizeof endings / sizeof *endings; i++)
         assert_string_equal(kiln_path_ending(endings[i][0]), endings[i][1]);
 
-    kiln_map cube = make_map(KILN_SHAPE_CUBE), back;
+    kiln_map cube = make_ramp(KILN_SHAPE_CUBE), back;
     static const char *const maps[][4] = {{"s.ktx2", "s.ktx2", "L.KTX2", "L.KTX2"},
                                           {"s.dds", "s.dds", "L.Dds", "L.Dds"},
                                           {"s.exr", "s_nz.exr", "L.EXR", "L_nz.EXR"},
@@ -162,7 +117,7 @@ static void endings_may_have_capitals(void **state)
     for (size_t i = 0; i < sizeof maps / sizeof *maps; i++) {
         CHECK_OK(kiln_map_save(context, &cube, in_folder(maps[i][0]), NULL, NULL, &error));
         CHECK_OK(kiln_map_save(context, &cube, in_folder(maps[i][2]), NULL, NULL, &error));
-        check_same_file(maps[i][1], maps[i][3]);
+        check_same_files(in_folder(maps[i][1]), in_folder(maps[i][3]));
     }
     // A folder of such faces is a cube.
     CHECK_OK(kiln_map_save(context, &cube, in_folder("faces/"), NULL, NULL, &error));
@@ -175,13 +130,13 @@ static void endings_may_have_capitals(void **state)
     kiln_sh sh = {.bands = 2};
     CHECK_OK(kiln_sh_save(context, &sh, in_folder("s.json"), &error));
     CHECK_OK(kiln_sh_save(context, &sh, in_folder("L.JSON"), &error));
-    check_same_file("s.json", "L.JSON");
+    check_same_files(in_folder("s.json"), in_folder("L.JSON"));
     float pixels[12] = {0};
     kiln_table table = {{.kind = KILN_TABLE_E, .width = 4, .height = 3, .depth = 1},
                         {4, 3, 1, pixels, NULL}};
     CHECK_OK(kiln_table_save(context, &table, in_folder("s.inc"), NULL, &error));
     CHECK_OK(kiln_table_save(context, &table, in_folder("L.INC"), NULL, &error));
-    check_same_file("s.inc", "L.INC");
+    check_same_files(in_folder("s.inc"), in_folder("L.INC"));
 }
 
 int main(void)

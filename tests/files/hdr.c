@@ -1,10 +1,7 @@
 // Radiance HDR: flat and both run lengths, all orientations, EXPOSURE, and what is written.
-#include "check.h"
 #include "codec/codec.h"
 
-#include "context.h"
-
-static kiln_error error;
+#include "kit/context.h"
 
 enum { W = 13, H = 7 };
 

@@ -1,10 +1,8 @@
 // Hostile bytes and missing memory: every decoder returns, says which file, and leaks nothing.
 #include "codec/codec.h"
-#include "failing.h"
+#include "kit/kit.h"
 
 #include <dirent.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 static kiln_error error;
 
@@ -27,15 +25,10 @@ static void read_folder(const char *path, sample *samples, int *count)
             continue;
         char full[512];
         snprintf(full, sizeof full, "%s/%s", path, entry->d_name);
-        FILE *file = fopen(full, "rb");
-        struct stat status = {0};
-        assert_true(file && stat(full, &status) == 0 && *count < MAX_SAMPLES);
+        assert_true(*count < MAX_SAMPLES);
         sample *s = &samples[(*count)++];
         snprintf(s->name, sizeof s->name, "%.63s", entry->d_name);
-        s->size = (size_t)status.st_size;
-        s->bytes = malloc(s->size + 1);
-        assert_int_equal(fread(s->bytes, 1, s->size, file), s->size);
-        fclose(file);
+        s->bytes = read_file(full, &s->size);
     }
     closedir(folder);
 }
@@ -53,8 +46,7 @@ static void add_good(const char *name, const ki_writer *w)
 static int make_samples(void **state)
 {
     (void)state;
-    kiln_context *context;
-    CHECK_OK(kiln_context_create(&(kiln_context_def){.thread_count = 1}, &context, &error));
+    kiln_context *context = make_context(1);
     read_folder(KILN_GOOD_FILES, good, &good_count);
     kiln_map map;
     CHECK_OK(kiln_map_create(context, KILN_SHAPE_CUBE, 16, 0, &map, &error));
@@ -169,18 +161,18 @@ static void damaged_files_do_no_harm(void **state)
     (void)state;
     failing f;
     kiln_context *context = failing_context(&f);
-    uint32_t seed = 1;
+    uint64_t seed = 1;
     for (int i = 0; i < good_count; i++) {
         sample *s = &good[i];
         uint8_t *bytes = malloc(s->size);
         for (int round = 0; round < 300; round++) {
             memcpy(bytes, s->bytes, s->size);
             for (int k = 0; k < 1 + round % 4; k++) {
-                seed = seed * 1664525U + 1013904223U;
+                uint64_t bits = random_bits(&seed);
                 // Half of them in the first 400 bytes, where headers are.
                 size_t range = round % 2 && s->size > 400 ? 400 : s->size;
-                size_t at = (size_t)(seed >> 8) % range;
-                bytes[at] = (uint8_t)(round % 3 ? bytes[at] ^ (1U << (seed >> 29)) : seed >> 24);
+                size_t at = (size_t)(bits >> 8) % range;
+                bytes[at] = (uint8_t)(round % 3 ? bytes[at] ^ (1U << (bits & 7)) : bits & 255);
             }
             (void)decode(context, &f, bytes, s->size, s->name);
         }
@@ -243,15 +235,11 @@ static void decoding_survives_missing_memory(void **state)
     }
 }
 
-static char folder[64];
-
 static kiln_result save(kiln_context *context, const char *path)
 {
     // The map is made by another context, whose memory does not fail.
-    kiln_context *other;
-    CHECK_OK(kiln_context_create(&(kiln_context_def){.thread_count = 1}, &other, &error));
-    kiln_map map;
-    CHECK_OK(kiln_map_create(other, KILN_SHAPE_CUBE, 4, 1, &map, &error));
+    kiln_context *other = make_context(1);
+    kiln_map map = make_map(other, KILN_SHAPE_CUBE, 4, 1);
     kiln_sh sh = {.bands = 3};
     kiln_save_def def = {.zstd = strstr(path, "zstd") ? 3 : 0, .sh = &sh, .lobe = "ggx"};
     kiln_result result = kiln_map_save(context, &map, path, &def, NULL, &error);
@@ -313,8 +301,7 @@ static kiln_result describe(kiln_context *context, const char *path)
 static void files_survive_missing_memory(void **state)
 {
     (void)state;
-    strcpy(folder, "/tmp/kiln-hostile-XXXXXX");
-    assert_non_null(mkdtemp(folder));
+    folder_make();
     static const struct {
         const char *name;
         attempt *call;
@@ -349,12 +336,10 @@ static void files_survive_missing_memory(void **state)
                  {"t-zstd.ktx2", load_table}};
     for (size_t i = 0; i < sizeof calls / sizeof *calls; i++) {
         char path[128];
-        snprintf(path, sizeof path, "%s/%s", folder, calls[i].name);
+        strcpy(path, in_folder(calls[i].name));
         check_allocations(calls[i].name, calls[i].call, path);
     }
-    char command[128];
-    snprintf(command, sizeof command, "rm -r %s", folder);
-    assert_int_equal(system(command), 0);
+    folder_remove();
 }
 
 int main(void)

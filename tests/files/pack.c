@@ -1,20 +1,12 @@
 // Small floats against brute force, in double precision.
 #include "image/pack.h"
-#include "check.h"
+#include "kit/kit.h"
 
 static float from_bits(uint32_t bits)
 {
     float value;
     memcpy(&value, &bits, sizeof value);
     return value;
-}
-
-static uint32_t next_random(uint32_t *state)
-{
-    *state ^= *state << 13;
-    *state ^= *state >> 17;
-    *state ^= *state << 5;
-    return *state;
 }
 
 // The value of a float of 5 exponent bits and `m` mantissa bits, by its definition.
@@ -122,14 +114,15 @@ static double shared_value(uint32_t mantissa, uint32_t exponent)
 static void shared_exponents_are_nearest(void **state)
 {
     (void)state;
-    uint32_t seed = 12345;
+    uint64_t seed = 12345;
     for (int i = 0; i < 200000; i++) {
         float rgb[3], back[3];
         for (int c = 0; c < 3; c++) {
-            uint32_t exponent = 95 + next_random(&seed) % 50; // 2^-32 to 2^17
-            rgb[c] = from_bits(exponent << 23 | (next_random(&seed) & 0x7fffff));
+            uint32_t exponent = 95 + (uint32_t)(random_bits(&seed) % 50); // 2^-32 to 2^17
+            rgb[c] = from_bits(exponent << 23 | (uint32_t)(random_bits(&seed) & 0x7fffff));
             if (i % 3 == 0) // close to where mantissas carry
-                rgb[c] = from_bits(exponent << 23 | (0x7fffffU - next_random(&seed) % 0x10000));
+                rgb[c] =
+                    from_bits(exponent << 23 | (uint32_t)(0x7fffff - random_bits(&seed) % 0x10000));
         }
         uint32_t packed = ki_rgb9e5_from_float(rgb), exponent = packed >> 27;
         ki_float_from_rgb9e5(packed, back);
@@ -162,9 +155,9 @@ static void texels_pack_as_single_values_do(void **state)
     enum { COUNT = 1000, RGB = COUNT * 3, RGBA = COUNT * 4 };
     static float rgb[RGB], values[RGB];
     static uint16_t rgba[RGBA], halfs[RGB];
-    uint32_t seed = 99;
+    uint64_t seed = 99;
     for (int i = 0; i < RGB; i++)
-        rgb[i] = from_bits(next_random(&seed));
+        rgb[i] = from_bits((uint32_t)random_bits(&seed));
     static const size_t counts[] = {0, 1, 3, 63, 64, 65, COUNT};
     for (size_t k = 0; k < sizeof counts / sizeof *counts; k++) {
         memset(rgba, 0xab, sizeof rgba);

@@ -1,12 +1,11 @@
 // Data in and out of memory: pixels to maps, maps in borrowed memory, levels packed for a graphics
 // processor, and maps that outlive their context.
 #include "codec/codec.h"
-#include "context.h"
 #include "image/pack.h"
 
 #include <float.h>
 
-static kiln_error error;
+#include "kit/context.h"
 
 // Values that are no radiance, and a subnormal and a large one that are.
 static const float odd[] = {NAN, -1, INFINITY, -INFINITY, 1e-40f, -0.0f, 3e38f, 0.25f, -NAN};
@@ -134,7 +133,7 @@ static void six_faces_in_a_row_are_a_cube(void **state)
         assert_int_equal(kiln_map_from_pixels(context, &pixels, &made, &error),
                          KILN_ERROR_ARGUMENT);
         assert_int_equal(error.result, KILN_ERROR_ARGUMENT);
-        assert_non_null(strstr(error.message, wrong[i].said));
+        CHECK_SAYS(error.message, wrong[i].said);
         assert_null(made.level[0]);
     }
     kiln_map_free(&cube);
@@ -157,9 +156,7 @@ static void borrowed_memory_is_taken(void **state)
     CHECK_OK(kiln_bake(context, &in, &def, &wanted, &error));
     CHECK_OK(kiln_plan_create(context, KILN_SHAPE_PANORAMA, 16, &def, &plan, &error));
     CHECK_OK(kiln_plan_execute(plan, &in, &out, &error));
-    for (int k = 0; k < 2; k++)
-        assert_memory_equal(level[k], wanted.levels.level[k],
-                            3 * kiln_map_texels(&out.levels, k) * sizeof(float));
+    check_same_levels(&out.levels, &wanted.levels);
     assert_memory_equal(diffuse, wanted.irradiance.level[0], sizeof diffuse);
     kiln_plan_destroy(plan);
     kiln_environment_free(&wanted);
@@ -217,45 +214,17 @@ static void packed_levels_are_those_of_files(void **state)
     kiln_map_free(&map);
 }
 
-typedef struct counter {
-    long blocks;
-    size_t bytes;
-} counter;
-
-static void *count_allocate(void *user, size_t size)
-{
-    counter *c = user;
-    c->blocks++;
-    c->bytes += size;
-    return aligned_alloc(64, (size + 63) & ~(size_t)63);
-}
-
-static void count_release(void *user, void *memory, size_t size)
-{
-    counter *c = user;
-    c->blocks--;
-    c->bytes -= size;
-    memset(memory, 0xdd, size); // whoever reads it later is found out
-    free(memory);
-}
-
 static void maps_may_outlive_their_context(void **state)
 {
     (void)state;
-    counter c = {0};
-    kiln_context_def def = {.allocate = count_allocate,
-                            .release = count_release,
-                            .allocator_user = &c,
-                            .memory_limit = 64 << 20,
-                            .thread_count = 2};
-    kiln_context *own;
+    failing f;
+    kiln_context *own = failing_context_of(&f, 2);
     kiln_map map;
     kiln_image image;
     kiln_environment made;
     kiln_files files;
     kiln_spectrum *spectrum;
     kiln_plan *plan;
-    CHECK_OK(kiln_context_create(&def, &own, &error));
     CHECK_OK(kiln_sky(own, &(kiln_sky_def){.size = 16}, &map, &error));
     CHECK_OK(kiln_image_create(own, 3, 3, 1, &image, &error));
     kiln_bake_def bake = {.levels = {.size = 8}};
@@ -263,17 +232,17 @@ static void maps_may_outlive_their_context(void **state)
     CHECK_OK(kiln_spectrum_analyze(own, &map, 8, &spectrum, &error));
     CHECK_OK(kiln_plan_create(own, KILN_SHAPE_PANORAMA, 16, &bake, &plan, &error));
     CHECK_OK(kiln_map_encode(own, &map, "a.exr", NULL, &files, NULL, &error));
-    long held = c.blocks;
+    long held = f.held;
     kiln_context_destroy(own);
-    assert_int_equal(c.blocks, held - 1); // the context itself; what the blocks need stays
+    assert_int_equal(f.held, held - 1); // the context itself; what the blocks need stays
     kiln_map_free(&map);
     kiln_image_free(&image);
     kiln_environment_free(&made);
     kiln_spectrum_destroy(spectrum);
     kiln_plan_destroy(plan);
     kiln_files_free(&files);
-    assert_int_equal(c.blocks, 0);
-    assert_int_equal(c.bytes, 0);
+    assert_int_equal(f.held, 0);
+    assert_int_equal(f.bytes, 0);
 }
 
 int main(void)

@@ -1,6 +1,5 @@
 // PNG: every colour type, depth, filter and interlacing as libpng writes them, as linear floats; what kiln
 // writes, as libpng reads it; and what is damaged.
-#include "check.h"
 #include "codec/codec.h"
 #include "codec/deflate.h"
 #include "codec/rgbx.h"
@@ -8,9 +7,7 @@
 
 #include <png.h>
 
-#include "context.h"
-
-static kiln_error error;
+#include "kit/context.h"
 
 static void write_bytes(png_structp png, png_bytep bytes, size_t size)
 {

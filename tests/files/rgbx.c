@@ -1,6 +1,6 @@
 // Radiance in four bytes, as it comes back.
 #include "codec/rgbx.h"
-#include "check.h"
+#include "kit/kit.h"
 
 typedef struct coding {
     void (*pack)(const float rgb[3], float packed[4]);
@@ -42,25 +42,17 @@ static double root(const coding *k, double value)
     return pow(value, 1 / k->power);
 }
 
-static uint32_t next_random(uint32_t *state)
-{
-    *state ^= *state << 13;
-    *state ^= *state >> 17;
-    *state ^= *state << 5;
-    return *state;
-}
-
 // Each channel's root is as near as 8 bits of its scale's allow, and no smaller scale holds the texel.
 static void roots_come_back_to_half_a_step(void **state)
 {
     (void)state;
-    uint32_t seed = 1;
+    uint64_t seed = 1;
     for (int i = 0; i < CODINGS * 200000; i++) {
         const coding *k = &codings[i % CODINGS];
         float rgb[3], packed[4], stored[4], back[3];
         double most = 0;
         for (int c = 0; c < 3; c++) {
-            rgb[c] = (float)(k->largest * pow(2, -(double)(next_random(&seed) % 20000) / 1000));
+            rgb[c] = (float)(k->largest * pow(2, -(double)(random_bits(&seed) % 20000) / 1000));
             most = fmax(most, (double)rgb[c]);
         }
         k->pack(rgb, packed);

@@ -1,67 +1,13 @@
 // Tables as files: every format there and back, what files say of themselves, and what is refused.
 #include "lookup/tables.h"
-#include "check.h"
 #include "codec/codec.h"
 #include "image/pack.h"
 #include "table/table_text.h"
 
-#include <dirent.h>
 #include <png.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
-static kiln_context *context;
-static kiln_error error;
-static char folder[64];
-
-static int set_up(void **state)
-{
-    (void)state;
-    strcpy(folder, "/tmp/kiln-tables-XXXXXX");
-    return !mkdtemp(folder) || kiln_context_create(NULL, &context, &error) != KILN_OK;
-}
-
-static int tear_down(void **state)
-{
-    (void)state;
-    size_t held = 0;
-    kiln_context_memory(context, &held, NULL);
-    kiln_context_destroy(context);
-    char command[128];
-    snprintf(command, sizeof command, "rm -r %s", folder);
-    return system(command) != 0 || held != 0;
-}
-
-static const char *in_folder(const char *name)
-{
-    static char path[128];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    return path;
-}
-
-static int files_in_folder(void)
-{
-    DIR *entries = opendir(folder);
-    assert_non_null(entries);
-    int count = 0;
-    for (struct dirent *entry; (entry = readdir(entries));)
-        count += entry->d_name[0] != '.';
-    closedir(entries);
-    return count;
-}
-
-static uint8_t *read_file(const char *path, size_t *size)
-{
-    FILE *file = fopen(path, "rb");
-    struct stat status = {0};
-    assert_true(file && stat(path, &status) == 0);
-    *size = (size_t)status.st_size;
-    uint8_t *bytes = malloc(*size + 1);
-    assert_int_equal(fread(bytes, 1, *size, file), *size);
-    bytes[*size] = 0;
-    fclose(file);
-    return bytes;
-}
+#include "kit/context.h"
 
 static size_t number_count(const kiln_table *table)
 {
@@ -247,12 +193,11 @@ static void hdr_and_raw_hold_the_numbers(void **state)
 static void refused(const kiln_table *table, const char *name, const kiln_table_save_def *def,
                     const char *sentence)
 {
-    int before = files_in_folder();
+    int before = file_count(folder_path());
     kiln_result result = kiln_table_save(context, table, in_folder(name), def, &error);
     assert_int_equal(result, KILN_ERROR_ARGUMENT);
-    if (!strstr(error.message, sentence))
-        fail_msg("%s: the sentence is \"%s\", wanted \"%s\"", name, error.message, sentence);
-    assert_int_equal(files_in_folder(), before);
+    CHECK_SAYS(error.message, sentence);
+    assert_int_equal(file_count(folder_path()), before);
 }
 
 static void what_cannot_be_saved_is_said(void **state)
@@ -409,15 +354,16 @@ static void what_is_no_table_is_not_loaded(void **state)
     CHECK_OK(kiln_table_save(context, &table, in_folder("t.ktx2"), NULL, &error));
     assert_int_equal(kiln_map_load(context, in_folder("t.ktx2"), NULL, &map, &error),
                      KILN_ERROR_UNSUPPORTED);
-    assert_non_null(strstr(error.message, "holds a table, not an environment"));
+    CHECK_SAYS(error.message, "holds a table, not an environment");
     CHECK_OK(kiln_image_load(context, in_folder("t.ktx2"), &image, &error));
     assert_int_equal(image.channels, 4);
     assert_int_equal(image.height, 15);
     kiln_image_free(&image);
     // As the face of a cube.
     assert_int_equal(symlink("t.ktx2", in_folder("px.exr")), 0);
-    assert_int_equal(kiln_map_load(context, folder, NULL, &map, &error), KILN_ERROR_UNSUPPORTED);
-    assert_non_null(strstr(error.message, "holds a table, not a face"));
+    assert_int_equal(kiln_map_load(context, folder_path(), NULL, &map, &error),
+                     KILN_ERROR_UNSUPPORTED);
+    CHECK_SAYS(error.message, "holds a table, not a face");
     kiln_table_free(&table);
     assert_null(back.image.pixels);
 }
@@ -444,14 +390,11 @@ static void wrong_texts_are_refused(void **state)
         ki_writer w = {.context = context};
         CHECK_OK(ki_ktx2_encode_table(&table.image, 1, wrong[i].text, KILN_TABLE_FORMAT_F32, 0, &w,
                                       &error));
-        FILE *file = fopen(in_folder("w.ktx2"), "wb");
-        assert_int_equal(fwrite(w.bytes, 1, w.size, file), w.size);
-        fclose(file);
+        write_file(in_folder("w.ktx2"), w.bytes, w.size);
         ki_writer_free(&w);
         assert_int_equal(kiln_table_load(context, in_folder("w.ktx2"), &back, &error),
                          KILN_ERROR_FORMAT);
-        if (!strstr(error.message, wrong[i].sentence))
-            fail_msg("the sentence is \"%s\"", error.message);
+        CHECK_SAYS(error.message, wrong[i].sentence);
         assert_null(back.image.pixels);
     }
     kiln_table_free(&table);
@@ -470,5 +413,5 @@ int main(void)
         cmocka_unit_test(what_is_no_table_is_not_loaded),
         cmocka_unit_test(wrong_texts_are_refused),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, set_up_folder, tear_down_folder);
 }

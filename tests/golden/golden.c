@@ -7,7 +7,7 @@
 //
 // It sees the public headers only and needs no test framework, so that it is built wherever kiln is. Files
 // are written to the current folder and removed.
-#include "scene.h"
+#include "kit/scene.h"
 
 #include <kiln/brdf.h>
 

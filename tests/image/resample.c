@@ -1,24 +1,10 @@
 // Resampling by area: laws, and an independent slow sum.
-#include "failing.h"
+#include "kit/kit.h"
 
 #include "image/image.h"
 #include "image/resample.h"
 
 static kiln_error error;
-
-static kiln_context *make_context(int threads)
-{
-    kiln_context *context;
-    CHECK_OK(kiln_context_create(&(kiln_context_def){.thread_count = threads}, &context, &error));
-    return context;
-}
-
-static kiln_map make_map(kiln_context *context, kiln_shape shape, int size)
-{
-    kiln_map map;
-    CHECK_OK(kiln_map_create(context, shape, size, 1, &map, &error));
-    return map;
-}
 
 static kiln_map convert(kiln_context *context, const kiln_map *source, kiln_shape shape, int size,
                         double rotation)
@@ -28,25 +14,13 @@ static kiln_map convert(kiln_context *context, const kiln_map *source, kiln_shap
     return map;
 }
 
-static uint32_t next_random(uint32_t *seed)
-{
-    *seed = *seed * 1664525u + 1013904223u;
-    return *seed >> 8;
-}
-
 // Texels without any likeness to their neighbours, some of them ten times brighter.
-static void fill_random(kiln_map *map, uint32_t seed)
+static void fill_spiky(kiln_map *map, uint64_t seed)
 {
-    for (size_t i = 0; i < 3 * kiln_map_texels(map, 0); i++) {
-        float value = (float)next_random(&seed) / 16777216.0f;
-        map->level[0][i] = next_random(&seed) % 50 ? value : 10 * value;
+    for (size_t i = 0; i < value_count(map, 0); i++) {
+        float value = (float)random_number(&seed);
+        map->level[0][i] = random_bits(&seed) % 50 ? value : 10 * value;
     }
-}
-
-static void fill_constant(kiln_map *map, float value)
-{
-    for (size_t i = 0; i < 3 * kiln_map_texels(map, 0); i++)
-        map->level[0][i] = value;
 }
 
 // A triangle's solid angle, Van Oosterom and Strackee 1983.
@@ -69,7 +43,6 @@ static double solid_angle(const kiln_map *map, size_t index)
     int n = map->size, width = map->shape == KILN_SHAPE_PANORAMA ? 2 * n : n;
     int x = (int)(index % (size_t)width), row = (int)(index / (size_t)width);
     int y = row % n, face = row / n;
-    const double pi = acos(-1);
     if (map->shape == KILN_SHAPE_PANORAMA)
         return 2 * pi / width * (cos(pi * y / n) - cos(pi * (y + 1) / n));
     double corner[4][3], area;
@@ -104,11 +77,11 @@ static void solid_angles_fill_the_sphere(void **state)
     kiln_context *context = make_context(1);
     for (int shape = KILN_SHAPE_PANORAMA; shape <= KILN_SHAPE_OCTAHEDRON; shape++)
         for (int size = 2; size < 40; size += 2) {
-            kiln_map map = make_map(context, (kiln_shape)shape, size);
+            kiln_map map = make_map(context, (kiln_shape)shape, size, 1);
             fill_constant(&map, 1);
             double sum[3];
             energy(&map, sum);
-            CHECK_NEAR(sum[0], 4 * acos(-1), 1e-12);
+            CHECK_NEAR(sum[0], 4 * pi, 1e-12);
             kiln_map_free(&map);
         }
     kiln_context_destroy(context);
@@ -127,7 +100,7 @@ static void constants_stay_constant(void **state)
                     if (shapes / 3 && shapes % 3 && sources[i] * targets[j] > 30)
                         continue; // slow, and no different
                     kiln_map source = make_map(
-                        context, (kiln_shape)(KILN_SHAPE_PANORAMA + shapes / 3), sources[i]);
+                        context, (kiln_shape)(KILN_SHAPE_PANORAMA + shapes / 3), sources[i], 1);
                     fill_constant(&source, 0.7f);
                     kiln_map map =
                         convert(context, &source, (kiln_shape)(KILN_SHAPE_PANORAMA + shapes % 3),
@@ -165,18 +138,18 @@ static void energy_is_kept(void **state)
         {KILN_SHAPE_OCTAHEDRON, KILN_SHAPE_PANORAMA, 40, 64, -20},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        kiln_map source = make_map(context, cases[k].from, cases[k].source);
+        kiln_map source = make_map(context, cases[k].from, cases[k].source, 1);
         size_t count = kiln_map_texels(&source, 0);
         // Noise, then a sun somewhere, the poles and seams among the places.
         for (uint32_t sun = 0; sun < 12; sun++) {
             fill_constant(&source, 0);
-            uint32_t seed = sun * 77 + 1;
+            uint64_t seed = sun * 77 + 1;
             size_t at = sun == 1   ? 0
                         : sun == 2 ? count - 1
                         : sun == 3 ? count / 2
-                                   : next_random(&seed) % count;
+                                   : random_bits(&seed) % count;
             if (sun == 0)
-                fill_random(&source, (uint32_t)k);
+                fill_spiky(&source, k);
             else
                 source.level[0][3 * at] = 1e5f;
             kiln_map map =
@@ -213,7 +186,7 @@ static void slow_mean(const kiln_map *source, const kiln_map *map, size_t index,
                 area = pow(fabs(d[0]) + fabs(d[1]) + fabs(d[2]), 3);
             } else {
                 ki_panorama_direction(u, v, d);
-                area = sin(acos(-1) * v);
+                area = sin(pi * v);
             }
             ki_turn(d, rotation, d);
             int source_face = 0, source_width = m;
@@ -241,18 +214,18 @@ static void compare(kiln_shape from, int source_size, kiln_shape to, int size, d
                     int texels, int count, double rms_bound, double bound)
 {
     kiln_context *context = make_context(1);
-    kiln_map source = make_map(context, from, source_size);
-    fill_random(&source, 5);
+    kiln_map source = make_map(context, from, source_size, 1);
+    fill_spiky(&source, 5);
     kiln_map map = convert(context, &source, to, size, rotation);
     double squares = 0, worst = 0, level = 0;
-    uint32_t seed = 3;
+    uint64_t seed = 3;
     size_t all = kiln_map_texels(&map, 0);
     for (int k = 0; k < texels; k++) {
         // The first and last, whole middle rows' ends, then anywhere.
         size_t at = k == 0   ? 0
                     : k == 1 ? all - 1
                     : k == 2 ? all / 2 + (size_t)size / 2
-                             : next_random(&seed) % all;
+                             : random_bits(&seed) % all;
         double mean[3];
         slow_mean(&source, &map, at, rotation, count, mean);
         for (size_t c = 0; c < 3; c++) {
@@ -311,8 +284,8 @@ static void coarse_texels_are_means_of_fine_ones(void **state)
     for (int to = KILN_SHAPE_CUBE; to <= KILN_SHAPE_OCTAHEDRON; to++)
         for (int factor = 2; factor < 6; factor++)
             for (int k = 0; k < 4; k++) {
-                kiln_map source = make_map(context, KILN_SHAPE_PANORAMA, 61 + k);
-                fill_random(&source, (uint32_t)(factor + k));
+                kiln_map source = make_map(context, KILN_SHAPE_PANORAMA, 61 + k, 1);
+                fill_spiky(&source, (uint32_t)(factor + k));
                 source.level[0][7320] = 1e5f;
                 double rotation = k & 2 ? 21.3 : 0;
                 int n = 34;
@@ -344,9 +317,9 @@ static void turned_columns_are_turned_maps(void **state)
     for (int shape = KILN_SHAPE_PANORAMA; shape <= KILN_SHAPE_OCTAHEDRON; shape++)
         for (int size = 31; size < 33; size++) {
             int width = 2 * size;
-            kiln_map source = make_map(context, KILN_SHAPE_PANORAMA, size);
-            kiln_map moved = make_map(context, KILN_SHAPE_PANORAMA, size);
-            fill_random(&source, 9);
+            kiln_map source = make_map(context, KILN_SHAPE_PANORAMA, size, 1);
+            kiln_map moved = make_map(context, KILN_SHAPE_PANORAMA, size, 1);
+            fill_spiky(&source, 9);
             for (int columns = -5; columns < 70; columns += 15) {
                 for (int i = 0; i < width * size; i++) {
                     int from = i / width * width + ((i % width + columns) % width + width) % width;
@@ -377,7 +350,7 @@ static void quarter_turns_permute(void **state)
             for (int turn = -1; turn < 4; turn++) {
                 if (shape == KILN_SHAPE_PANORAMA && size % 2)
                     continue;
-                kiln_map source = make_map(context, (kiln_shape)shape, size);
+                kiln_map source = make_map(context, (kiln_shape)shape, size, 1);
                 for (size_t i = 0; i < 3 * kiln_map_texels(&source, 0); i++)
                     source.level[0][i] = (float)i;
                 kiln_map map = convert(context, &source, (kiln_shape)shape, size, 90.0 * turn);
@@ -403,8 +376,9 @@ static void threads_do_not_change_bits(void **state)
     (void)state;
     kiln_context *contexts[3] = {make_context(1), make_context(2), make_context(5)};
     for (int shapes = 0; shapes < 9; shapes++) {
-        kiln_map source = make_map(contexts[0], (kiln_shape)(KILN_SHAPE_PANORAMA + shapes / 3), 50);
-        fill_random(&source, 1);
+        kiln_map source =
+            make_map(contexts[0], (kiln_shape)(KILN_SHAPE_PANORAMA + shapes / 3), 50, 1);
+        fill_spiky(&source, 1);
         kiln_map map[3];
         for (int k = 0; k < 3; k++)
             map[k] = convert(contexts[k], &source, (kiln_shape)(KILN_SHAPE_PANORAMA + shapes % 3),
@@ -425,8 +399,8 @@ static void any_allocation_may_fail(void **state)
     (void)state;
     for (int shapes = 0; shapes < 9; shapes++) {
         kiln_context *steady = make_context(1);
-        kiln_map source = make_map(steady, (kiln_shape)(KILN_SHAPE_PANORAMA + shapes / 3), 19);
-        fill_random(&source, 2);
+        kiln_map source = make_map(steady, (kiln_shape)(KILN_SHAPE_PANORAMA + shapes / 3), 19, 1);
+        fill_spiky(&source, 2);
         for (int n = 1;; n++) {
             assert_true(n < 1000);
             failing f;
@@ -459,10 +433,10 @@ static void plans_are_small_and_repeat(void **state)
 {
     (void)state;
     kiln_context *context = make_context(1);
-    kiln_map source = make_map(context, KILN_SHAPE_PANORAMA, 1024);
-    kiln_map map[2] = {make_map(context, KILN_SHAPE_CUBE, 256),
-                       make_map(context, KILN_SHAPE_CUBE, 256)};
-    fill_random(&source, 4);
+    kiln_map source = make_map(context, KILN_SHAPE_PANORAMA, 1024, 1);
+    kiln_map map[2] = {make_map(context, KILN_SHAPE_CUBE, 256, 1),
+                       make_map(context, KILN_SHAPE_CUBE, 256, 1)};
+    fill_spiky(&source, 4);
     size_t before, after;
     kiln_context_memory(context, &before, NULL);
     ki_resample_plan *plan;

@@ -1,21 +1,12 @@
 // Elementary functions agree with libm, quadrature rules integrate what they must integrate
 // exactly, and eigenvalues of constructed matrices are found.
-#include "check.h"
+#include "kit/kit.h"
 
 #include "math/math.h"
 
 #include <float.h>
-#include <string.h>
 
-static uint64_t state = 88172645463325252u;
-
-static double uniform(double low, double high)
-{
-    state ^= state << 13;
-    state ^= state >> 7;
-    state ^= state << 17;
-    return low + (high - low) * ((double)(state >> 11) / 9007199254740992.0);
-}
+static uint64_t seed = 1;
 
 // The error of `value` in units of the last place of `wanted`.
 static double ulps(double value, long double wanted)
@@ -31,20 +22,20 @@ static void elementary_functions_agree_with_libm(void **unused)
     (void)unused;
     double sine = 0, circle = 0, exponent = 0, logarithm = 0, power = 0, angle = 0, arc = 0;
     for (int i = 0; i < 400000; i++) {
-        double x = uniform(-1e4, 1e4), s, c;
+        double x = random_between(&seed, -1e4, 1e4), s, c;
         ki_sincos(x, &s, &c);
         circle = fmax(circle, fabs(s * s + c * c - 1));
         long double wide = (long double)x;
         sine = fmax(sine, fmax(fabs(s - (double)sinl(wide)), fabs(c - (double)cosl(wide))));
-        x = uniform(-700, 700);
+        x = random_between(&seed, -700, 700);
         exponent = fmax(exponent, ulps(ki_exp(x), expl((long double)x)));
-        x = i % 2 ? uniform(0.5, 2) : exp(uniform(-700, 700));
+        x = i % 2 ? random_between(&seed, 0.5, 2) : exp(random_between(&seed, -700, 700));
         logarithm = fmax(logarithm, ulps(ki_log(x), logl((long double)x)));
-        double base = uniform(1e-3, 2), to = uniform(-50, 50);
+        double base = random_between(&seed, 1e-3, 2), to = random_between(&seed, -50, 50);
         long double a = (long double)base, b = (long double)to;
         power = fmax(power, (double)(fabsl((long double)ki_pow(base, to) / powl(a, b) - 1) /
                                      (1 + fabsl(b * logl(a)))));
-        double y = uniform(-1, 1), z = uniform(-1, 1);
+        double y = random_between(&seed, -1, 1), z = random_between(&seed, -1, 1);
         wide = (long double)y;
         angle = fmax(angle, ulps(ki_atan2(y, z), atan2l(wide, (long double)z)));
         arc = fmax(arc, fabs(ki_asin(y) - (double)asinl(wide)));
@@ -64,9 +55,9 @@ static void error_functions_agree_with_libm(void **unused)
     (void)unused;
     double error = 0, scaled = 0;
     for (int i = 0; i < 200000; i++) {
-        double x = i % 2 ? uniform(-1, 1) : uniform(-7, 7);
+        double x = i % 2 ? random_between(&seed, -1, 1) : random_between(&seed, -7, 7);
         error = fmax(error, ulps(ki_erf(x), erfl((long double)x)));
-        x = i % 2 ? uniform(0, 2) : uniform(0, 60);
+        x = i % 2 ? random_between(&seed, 0, 2) : random_between(&seed, 0, 60);
         long double wide = (long double)x;
         scaled = fmax(scaled, ulps(ki_erfcx(x), expl(wide * wide) * erfcl(wide)));
     }
@@ -84,14 +75,14 @@ static void beta_agrees_with_libm(void **unused)
     (void)unused;
     double small = 0, great = 0;
     for (int i = 0; i < 100000; i++) {
-        double a = 1 + exp(uniform(-8, 3)), b = 1 + exp(uniform(-8, 3));
+        double a = 1 + exp(random_between(&seed, -8, 3)), b = 1 + exp(random_between(&seed, -8, 3));
         long double wide = (long double)a + (long double)b;
         long double wanted =
             expl(lgammal((long double)a) + lgammal((long double)b) - lgammal(wide));
         small = fmax(small, fabs(ki_beta(a, b) / (double)wanted - 1));
         CHECK_NEAR(ki_beta(a, b), ki_beta(b, a), 0);
         // B(a, n) = (n - 1)! / (a (a + 1) ... (a + n - 1)).
-        a = exp(uniform(0, 20));
+        a = exp(random_between(&seed, 0, 20));
         great = fmax(great, fabs(ki_beta(a, 3) * a * (a + 1) * (a + 2) / 2 - 1));
     }
     CHECK_BELOW(small, 1e-12);
@@ -173,7 +164,7 @@ static void axes_of_symmetric_matrices(void **unused)
     for (int turn = 0; turn < 20; turn++) {
         double v[COUNT], norm2 = 0;
         for (int i = 0; i < COUNT; i++) {
-            v[i] = uniform(-0.5, 0.5);
+            v[i] = random_between(&seed, -0.5, 0.5);
             norm2 += v[i] * v[i];
         }
         for (int side = 0; side < 2; side++)

@@ -1,28 +1,20 @@
 // The GLSL that kiln writes for tables, on a texture and on an array, against kiln_table_lookup.
-#include "check.h"
-
 #include "files/lookup/tables.h"
 #include "gl.h"
 #include "headless.h"
 
-#include <unistd.h>
+#include "kit/context.h"
 
 enum { POINTS = 256 };
 
-static kiln_context *context;
 static view_headless *headless;
-static kiln_error error;
 static view_gl gl;
 static __typeof__(&glTexImage3D) tex_image_3d;
-static char folder[64];
 
-static int start(void **unused)
+static int start(void **state)
 {
-    (void)unused;
     const char *missing = "";
-    strcpy(folder, "/tmp/kiln-lookup-XXXXXX");
-    if (!mkdtemp(folder) || kiln_context_create(NULL, &context, &error) ||
-        view_headless_create(&headless, &error) ||
+    if (set_up_folder(state) || view_headless_create(&headless, &error) ||
         !view_gl_load(&gl, view_headless_lookup, &missing)) {
         fprintf(stderr, "%s%s\n", error.message, missing);
         return -1;
@@ -41,21 +33,10 @@ static int start(void **unused)
     return gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE;
 }
 
-static int stop(void **unused)
+static int stop(void **state)
 {
-    (void)unused;
     view_headless_destroy(headless);
-    kiln_context_destroy(context);
-    char command[128];
-    snprintf(command, sizeof command, "rm -r %s", folder);
-    return system(command);
-}
-
-static const char *in_folder(const char *name)
-{
-    static char path[128];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    return path;
+    return tear_down_folder(state);
 }
 
 // The table with the numbers that it has in a format.
@@ -71,13 +52,11 @@ static void round_table(kiln_table *table, kiln_table_format format)
 
 static void append_file(char *text, size_t room, const char *name)
 {
-    FILE *file = fopen(in_folder(name), "rb");
-    size_t used = strlen(text);
-    assert_non_null(file);
-    used += fread(text + used, 1, room - used - 1, file);
-    text[used] = 0;
-    assert_true(used + 1 < room);
-    fclose(file);
+    size_t used = strlen(text), size;
+    uint8_t *bytes = read_file(in_folder(name), &size);
+    assert_true(used + size + 1 < room);
+    memcpy(text + used, bytes, size + 1);
+    free(bytes);
 }
 
 static GLuint link_lookup(const kiln_table *table, kiln_table_format format)
@@ -146,7 +125,7 @@ static void measure(int index, double off[2])
     kiln_table_format format = (kiln_table_format)(1 + index % 4);
     CHECK_OK(lookup_table(context, index, &table, &error));
     round_table(&table, format);
-    uint32_t seed = (uint32_t)index + 77;
+    uint64_t seed = (uint64_t)index + 77;
     for (int i = 0; i < POINTS; i++) {
         double point[3];
         lookup_point(&seed, point);

@@ -1,10 +1,8 @@
 // Metals by their measured indices: against published colours, against the form that the shader has,
 // and the third term of the split sum against a sum over half vectors.
-#include "check.h"
-
 #include "internal.h"
 
-static kiln_context *context;
+#include "kit/context.h"
 
 // F0 in linear Rec. 709 as Akenine-Moller et al. print it (Real-Time Rendering, 4th edition 2018, table
 // 9.2), from other samples of these metals; our red is cut to 1.
@@ -96,7 +94,6 @@ static void the_dip_is_the_sum(void **unused)
 {
     (void)unused;
     static const double r[] = {0.15, 0.35, 0.6, 1}, cosines[] = {0.03, 0.15, 0.3, 0.8};
-    kiln_error error = {0};
     kiln_table table;
     double largest = 0;
     CHECK_OK(view_edge_create(context, &table, &error));
@@ -119,9 +116,5 @@ int main(void)
         cmocka_unit_test(the_shaders_form_is_near),
         cmocka_unit_test(the_dip_is_the_sum),
     };
-    if (kiln_context_create(NULL, &context, NULL))
-        return 1;
-    int failed = cmocka_run_group_tests_name("metals", tests, NULL, NULL);
-    kiln_context_destroy(context);
-    return failed;
+    return cmocka_run_group_tests_name("metals", tests, set_up, tear_down);
 }

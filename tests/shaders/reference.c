@@ -1,18 +1,15 @@
 // The integrator against a sum over every texel, and its parts against their laws.
-#include "check.h"
-
-#include "internal.h"
 #include "reference.h"
+#include "internal.h"
 #include "trace.h"
 
-static kiln_context *context;
+#include "kit/context.h"
 
 enum { ROWS = 16 };
 
 // Smooth, with one bright texel.
 static void make_environment(kiln_map *map)
 {
-    kiln_error error = {0};
     CHECK_OK(kiln_map_create(context, KILN_SHAPE_PANORAMA, ROWS, 1, map, &error));
     for (size_t i = 0; i < kiln_map_texels(map, 0); i++) {
         double d[3];
@@ -30,7 +27,6 @@ static void light_is_drawn_where_it_is(void **unused)
     enum { COUNT = 400000 };
     kiln_map map;
     view_light light;
-    kiln_error error = {0};
     view_random random;
     double sphere = 0, blue = 0, moment = 0, texels = 0, first = 0;
     make_environment(&map);
@@ -74,7 +70,6 @@ static void white_balls_vanish_in_the_furnace(void **unused)
     view_reference_def def = {.noise = 0.004};
     view_reference_report report;
     kiln_image image;
-    kiln_error error = {0};
     double sum = 0, squares = 0;
     o.samples = 1;
     CHECK_OK(view_reference(context, &o, NULL, 48, 27, &def, &image, &report, &error));
@@ -102,7 +97,6 @@ static void walks_lose_nothing(void **unused)
     static const double r[] = {0.3, 0.7, 1}, cosines[] = {0.15, 0.5, 0.95};
     enum { COUNT = 200000 };
     view_light white;
-    kiln_error error = {0};
     view_random random;
     view_random_start(&random, 7);
     CHECK_OK(view_light_create(context, NULL, 0, &white, &error));
@@ -184,7 +178,6 @@ static void the_integral_is_the_sum(void **unused)
     view_reference_def def = {.noise = 0.003, .batch_limit = 65536, .alone = true};
     kiln_map map;
     kiln_image image;
-    kiln_error error = {0};
     view_ball balls[VIEW_MAX_BALLS];
     double eye[3], right[3], up[3], back[3], slope = tan(o.camera.fov / 2 * 3.14159265358979 / 180);
     int count = view_balls(&o, balls), seen = 0;
@@ -304,7 +297,6 @@ static void balls_light_one_another(void **unused)
     view_energy energy;
     view_random random;
     kiln_map map;
-    kiln_error error = {0};
     kiln_image image[3]; // alone, one bounce, all
     o.samples = 1;
     o.material = VIEW_MATERIAL_CHALK;
@@ -358,7 +350,6 @@ static void threads_do_not_matter(void **unused)
     (void)unused;
     view_options o = view_defaults(VIEW_SCENE_IBL);
     kiln_map map;
-    kiln_error error = {0};
     kiln_image image[2];
     make_environment(&map);
     o.samples = 2;
@@ -387,7 +378,6 @@ static void it_can_be_stopped(void **unused)
     view_options o = view_defaults(VIEW_SCENE_FURNACE);
     view_reference_def def = {.noise = 1e-4, .progress = stop_at_once};
     kiln_image image;
-    kiln_error error = {0};
     assert_int_equal(view_reference(context, &o, NULL, 640, 360, &def, &image, NULL, &error),
                      KILN_ERROR_CANCELLED);
     assert_null(image.pixels);
@@ -404,9 +394,5 @@ int main(void)
         cmocka_unit_test(threads_do_not_matter),
         cmocka_unit_test(it_can_be_stopped),
     };
-    if (kiln_context_create(NULL, &context, NULL))
-        return 1;
-    int failed = cmocka_run_group_tests_name("reference_picture", tests, NULL, NULL);
-    kiln_context_destroy(context);
-    return failed;
+    return cmocka_run_group_tests_name("reference_picture", tests, set_up, tear_down);
 }

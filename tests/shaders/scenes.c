@@ -1,20 +1,17 @@
 // The scenes' known values: the assignment's, the furnace's, and the real-time picture against the
 // reference where both can be exact.
-#include "check.h"
-
 #include "headless.h"
 #include "reference.h"
 #include "viewer.h"
 
-static kiln_context *context;
+#include "kit/context.h"
+
 static view_headless *headless;
 static view_renderer *renderer;
 
-static int start(void **unused)
+static int start(void **state)
 {
-    (void)unused;
-    kiln_error error = {0};
-    if (kiln_context_create(NULL, &context, &error) || view_headless_create(&headless, &error) ||
+    if (set_up(state) || view_headless_create(&headless, &error) ||
         view_create(context, view_headless_lookup, &renderer, &error)) {
         fprintf(stderr, "%s\n", error.message);
         return -1;
@@ -22,13 +19,11 @@ static int start(void **unused)
     return 0;
 }
 
-static int stop(void **unused)
+static int stop(void **state)
 {
-    (void)unused;
     view_destroy(renderer);
     view_headless_destroy(headless);
-    kiln_context_destroy(context);
-    return 0;
+    return tear_down(state);
 }
 
 // ---------------------------------------------------------------------------------- the assignment
@@ -55,7 +50,6 @@ static void read_colour(const view_options *o, const view_ball *ball, const doub
                         double colour[3])
 {
     kiln_image image;
-    kiln_error error = {0};
     double p[3], size = sqrt(to[0] * to[0] + to[1] * to[1] + to[2] * to[2]);
     int x, y;
     for (int i = 0; i < 3; i++)
@@ -122,7 +116,6 @@ static void the_handouts_mistake_turns_the_colour(void **unused)
     (void)unused;
     view_options o = view_defaults(VIEW_SCENE_ASSIGNMENT);
     kiln_image image[2];
-    kiln_error error = {0};
     view_ball balls[VIEW_MAX_BALLS];
     int x, y;
     o.samples = 1;
@@ -148,7 +141,6 @@ static void the_assignment_is_exact(void **unused)
     (void)unused;
     view_options o = view_defaults(VIEW_SCENE_ASSIGNMENT);
     o.samples = 1;
-    kiln_error error = {0};
     for (int printed = 0; printed < 2; printed++) {
         kiln_image image, truth;
         o.as_printed = printed;
@@ -184,7 +176,6 @@ static void the_furnace_closes_with_a_warped_table(void **unused)
 {
     (void)unused;
     static const kiln_axis axes[] = {KILN_AXIS_CBRT, KILN_AXIS_GRAZING, KILN_AXIS_LINEAR};
-    kiln_error error = {0};
     kiln_table_def fine = {.kind = KILN_TABLE_DFG,
                            .width = 512,
                            .height = 256,
@@ -219,7 +210,6 @@ static void the_furnace_closes_with_a_warped_table(void **unused)
 static void the_same_view_has_the_same_bits(void **unused)
 {
     (void)unused;
-    kiln_error error = {0};
     for (int scene = 0; scene < VIEW_SCENE_COUNT; scene++) {
         view_options o = view_defaults((view_scene)scene);
         kiln_image a, b;
@@ -236,10 +226,9 @@ static void pictures_out_of_range_are_refused(void **unused)
     (void)unused;
     view_options o = view_defaults(VIEW_SCENE_ASSIGNMENT);
     kiln_image image;
-    kiln_error error = {0};
     assert_int_equal(view_picture(renderer, &o, 1 << 20, 1, true, &image, &error),
                      KILN_ERROR_ARGUMENT);
-    assert_non_null(strstr(error.message, "1048576 x 1"));
+    CHECK_SAYS(error.message, "1048576 x 1");
     assert_null(image.pixels);
 }
 

@@ -1,6 +1,6 @@
 // Every function of shaders/*.glsl against its C twin: random arguments in a float texture, results
 // rendered into another, to 1e-5 relative.
-#include "check.h"
+#include "kit/kit.h"
 
 #include "gl.h"
 #include "headless.h"
@@ -16,15 +16,7 @@ static view_headless *headless;
 static view_gl gl;
 static int table_unit; // of `table`, beside the arguments
 
-static uint64_t state = 88172645463325252u;
-
-static double uniform(void)
-{
-    state ^= state << 13;
-    state ^= state >> 7;
-    state ^= state << 17;
-    return (double)(state >> 11) / 9007199254740992.0;
-}
+static uint64_t seed = 1;
 
 // ------------------------------------------------------------------------------------------- render
 
@@ -103,7 +95,7 @@ typedef struct function {
 static void draw_arguments(const function *f, float x[ARGUMENTS])
 {
     for (int i = 0; i < ARGUMENTS; i++) {
-        double u = uniform(), end = uniform();
+        double u = random_number(&seed), end = random_number(&seed);
         u = end < 0.02 ? 0 : end > 0.98 ? 1 : u;
         x[i] = (float)(f->low[i] + (f->high[i] - f->low[i]) * u);
     }
@@ -400,7 +392,7 @@ static void harmonics_agree_with_c(void **unused)
     for (int i = 0; i < 9; i++) {
         double c[3];
         for (int k = 0; k < 3; k++) {
-            c[k] = (double)(float)(uniform() - 0.5);
+            c[k] = (double)(float)(random_number(&seed) - 0.5);
             sh.c[i][k] = lobe[i] * c[k];
         }
         size_t used = strlen(expression);
@@ -411,10 +403,10 @@ static void harmonics_agree_with_c(void **unused)
     snprintf(expression + used, sizeof expression - used,
              "r = sh_irradiance(c, vec3(x[0], x[1], x[2]));");
     for (int i = 0; i < COUNT; i++) {
-        double z = 2 * uniform() - 1, phi = 6.283185307 * uniform(), s = sqrt(1 - z * z);
-        x[i][0] = (float)(s * cos(phi));
-        x[i][1] = (float)(s * sin(phi));
-        x[i][2] = (float)z;
+        double d[3];
+        random_direction(&seed, d);
+        for (int k = 0; k < 3; k++)
+            x[i][k] = (float)d[k];
     }
     render(expression, (const float(*)[ARGUMENTS])x, result);
     for (int i = 0; i < COUNT; i++) {
@@ -436,7 +428,8 @@ static void check_table(kiln_context *context, const kiln_table_def *def)
     CHECK_OK(kiln_table_create(context, def, &table, &error));
     for (int i = 0; i < COUNT; i++)
         for (int k = 0; k < 2; k++)
-            x[i][k] = (float)(uniform() < 0.05 ? uniform() < 0.5 : uniform());
+            x[i][k] = (float)(random_number(&seed) < 0.05 ? random_number(&seed) < 0.5
+                                                          : random_number(&seed));
     view_upload_image(&gl, 1, &texture, &table.image);
     int axis = (int)def->axis;
     axis += axis == KILN_AXIS_GRAZING && def->model.g == KILN_G_SCHLICK_TEXT;
@@ -463,9 +456,7 @@ static void check_table(kiln_context *context, const kiln_table_def *def)
 static void tables_are_read_as_c_reads_them(void **unused)
 {
     (void)unused;
-    kiln_context *context;
-    kiln_error error = {0};
-    CHECK_OK(kiln_context_create(NULL, &context, &error));
+    kiln_context *context = make_context(0);
     for (int i = 0; i < 16; i++) {
         kiln_table_def def = {.kind = i % 3 == 2 ? KILN_TABLE_DFG : KILN_TABLE_E,
                               .model = {.g = i / 4 % 2 ? KILN_G_SCHLICK_TEXT : KILN_G_SMITH},

@@ -1,12 +1,10 @@
 // The window shows what the headless renderer draws (with --screen, where there is one), and keys and
 // mouse do what they say.
-#include "check.h"
-
+#include "window.h"
 #include "controls.h"
 #include "headless.h"
-#include "window.h"
 
-static kiln_context *context;
+#include "kit/context.h"
 
 // ----------------------------------------------------------------------------------------- controls
 
@@ -61,46 +59,45 @@ static void keys_do_what_they_say(void **unused)
 
 static int on_screen;
 
-static kiln_result light_slot(view_renderer *renderer, view_slot slot, kiln_error *error)
+static kiln_result light_slot(view_renderer *renderer, view_slot slot, kiln_error *why)
 {
     kiln_sky_def def = {.size = 64};
     kiln_map sky = {0};
     kiln_environment e = {.sh = {.bands = 0}};
-    kiln_result result = kiln_sky(context, &def, &sky, error);
+    kiln_result result = kiln_sky(context, &def, &sky, why);
     if (result == KILN_OK) {
         kiln_map_expose(&sky, -4);
-        result = view_bake(context, &sky, 32, slot == VIEW_SLOT_TEXTBOOK ? 1024 : 0, &e, error);
+        result = view_bake(context, &sky, 32, slot == VIEW_SLOT_TEXTBOOK ? 1024 : 0, &e, why);
     }
     if (result == KILN_OK)
-        result = view_set_environment(renderer, slot, &e.levels, &e.sh, &e.irradiance, error);
+        result = view_set_environment(renderer, slot, &e.levels, &e.sh, &e.irradiance, why);
     kiln_environment_free(&e);
     kiln_map_free(&sky);
     return result;
 }
 
-static kiln_result light_up(void *user, view_renderer *renderer, kiln_error *error)
+static kiln_result light_up(void *user, view_renderer *renderer, kiln_error *why)
 {
     (void)user;
-    return light_slot(renderer, VIEW_SLOT_EXACT, error);
+    return light_slot(renderer, VIEW_SLOT_EXACT, why);
 }
 
 static int textbook_count;
 
 static kiln_result light_by_textbook(void *user, view_renderer *renderer, bool wait, double *done,
-                                     kiln_error *error)
+                                     kiln_error *why)
 {
     (void)user;
     assert_true(wait); // a screenshot is of the whole
     *done = 1;
     textbook_count++;
-    return light_slot(renderer, VIEW_SLOT_TEXTBOOK, error);
+    return light_slot(renderer, VIEW_SLOT_TEXTBOOK, why);
 }
 
 enum { WIDTH = 480, HEIGHT = 270 };
 
 static void draw_headless(const view_options *o, kiln_image *image)
 {
-    kiln_error error = {0};
     view_headless *headless;
     view_renderer *renderer;
     CHECK_OK(view_headless_create(&headless, &error));
@@ -117,7 +114,6 @@ static void the_window_shows_the_headless_picture(void **unused)
     (void)unused;
     if (!on_screen)
         skip();
-    kiln_error error = {0};
     for (int scene = 0; scene < VIEW_SCENE_COUNT; scene++) {
         view_options o = view_defaults((view_scene)scene);
         kiln_image seen = {0}, wanted = {0};
@@ -155,13 +151,12 @@ static void no_screen_is_said(void **unused)
     (void)unused;
     if (on_screen)
         skip();
-    kiln_error error = {0};
     kiln_image seen = {0};
     view_window_def def = {.options = view_defaults(VIEW_SCENE_ASSIGNMENT), .screenshot = &seen};
     unsetenv("DISPLAY");
     unsetenv("WAYLAND_DISPLAY");
     assert_int_equal(view_window(context, &def, &error), KILN_ERROR_UNSUPPORTED);
-    assert_non_null(strstr(error.message, "GLFW"));
+    CHECK_SAYS(error.message, "GLFW");
 }
 
 int main(int argc, char **argv)
@@ -173,9 +168,5 @@ int main(int argc, char **argv)
         cmocka_unit_test(no_screen_is_said),
     };
     on_screen = argc > 1 && !strcmp(argv[1], "--screen");
-    if (kiln_context_create(NULL, &context, NULL))
-        return 1;
-    int failed = cmocka_run_group_tests_name("window", tests, NULL, NULL);
-    kiln_context_destroy(context);
-    return failed;
+    return cmocka_run_group_tests_name("window", tests, set_up, tear_down);
 }

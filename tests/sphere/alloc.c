@@ -1,23 +1,5 @@
 // Every call with its n-th allocation refused: an error, nothing kept, nothing broken.
-#include "scenes.h"
-
-static int left; // allocations until one is refused; negative: never
-
-static void *allocate(void *user, size_t size)
-{
-    (void)user;
-    if (left == 0)
-        return NULL;
-    left--;
-    return aligned_alloc(64, (size + 63) / 64 * 64);
-}
-
-static void release(void *user, void *memory, size_t size)
-{
-    (void)user;
-    (void)size;
-    free(memory);
-}
+#include "kit/kit.h"
 
 static kiln_result bake(kiln_context *context, const kiln_map *in, kiln_error *error)
 {
@@ -45,17 +27,16 @@ static kiln_result bake(kiln_context *context, const kiln_map *in, kiln_error *e
 static void every_allocation_may_fail(void **state)
 {
     (void)state;
-    kiln_context_def def = {.allocate = allocate, .release = release, .thread_count = 1};
-    kiln_context *context;
+    failing f;
+    kiln_context *context = failing_context(&f);
     kiln_error error;
-    left = -1;
-    CHECK_OK(kiln_context_create(&def, &context, &error));
     kiln_map in = scene_panorama(context, 16, 1);
     size_t before, after;
     kiln_context_memory(context, &before, NULL);
     int n = 0;
+    f.and_later = true;
     for (kiln_result result = KILN_ERROR_MEMORY; result != KILN_OK; n++) {
-        left = n;
+        f.fail_at = f.calls + n + 1;
         memset(&error, 0, sizeof error);
         result = bake(context, &in, &error);
         assert_true(result == KILN_OK || result == KILN_ERROR_MEMORY);
@@ -66,7 +47,7 @@ static void every_allocation_may_fail(void **state)
     }
     printf("%d allocations, each refused once\n", n - 1);
     assert_true(n > 50);
-    left = -1;
+    f.fail_at = 0;
     kiln_map_free(&in);
     kiln_context_destroy(context);
 }
@@ -81,7 +62,7 @@ static void the_memory_limit_holds(void **state)
     CHECK_OK(kiln_context_create(&def, &context, &error));
     CHECK_OK(kiln_map_create(context, KILN_SHAPE_PANORAMA, 64, 1, &in, &error));
     assert_int_equal(kiln_prefilter(context, &in, NULL, &out, &error), KILN_ERROR_MEMORY);
-    assert_non_null(strstr(error.message, "1048576"));
+    CHECK_SAYS(error.message, "1048576");
     size_t peak;
     kiln_context_memory(context, NULL, &peak);
     assert_true(peak <= 1 << 20);

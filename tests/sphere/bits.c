@@ -1,16 +1,5 @@
 // The same bits for every number of threads, every instruction set, every way in.
-#include "scenes.h"
-
-static uint64_t hash_map(const kiln_map *map)
-{
-    uint64_t hash = 14695981039346656037u; // FNV-1a
-    for (int l = 0; l < map->level_count; l++) {
-        const unsigned char *bytes = (const unsigned char *)map->level[l];
-        for (size_t i = 0; i < kiln_map_texels(map, l) * 3 * sizeof(float); i++)
-            hash = (hash ^ bytes[i]) * 1099511628211u;
-    }
-    return hash;
-}
+#include "kit/kit.h"
 
 typedef struct outcome {
     uint64_t maps, sh;
@@ -18,7 +7,7 @@ typedef struct outcome {
 
 static outcome bake(int threads, enum kiln_cpu cpu)
 {
-    kiln_context *context = scene_context(threads, cpu);
+    kiln_context *context = make_context_for(threads, cpu);
     kiln_error error;
     outcome result = {0, 0};
     // A tall spectrum, a width that is no power of two, a split lobe, every kernel.
@@ -68,7 +57,7 @@ static void one_hash_for_every_instruction_set(void **state)
     outcome wanted = bake(2, KILN_CPU_SCALAR);
     int tried = 0;
     for (int cpu = KILN_CPU_SSE2; cpu <= KILN_CPU_AVX512; cpu++) {
-        kiln_context *context = scene_context(1, (enum kiln_cpu)cpu);
+        kiln_context *context = make_context_for(1, (enum kiln_cpu)cpu);
         static const char *const names[] = {"best", "scalar", "sse2", "avx2", "avx512"};
         bool here = !strcmp(kiln_context_cpu(context), names[cpu]);
         kiln_context_destroy(context);
@@ -86,7 +75,7 @@ static void one_hash_for_every_instruction_set(void **state)
 static void a_stream_gives_the_same_bits(void **state)
 {
     (void)state;
-    kiln_context *context = scene_context(2, KILN_CPU_BEST);
+    kiln_context *context = make_context_for(2, KILN_CPU_BEST);
     kiln_error error;
     kiln_map in = scene_panorama(context, 100, 23), a, b;
     kiln_lobe lobe = kiln_lobe_ggx(0.2);
@@ -123,7 +112,7 @@ static void a_stream_gives_the_same_bits(void **state)
 static void a_plan_repeats_itself(void **state)
 {
     (void)state;
-    kiln_context *context = scene_context(2, KILN_CPU_BEST);
+    kiln_context *context = make_context_for(2, KILN_CPU_BEST);
     kiln_error error;
     kiln_map one = scene_panorama(context, 64, 1), two = scene_panorama(context, 64, 2), wanted;
     kiln_environment out;

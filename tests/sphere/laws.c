@@ -1,5 +1,5 @@
 // What must hold for every environment.
-#include "scenes.h"
+#include "kit/kit.h"
 
 #include "bake/reference.h"
 #include "math/math.h"
@@ -10,7 +10,7 @@ static kiln_context *context;
 static int setup(void **state)
 {
     (void)state;
-    context = scene_context(2, KILN_CPU_BEST);
+    context = make_context_for(2, KILN_CPU_BEST);
     return 0;
 }
 
@@ -111,7 +111,7 @@ static void rotation_rotates(void **state)
         def.rotation = 0;
         CHECK_OK(kiln_prefilter(context, &rolled, &def, &b, &error));
         for (int l = 0; l < a.level_count; l++)
-            CHECK_BELOW(scene_distance(&a, &b, l, 1e-3), 3e-6);
+            CHECK_BELOW(largest_difference(&a, &b, l, 1e-3), 3e-6);
         kiln_map_free(&a);
         kiln_map_free(&b);
     }
@@ -155,7 +155,7 @@ static void mirrored_in_is_mirrored_out(void **state)
     CHECK_OK(kiln_prefilter(context, &in, &def, &b, &error));
     kiln_map_mirror(&b);
     for (int l = 0; l < a.level_count; l++)
-        CHECK_BELOW(scene_distance(&a, &b, l, 1e-3), 3e-6);
+        CHECK_BELOW(largest_difference(&a, &b, l, 1e-3), 3e-6);
     kiln_map_free(&a);
     kiln_map_free(&b);
     kiln_map_free(&in);
@@ -171,7 +171,7 @@ static void alpha_one_is_lambert(void **state)
     CHECK_OK(kiln_prefilter(context, &in, &def, &a, &error));
     def.lobe = KILN_LOBE_LAMBERT;
     CHECK_OK(kiln_prefilter(context, &in, &def, &b, &error));
-    CHECK_BELOW(scene_distance(&a, &b, 0, 0), 2e-7);
+    CHECK_BELOW(largest_difference(&a, &b, 0, 0), 2e-7);
     kiln_map_free(&a);
     kiln_map_free(&b);
     kiln_map_free(&in);
@@ -292,7 +292,7 @@ static void other_lobes_and_shapes_match_brute_force(void **state)
     lobe = kiln_lobe_ggx(0.004);
     assert_int_equal(kiln_spectrum_filter(context, spectrum, &lobe, 0, &out, 0, &error),
                      KILN_ERROR_ARGUMENT);
-    assert_non_null(strstr(error.message, "256"));
+    CHECK_SAYS(error.message, "256");
     kiln_spectrum_destroy(spectrum);
     kiln_map_free(&out);
     kiln_map_free(&in);

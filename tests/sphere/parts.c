@@ -1,5 +1,4 @@
 // The engine's parts, each against its definition.
-#include "check.h"
 
 #include "image/image.h"
 #include "math/math.h"
@@ -10,29 +9,7 @@
 #include "sphere/sh.h"
 #include "sphere/zonal.h"
 
-static kiln_context *context;
-
-static int setup(void **state)
-{
-    (void)state;
-    kiln_context_def def = {.thread_count = 1};
-    return kiln_context_create(&def, &context, NULL) != KILN_OK;
-}
-
-static int teardown(void **state)
-{
-    (void)state;
-    size_t held;
-    kiln_context_memory(context, &held, NULL);
-    kiln_context_destroy(context);
-    return held != 0; // everything was given back
-}
-
-static double noise(uint32_t *seed)
-{
-    *seed = *seed * 1664525u + 1013904223u;
-    return (double)(*seed >> 8) / 8388608.0 - 1;
-}
+#include "kit/context.h"
 
 static void fft_is_the_transform(void **state)
 {
@@ -47,9 +24,9 @@ static void fft_is_the_transform(void **state)
         ki_fft fft;
         assert_true(ki_fft_create(context, length, &fft));
         double *data = calloc(2 * count, sizeof *data), *copy = calloc(count, sizeof *data);
-        uint32_t seed = (uint32_t)length;
+        uint64_t seed = (uint64_t)length;
         for (size_t i = 0; i < count; i++)
-            copy[i] = data[i] = noise(&seed);
+            copy[i] = data[i] = random_between(&seed, -1, 1);
         const double *out = kernels->fft(&fft, data, data + count);
         for (int k = 0; k < length; k += 1 + length / 37)
             for (int lane = 0; lane < 8; lane++) {
@@ -176,7 +153,6 @@ static void lambert_has_its_closed_form(void **state)
     for (int i = 0; i < 3; i++) {
         ki_zonal zonal = {.lobe = lobes[i]};
         ki_zonal_spectrum spectrum;
-        kiln_error error;
         CHECK_OK(ki_zonal_analyze(context, &zonal, 0, 200, &spectrum, &error));
         CHECK_NEAR(spectrum.integral, KI_PI, 1e-13);
         for (int l = 0; l <= 6; l++)
@@ -193,7 +169,6 @@ static void zonal_series_gives_the_lobe_back(void **state)
     for (int i = 0; i < 4; i++) {
         ki_zonal zonal = {.lobe = kiln_lobe_ggx(alphas[i])};
         ki_zonal_spectrum spectrum;
-        kiln_error error;
         CHECK_OK(ki_zonal_analyze(context, &zonal, 1e-7, 1600, &spectrum, &error));
         CHECK_BELOW(spectrum.rest, 1e-5);
         for (int step = 0; step < 77; step++) {
@@ -216,7 +191,6 @@ static void zonal_tail_is_what_it_says(void **state)
     (void)state;
     ki_zonal zonal = {.lobe = kiln_lobe_ggx(0.05)};
     ki_zonal_spectrum rough, fine;
-    kiln_error error;
     CHECK_OK(ki_zonal_analyze(context, &zonal, 1e-3, 1600, &rough, &error));
     CHECK_OK(ki_zonal_analyze(context, &zonal, 1e-7, 1600, &fine, &error));
     double beyond = 0, all = 0;
@@ -256,7 +230,6 @@ static void lobes_out_of_range_are_refused(void **state)
     kiln_lobe bad[] = {kiln_lobe_ggx(-0.1),  kiln_lobe_ggx(1.5),   kiln_lobe_ggx((double)NAN),
                        kiln_lobe_charlie(0), kiln_lobe_phong(0.5), kiln_lobe_custom(NULL, NULL, 1)};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-        kiln_error error = {0};
         assert_int_equal(ki_lobe_check(&bad[i], &error), KILN_ERROR_ARGUMENT);
         assert_true(strlen(error.message) > 10);
     }
@@ -275,5 +248,5 @@ int main(void)
         cmocka_unit_test(sh_basis_is_orthonormal),
         cmocka_unit_test(lobes_out_of_range_are_refused),
     };
-    return cmocka_run_group_tests_name("sphere parts", tests, setup, teardown);
+    return cmocka_run_group_tests_name("sphere parts", tests, set_up, tear_down);
 }

@@ -1,6 +1,5 @@
 // Levels for what an engine shows: nearer to the truth than exact ones, by brute force.
-#include "bake_test.h"
-#include "failing.h"
+#include "kit/kit.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,7 @@
 // Writes KTX2 cubes and tables of every format, with and without zstd, for check.mjs and libktx.mjs, and
 // for oiiotool a DDS of random blocks, with what kiln reads of it.
+#include "kit/random.h"
+
 #include <kiln/brdf.h>
 
 #include <stdio.h>
@@ -56,14 +58,10 @@ static kiln_result write_blocks(kiln_context *context, const char *folder, kiln_
     FILE *file = result == KILN_OK ? fopen(dds, "r+b") : NULL;
     if (!file)
         return result ? result : KILN_ERROR_IO;
-    uint32_t random = 1;
+    uint64_t seed = 1;
     fseek(file, 148, SEEK_SET);
-    for (int i = 0; i < 6 * BLOCKS * BLOCKS * 16; i++) {
-        random ^= random << 13;
-        random ^= random >> 17;
-        random ^= random << 5;
-        fputc((int)(random >> 8 & 0xff), file);
-    }
+    for (int i = 0; i < 6 * BLOCKS * BLOCKS * 16; i++)
+        fputc((int)(random_bits(&seed) & 0xff), file);
     fclose(file);
     result = kiln_map_load(context, dds, NULL, &back, error);
     kiln_image image = {SIZE, 6 * SIZE, 3, back.level[0], NULL};

@@ -3,15 +3,11 @@
 #ifndef KILN_LOOKUP_TABLES_H
 #define KILN_LOOKUP_TABLES_H
 
+#include "kit/random.h"
+
 #include <kiln/brdf.h>
 
 enum { LOOKUP_TABLES = 72, LOOKUP_KINDS = KILN_TABLE_E_WALK + 1 };
-
-static inline double lookup_random(uint32_t *seed)
-{
-    *seed = *seed * 1664525U + 1013904223U;
-    return (*seed >> 8) / 16777216.0;
-}
 
 /// Number `index` of LOOKUP_TABLES.
 static inline kiln_result lookup_table(kiln_context *context, int index, kiln_table *table,
@@ -38,20 +34,20 @@ static inline kiln_result lookup_table(kiln_context *context, int index, kiln_ta
                           channels[kind], &table->image, error);
     size_t count =
         (size_t)table->image.width * (size_t)table->image.height * (size_t)table->image.channels;
-    uint32_t seed = (uint32_t)index + 1;
+    uint64_t seed = (uint64_t)index;
     for (size_t i = 0; result == KILN_OK && i < count; i++)
-        table->image.pixels[i] = (float)lookup_random(&seed);
+        table->image.pixels[i] = (float)random_number(&seed);
     return result;
 }
 
 /// A point somewhat beyond the table's range at times, at its very ends at others.
-static inline void lookup_point(uint32_t *seed, double point[3])
+static inline void lookup_point(uint64_t *seed, double point[3])
 {
     for (int c = 0; c < 3; c++) {
-        double x = 1.2 * lookup_random(seed) - 0.1;
-        double scale = lookup_random(seed) < 0.3 ? 1e-3 : 1;
+        double x = 1.2 * random_number(seed) - 0.1;
+        double scale = random_number(seed) < 0.3 ? 1e-3 : 1;
         point[c] = c == 2 ? 1.2 * x + 1 : x * scale;
-        if (lookup_random(seed) < 0.1)
+        if (random_number(seed) < 0.1)
             point[c] = c == 2 || x > 0.5 ? 1 : 0;
     }
 }

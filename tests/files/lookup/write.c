@@ -30,7 +30,7 @@ static void write_check(FILE *file, int index, const kiln_table *table)
     const char *nov = table->def.kind == KILN_TABLE_E_AVERAGE ? "" : "p[0], ";
     const char *third = table->def.depth > 1 ? ", p[2]" : "";
     int channels = table->image.channels;
-    uint32_t seed = (uint32_t)index + 1000;
+    uint64_t seed = (uint64_t)index + 1000;
     fprintf(file, "static void check%d(void)\n{\n    static const double points[%d][7] = {\n",
             index, POINTS);
     for (int i = 0; i < POINTS; i++) {

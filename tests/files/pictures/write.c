@@ -3,6 +3,7 @@
 // half_N.exr beside float_N.exr.
 #include "codec/codec.h"
 #include "image/pack.h"
+#include "kit/random.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -55,7 +56,7 @@ static float value_at(int i, int c, int channels)
     if (channels % 2 == 0 && c == channels - 1)
         return 1;
     int x = i % WIDTH, y = i / WIDTH;
-    uint32_t noise = (uint32_t)(i * 4 + c) * 2654435761U >> 16;
+    uint64_t noise = random_hash((uint64_t)(i * 4 + c)) >> 48;
     float slope = (float)(x + 2 * y + 40 * c) / (WIDTH + 2 * HEIGHT + 160);
     return x < 60 ? 0.25f * (float)c : y % 40 < 20 ? slope : (float)noise / 65535;
 }

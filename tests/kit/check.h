@@ -1,4 +1,4 @@
-// Includes cmocka with the headers it needs, and defines checks that print the compared numbers.
+// Includes cmocka with the headers that cmocka needs, and defines checks that print what they compare.
 #ifndef KILN_CHECK_H
 #define KILN_CHECK_H
 
@@ -38,6 +38,14 @@
     do {                                                                                           \
         if ((call) != KILN_OK)                                                                     \
             fail_msg("%s: %s", #call, error.message);                                              \
+    } while (0)
+
+/// Checks that a message contains a part, and prints both if not.
+#define CHECK_SAYS(message, part)                                                                  \
+    do {                                                                                           \
+        const char *check_m = (message), *check_p = (part);                                        \
+        if (!strstr(check_m, check_p))                                                             \
+            fail_msg("%s is \"%s\", wanted \"%s\" in it", #message, check_m, check_p);             \
     } while (0)
 
 #endif

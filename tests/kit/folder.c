@@ -1,0 +1,113 @@
+#include "folder.h"
+
+#include "check.h"
+
+#include <dirent.h>
+#include <stdbool.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { ROOM = 512, PATHS = 8 };
+
+static char made[64];
+
+void folder_make(void)
+{
+    strcpy(made, "/tmp/kiln-test-XXXXXX");
+    assert_non_null(mkdtemp(made));
+}
+
+const char *folder_path(void)
+{
+    return made;
+}
+
+const char *in_folder(const char *name)
+{
+    static char paths[PATHS][ROOM];
+    static int next;
+    char *path = paths[next++ % PATHS];
+    assert_true(snprintf(path, ROOM, "%s/%s", made, name) < ROOM);
+    return path;
+}
+
+// Whether a name stands for the folder that holds the name, or for that folder's parent.
+static bool is_dots(const char *name)
+{
+    return !strcmp(name, ".") || !strcmp(name, "..");
+}
+
+static void empty(const char *path)
+{
+    DIR *entries = opendir(path);
+    assert_non_null(entries);
+    for (struct dirent *entry; (entry = readdir(entries));) {
+        char name[ROOM];
+        struct stat status;
+        if (is_dots(entry->d_name))
+            continue;
+        assert_true(snprintf(name, sizeof name, "%s/%s", path, entry->d_name) < ROOM);
+        if (lstat(name, &status) == 0 && S_ISDIR(status.st_mode))
+            empty(name);
+        assert_int_equal(remove(name), 0);
+    }
+    closedir(entries);
+}
+
+void folder_empty(void)
+{
+    empty(made);
+}
+
+void folder_remove(void)
+{
+    empty(made);
+    assert_int_equal(rmdir(made), 0);
+}
+
+int file_count(const char *path)
+{
+    DIR *entries = opendir(path);
+    assert_non_null(entries);
+    int count = 0;
+    for (struct dirent *entry; (entry = readdir(entries));)
+        count += !is_dots(entry->d_name);
+    closedir(entries);
+    return count;
+}
+
+uint8_t *read_file(const char *path, size_t *size)
+{
+    FILE *file = fopen(path, "rb");
+    if (!file)
+        fail_msg("%s cannot be opened", path);
+    struct stat status = {0};
+    assert_int_equal(fstat(fileno(file), &status), 0);
+    *size = (size_t)status.st_size;
+    uint8_t *bytes = malloc(*size + 1);
+    assert_non_null(bytes);
+    assert_int_equal(fread(bytes, 1, *size, file), *size);
+    bytes[*size] = 0;
+    fclose(file);
+    return bytes;
+}
+
+void write_file(const char *path, const void *bytes, size_t size)
+{
+    FILE *file = fopen(path, "wb");
+    if (!file)
+        fail_msg("%s cannot be opened", path);
+    assert_int_equal(fwrite(bytes, 1, size, file), size);
+    assert_int_equal(fclose(file), 0);
+}
+
+void check_same_files(const char *a, const char *b)
+{
+    size_t size[2];
+    uint8_t *bytes[2] = {read_file(a, &size[0]), read_file(b, &size[1])};
+    assert_true(size[0] > 0);
+    assert_int_equal(size[0], size[1]);
+    assert_memory_equal(bytes[0], bytes[1], size[0]);
+    free(bytes[0]);
+    free(bytes[1]);
+}

@@ -1,0 +1,35 @@
+// A folder for the files of a test program, and files as a whole.
+#ifndef KILN_KIT_FOLDER_H
+#define KILN_KIT_FOLDER_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/// Makes a new folder for this program in /tmp. There is one at a time.
+void folder_make(void);
+
+/// The folder's path, without a slash at the end.
+const char *folder_path(void);
+
+/// The path of a name in the folder. Eight paths are kept at a time.
+const char *in_folder(const char *name);
+
+/// Removes what is in the folder, folders included.
+void folder_empty(void);
+
+/// Removes the folder with all that is in it.
+void folder_remove(void);
+
+/// The number of files and folders in a folder, hidden files included.
+int file_count(const char *path);
+
+/// The bytes of a file and a 0 behind them, to be released by free(). Fails if the file cannot be read.
+uint8_t *read_file(const char *path, size_t *size);
+
+/// Writes a file of these bytes, or replaces it.
+void write_file(const char *path, const void *bytes, size_t size);
+
+/// Checks that two files have the same bytes, at least one.
+void check_same_files(const char *a, const char *b);
+
+#endif

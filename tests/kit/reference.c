@@ -1,0 +1,41 @@
+#include "reference.h"
+
+#include "kit.h"
+
+kiln_map scene_panorama(kiln_context *context, int size, uint32_t seed)
+{
+    kiln_map map = make_panorama(context, size);
+    scene_fill(&map, seed);
+    return map;
+}
+
+scene_errors scene_compare(kiln_context *context, const kiln_map *panorama, const kiln_map *result,
+                           int level, const kiln_lobe *lobe, double rotation, int count)
+{
+    size_t texels = kiln_map_texels(result, level);
+    count = texels < (size_t)count ? (int)texels : count;
+    double(*directions)[3] = malloc((size_t)count * sizeof *directions);
+    double(*values)[3] = malloc((size_t)count * sizeof *values);
+    size_t *index = malloc((size_t)count * sizeof *index);
+    uint32_t seed = 7u + (uint32_t)level;
+    for (int i = 0; i < count; i++) {
+        index[i] =
+            texels == (size_t)count ? (size_t)i : (size_t)(scene_random(&seed) * (double)texels);
+        kiln_map_direction(result, level, index[i], directions[i]);
+    }
+    kiln_error error = {0};
+    CHECK_OK(kiln_reference_filter(context, panorama, lobe, rotation,
+                                   (const double(*)[3])directions, count, values, &error));
+    double square = 0, whole = 0, most = 0;
+    for (int i = 0; i < count; i++)
+        for (int c = 0; c < 3; c++) {
+            double off = (double)result->level[level][3 * index[i] + (size_t)c] - values[i][c];
+            square += off * off;
+            whole += values[i][c] * values[i][c];
+            most = fmax(most, fabs(off) / values[i][c]);
+        }
+    free(directions);
+    free(values);
+    free(index);
+    return (scene_errors){sqrt(square / whole), most};
+}
