@@ -1,4 +1,6 @@
-// Every level of real environments against the sum over every texel.
+// The accuracy case. In: eight panoramas and a sky. Out: the relative errors of every prefiltered
+// level against the sum over every texel of the panorama (kiln_reference_filter), as RMS and as the
+// largest error.
 #include "bench.h"
 
 #include <math.h>
@@ -9,7 +11,7 @@ static const char *const names[] = {"sky",   "city",   "courtyard", "forest", "i
 enum { NAME_COUNT = sizeof names / sizeof *names, TEXELS = 256 };
 static const double rms_bar = 1e-4, largest_bar = 2e-3;
 
-// All texels of a small level, else TEXELS of them at random.
+// Compares all texels of a small level, or TEXELS random texels of a larger one, with brute force.
 bool bench_check_level(bench *b, kiln_context *context, const kiln_map *source, const kiln_map *map,
                        int level, bench_figures *f)
 {
@@ -40,8 +42,8 @@ bool bench_check_level(bench *b, kiln_context *context, const kiln_map *source, 
     return true;
 }
 
-// The mirror is the source by area: no lobe to sum, but no light may be lost. Relative difference
-// between the means over the sphere.
+// Returns the relative difference between the mean radiance of the source and of level 0. Level 0
+// is the source resampled by area without a lobe, which must not lose light.
 static double check_mirror(const kiln_map *source, const kiln_map *map)
 {
     double mean[2] = {0}, weights[2] = {0};
@@ -54,7 +56,7 @@ static double check_mirror(const kiln_map *source, const kiln_map *map)
     }
     int edge = map->size;
     for (size_t i = 0; i < kiln_map_texels(map, 0); i++) {
-        // The solid angle of a face's texel, by its corners.
+        // The solid angle of a cube face's texel is computed from its four corners.
         size_t column = i % (size_t)edge, row = i / (size_t)edge % (size_t)edge;
         double angle = 0;
         for (int c = 0; c < 4; c++) {
@@ -118,9 +120,10 @@ bool bench_accuracy(bench *b)
     bench_figures worst = {0};
     if (kiln_context_create(NULL, &context, &b->error))
         return false;
-    printf("  relative rms by roughness (0: the mean), 256 texels a level; last, the largest "
-           "error\n  %-11s",
-           "");
+    printf(
+        "  relative RMS error by the roughness of the level, from 256 texels of each level (at\n  "
+        "roughness 0 the relative error of the mean); last column: the largest error\n  %-11s",
+        "");
     for (int k = 0; k < 9; k++)
         printf("%9.3f", k / 8.0);
     printf("%11s\n", "largest");
@@ -128,8 +131,8 @@ bool bench_accuracy(bench *b)
     for (int i = 0; i < NAME_COUNT && done; i++)
         done = check_environment(b, context, names[i], &worst);
     if (done) {
-        bench_bar(b, "worst relative rms", worst.rms, "", rms_bar, false);
-        bench_bar(b, "worst relative error", worst.largest, "", largest_bar, false);
+        bench_bar(b, "largest RMS error of a level", worst.rms, "", rms_bar, false);
+        bench_bar(b, "largest error of a value", worst.largest, "", largest_bar, false);
     }
     kiln_context_destroy(context);
     return done;

@@ -1,5 +1,6 @@
-// bench [OPTION...] [CASE...]: runs the named cases, or all, from the root of the sources.
-// ./do bench prepares what they need.
+// The program bench. In: options and names of cases (bench [OPTION...] [CASE...]), run from the
+// root of the sources. Out: the results of the cases, printed and as CSV files. Without names it
+// runs every case that is not marked on_request. bench/run.sh makes the inputs that the cases need.
 #include "bench.h"
 
 #include <ctype.h>
@@ -11,18 +12,23 @@
 #include <time.h>
 
 static const bench_case cases[] = {
-    {"accuracy", "eight panoramas and the sky, every level, against brute force", bench_accuracy,
-     false},
-    {"probe", "a 256 x 128 probe to 64^2 faces with a plan, one thread", bench_probe, false},
-    {"threads", "one and two threads", bench_threads, false},
-    {"instructions", "every instruction set, one thread", bench_instructions, false},
-    {"files", "baking beside reading and writing the files", bench_files, false},
-    {"scaling", "inputs of 1k to 8k, faces of 128 to 1024", bench_scaling, false},
-    {"peer", "whole processes: kiln beside cmgen", bench_peer, false},
-    {"memory", "peak memory of baking 8192 x 4096", bench_memory, false},
-    {"tables", "tables of E beside 1024 importance samples, one thread", bench_tables, false},
-    {"tune", "what engines show of tuned and exact levels, against brute force", bench_tune, false},
-    {"fixed", "one small bake with AVX2, for counting instructions", bench_fixed, true},
+    {"accuracy", "errors of every level of eight panoramas and a sky against brute force",
+     bench_accuracy, false},
+    {"probe", "a probe of 256 x 128 texels to faces of 64 x 64 by a plan, on one thread",
+     bench_probe, false},
+    {"threads", "time and bits of a bake on one and on two threads", bench_threads, false},
+    {"instructions", "time and bits of a bake for every instruction set, on one thread",
+     bench_instructions, false},
+    {"files", "time of a bake compared with reading and writing its files", bench_files, false},
+    {"scaling", "time of a bake for panoramas 1k to 8k wide and faces of 128 to 1024 texels",
+     bench_scaling, false},
+    {"peer", "time of the whole command, compared with Filament's cmgen", bench_peer, false},
+    {"memory", "peak memory of baking a panorama of 8192 x 4096", bench_memory, false},
+    {"tables", "tables of E compared with 1024 importance samples for each texel, on one thread",
+     bench_tables, false},
+    {"tune", "errors of what engines show of exact and tuned levels against brute force",
+     bench_tune, false},
+    {"fixed", "a small bake with AVX2, whose instructions are counted", bench_fixed, true},
 };
 enum { CASE_COUNT = sizeof cases / sizeof *cases };
 
@@ -81,7 +87,8 @@ void bench_bar(bench *b, const char *what, double value, const char *unit, doubl
 
 void bench_aim(const char *what, double value, const char *unit, double aim)
 {
-    printf("  %-46s %10.4g %-4s aim %.4g: %.2f times that\n", what, value, unit, aim, value / aim);
+    printf("  %-46s %10.4g %-4s aim %.4g: %.2f times the aim\n", what, value, unit, aim,
+           value / aim);
 }
 
 bool bench_fail(bench *b, const char *format, ...)
@@ -93,7 +100,8 @@ bool bench_fail(bench *b, const char *format, ...)
     return false;
 }
 
-// The processor's name in small letters, for a folder: "amd-epyc-7763".
+// Sets `name` to the processor's name in lower case with hyphens, which names the folder of
+// results, for example "amd-epyc-7763".
 static void name_machine(char *name, size_t size)
 {
     char line[256];
@@ -176,20 +184,19 @@ static int list(void)
 {
     for (int i = 0; i < CASE_COUNT; i++)
         printf("%-14s%s%s\n", cases[i].name, cases[i].summary,
-               cases[i].on_request ? " (when named)" : "");
+               cases[i].on_request ? " (runs only if named)" : "");
     return 0;
 }
 
 static int usage(FILE *file)
 {
-    fputs("usage: bench [OPTION...] [CASE...]\n"
-          "  --list            name the cases\n"
-          "  --machine         print the name of the results' folder\n"
-          "  --data FOLDER     the real panoramas (build/data/blender)\n"
-          "  --inputs FOLDER   larger ones made from them (build/bench)\n"
-          "  --results FOLDER  CSV files go to FOLDER/MACHINE/CASE.csv (none)\n"
-          "  --kiln FILE       the command (build/release/bin/kiln)\n"
-          "  --runs N          of each measurement (5)\n",
+    fputs("usage: bench [OPTION...] [CASE...]\n  --list            print the names of the cases\n  "
+          "--machine         print the name of the results' folder\n  --data FOLDER     the "
+          "photographed panoramas (default build/data/blender)\n  --inputs FOLDER   larger "
+          "panoramas made from them (default build/bench)\n  --results FOLDER  write CSV files to "
+          "FOLDER/MACHINE/CASE.csv (default: no files)\n  --kiln FILE       the command kiln "
+          "(default build/release/bin/kiln)\n  --runs N          number of runs of each "
+          "measurement (default 5)\n",
           file);
     return file == stderr ? 2 : 0;
 }
@@ -201,7 +208,7 @@ static bool run(bench *b, const bench_case *c, const char *machine)
     b->csv = open_csv(b, machine, c->name);
     bool done = c->run(b);
     if (!done)
-        printf("  could not be run: %s\n", b->error.message);
+        printf("  the case could not be run: %s\n", b->error.message);
     if (b->csv)
         fclose(b->csv);
     fflush(stdout);
@@ -253,10 +260,11 @@ int main(int argc, char **argv)
         return usage(stderr);
     for (int k = i; k < argc; k++)
         if (!known(argv[k])) {
-            fprintf(stderr, "bench: there is no case '%s'; --list names them\n", argv[k]);
+            fprintf(stderr, "bench: there is no case '%s'; 'bench --list' names the cases\n",
+                    argv[k]);
             return 2;
         }
-    printf("kiln %s on %s, %d runs each\n", kiln_version(), machine, b.runs);
+    printf("kiln %s on %s, %d runs of each measurement\n", kiln_version(), machine, b.runs);
     bool failed = false;
     for (int c = 0; c < CASE_COUNT; c++) {
         bool wanted = i == argc && !cases[c].on_request;

@@ -1,4 +1,5 @@
-// The benches' common ground: the clock, the inputs, and rows of results.
+// Declarations that the benchmarks share: the options, the clocks, the inputs, and the rows of
+// results.
 #ifndef BENCH_H
 #define BENCH_H
 
@@ -7,21 +8,23 @@
 #include <stdio.h>
 
 typedef struct bench {
-    const char *data;    ///< folder of the real panoramas
-    const char *inputs;  ///< folder of what run.sh made from them; scratch files go there too
-    const char *results; ///< folder of the CSV files, NULL for none
-    const char *kiln;    ///< the command
+    const char *data; ///< folder of the photographed panoramas
+    /// folder of the panoramas that run.sh made from `data`, and of scratch files
+    const char *inputs;
+    const char *results; ///< folder of the CSV files; NULL to write no CSV files
+    const char *kiln;    ///< path of the command kiln
     int runs;
-    FILE *csv;   ///< of the case that runs
-    bool missed; ///< a bar was missed
+    FILE *csv;   ///< CSV file of the case that runs; NULL for no file
+    bool missed; ///< true: a value missed its bar, so bench fails
     kiln_error error;
 } bench;
 
-/// A case returns false when it could not be run; bench->error says why.
+/// A benchmark case. `run` returns false if the case could not be run, and bench->error then says
+/// why.
 typedef struct bench_case {
     const char *name, *summary;
     bool (*run)(bench *b);
-    bool on_request; ///< left out where no case is named
+    bool on_request; ///< true: the case runs only if it is named
 } bench_case;
 
 bool bench_accuracy(bench *b);
@@ -36,7 +39,7 @@ bool bench_memory(bench *b);
 bool bench_tables(bench *b);
 bool bench_tune(bench *b);
 
-/// Seconds of CPU time of all threads, and of a clock on the wall.
+/// Return the seconds of CPU time that all threads have used, and the seconds of a clock.
 double bench_cpu(void);
 double bench_wall(void);
 
@@ -47,32 +50,32 @@ typedef struct bench_times {
 /// Sorts `seconds`.
 bench_times bench_sum_up(double *seconds, int count);
 
-/// One row of the case's CSV file: name, unit, median, minimum. The first creates the file.
+/// Writes a row of the case's CSV file: name, unit, median and minimum.
 void bench_row(bench *b, const char *name, const char *unit, bench_times times);
 void bench_value(bench *b, const char *name, const char *unit, double value);
-/// Prints what was reached beside the bar and remembers a miss.
+/// Prints a value and the bar that it must reach, and notes in `missed` if it does not.
 void bench_bar(bench *b, const char *what, double value, const char *unit, double bar,
                bool at_least);
-/// Prints how far a value is from an aim: at most `aim` is wanted, nothing fails.
+/// Prints a value and its ratio to `aim`, which it should not exceed. Nothing fails if it does.
 void bench_aim(const char *what, double value, const char *unit, double aim);
 
-/// Sets b->error to a formatted sentence and returns false.
+/// Sets b->error to a formatted message and returns false.
 bool bench_fail(bench *b, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/// Loads DATA/city.exr, each texel repeated to `size` rows (512 and its multiples), or averaged to
-/// fewer.
+/// Loads DATA/city.exr as a panorama of `size` rows: texels are repeated for 512 rows and its
+/// multiples, and averaged for fewer rows.
 bool bench_city(bench *b, kiln_context *context, int size, kiln_map *map);
 
-/// Relative errors of a level: rms, and the largest of a value.
+/// Relative errors of a level: the RMS error, and the largest error of a value.
 typedef struct bench_figures {
     double rms, largest;
 } bench_figures;
 
-/// Compares a GGX level with brute force.
+/// Compares a level filtered by GGX with brute force and sets `f` to its errors.
 bool bench_check_level(bench *b, kiln_context *context, const kiln_map *source, const kiln_map *map,
                        int level, bench_figures *f);
 
-/// Of every bit of every level.
+/// Returns a hash of the bits of all levels.
 unsigned long long bench_hash(const kiln_map *map);
 
 #endif

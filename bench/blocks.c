@@ -10,7 +10,7 @@
 #include <string.h>
 #include <time.h>
 
-// Of the processor: one thread works.
+// Returns the CPU seconds of the process, in which one thread works.
 static double seconds(void)
 {
     struct timespec t;
@@ -43,7 +43,8 @@ static kiln_result save(kiln_context *context, char **argv, kiln_error *error)
     return result;
 }
 
-// A half float's bits as a number, between them as it goes: 1024 to an octave.
+// Returns the bits of a half float as a number, interpolated between half floats: 1024 numbers for
+// each factor of two.
 static double code(double value)
 {
     int exponent;

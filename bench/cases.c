@@ -1,13 +1,15 @@
-// What can be measured inside one process.
+// The cases that measure kiln inside one process: plans for probes, threads, instruction sets,
+// files, the growth of time with sizes, and a fixed bake whose instructions are counted. In:
+// panoramas. Out: times, errors and hashes, printed and as rows of CSV files.
 #include "bench.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { LONGEST = 16 }; // different bakes in a case
+enum { LONGEST = 16 }; // number of samples of the case scaling
 
-// Plan, execute and free: what a first bake costs.
+// Bakes levels once with kiln_bake, which makes, executes and destroys a plan.
 static bool bake_once(bench *b, kiln_context *context, const kiln_map *source,
                       const kiln_prefilter_def *def, kiln_map *map, int *degree)
 {
@@ -41,7 +43,7 @@ static bool probe_at(bench *b, kiln_context *context, const kiln_map *source, do
         create[i] = bench_cpu() - start;
     }
     done = done && !kiln_plan_environment(plan, &environment, &b->error);
-    // An execution is short: each run is the best of many in a row.
+    // An execution is short, so each run takes the fastest of 20 executions.
     for (int i = 0; i < b->runs && done; i++) {
         execute[i] = HUGE_VAL;
         for (int k = 0; k < 20 && done; k++) {
@@ -59,14 +61,14 @@ static bool probe_at(bench *b, kiln_context *context, const kiln_map *source, do
     if (done) {
         char name[64];
         bench_times c = bench_sum_up(create, b->runs), e = bench_sum_up(execute, b->runs);
-        printf("  tolerance %g: degree %d, rms error %.1e, largest %.1e\n", tolerance,
+        printf("  tolerance %g: degree %d, RMS error %.1e, largest error %.1e\n", tolerance,
                kiln_spectrum_degree(kiln_plan_spectrum(plan)), worst.rms, worst.largest);
         snprintf(name, sizeof name, "plan create, %g", tolerance);
         bench_row(b, name, "s", c);
-        printf("  %-46s %10.3f ms\n", "plan, once", 1e3 * c.median);
+        printf("  %-46s %10.3f ms\n", "creating the plan", 1e3 * c.median);
         snprintf(name, sizeof name, "plan execute, %g", tolerance);
         bench_row(b, name, "s", e);
-        bench_aim("execute, CPU", 1e3 * e.median, "ms", 2);
+        bench_aim("executing the plan, CPU time", 1e3 * e.median, "ms", 2);
     }
     kiln_environment_free(&environment);
     kiln_plan_destroy(plan);
@@ -133,7 +135,7 @@ bool bench_threads(bench *b)
         done = measure_context(b, &def, n == 1 ? "1 thread" : "2 threads", &hash, &same);
     }
     if (done)
-        bench_bar(b, "the same bits (1: yes)", same, "", 1, true);
+        bench_bar(b, "all results have the same bits (1: yes)", same, "", 1, true);
     return done;
 }
 
@@ -152,16 +154,17 @@ bool bench_instructions(bench *b)
         if (has)
             done = measure_context(b, &def, names[k], &hash, &same);
         else
-            printf("  %-12s not on this machine\n", names[k]);
+            printf("  %-12s this machine does not have it\n", names[k]);
     }
     if (done)
-        bench_bar(b, "the same bits (1: yes)", same, "", 1, true);
+        bench_bar(b, "all results have the same bits (1: yes)", same, "", 1, true);
     return done;
 }
 
 // -------------------------------------------------------------------------------------------- files
 
-// Seconds that merely reading every texel takes: nothing that uses them all can be faster.
+// Returns the seconds that reading every texel from memory once takes. No function that uses every
+// texel can be faster.
 static double read_all(const kiln_map *map)
 {
     double best = HUGE_VAL;
@@ -179,7 +182,7 @@ static double read_all(const kiln_map *map)
         sink = sum;
         best = fmin(best, bench_cpu() - start);
     }
-    (void)sink; // written so that the loop stays
+    (void)sink; // keeps the compiler from removing the loop
     return best;
 }
 
@@ -237,14 +240,15 @@ bool bench_files(bench *b)
 
 // ------------------------------------------------------------------------------------------ scaling
 
-// What a bake's time may grow with: texels read, texels written, degree^3.
+// The terms of the model of a bake's time: number of texels read, number of texels written, and
+// degree^3.
 enum { TERMS = 3 };
 typedef struct sample {
     double terms[TERMS], seconds;
 } sample;
 
-// Costs a term, none negative, such that the relative errors of their sums are least: the normal
-// equations, solved one unknown at a time.
+// Sets cost[] to the seconds for each unit of a term, none negative, that give the least relative
+// errors of the modelled times. Solves the normal equations for one unknown after another.
 static void fit(const sample *s, int count, double cost[TERMS])
 {
     double matrix[TERMS][TERMS] = {{0}}, right[TERMS] = {0};
@@ -266,7 +270,8 @@ static void fit(const sample *s, int count, double cost[TERMS])
         }
 }
 
-// The slope of log seconds against the logarithm of the fitted cost: 1 when it grows alike.
+// Returns the slope of log seconds over the logarithm of the modelled time. The slope is 1 if the
+// measured time grows as the model does.
 static double exponent(const sample *s, int count, const double cost[TERMS])
 {
     double x = 0, y = 0, xx = 0, xy = 0;
@@ -288,7 +293,9 @@ bool bench_scaling(bench *b)
     kiln_context *context = NULL;
     if (kiln_context_create(NULL, &context, &b->error))
         return false;
-    printf("  ms of CPU (degree), by the size of the faces\n  %-12s", "input");
+    printf("  milliseconds of CPU time and (degree of the spectrum), by panorama and size of the "
+           "faces\n  %-12s",
+           "input");
     for (int f = 0; f < 4; f++)
         printf("%16d", faces[f]);
     bool done = true;
@@ -324,14 +331,15 @@ bool bench_scaling(bench *b)
     if (done) {
         double cost[TERMS];
         fit(samples, count, cost);
-        printf("  fitted: %.2f ns a texel read + %.2f ns a texel written + %.3f ns x degree^3\n",
+        printf("  fitted: %.2f ns for each texel read + %.2f ns for each texel written + %.3f ns x "
+               "degree^3\n",
                1e9 * cost[0], 1e9 * cost[1], 1e9 * cost[2]);
         bench_value(b, "texel read", "s", cost[0]);
         bench_value(b, "texel written", "s", cost[1]);
         bench_value(b, "degree cubed", "s", cost[2]);
         double slope = exponent(samples, count, cost);
         bench_value(b, "exponent", "", slope);
-        bench_bar(b, "exponent of the time against pixels + degree^3", slope, "", 1.05, false);
+        bench_bar(b, "exponent of the time over the fitted time", slope, "", 1.05, false);
     }
     kiln_context_destroy(context);
     return done;
@@ -339,7 +347,8 @@ bool bench_scaling(bench *b)
 
 // --------------------------------------------------------------------------------------------- fixed
 
-// The same work everywhere: no file, one thread, AVX2.
+// A bake that does the same work on every machine: no file, one thread, AVX2. bench/run.sh counts
+// its instructions.
 bool bench_fixed(bench *b)
 {
     kiln_context_def one = {.thread_count = 1, .cpu = KILN_CPU_AVX2};

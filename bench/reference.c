@@ -1,5 +1,6 @@
-// Brute force for programs in other languages: bench_reference PANORAMA
-// Reads lines "roughness x y z", kiln's directions, of equal roughness in a row; prints "r g b" of each.
+// The program bench_reference, for scripts that need brute-force values. In: a panorama, and on
+// standard input lines "roughness x y z" with directions in kiln's axes, in which lines of equal
+// roughness follow one another. Out: a line "r g b" for each line.
 #include <kiln/kiln.h>
 
 #include <stdio.h>

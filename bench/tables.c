@@ -1,4 +1,6 @@
-// Tables of E beside importance sampling done as well as it can be, in one thread.
+// The case tables. In: the four masking functions. Out: time and largest error of a 128 x 128 table
+// of E by kiln, and by importance sampling with 1024 samples that is vectorised and optimised as
+// far as possible; also the time of 512 x 512 tables. All on one thread.
 #include "bench.h"
 
 #include <kiln/brdf.h>
@@ -12,10 +14,11 @@ static const char *const names[] = {"smith", "smith-uncorrelated", "schlick-k2",
 
 // -------------------------------------------------------------------------------------- the sampler
 
-// Half vectors of one roughness in the plane that counts: x and z, and 1 / z.
+// The samples of one roughness: the components x and z of the half vectors, which are all that the
+// integrand uses, and 1 / z.
 typedef struct samples {
     float azimuth[SAMPLES],
-        xi[SAMPLES]; // of Hammersley's points: cos phi, and the other coordinate
+        xi[SAMPLES]; // the Hammersley points: the cosine of the azimuth, and the other coordinate
     float x[SAMPLES], z[SAMPLES], inverse[SAMPLES];
 } samples;
 
@@ -48,7 +51,8 @@ static inline __attribute__((always_inline)) void samples_set(samples *s, float 
     }
 }
 
-// The mean of G (v.h) / ((n.v) (n.h)); all that does not depend on the sample stands outside.
+// Estimates E as the mean of G (v.h) / ((n.v) (n.h)) over the samples. Factors that do not depend
+// on the sample are taken out of the loop.
 static inline __attribute__((always_inline)) float energy(const sampler *m, const samples *s,
                                                           float nov)
 {
@@ -86,7 +90,7 @@ static inline __attribute__((always_inline)) void fill(kiln_g g, samples *s, flo
     }
 }
 
-// The switch over g is taken outside of the loops.
+// Calls fill() with a constant g, so that the compiler removes the tests of g from the loops.
 static inline __attribute__((always_inline)) void fill_each(kiln_g g, samples *s, float *e)
 {
     switch (g) {
@@ -157,7 +161,8 @@ static double largest_error(kiln_g g, const float *e)
     return worst;
 }
 
-// Seconds for a table, the best of many: each run is short.
+// Sets seconds[] to the times of a table, each the fastest of `repeats`, because one computation is
+// short.
 static bool time_table(bench *b, kiln_context *context, const kiln_table_def *def, int repeats,
                        double *seconds, kiln_table *table)
 {
@@ -194,14 +199,16 @@ static bool beside_sampling(bench *b, kiln_context *context, kiln_g g, samples *
         char name[64];
         bench_times exact = bench_sum_up(ours, b->runs), sampling = bench_sum_up(theirs, b->runs);
         double error = largest_error(g, table.image.pixels), noise = largest_error(g, sampled);
-        printf("  %s: exact %.3f ms, error %.1e; 1024 samples %.3f ms, error %.1e\n", names[g],
-               1e3 * exact.median, error, 1e3 * sampling.median, noise);
+        printf("  %s: by kiln %.3f ms, largest error %.1e; by 1024 samples %.3f ms, largest error "
+               "%.1e\n",
+               names[g], 1e3 * exact.median, error, 1e3 * sampling.median, noise);
         snprintf(name, sizeof name, "%s exact", names[g]);
         bench_row(b, name, "s", exact);
         snprintf(name, sizeof name, "%s sampled", names[g]);
         bench_row(b, name, "s", sampling);
-        bench_bar(b, "sampling / exact, time", sampling.median / exact.median, "", 8, true);
-        bench_bar(b, "exact / sampling, error", error / noise, "", 1e-4, false);
+        bench_bar(b, "time of sampling / time of kiln", sampling.median / exact.median, "", 8,
+                  true);
+        bench_bar(b, "error of kiln / error of sampling", error / noise, "", 1e-4, false);
     }
     kiln_table_free(&table);
     return done;

@@ -1,19 +1,21 @@
-// What an engine shows of a bake: its formula from roughness to level, two levels mixed linearly, each
-// read bilinearly, against the exact result at that very roughness.
+// The case tune. In: eight panoramas. Out: the errors of what engines show of exact and of tuned
+// levels. An engine maps the roughness to a fractional level, mixes two levels linearly, and reads
+// each bilinearly. The result is compared with the exact environment at the same roughness.
 #include "bench.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-// From the calmest to the sunniest, but these two first.
+// The panoramas, from even to sunny light, after courtyard (even) and sunrise (sunny), which have
+// bars.
 static const char *const names[] = {"courtyard", "sunrise", "city",   "interior",
                                     "studio",    "forest",  "sunset", "night"};
 enum { NAME_COUNT = sizeof names / sizeof *names };
 
 typedef struct layout {
     const char *engine, *title;
-    int size, level_count; // 0: the engine's own
+    int size, level_count; // size and number of levels; 0 for the engine's defaults
 } layout;
 static const layout layouts[] = {
     {"three", "three of 9 levels from 1024", 1024, 9},
@@ -23,12 +25,12 @@ static const layout layouts[] = {
 };
 enum { LAYOUT_COUNT = sizeof layouts / sizeof *layouts };
 
-// Exact levels, and those for what the engine shows.
+// Exact levels, and the two kinds of tuned levels.
 enum { NONE, SHARP, SOFT, TUNINGS };
 static const char *const tunings[] = {"none", "sharp", "soft"};
 static const double bar = 0.6, aim = 0.5, soft_aim = 0.25;
 
-// Roughness .05 to 1 in equal steps.
+// Number of roughnesses that are compared, from 0.05 to 1 in equal steps.
 enum { ROUGHNESS_COUNT = 39 };
 
 typedef struct tuning {
@@ -37,10 +39,11 @@ typedef struct tuning {
     kiln_spectrum *spectrum;
     kiln_map maps[LAYOUT_COUNT][TUNINGS];
     double seconds[LAYOUT_COUNT][TUNINGS];
-    bench_figures figures[LAYOUT_COUNT][TUNINGS]; // rms as a mean square until the end
-    double far[LAYOUT_COUNT][TUNINGS];            // the same without the brightest directions
-    double seen[LAYOUT_COUNT][TUNINGS];           // and of x / (x + mean)
-    double mean;                                  // radiance
+    // errors; `rms` holds the mean square until report() takes the root
+    bench_figures figures[LAYOUT_COUNT][TUNINGS];
+    double far[LAYOUT_COUNT][TUNINGS];  // RMS error without the brightest 200th of the directions
+    double seen[LAYOUT_COUNT][TUNINGS]; // RMS error of x / (x + mean) for radiance x
+    double mean;                        // mean radiance of the environment
     double (*directions)[3], (*values)[3];
 } tuning;
 
@@ -75,7 +78,8 @@ static double brightness(const float *rgb)
     return (double)rgb[0] + (double)rgb[1] + (double)rgb[2];
 }
 
-// What the brightest 200th of the directions exceed: those are around suns, where there are any.
+// Returns the brightness that only the brightest 200th of the directions exceed. In an environment
+// with suns these directions are around the suns.
 static double find_bright(const kiln_map *truth)
 {
     size_t count = kiln_map_texels(truth, 0);
@@ -89,7 +93,8 @@ static double find_bright(const kiln_map *truth)
     return bright;
 }
 
-// The relative error at one roughness of each map, over directions as dense as the lobe is narrow.
+// Adds the relative errors of each map at one roughness. The narrower the lobe, the more directions
+// are compared.
 static bool compare(bench *b, tuning *d, double roughness)
 {
     int size = roughness < 0.08 ? 1024 : roughness < 0.15 ? 512 : roughness < 0.4 ? 256 : 128;
@@ -99,7 +104,8 @@ static bool compare(bench *b, tuning *d, double roughness)
     float one[1] = {(float)roughness};
     kiln_prefilter_def def = {.shape = KILN_SHAPE_OCTAHEDRON, .size = size, .level_count = 1};
     def.roughness = one;
-    // The narrowest lobe's spectrum ends at the degree limit with a little more left than usual.
+    // The spectrum of the narrowest lobe is cut off at the greatest degree, where its error is
+    // somewhat larger than for other lobes.
     def.tolerance = 5e-4;
     bool done =
         roughness < 0.06
@@ -116,7 +122,7 @@ static bool compare(bench *b, tuning *d, double roughness)
                                  roughness, (const double(*)[3])d->directions, count, d->values,
                                  &b->error);
         for (int k = 0; k < count && done; k++) {
-            // The solid angle of an octahedron's texel goes by the cube of its |x| + |y| + |z|.
+            // The solid angle of an octahedron's texel is proportional to (|x| + |y| + |z|)^3.
             const double *at = d->directions[k];
             double weight = pow(fabs(at[0]) + fabs(at[1]) + fabs(at[2]), 3);
             bool far = brightness(truth.level[0] + 3 * (size_t)k) < bright;
@@ -132,7 +138,7 @@ static bool compare(bench *b, tuning *d, double roughness)
                 far_whole += far ? weight * wanted * wanted : 0;
             }
         }
-        // The trapezoidal rule's weight.
+        // Weight of this roughness by the trapezoidal rule.
         double part = (roughness < 0.051 || roughness > 0.999 ? 0.5 : 1) / (ROUGHNESS_COUNT - 1);
         d->figures[i][v].rms += part * off / whole;
         d->far[i][v] += part * far_off / far_whole;
@@ -167,7 +173,7 @@ static void report(bench *b, tuning *d, const char *name)
         puts("");
     }
     fflush(stdout);
-    // Of the calm one and of the sunny one.
+    // Only courtyard (even light) and sunrise (sun) have bars.
     if (strcmp(name, "courtyard") != 0 && strcmp(name, "sunrise") != 0)
         return;
     const bench_figures *f = d->figures[0];
@@ -191,7 +197,7 @@ static bool check_environment(bench *b, tuning *d, const char *name)
     if (!power)
         done = bench_fail(b, "no memory");
     done = done && !kiln_spectrum_power(d->spectrum, power, &b->error);
-    // The mean of the channels' squared means, 4 pi of which are the power of degree 0.
+    // The power of degree 0 is 4 pi times the squared mean of each channel.
     if (done && power)
         d->mean = sqrt((power[0][0] + power[0][1] + power[0][2]) / (12 * acos(-1)));
     free(power);
@@ -213,12 +219,11 @@ bool bench_tune(bench *b)
     kiln_context *context = NULL;
     if (kiln_context_create(NULL, &context, &b->error))
         return false;
-    printf(
-        "  displayed error in %%: rms over roughness .05 to 1 / at the worst one, rms without the\n"
-        "  brightest 200th of the directions, rms of x / (x + mean) in %% of white (CPU of the "
-        "bake)\n"
-        "  %-35s",
-        "");
+    printf("  errors of what the engine shows, in %%: relative RMS error over roughness 0.05 to 1 "
+           "/ of the\n  worst roughness, relative RMS error without the brightest 200th of the "
+           "directions, RMS error\n  of x / (x + mean) with white as 100 %% (CPU time of the "
+           "bake)\n  %-35s",
+           "");
     for (int v = 0; v < TUNINGS; v++)
         printf("%18s%17s", tunings[v], "");
     puts("");

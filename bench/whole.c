@@ -1,4 +1,6 @@
-// What is measured from outside: whole processes, kiln's and others'.
+// The cases that measure whole processes from outside: kiln bake beside cmgen, and the peak memory
+// of a large bake. In: panoramas as files. Out: seconds of CPU and bytes of memory, printed and as
+// rows of CSV files.
 #include "bench.h"
 
 #include <errno.h>
@@ -18,7 +20,8 @@ static double timeval_seconds(struct timeval t)
     return (double)t.tv_sec + 1e-6 * (double)t.tv_usec;
 }
 
-// Runs a command without its output. The peak is the process's own, as the kernel counts it.
+// Runs a command and discards its output. The peak memory is that of the process alone, as the
+// kernel measures it.
 static bool run_command(bench *b, const char *const *command, usage *u)
 {
     *u = (usage){0};
@@ -38,7 +41,7 @@ static bool run_command(bench *b, const char *const *command, usage *u)
     int status = 0;
     struct rusage r;
     if (wait4(child, &status, 0, &r) != child || !WIFEXITED(status) || WEXITSTATUS(status) == 127)
-        return bench_fail(b, "%s could not be run: is it installed?", command[0]);
+        return bench_fail(b, "%s could not be run, install it first", command[0]);
     if (WEXITSTATUS(status))
         return bench_fail(b, "%s ended with exit code %d", command[0], WEXITSTATUS(status));
     *u = (usage){timeval_seconds(r.ru_utime), timeval_seconds(r.ru_stime), bench_wall() - start,
@@ -72,7 +75,7 @@ bool bench_peer(bench *b)
                                                 "cmgen --sh=3", "cmgen --ibl-irradiance --size=64"};
     double user[COMMANDS][BENCH_MAX_RUNS], all[COMMANDS][BENCH_MAX_RUNS];
     double peak[COMMANDS] = {0};
-    // In turn, so that all meet the same weather.
+    // The commands run in turn, so that other load on the machine affects all commands alike.
     for (int i = 0; i < b->runs; i++)
         for (int k = 0; k < COMMANDS; k++) {
             usage u;
@@ -86,8 +89,8 @@ bool bench_peer(bench *b)
     for (int k = 0; k < COMMANDS; k++) {
         t[k] = bench_sum_up(user[k], b->runs);
         bench_times with_system = bench_sum_up(all[k], b->runs);
-        printf("  %-42s %8.3f s user, %.3f s with system, %.0f MiB\n", names[k], t[k].median,
-               with_system.median, peak[k] / 1048576);
+        printf("  %-42s %8.3f s of CPU time (%.3f s with the system's), %.0f MiB peak memory\n",
+               names[k], t[k].median, with_system.median, peak[k] / 1048576);
         bench_row(b, names[k], "s user", t[k]);
         bench_row(b, names[k], "s user + system", with_system);
         bench_value(b, names[k], "bytes", peak[k]);
@@ -95,8 +98,9 @@ bool bench_peer(bench *b)
     double sum = t[1].median + t[2].median + t[3].median;
     bench_value(b, "cmgen levels over kiln", "ratio", t[1].median / t[0].median);
     bench_value(b, "cmgen all over kiln", "ratio", sum / t[0].median);
-    bench_bar(b, "cmgen's levels alone / all of kiln", t[1].median / t[0].median, "", 50, true);
-    bench_bar(b, "all of cmgen / all of kiln (aim: 100)", sum / t[0].median, "", 50, true);
+    bench_bar(b, "time of cmgen's levels / time of kiln bake", t[1].median / t[0].median, "", 50,
+              true);
+    bench_bar(b, "time of all of cmgen / kiln bake (aim: 100)", sum / t[0].median, "", 50, true);
     return true;
 }
 
@@ -112,11 +116,12 @@ bool bench_memory(bench *b)
     if (!run_command(b, command, &u))
         return false;
     remove(output);
-    printf("  %-46s %10.2f s wall, %.2f s user\n", "kiln bake of 8192 x 4096, half EXR", u.wall,
+    printf("  %-46s %10.2f s, %.2f s of CPU time\n", "kiln bake of 8192 x 4096, half EXR", u.wall,
            u.user);
-    printf("  %-46s %10.0f MiB\n", "its texels alone, as floats", 8192.0 * 4096 * 12 / 1048576);
+    printf("  %-46s %10.0f MiB\n", "memory of the panorama's texels as floats",
+           8192.0 * 4096 * 12 / 1048576);
     bench_value(b, "peak", "bytes", u.peak);
     bench_value(b, "user", "s", u.user);
-    bench_bar(b, "peak resident memory", u.peak / 1048576, "MiB", 700, false);
+    bench_bar(b, "peak memory of the process", u.peak / 1048576, "MiB", 700, false);
     return true;
 }

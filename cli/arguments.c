@@ -165,7 +165,7 @@ static int read_word(const cli_command *command, const cli_option *option, const
     }
     cli_suggestion_text(&suggestion, "; ", "", nearest);
     if (count == 1)
-        return cli_wrong(command, "--%s is '%s', only %s is there%s", option->name, text,
+        return cli_wrong(command, "--%s is '%s', it must be %s%s", option->name, text,
                          cli_option_word(option, 0), nearest);
     return cli_wrong(command, "--%s is '%s', it must be %s%s", option->name, text,
                      cli_list(option, list), nearest);

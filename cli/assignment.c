@@ -24,16 +24,18 @@ int assignment_check_folder(const cli_command *command, const char *folder)
     if (kind == OS_UNREACHABLE)
         return cli_fail("%s: %s", folder, strerror(errno));
     if (kind == OS_FILE)
-        return cli_fail("%s: is a file, the assignment's pictures need a folder", folder);
+        return cli_fail("%s: is a file, name a folder for the assignment's pictures", folder);
     if (kind == OS_FOLDER)
-        return os_is_writable(folder) ? CLI_GO : cli_fail("%s: cannot be written to", folder);
+        return os_is_writable(folder)
+                   ? CLI_GO
+                   : cli_fail("%s: kiln is not allowed to write into this folder", folder);
     // Without the final slash, os_kind_of tells whether the folder itself exists.
     char path[4096];
     size_t length = strlen(folder);
     while (length > 1 && folder[length - 1] == '/')
         length--;
     if (length >= sizeof path)
-        return cli_fail("%.60s...: the name is too long", folder);
+        return cli_fail("%.60s...: the path is too long, choose a shorter one", folder);
     memcpy(path, folder, length);
     path[length] = 0;
     return cli_check_folder(path);
@@ -185,7 +187,7 @@ static kiln_result write_pictures(assignment *a)
 {
     kiln_result result = KILN_OK;
     for (int t = 0; t < ASSIGNMENT_TABLES && !result; t++) {
-        // this table differs from another by one byte at most: it is only in the report
+        // this table differs from Eavg by one byte at most, so it appears in the report only
         if (t != ASSIGNMENT_AVERAGE_BYTES)
             result = save_table(a, &a->table[t], assignment_names[t], false);
         if (!result && a->map[t].pixels)
@@ -201,7 +203,7 @@ static void print_figures(const assignment *a)
     printf("%s: %d files, %d x %d, %d samples, %s, %.2f s\n", a->def->folder, a->file_count,
            a->def->size, a->def->size, a->def->samples, kiln_g_names()[a->def->g],
            cli_elapsed(a->work));
-    printf("  %-17s %9s %9s %10s\n", "against the exact", "largest", "rms", "mean");
+    printf("  %-17s %9s %9s %10s\n", "error of", "largest", "rms", "mean");
     for (int t = 0; t < ASSIGNMENT_TABLES; t++)
         if (!assignment_is_exact(t))
             printf("  %-17s %9.2e %9.2e %+10.2e\n", assignment_names[t], a->difference[t].max,
@@ -218,7 +220,7 @@ int assignment_write(cli_work *work, const assignment_def *def)
     made = os_make_folder(def->folder);
     if (!made && errno != EEXIST) {
         cli_clear_progress(work);
-        code = cli_fail("%s: cannot be made: %s", def->folder, strerror(errno));
+        code = cli_fail("%s: the folder cannot be created: %s", def->folder, strerror(errno));
         goto done;
     }
     if (!write_pictures(&a) && (!def->draw || !def->draw(&a))) {

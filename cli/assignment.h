@@ -22,7 +22,7 @@ typedef struct assignment_def {
     void *user;
 } assignment_def;
 
-/// Checks that `folder` can be the output folder: CLI_GO or an exit code.
+/// Checks that `folder` can be the output folder. Returns CLI_GO or an exit code.
 int assignment_check_folder(const cli_command *command, const char *folder);
 /// Computes all tables first and then writes the pictures and report.md. Returns CLI_DONE or
 /// CLI_FAILED.
@@ -56,7 +56,7 @@ typedef struct assignment {
 /// For each table: its file's name without the ending, and its description.
 extern const char *const assignment_names[ASSIGNMENT_TABLES];
 extern const char *const assignment_words[ASSIGNMENT_TABLES];
-/// Whether the table is an exact integral, which has no error map.
+/// Returns whether the table is an exact integral, which has no error map.
 bool assignment_is_exact(int table);
 
 /// Writes the picture BEFORE + NAME + .png, with `before` as the prefix, into the output folder.

@@ -20,7 +20,7 @@ typedef struct values {
 
 static const cli_option options[] = {
     {"output", CLI_FILE, offsetof(values, output), .value = "DIR", .letter = 'o',
-     .help = "the folder, made where missing"},
+     .help = "the folder for the files, which is created if missing"},
     CLI_QUIET_ROW(values),
     {.name = NULL},
 };
@@ -150,35 +150,41 @@ static kiln_result draw(assignment *a)
 static void describe(const assignment *a, FILE *f)
 {
     const pictures *p = a->def->user;
-    fprintf(
-        f,
-        "\n## Real time\n\n"
-        "Section 2.3: two rows of five balls, Kulla-Conty above, microfacet below, roughness "
-        "0.95 to 0.15 from left to right. One directional light along (0, 0, -1), radiance 1; "
-        "camera at (0, 80, 300), vertical field 75 degrees; c / (c + 1), then the power 1 / 2.2. "
-        "The balls are spheres of radius 36, met by 4 x 4 rays a pixel. ");
+    fprintf(f, "\n## The two rows of balls\n\nSection 2.3 of the assignment asks for two rows of "
+               "five copper balls. The upper row has the microfacet lobe and Kulla and Conty's "
+               "lobe, the lower row the microfacet lobe alone. The roughness is 0.95 at the left "
+               "and 0.15 at the right. One directional light of radiance 1 shines along (0, 0, "
+               "-1). The camera is at (0, 80, 300) with a vertical field of view of 75 degrees. A "
+               "colour c is shown as (c / (c + 1))^(1 / 2.2). The balls are spheres of radius 36, "
+               "and each pixel is the mean of 4 x 4 rays.\n\n");
     if (p->on_cpu)
-        fputs("Shaded on the CPU in double precision with exact E, since there was no EGL.\n\n", f);
+        fputs("The balls are shaded on the CPU in double precision with the exact E, because EGL "
+              "was not available.\n\n",
+              f);
     else
         fprintf(f,
-                "Drawn by %s from `Emu_IS.png` and `Eavg_from_bytes`, as the framework reads them. "
-                "With exact tables the picture differs by %.2f of 255 RMS, %.1f at most.\n\n",
+                "The balls are drawn by %s with the tables `Emu_IS.png` and `Eavg_from_bytes`, "
+                "which the assignment's framework reads too. With exact tables the picture differs "
+                "by %.2f of 255 (RMS) and by at most %.1f of 255.\n\n",
                 p->by, p->rms, p->largest);
-    fputs(
-        "| picture | what it is |\n|---|---|\n"
-        "| ![](balls.png)<br>`balls.png` | both rows: figure 6 as it should be |\n"
-        "| ![](balls_microfacet.png)<br>`balls_microfacet.png` | the microfacet row: figure 5 |\n"
-        "| ![](balls_as_printed.png)<br>`balls_as_printed.png` | figure 6 as printed |\n\n"
-        "**Figure 6 has a mistake.** The framework's material names its table of E_avg "
-        "`uEavgFLut`, but the shader reads `uEavgLut`: bound to nothing, that sampler reads "
-        "texture unit 0, which is the albedo. So E_avg is (0.72, 0.45, 0.2) at every roughness, "
-        "the factor f_add / (1 - E_avg) differs by channel, and rough balls turn orange: linear "
-        "red over green is 5.2 on the roughest one, where the model has 2.6.\n\n"
-        "**f_add counts the single bounce twice.** F E / (1 - F (1 - E)) is the sum of all "
-        "bounces from the first one on; the microfacet lobe has that one already. From the second "
-        "one on it is F^2 E / (1 - F (1 - E)). These pictures have the assignment's; "
-        "`kiln render --method kulla-conty` has the other.\n",
-        f);
+    fputs("| picture | what it is |\n|---|---|\n"
+          "| ![](balls.png)<br>`balls.png` | the two rows: figure 6 without its mistake |\n"
+          "| ![](balls_microfacet.png)<br>`balls_microfacet.png` | the row with the microfacet "
+          "lobe alone: figure 5 |\n"
+          "| ![](balls_as_printed.png)<br>`balls_as_printed.png` | the two rows with the mistake "
+          "of figure 6 |\n\n"
+          "**Figure 6 has a mistake.** The framework's material names its table of E_avg "
+          "`uEavgFLut`, but the shader reads `uEavgLut`. No texture is bound to the sampler "
+          "`uEavgLut`, so that it reads texture unit 0, which holds the balls' colour. Therefore "
+          "E_avg is (0.72, 0.45, 0.2) at every roughness, the factor f_add / (1 - E_avg) differs "
+          "between the channels, and rough balls become orange. On the roughest ball linear red "
+          "divided by linear green is 5.2, where the model gives 2.6.\n\n**The factor f_add counts "
+          "the first bounce twice.** The assignment's factor F E / (1 - F (1 - E)) is the sum over "
+          "all bounces from the first on, but the microfacet lobe contains the first bounce "
+          "already. The sum from the second bounce on is F^2 E / (1 - F (1 - E)). The pictures "
+          "here have the assignment's factor. `kiln render --method kulla-conty` has the factor "
+          "from the second bounce on.\n",
+          f);
 }
 
 static int run(const cli_call *call)
@@ -200,7 +206,8 @@ static int run(const cli_call *call)
                           .user = &p};
     if (a.rest_count)
         return cli_wrong(&cli_assignment,
-                         "%s: assignment takes no input; name the output by -o DIR", a.rest[0]);
+                         "%s: kiln assignment takes no input, name the output by -o DIR",
+                         a.rest[0]);
     if (!def.folder)
         return cli_wrong(&cli_assignment, "no output: name a folder by -o DIR");
     code = assignment_check_folder(&cli_assignment, def.folder);
@@ -217,13 +224,12 @@ static const cli_example examples[] = {{"kiln assignment -o images/", NULL}, {NU
 const cli_command cli_assignment = {
     .name = "assignment",
     .arguments = "-o DIR",
-    .summary = "Makes all that GAMES202's assignment 4 asks for: tables, renders, report.",
-    .about = "The tables are those of kiln tables --assignment; the balls are drawn with them, and "
-             "report.md "
-             "says what was done and where the handout errs.",
-    .more = "The pictures are the two rows of balls, the microfacet row alone, and the rows with "
-            "the mistake "
-            "of the assignment's figure 6.",
+    .summary = "Makes the tables, pictures and report for assignment 4 of GAMES202.",
+    .about = "The tables are those of 'kiln tables --assignment'. The balls are drawn with these "
+             "tables. The file report.md describes the methods, their errors, and the mistakes of "
+             "the assignment.",
+    .more = "The pictures show two rows of balls, one row with the microfacet lobe alone, and two "
+            "rows with the mistake of the assignment's figure 6.",
     .examples = examples,
     .options = options,
     .run = run,

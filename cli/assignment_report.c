@@ -64,21 +64,23 @@ static void write_files(const assignment *a, FILE *f)
         else
             fputs("|\n", f);
     }
-    fputs("| ![](one_minus_Emu_IS.png)<br>`one_minus_Emu_IS.png` | 1 - E(mu) of Emu_IS, the top "
-          "row is roughness 0: figure 3 | |\n\n"
-          "mu = n.v runs from 0 at the left to 1 at the right, roughness from 0 at the bottom to 1 "
-          "at the top (but for figure 3), texel centres at (i + 0.5) / size. Bytes are (uint8)(255 "
-          "x), cut and not rounded; where noise exceeds 1 they stay at 255.\n\n"
-          "Colours of the error maps, a decade from one quarter of each half to the next: blue "
-          "where the table is too dark, red where it is too bright.\n\n"
-          "![](error_legend.png)\n\n"
+    fputs("| ![](one_minus_Emu_IS.png)<br>`one_minus_Emu_IS.png` | 1 - E(mu) of Emu_IS with "
+          "roughness 0 in the top row, as figure 3 of the assignment shows it | |\n\nIn each table "
+          "the cosine mu = n.v grows from 0 at the left to 1 at the right, and the roughness from "
+          "0 at the bottom to 1 at the top. Only one_minus_Emu_IS has roughness 0 at the top. "
+          "Texel i of n has its centre at (i + 0.5) / n. A value x is stored as the byte "
+          "(uint8)(255 x), which truncates instead of rounding. Values above 1, which noise "
+          "causes, are stored as 255.\n\nIn the error maps blue means that the table is too dark, "
+          "and red that it is too bright. The colours between the numbers of the scale below stand "
+          "for errors between these numbers.\n\n![](error_legend.png)\n\n"
           "    -1   -0.1   -0.01  -0.001  +-0.0001  +0.001  +0.01   +0.1   +1\n\n",
           f);
 }
 
 static void write_errors(const assignment *a, FILE *f)
 {
-    fputs("## Errors\n\nAgainst the exact integral, over all texels, before the cut to bytes.\n\n"
+    fputs("## Errors\n\nThe errors are differences from the exact integral, over all texels, "
+          "before values are truncated to bytes.\n\n"
           "| table | largest | rms | mean, signed |\n|---|---|---|---|\n",
           f);
     for (int t = 0; t < ASSIGNMENT_TABLES; t++)
@@ -86,8 +88,9 @@ static void write_errors(const assignment *a, FILE *f)
             fprintf(f, "| %s: %s | %.2e | %.2e | %+.2e |\n", assignment_names[t],
                     assignment_words[t], a->difference[t].max, a->difference[t].rms,
                     a->difference[t].mean);
-    fputs("\nThe cut to bytes takes off up to 1/255 = 3.9e-3 more, half of that on average. The "
-          "framework reads the picture to compute E_avg, which is Eavg_from_bytes.\n\n",
+    fputs("\nTruncation to bytes subtracts up to 1/255 = 3.9e-3 more, and half of this on average. "
+          "The assignment's framework computes E_avg from the picture of E(mu). Eavg_from_bytes is "
+          "this E_avg.\n\n",
           f);
 }
 
@@ -96,14 +99,15 @@ static void write_band(const assignment *a, FILE *f)
     static const double roughness[] = {0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.5};
     fprintf(
         f,
-        "## The dark band of figure 1 is the clamp's\n\n"
-        "The framework divides by max(pi ((n.h)^2 (alpha^2 - 1) + 1)^2, 1e-4). At the peak of D "
-        "that is pi alpha^4, which is below 1e-4 for every roughness below %.3f: there the peak, "
-        "and with it E, is cut off. The assignment blames the noise. But noise errs both ways: "
-        "with the same samples and D as it is, the means of the rows stay near the exact ones "
-        "as long as some samples hit the lobe, while the clamp takes their light away. "
-        "(Below roughness 0.1 or so 1024 samples seldom hit it at all: a few texels hold it "
-        "all.) Means over mu:\n\n"
+        "## A clamp causes the dark band of figure 1\n\nFigure 1 is black at low roughness. The "
+        "framework computes D with the denominator max(pi ((n.h)^2 (alpha^2 - 1) + 1)^2, 1e-4). At "
+        "the peak of D, where n.h is 1, the first argument is pi alpha^4. It is below 1e-4 for "
+        "every roughness below %.3f, so that the clamp at 1e-4 cuts off the peak of D and thereby "
+        "reduces E.\n\nThe assignment names noise as the cause. But noise makes some texels too "
+        "bright and others too dark. Without the clamp and with the same samples, the mean of a "
+        "row stays near its exact value if some samples hit the lobe. With the clamp the mean is "
+        "too dark. Below a roughness of about 0.1 few of the 1024 samples hit the lobe, and a few "
+        "texels hold nearly all light. The table gives the mean of E over mu:\n\n"
         "| roughness | exact | unclamped | clamped |\n|---|---|---|---|\n",
         clamp_reach());
     for (size_t i = 0; i < sizeof roughness / sizeof *roughness; i++) {
@@ -112,43 +116,46 @@ static void write_band(const assignment *a, FILE *f)
                 row_mean(a, ASSIGNMENT_EXACT, row), row_mean(a, ASSIGNMENT_MC_UNCLAMPED, row),
                 row_mean(a, ASSIGNMENT_MC, row));
     }
-    fputs("\n`Eavg_MC.png` is black there too: a renderer that reads it takes smooth balls to have "
-          "lost nearly all of their light, and adds it.\n\n",
-          f);
+    fputs(
+        "\n`Eavg_MC.png` is black at these roughnesses too. A renderer that reads `Eavg_MC.png` "
+        "assumes that smooth balls have lost nearly all their light, and adds the light again.\n\n",
+        f);
 }
 
 static void write_contradictions(const assignment *a, FILE *f)
 {
     bool text = a->def->g == KILN_G_SCHLICK_TEXT;
     fprintf(f,
-            "## Where the assignment contradicts itself\n\n"
-            "- **k.** Its text has k = (roughness + 1)^2 / 8; its framework and figures have k = "
-            "roughness^2 / 2. These tables have k = %s (`--g %s`); `--g %s` makes the other. "
-            "With the text's k even a mirror shadows itself: E_avg at roughness 0 is %.3f, so that "
-            "Kulla and Conty's lobe would make it glow with the missing %.3f. With the figures' "
-            "it is %.3f. The text's k is meant for point lights.\n",
+            "## Contradictions in the assignment\n\n- **k.** The assignment's text has k = "
+            "(roughness + 1)^2 / 8, but its framework and figures have k = roughness^2 / 2. The "
+            "tables here have k = %s (`--g %s`). `kiln tables --assignment --g %s` makes tables "
+            "with the other k. With the k of the text even a mirror shadows itself: E_avg at "
+            "roughness 0 is %.3f, and Kulla and Conty's lobe would make a mirror glow with the "
+            "missing %.3f. With the k of the figures, E_avg at roughness 0 is %.3f. Karis (2013) "
+            "uses the k of the text for point lights only.\n",
             text ? "(roughness + 1)^2 / 8" : "roughness^2 / 2", kiln_g_names()[a->def->g],
             kiln_g_names()[text ? KILN_G_SCHLICK_K2 : KILN_G_SCHLICK_TEXT],
             mirror_average(KILN_G_SCHLICK_TEXT), 1 - mirror_average(KILN_G_SCHLICK_TEXT),
             mirror_average(KILN_G_SCHLICK_K2));
-    fprintf(
-        f,
-        "- **D.** The text's denominator, ((n.h)^2 ((alpha^2 - 1) + 1))^2, has a parenthesis in "
-        "the wrong place: that is (n.h)^4 alpha^4, no distribution at all. Meant, and used "
-        "here, is ((n.h)^2 (alpha^2 - 1) + 1)^2.\n"
-        "- **Figure 4.** Its top row, roughness %.4f, reads about 0.2235. The exact value is "
-        "%.4f, and the recipe of the text, 2 mean(E mu), gives %.4f from our samples.\n",
-        roughness_of(a, 0), first_of_row(a, ASSIGNMENT_AVERAGE_EXACT, 0),
-        first_of_row(a, ASSIGNMENT_AVERAGE, 0));
+    fprintf(f,
+            "- **D.** The denominator of D in the text, ((n.h)^2 ((alpha^2 - 1) + 1))^2, has a "
+            "parenthesis in the wrong place: it equals (n.h)^4 alpha^4, which makes D no "
+            "distribution. The tables here have the right denominator ((n.h)^2 (alpha^2 - 1) + "
+            "1)^2.\n- **Figure 4.** The top row of figure 4, for roughness %.4f, has a value of "
+            "about 0.2235. The exact E_avg is %.4f, and 2 mean(E mu), the formula of the text, "
+            "gives %.4f with the samples used here.\n",
+            roughness_of(a, 0), first_of_row(a, ASSIGNMENT_AVERAGE_EXACT, 0),
+            first_of_row(a, ASSIGNMENT_AVERAGE, 0));
 }
 
 static void write_text(const assignment *a, FILE *f)
 {
     fprintf(f,
-            "# Kulla-Conty, precomputed\n\n"
-            "GAMES202 (2021), assignment 4, section 2.2 with its bonuses: E(mu) and E_avg of GGX "
-            "with Schlick's G, k = %s. %d x %d texels, %d samples each. Made by `kiln tables "
-            "--assignment --g %s`, kiln %s.\n\n",
+            "# Tables for the Kulla-Conty lobe\n\nThis folder holds what section 2.2 of assignment "
+            "4 of GAMES202 (2021), with its bonuses, asks for: the directional albedo E(mu) and "
+            "its cosine-weighted average E_avg, for the GGX distribution and Schlick's masking G "
+            "with k = %s. The tables have %d x %d texels and take %d samples for each texel. They "
+            "are made by `kiln tables --assignment --g %s` of kiln %s.\n\n",
             a->def->g == KILN_G_SCHLICK_TEXT ? "(roughness + 1)^2 / 8" : "roughness^2 / 2",
             a->def->size, a->def->size, a->def->samples, kiln_g_names()[a->def->g], kiln_version());
     write_files(a, f);

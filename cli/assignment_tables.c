@@ -14,15 +14,16 @@ const char *const assignment_names[ASSIGNMENT_TABLES] = {
 };
 
 const char *const assignment_words[ASSIGNMENT_TABLES] = {
-    [ASSIGNMENT_MC] = "E(mu), cosine-weighted Monte Carlo, D clamped as in figure 1",
-    [ASSIGNMENT_MC_UNCLAMPED] = "the same samples, D as it is",
-    [ASSIGNMENT_IS] = "E(mu), GGX importance sampling: bonus 1, figure 2",
-    [ASSIGNMENT_SPLIT_SUM] = "E(mu) = A + B by split sum with F0 = 1: bonus 2",
-    [ASSIGNMENT_EXACT] = "E(mu), the integral itself",
-    [ASSIGNMENT_AVERAGE_MC] = "E_avg of Emu_MC",
-    [ASSIGNMENT_AVERAGE] = "E_avg of Emu_IS: figure 4 as it should be",
-    [ASSIGNMENT_AVERAGE_BYTES] = "E_avg of Emu_IS as its PNG holds it",
-    [ASSIGNMENT_AVERAGE_EXACT] = "E_avg, the integral itself",
+    [ASSIGNMENT_MC] =
+        "E(mu) by cosine-weighted Monte Carlo integration, with D clamped as in figure 1",
+    [ASSIGNMENT_MC_UNCLAMPED] = "E(mu) by the samples of Emu_MC, with D not clamped",
+    [ASSIGNMENT_IS] = "E(mu) by importance sampling of GGX: bonus 1, figure 2",
+    [ASSIGNMENT_SPLIT_SUM] = "E(mu) = A + B by the split sum with F0 = 1: bonus 2",
+    [ASSIGNMENT_EXACT] = "E(mu) by exact integration",
+    [ASSIGNMENT_AVERAGE_MC] = "E_avg of the table Emu_MC",
+    [ASSIGNMENT_AVERAGE] = "E_avg of the table Emu_IS: figure 4 without its mistake",
+    [ASSIGNMENT_AVERAGE_BYTES] = "E_avg of the bytes of Emu_IS.png",
+    [ASSIGNMENT_AVERAGE_EXACT] = "E_avg by exact integration",
 };
 
 bool assignment_is_exact(int table)

@@ -109,7 +109,7 @@ static void warn_of_clamping(bake *b, const kiln_save_report *report, const char
     bool png = cli_ends_in(path, "png"), bytes = b->format >= KILN_FORMAT_RGBM;
     char way_out[96];
     if (png && !bytes)
-        snprintf(way_out, sizeof way_out, ", PNG holds no more");
+        snprintf(way_out, sizeof way_out, " because PNG holds no larger values");
     else if ((b->engine && path == b->output) || png)
         snprintf(way_out, sizeof way_out, "; --exposure %.0f keeps them", stops);
     else

@@ -210,14 +210,14 @@ static int check_output(const bake *b, const char *option, const char *path)
     kiln_error error;
     if (!strcmp(path, "-"))
         return cli_wrong(b->arguments.command,
-                         "%s: writing to standard output is not possible, name a file", option);
+                         "%s: kiln cannot write to standard output, name a file", option);
     if (!kiln_map_save_check(path, (kiln_shape)b->shape, &def, &error))
         return CLI_GO;
     bool is_main = path == b->output;
     const kiln_engine *engine = is_main ? engine_of(path) : NULL;
     kiln_error ignored;
     if (engine && kiln_map_save_check(path, KILN_SHAPE_CUBE, NULL, &ignored))
-        return cli_wrong(b->arguments.command, "%s %s: .%s is what %s loads, add --for %s", option,
+        return cli_wrong(b->arguments.command, "%s %s: .%s is a file for %s, add --for %s", option,
                          path, engine->ending, engine->title, engine->name);
     return cli_wrong(b->arguments.command, "%s %s", option, error.message);
 }
@@ -361,11 +361,13 @@ static int largest_level_count(int size)
 static int check_levels(const bake *b)
 {
     if (b->lobe == KILN_LOBE_LAMBERT && b->level_count > 1)
-        return cli_wrong(b->arguments.command, "--lobe lambert has no roughness: one level, not %d",
+        return cli_wrong(b->arguments.command,
+                         "--levels is %d, it must be 1 for --lobe lambert, which has no roughness",
                          b->level_count);
     if (!b->engine && b->level_count > largest_level_count(b->size))
-        return cli_wrong(b->arguments.command, "%d levels: a size of %d has %d at most",
-                         b->level_count, b->size, largest_level_count(b->size));
+        return cli_wrong(b->arguments.command,
+                         "--levels is %d, a map of size %d has %d levels at most", b->level_count,
+                         b->size, largest_level_count(b->size));
     return CLI_GO;
 }
 
@@ -385,11 +387,12 @@ static int check_combinations(const bake *b)
     if (code != CLI_GO)
         return code;
     if (given[ZSTD] && !cli_ends_in(b->output, "ktx2"))
-        return cli_wrong(b->arguments.command, "--zstd is for .ktx2, not for %s", b->output);
+        return cli_wrong(b->arguments.command, "--zstd is for .ktx2 files, not for %s", b->output);
     if (given[IRRADIANCE_SIZE] && !b->irradiance_path)
         return cli_wrong(b->arguments.command, "--irradiance-size needs --irradiance FILE");
     if (given[LAYOUT] && b->arguments.rest_count > 1)
-        return cli_wrong(b->arguments.command, "--layout is for one picture, not for six faces");
+        return cli_wrong(b->arguments.command,
+                         "--layout is for one picture, leave it out for six faces");
     return check_harmonics(b);
 }
 

@@ -42,11 +42,12 @@ struct cli_command {
     /// form of the arguments, such as "IN... -o OUT"; '|' separates ways to call the command
     const char *arguments;
     const char *summary; ///< one sentence for the list of commands
-    const char *about;   ///< description: paragraphs without line breaks inside; "" for none
+    /// description: paragraphs without line breaks inside; "" for no description
+    const char *about;
     const char *(*word)(int index); ///< words of the first argument, NULL after the last; or NULL
     const char *list_title;         ///< heading of that list in the help, such as "Quantities"
-    /// What an argument may be: the word of an index with what it takes, and in words what that is; NULL
-    /// behind the last. The function may be NULL.
+    /// Lists what the first argument may be: writes the word of an index and what it takes to
+    /// `left`, and returns its description, or NULL after the last word. The function may be NULL.
     const char *(*list)(int index, char left[64]);
     const char *more;            ///< further paragraphs that only the manual shows; may be NULL
     const cli_example *examples; ///< array that ends in {NULL, NULL}
@@ -86,8 +87,9 @@ int cli_integer(const cli_arguments *arguments, int option, int low, int high, i
 /// index and stays unchanged for an absent option. Returns CLI_GO or CLI_WRONG.
 int cli_choice(const cli_arguments *arguments, int option, const char *const *words, int *value);
 
-/// Finds an argument among the words of a row; the index is stored. Returns CLI_GO, or CLI_WRONG
-/// after an error message that names `what` is expected, all the words, and the most similar word.
+/// Finds `text` among the words of an option row and stores the index of the word. Returns CLI_GO,
+/// or CLI_WRONG after an error message with `what` is expected, all the words, and the most similar
+/// word.
 int cli_find_word(const cli_command *command, const char *what, const char *text,
                   const cli_option *words, int *index);
 
@@ -104,7 +106,7 @@ int cli_close_output(int code);
 
 // ------------------------------------------------------------------------------------- file names
 
-/// Whether a file name ends in a dot and `ending`, in lower or upper case. The ending "/" means a
+/// Returns whether a file name ends in a dot and `ending`, in lower or upper case. The ending "/" means a
 /// folder: the name ends in a slash, or a folder with this name exists.
 bool cli_ends_in(const char *path, const char *ending);
 /// The file name's ending in lower case without its dot; "" for an ending that kiln does not know,
@@ -123,11 +125,11 @@ void cli_print_wrapped(const char *text, int column, int indent, int width);
 
 // ------------------------------------------------------------------- options of several commands
 
-/// Words for options that choose a model's D, its G, or the masking of the Charlie lobe.
+/// Return the words of options that choose a model's D, its G, or the masking of the Charlie lobe.
 const char *cli_d_word(int index);
 const char *cli_g_word(int index);
 const char *cli_sheen_word(int index);
-/// Whether the option's text is a valid identifier in C and GLSL: CLI_GO or CLI_WRONG.
+/// Returns whether the option's text is a valid identifier in C and GLSL: CLI_GO or CLI_WRONG.
 int cli_check_source_name(const cli_arguments *arguments, int option);
 
 /// Rows of options that several commands have. `type` is the command's structure.

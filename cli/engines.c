@@ -10,7 +10,8 @@ typedef struct engines {
 } engines;
 
 static const cli_option options[] = {
-    {"json", CLI_FLAG, offsetof(engines, json), .help = "an array of objects, one an engine"},
+    {"json", CLI_FLAG, offsetof(engines, json),
+     .help = "print an array with one JSON object for each engine"},
     {.name = NULL},
 };
 
@@ -85,7 +86,7 @@ static void print_full(const kiln_engine *engine)
 {
     print_short(engine);
     printf("  largest      %g\n  levels       %s\n", engine->limit,
-           engine->tune ? "chosen for what the engine shows (--tune none for exact ones), about:"
+           engine->tune ? "tuned to the engine by default (--tune none writes exact levels), about:"
                         : "exact:");
     print_levels(engine);
     print_page(engine);
@@ -101,7 +102,9 @@ static int run(const cli_call *call)
     if (code != CLI_GO)
         return code;
     if (a.rest_count > 1)
-        return cli_wrong(&cli_engines, "%s: one engine at a time, after %s", a.rest[1], a.rest[0]);
+        return cli_wrong(&cli_engines,
+                         "%s: kiln engines takes one engine at a time, and %s is named already",
+                         a.rest[1], a.rest[0]);
     if (a.rest_count) {
         code = cli_find_word(&cli_engines, "engine", a.rest[0], &words, &only);
         if (code != CLI_GO)

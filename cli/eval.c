@@ -287,9 +287,11 @@ static int read_quantity(eval *v)
     const cli_option words = {.word = quantity_word};
     const cli_arguments *a = &v->arguments;
     if (!a->rest_count)
-        return cli_wrong(&cli_eval, "no quantity: name %s", cli_list(&words, list));
+        return cli_wrong(&cli_eval, "no quantity is named, name %s", cli_list(&words, list));
     if (a->rest_count > 1)
-        return cli_wrong(&cli_eval, "%s: one quantity at a time, after %s", a->rest[1], a->rest[0]);
+        return cli_wrong(&cli_eval,
+                         "%s: kiln eval takes one quantity at a time, and %s is named already",
+                         a->rest[1], a->rest[0]);
     int index = 0, code = cli_find_word(&cli_eval, "quantity", a->rest[0], &words, &index);
     v->quantity = &quantities[index];
     return code;
@@ -333,8 +335,10 @@ static int read_options(eval *v, const cli_call *call)
     }
     char text[128];
     if (v->column_count && os_is_terminal(OS_INPUT))
-        return cli_wrong(&cli_eval, "no --%s, and standard input has no lines of '%s'",
-                         options[q->takes[v->column[0]]].name, columns(v, text));
+        return cli_wrong(
+            &cli_eval,
+            "--%s is missing, and standard input is a terminal instead of lines with '%s'",
+            options[q->takes[v->column[0]]].name, columns(v, text));
     return CLI_GO;
 }
 
@@ -348,7 +352,7 @@ static int read_line(const eval *v, const char *line, size_t index, double *numb
         char *end, text[128];
         numbers[i] = strtod(at, &end);
         if (end == at || (*end && !strchr(" \t\r\n", *end)))
-            return cli_fail("standard input: line %zu must be numbers, '%s'", index + 1,
+            return cli_fail("standard input: line %zu must be numbers for '%s'", index + 1,
                             columns(v, text));
         if (!(numbers[i] >= options[which].low && numbers[i] <= options[which].high))
             return cli_fail("standard input: line %zu: %s is %g, it must be from %g to %g",
@@ -358,7 +362,8 @@ static int read_line(const eval *v, const char *line, size_t index, double *numb
     }
     char text[128];
     if (at[strspn(at, " \t\r\n")])
-        return cli_fail("standard input: line %zu has more than '%s'", index + 1, columns(v, text));
+        return cli_fail("standard input: line %zu has more numbers than '%s'", index + 1,
+                        columns(v, text));
     return CLI_GO;
 }
 

@@ -25,16 +25,16 @@ int cli_check_folder(const char *path)
     char folder[4096];
     size_t length = slash == path ? 1 : (size_t)(slash - path);
     if (length >= sizeof folder)
-        return cli_fail("%.60s...: the name is too long", path);
+        return cli_fail("%.60s...: the path is too long, choose a shorter one", path);
     memcpy(folder, path, length);
     folder[length] = 0;
     if (strchr(folder, '%') || strchr(folder, '{'))
         return CLI_GO;
     switch (os_kind_of(folder)) {
     case OS_NOTHING:
-        return cli_fail("%s: there is no folder %s", path, folder);
+        return cli_fail("%s: there is no folder %s, create it first", path, folder);
     case OS_UNREACHABLE:
-        return cli_fail("%s: cannot enter the folder %s", path, folder);
+        return cli_fail("%s: the folder %s cannot be entered", path, folder);
     case OS_FILE:
         return cli_fail("%s: %s is not a folder", path, folder);
     default:

@@ -53,9 +53,11 @@ static int read_kind(const cli_arguments *a, kiln_fit_kind *kind)
     char list[CLI_RANGE_TEXT];
     const cli_option words = {.words = kinds};
     if (!a->rest_count)
-        return cli_wrong(&cli_fit, "no quantity: name %s", cli_list(&words, list));
+        return cli_wrong(&cli_fit, "no quantity is named, name %s", cli_list(&words, list));
     if (a->rest_count > 1)
-        return cli_wrong(&cli_fit, "%s: one quantity at a time, after %s", a->rest[1], a->rest[0]);
+        return cli_wrong(&cli_fit,
+                         "%s: kiln fit takes one quantity at a time, and %s is named already",
+                         a->rest[1], a->rest[0]);
     int index = 0, code = cli_find_word(&cli_fit, "quantity", a->rest[0], &words, &index);
     *kind = (kiln_fit_kind)index;
     return code;
@@ -74,7 +76,8 @@ static int read_options(fit *f, const cli_call *call)
     if (!cli_ends_in(f->output, "h") && !cli_ends_in(f->output, "glsl"))
         return cli_wrong(&cli_fit, "--output %s: must end in .h or .glsl", f->output);
     if ((a->text[D] || a->text[G]) && f->def.kind == KILN_FIT_SHEEN)
-        return cli_wrong(&cli_fit, "sheen has a model of its own, leave --d and --g out");
+        return cli_wrong(&cli_fit,
+                         "the quantity sheen has a model of its own, leave --d and --g out");
     code = cli_check_source_name(a, NAME);
     return code == CLI_GO ? cli_check_folder(f->output) : code;
 }

@@ -86,7 +86,7 @@ static void print_options(const cli_option *options, int width)
     }
     if (!options)
         puts("\nOptions:");
-    print_line("-h, --help", "print this and exit", width);
+    print_line("-h, --help", "print this help and exit", width);
 }
 
 static void print_usage(const cli_command *command, int width)

@@ -145,7 +145,7 @@ static int run(const cli_call *call)
     if (code != CLI_GO)
         return code;
     if (a.rest_count == 0)
-        return cli_wrong(&cli_info, "no input: name a file");
+        return cli_wrong(&cli_info, "no input is named, name a file");
     code = cli_begin_work(&work, 1, false);
     if (code == CLI_GO)
         code = describe(&a, values.json, &work);

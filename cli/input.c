@@ -15,7 +15,7 @@ static const char *const face_words[][FACES] = {
     {"right", "left", "up", "down", "front", "back"},
 };
 
-// Whether `word` is the last word of a file name, where words are runs of letters: the last word of
+// Returns whether `word` is the last word of a file name, where words are runs of letters: the last word of
 // "sky_px.exr" is "px".
 static bool has_word(const char *path, const char *word)
 {
@@ -61,17 +61,19 @@ int cli_check_input(const cli_command *command, const char **names, int count)
 {
     int order[FACES];
     if (count == 0)
-        return cli_wrong(command, "no input: name a panorama, or six faces");
+        return cli_wrong(command, "no input is named, name a panorama or six faces");
     if (count != 1 && count != FACES)
-        return cli_wrong(command, "%d inputs: one file, folder or pattern, or six faces", count);
+        return cli_wrong(
+            command, "%d inputs are named, name one file, folder or pattern, or six faces", count);
     if (count == 1)
         return CLI_GO;
     for (int i = 0; i < FACES; i++)
         if (!strcmp(names[i], "-"))
             return cli_wrong(command, "standard input (-) cannot be one of six faces");
     if (!order_faces(names, order))
-        return cli_wrong(command, "which of the six inputs is which face? Name them px nx py ny pz "
-                                  "nz, or right left top bottom front back");
+        return cli_wrong(command,
+                         "the names of the six inputs do not tell which face each is, end them in "
+                         "px nx py ny pz nz or in right left top bottom front back");
     return CLI_GO;
 }
 
@@ -100,13 +102,13 @@ static int load_faces(cli_work *work, const char **names, kiln_map *map)
         work->error.result = KILN_ERROR_FORMAT;
         if (image.width != image.height) {
             snprintf(work->error.message, sizeof work->error.message,
-                     "%s: is %d x %d, the face of a cube must be square", name, image.width,
+                     "%s: is %d x %d pixels, the face of a cube must be square", name, image.width,
                      image.height);
             goto done;
         }
         if (face && size != map->size) {
             snprintf(work->error.message, sizeof work->error.message,
-                     "%s: is %d x %d, but %s is %d x %d", name, size, size, names[order[0]],
+                     "%s: is %d x %d pixels, but %s is %d x %d", name, size, size, names[order[0]],
                      map->size, map->size);
             goto done;
         }

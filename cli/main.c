@@ -25,7 +25,7 @@ static void print_overview(FILE *file)
           file);
     for (int i = 0; commands[i]; i++)
         fprintf(file, "  kiln %-11s  %s\n", commands[i]->name, commands[i]->summary);
-    fputs("\n  kiln --version    the version\n\n"
+    fputs("\n  kiln --version    prints the version\n\n"
           "Examples:\n"
           "  kiln bake city.exr -o city.ktx2\n"
           "  kiln sky -o sky.exr && kiln bake sky.exr -o sky.ktx2 --exposure -5\n"
@@ -33,7 +33,7 @@ static void print_overview(FILE *file)
           file);
 }
 
-// Whether an unknown command name looks like a picture: the user most likely forgot the word
+// Returns whether an unknown command name looks like a picture: the user most likely forgot the word
 // `bake`.
 static bool is_input(const char *name)
 {
@@ -51,8 +51,8 @@ static int no_such_command(const char *name)
     if (name[0] == '-')
         return cli_wrong(NULL, "%s: no such option", name);
     if (is_input(name))
-        return cli_wrong(NULL, "%s: no such command; kiln bake %s -o OUT bakes a picture", name,
-                         name);
+        return cli_wrong(NULL, "%s: no such command, use 'kiln bake %s -o OUT' to bake a picture",
+                         name, name);
     for (int i = 0; commands[i]; i++)
         cli_suggest(&suggestion, commands[i]->name);
     return cli_wrong(NULL, "%s: no such command%s", name,
@@ -91,7 +91,9 @@ static int run_help(const cli_call *call)
     if (code != CLI_GO)
         return code;
     if (a.rest_count > 1)
-        return cli_wrong(&cli_help, "%s: one command at a time, after %s", a.rest[1], a.rest[0]);
+        return cli_wrong(&cli_help,
+                         "%s: kiln help takes one command at a time, and %s is named already",
+                         a.rest[1], a.rest[0]);
     const cli_command *command = a.rest_count ? find(a.rest[0]) : NULL;
     if (a.rest_count && !command)
         return no_such_command(a.rest[0]);

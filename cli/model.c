@@ -61,7 +61,8 @@ int cli_check_source_name(const cli_arguments *a, int option)
         good = isalnum((unsigned char)*at) || *at == '_';
     return good ? CLI_GO
                 : cli_wrong(a->command,
-                            "--%s is '%s', it must be letters, digits and single underscores, "
-                            "%d at most, a letter first, no gl_ and no word of C's or GLSL's",
+                            "--%s is '%s', it must be letters, digits and single underscores, at "
+                            "most %d of them, begin with a letter but not with gl_, and not be a "
+                            "word of C or GLSL",
                             a->command->options[option].name, name, LONGEST);
 }

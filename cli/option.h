@@ -34,7 +34,7 @@ typedef struct cli_option {
     const char *unset; ///< describes in words what an absent option means
     const char *group; ///< heading in the help for this option and the options after it
     const char *more;  ///< further sentences that only the manual shows
-    char letter;       ///< letter of the short form, such as 'o' for -o; 0 for none
+    char letter;       ///< letter of the short form, such as 'o' for -o; 0 for no short form
     bool keep;   ///< an absent option leaves the value unchanged, instead of writing the default
     bool hidden; ///< the help does not show the option
 } cli_option;

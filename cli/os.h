@@ -13,7 +13,7 @@ bool os_begin(int *argc, char ***argv);
 
 typedef enum os_stream { OS_INPUT, OS_OUTPUT, OS_ERRORS } os_stream;
 
-/// Whether a standard stream is a terminal.
+/// Returns whether a standard stream is a terminal.
 bool os_is_terminal(os_stream stream);
 /// Characters in a line of standard output's terminal; 0 if standard output is no terminal.
 int os_columns(void);
@@ -43,7 +43,7 @@ typedef enum os_kind { OS_NOTHING, OS_FILE, OS_FOLDER, OS_UNREACHABLE } os_kind;
 
 /// What exists at a path. For OS_UNREACHABLE errno says why that is unknown.
 os_kind os_kind_of(const char *path);
-/// Whether files can be created in a folder.
+/// Returns whether files can be created in a folder.
 bool os_is_writable(const char *folder);
 /// Creates a folder; returns false and sets errno on failure.
 bool os_make_folder(const char *path);

@@ -78,9 +78,12 @@ static int check_reference(const render *r)
     if (r->alone && given[BOUNCES])
         return cli_wrong(&cli_render, "--alone and --bounces contradict each other");
     if (r->walk && r->setup.options.scene == VIEW_SCENE_ASSIGNMENT)
-        return cli_wrong(&cli_render, "--walk: the scene assignment has a light of no size");
+        return cli_wrong(
+            &cli_render,
+            "--walk is not for the scene assignment, whose light comes from one direction");
     if (reference && r->setup.options.debug)
-        return cli_wrong(&cli_render, "--debug has no reference");
+        return cli_wrong(&cli_render,
+                         "--debug shows the real-time picture, leave --reference and --error out");
     return CLI_GO;
 }
 
@@ -100,7 +103,9 @@ static int read_options(render *r, const cli_call *call)
     if (code != CLI_GO)
         return code;
     if (r->errors && cli_ends_in(r->output, "hdr"))
-        return cli_wrong(&cli_render, "--output %s: .hdr cannot hold an error's sign", r->output);
+        return cli_wrong(&cli_render,
+                         "--output %s: .hdr cannot hold negative errors, name an .exr or .png file",
+                         r->output);
     return cli_check_folder(r->output);
 }
 

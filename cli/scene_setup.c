@@ -28,7 +28,8 @@ static int check(const cli_arguments *a, bool may_change, const scene_setup *s)
     const view_options *o = &s->options;
     const char *scene = view_scene_name((int)o->scene);
     if (s->input && !may_change && !scene_has_environment(s))
-        return cli_wrong(a->command, "%s: the scene %s has no environment", s->input, scene);
+        return cli_wrong(a->command, "%s: the scene %s has no environment, leave the input out",
+                         s->input, scene);
     if (o->as_printed && o->scene != VIEW_SCENE_ASSIGNMENT)
         return cli_wrong(a->command, "--as-printed is for --scene assignment, not %s", scene);
     if (a->text[SCENE_SPLIT] && o->scene != VIEW_SCENE_COMPARE)
@@ -36,17 +37,21 @@ static int check(const cli_arguments *a, bool may_change, const scene_setup *s)
     if (a->text[SCENE_LEVEL] && o->debug != VIEW_DEBUG_LEVEL)
         return cli_wrong(a->command, "--level needs --debug level");
     if (o->debug == VIEW_DEBUG_LEVEL && !scene_has_environment(s))
-        return cli_wrong(a->command, "--debug level: the scene %s has no environment", scene);
+        return cli_wrong(
+            a->command,
+            "--debug level needs a scene with an environment, and the scene %s has no environment",
+            scene);
     if (a->text[SCENE_MATERIAL] &&
         (o->scene == VIEW_SCENE_ASSIGNMENT || o->scene == VIEW_SCENE_FURNACE))
-        return cli_wrong(a->command, "--material: the scene %s has its own", scene);
+        return cli_wrong(a->command,
+                         "--material is not for the scene %s, which has its own material", scene);
     return CLI_GO;
 }
 
 int scene_read(const cli_arguments *a, bool may_change, scene_setup *s)
 {
     if (a->rest_count > 1)
-        return cli_wrong(a->command, "%d inputs: one environment", a->rest_count);
+        return cli_wrong(a->command, "%d inputs are named, name one environment", a->rest_count);
     s->input = a->rest_count ? a->rest[0] : NULL;
     if (s->scene < 0)
         s->scene = s->input ? VIEW_SCENE_IBL : VIEW_SCENE_ASSIGNMENT;

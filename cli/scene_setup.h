@@ -214,7 +214,7 @@ const char *scene_diffuse_word(int index);
 /// change the scene later, so an environment is accepted for a scene that uses none. Returns CLI_GO
 /// or an exit code.
 int scene_read(const cli_arguments *a, bool may_change, scene_setup *s);
-/// Whether the scene needs an environment.
+/// Returns whether the scene needs an environment.
 bool scene_has_environment(const scene_setup *s);
 /// Loads the environment or computes a sky. Returns CLI_GO or CLI_FAILED.
 int scene_load(cli_work *work, const scene_setup *s, kiln_map *source);

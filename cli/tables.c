@@ -197,7 +197,7 @@ static int make_assignment(const tables *t)
         return cli_wrong(&cli_tables, "%s: tables takes no input; name the output by -o DIR",
                          a->rest[0]);
     if (t->method >= 0)
-        return cli_wrong(&cli_tables, "--assignment has its own methods: leave --method out");
+        return cli_wrong(&cli_tables, "--assignment has its own methods, leave --method out");
     if (!def.folder)
         return cli_wrong(&cli_tables, "no output: name a folder by -o DIR");
     if ((code = cli_integer(a, TABLES_SIZE, 2, 1024, &def.size)) != CLI_GO ||

@@ -51,7 +51,7 @@ static int name_lookup(tables *t)
 {
     size_t length = strlen(t->output) - strlen(cli_ending(t->output)) - 1;
     if (length + sizeof "_lookup.glsl" > sizeof t->lookup_path[0])
-        return cli_fail("%.60s...: the name is too long", t->output);
+        return cli_fail("%.60s...: the path is too long, choose a shorter one", t->output);
     snprintf(t->lookup_path[0], sizeof t->lookup_path[0], "%.*s_lookup.h", (int)length, t->output);
     snprintf(t->lookup_path[1], sizeof t->lookup_path[1], "%.*s_lookup.glsl", (int)length,
              t->output);
@@ -134,8 +134,10 @@ static int check_average(const tables *t)
     const char *average = t->average;
     if (average && (!strcmp(average, t->output) || !strcmp(average, t->lookup_path[0]) ||
                     !strcmp(average, t->lookup_path[1])))
-        return cli_wrong(t->arguments.command, "--average %s: that file is written already",
-                         average);
+        return cli_wrong(
+            t->arguments.command,
+            "--average %s: the table or its code is written to this file, name another file",
+            average);
     return CLI_GO;
 }
 
@@ -180,9 +182,9 @@ static void report(const cli_work *work, const tables *t, const kiln_table *tabl
            kiln_table_kind_names()[def->kind], model, size, kiln_axis_names()[def->axis],
            def->corners ? "corners" : "centres", cli_elapsed(work));
     if (t->average)
-        printf("%s: the mean of that table, 1024 texels\n", t->average);
+        printf("%s: the average of this table, 1024 texels\n", t->average);
     if (t->lookup)
-        printf("%s, %s: how to look it up\n", t->lookup_path[0], t->lookup_path[1]);
+        printf("%s, %s: code that looks the table up\n", t->lookup_path[0], t->lookup_path[1]);
 }
 
 static void report_json(const cli_work *work, const tables *t, const kiln_table *table)

@@ -90,7 +90,8 @@ static kiln_result begin_textbook(show *s, view_renderer *renderer, kiln_error *
     *error = t->error;
     if (!t->context)
         return error->result;
-    snprintf(error->message, sizeof error->message, "no thread for the textbook's bake");
+    snprintf(error->message, sizeof error->message,
+             "cannot start a thread for the textbook's bake");
     return error->result = KILN_ERROR_MEMORY;
 }
 

@@ -9,8 +9,9 @@ typedef struct cli_work {
     kiln_context *context;
     kiln_error error;
     int threads;
-    double began;      ///< start of the work, os_seconds
-    double drawn;      ///< time of the last drawing of the progress line, os_seconds; 0 for never
+    double began; ///< start of the work, os_seconds
+    /// time of the last drawing of the progress line, by os_seconds; 0 before the first
+    double drawn;
     bool on_terminal;  ///< progress is drawn: standard error is a terminal and --quiet is absent
     const char *stage; ///< name of the last reported stage, a string constant
     double furthest;   ///< largest fraction reported of that stage, 0 to 1
@@ -24,7 +25,7 @@ int cli_begin_work(cli_work *work, int threads, bool quiet);
 int cli_end_work(cli_work *work, int code);
 /// Seconds since the work began.
 double cli_elapsed(const cli_work *work);
-/// Whether a signal has asked the process to stop.
+/// Returns whether a signal has asked the process to stop.
 bool cli_interrupted(void);
 void cli_clear_progress(cli_work *work);
 /// Progress callback: draws the progress line of `user`, a cli_work. Returns false if a signal has

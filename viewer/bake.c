@@ -70,7 +70,8 @@ kiln_result view_bake(kiln_context *context, const kiln_map *source, int size, i
     *environment = (kiln_environment){0};
     size = size ? size : SIZE;
     if (size < 16 || size > 2048)
-        return view_fail(error, KILN_ERROR_ARGUMENT, "a cube of %d, it must be from 16 to 2048",
+        return view_fail(error, KILN_ERROR_ARGUMENT,
+                         "the size of the environment's cube is %d, it must be from 16 to 2048",
                          size);
     int level_count = count_levels(size);
     bool is_baked = source->shape == KILN_SHAPE_CUBE && source->level_count > 1;

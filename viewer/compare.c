@@ -4,8 +4,8 @@
 
 #include <math.h>
 
-// Index of the nearest ball on the ray through the image plane's point (sx, sy); -1 if there is
-// none.
+// Returns the index of the nearest ball on the ray through the image plane's point (sx, sy), or -1
+// if the ray meets no ball.
 static int ball_at(const view_ball *balls, int count, const view_camera *camera, double sx,
                    double sy)
 {

@@ -47,10 +47,9 @@ static kiln_result load(egl_functions *egl, kiln_error *error)
 {
     void *library = dlopen("libEGL.so.1", RTLD_NOW | RTLD_LOCAL);
     if (!library)
-        return view_fail(
-            error, KILN_ERROR_UNSUPPORTED,
-            "there is no EGL here (libEGL.so.1): rendering needs it, and a driver such "
-            "as Mesa's (Debian: libegl1 and libgl1-mesa-dri)");
+        return view_fail(error, KILN_ERROR_UNSUPPORTED,
+                         "the library EGL (libEGL.so.1) cannot be loaded; rendering needs EGL and "
+                         "a driver such as Mesa's (Debian: libegl1 and libgl1-mesa-dri)");
 #define FIND(name)                                                                                 \
     if (!find(library, "egl" #name, &egl->name))                                                   \
         return view_fail(error, KILN_ERROR_UNSUPPORTED, "libEGL.so.1 has no egl" #name);
@@ -80,8 +79,8 @@ static kiln_result start(view_headless *h, kiln_error *error)
     h->display = open_display(egl);
     if (!h->display)
         return view_fail(error, KILN_ERROR_UNSUPPORTED,
-                         "EGL offers no display, not even a surfaceless one: is a driver there "
-                         "(Debian: libgl1-mesa-dri)?");
+                         "EGL offers no display, not even one without a surface; install a driver "
+                         "such as Mesa's (Debian: libgl1-mesa-dri)");
     static const EGLint want[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_ES3_BIT, EGL_SURFACE_TYPE, 0,
                                   EGL_NONE};
     static const EGLint version[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_CONTEXT_MINOR_VERSION, 0,

@@ -21,9 +21,9 @@ extern const char view_shader_screen_vert[], view_shader_scene_frag[];
 void view_metal_fresnel(view_material metal, double voh, double f[3]);
 void view_metal_average(view_material metal, double average[3]);
 
-/// The split sum's third term, int f / F voh (1 - voh)^6 (n.l) dl with GGX and height-correlated
-/// Smith shadowing, to 1e-4. view_edge_create makes a table of it: one channel, 48 x 48 texels at
-/// corners, KILN_AXIS_SQRT.
+/// Returns the split sum's third term, int f / F voh (1 - voh)^6 (n.l) dl with GGX and
+/// height-correlated Smith shadowing, with an error of at most 1e-4. view_edge_create makes a table
+/// of this term: one channel, 48 x 48 texels at corners, KILN_AXIS_SQRT.
 double view_edge(double roughness, double nov);
 KILN_CHECKED kiln_result view_edge_create(kiln_context *context, kiln_table *table,
                                           kiln_error *error);

@@ -39,7 +39,7 @@ typedef struct job {
     view_light light;
     view_energy energy;
     kiln_image *image;
-    // one report for each row, with sums where the final report has means
+    // one report for each row of pixels, which holds sums where the final report has means
     view_reference_report *rows;
     atomic_int next;
     atomic_bool stop;
@@ -456,7 +456,8 @@ kiln_result view_reference(kiln_context *context, const view_options *options,
         .noise = def->noise > 0 ? def->noise : 0.01,
         .batch_limit = def->batch_limit > 1 ? def->batch_limit : 16384,
         .bounces = def->bounces,
-        .alone = def->alone || white, // else the two rows of the furnace would reflect each other
+        // in the furnace, the two rows of balls would otherwise reflect each other
+        .alone = def->alone || white,
         .slope = tan(options->camera.fov / 2 * degree),
         .image = image,
     };

@@ -88,10 +88,11 @@ kiln_result view_set_environment(view_renderer *r, view_slot slot, const kiln_ma
                                  const kiln_sh *sh, const kiln_map *irradiance, kiln_error *error)
 {
     if (levels->shape != KILN_SHAPE_CUBE || (irradiance && irradiance->shape != KILN_SHAPE_CUBE))
-        return view_fail(error, KILN_ERROR_ARGUMENT, "an environment must be a cube");
+        return view_fail(error, KILN_ERROR_ARGUMENT, "the environment must be a cube");
     if (sh->bands < 3 || sh->irradiance)
-        return view_fail(error, KILN_ERROR_ARGUMENT,
-                         "an environment's harmonics must be its radiance's, of 3 bands or more");
+        return view_fail(
+            error, KILN_ERROR_ARGUMENT,
+            "the environment needs spherical harmonics of its radiance with 3 bands or more");
     kiln_result result = set_cube(r, ENVIRONMENT + (int)slot, levels, error);
     if (result == KILN_OK && irradiance)
         result = set_cube(r, IRRADIANCE, irradiance, error);
@@ -340,12 +341,15 @@ kiln_result view_picture(view_renderer *r, const view_options *o, int width, int
     GLint limit = 0;
     gl->GetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &limit);
     if (width < 1 || height < 1 || width > limit || height > limit)
-        return view_fail(error, KILN_ERROR_ARGUMENT,
-                         "a picture of %d x %d: %s draws from 1 to %d texels a side", width, height,
-                         r->name, (int)limit);
+        return view_fail(
+            error, KILN_ERROR_ARGUMENT,
+            "the picture is %d x %d, but %s draws pictures with sides of 1 to %d texels", width,
+            height, r->name, (int)limit);
     if (!r->has_float)
-        return view_fail(error, KILN_ERROR_UNSUPPORTED,
-                         "%s does not draw floats (EXT_color_buffer_float)", r->name);
+        return view_fail(
+            error, KILN_ERROR_UNSUPPORTED,
+            "%s cannot draw into textures of floats, for which it needs EXT_color_buffer_float",
+            r->name);
     GLuint frame = 0, buffer = 0;
     GLint before = 0;
     gl->GetIntegerv(GL_FRAMEBUFFER_BINDING, &before);
@@ -357,8 +361,9 @@ kiln_result view_picture(view_renderer *r, const view_options *o, int width, int
     gl->FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, buffer);
     kiln_result result = KILN_OK;
     if (gl->CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
-        result = view_fail(error, KILN_ERROR_UNSUPPORTED, "%s cannot draw into %d x %d floats",
-                           r->name, width, height);
+        result =
+            view_fail(error, KILN_ERROR_UNSUPPORTED,
+                      "%s cannot draw into a texture of %d x %d floats", r->name, width, height);
     } else {
         draw(r, o, width, height, linear);
         result = read_back(r, width, height, image, error);

@@ -1,4 +1,4 @@
-// The two halves of the reference integrator: the environment as a light source to sample, and the
+// The two parts of the reference integrator: the environment as a light source to sample, and the
 // balls' reflection model. view_reference (reference.c) combines them.
 #ifndef KILN_VIEWER_TRACE_H
 #define KILN_VIEWER_TRACE_H
@@ -43,7 +43,7 @@ double view_light_pdf(const view_light *light, const double d[3]);
 
 /// The point where a ray meets a ball.
 typedef struct view_point {
-    int ball; ///< index of the ball; -1 where the ray meets none
+    int ball; ///< index of the ball; -1 if the ray meets no ball
     double ray[3], position[3];
     double n[3], t[3], b[3]; ///< unit normal and two unit tangents, in the world
     double v[3];             ///< unit vector towards the camera, in the frame (t, b, n)
@@ -76,13 +76,14 @@ void view_point_prepare(const view_ball *ball, const view_energy *energy, view_p
 /// peak of a perfect mirror (roughness 0) is left out.
 void view_reflect(const view_ball *ball, const view_energy *energy, const view_point *point,
                   const double l[3], double f[3]);
-/// What view_walk_add needs: it adds an estimate, by one random walk, of the light that bounces at
-/// least twice between the ball's microfacets.
+/// The arguments of view_walk_add, which adds an estimate, by one random walk, of the light that
+/// bounces at least twice between the ball's microfacets.
 typedef struct view_walk {
     const view_ball *ball;
     const view_light *light;
     const view_energy *energy; ///< holds a measured metal's F
-    /// Radiance that arrives from direction d; NULL where it is the light's radiance.
+    /// Returns the radiance that arrives from direction d. NULL: the radiance is that of the
+    /// environment `light`.
     void (*incoming)(void *user, const double d[3], view_random *random, double radiance[3]);
     void *user;
 } view_walk;

@@ -156,7 +156,8 @@ KILN_CHECKED kiln_result view_bake(kiln_context *context, const kiln_map *source
 
 typedef struct view_renderer view_renderer;
 
-/// Finds a GL function by its name: eglGetProcAddress or glfwGetProcAddress.
+/// A function that finds a GL function by its name, such as eglGetProcAddress or
+/// glfwGetProcAddress.
 typedef void (*view_function)(void);
 typedef view_function view_lookup(const char *name);
 
@@ -164,7 +165,7 @@ typedef view_function view_lookup(const char *name);
 /// ignored under emscripten. `context` must outlive the renderer.
 KILN_CHECKED kiln_result view_create(kiln_context *context, view_lookup *lookup,
                                      view_renderer **renderer, kiln_error *error);
-/// May be NULL. The GL context must be current.
+/// Destroys a renderer, whose GL context must be current. `renderer` may be NULL.
 void view_destroy(view_renderer *renderer);
 /// The GL_RENDERER string of the driver, such as "llvmpipe (LLVM 15.0.6, 256 bits)".
 const char *view_gl_name(const view_renderer *renderer);
@@ -178,15 +179,15 @@ typedef enum view_slot {
 
 /// Uploads an environment. `levels`: a cube of GGX levels with roughness[] rising from 0. `sh`:
 /// harmonics of the radiance with 3 bands or more. `irradiance`: a cube of irradiance / pi; NULL
-/// keeps the one that is there.
+/// keeps the present irradiance cube.
 KILN_CHECKED kiln_result view_set_environment(view_renderer *renderer, view_slot slot,
                                               const kiln_map *levels, const kiln_sh *sh,
                                               const kiln_map *irradiance, kiln_error *error);
 
 /// Replaces the renderer's own tables of one model. A model whose G is one of Schlick's replaces
 /// the tables of VIEW_SCENE_ASSIGNMENT, any other model those of the environment scenes. E and
-/// E_avg may store the complement. Any size, axis and placement of texels will do. NULL keeps the
-/// table that is there.
+/// E_avg may store the complement. A table may have any size, axis and placement of texels. NULL
+/// keeps the present table.
 KILN_CHECKED kiln_result view_set_tables(view_renderer *renderer, const kiln_table *e,
                                          const kiln_table *e_average, const kiln_table *split,
                                          kiln_error *error);

@@ -83,8 +83,8 @@ static kiln_result load(glfw_functions *glfw, kiln_error *error)
     void *library = open_library();
     if (!library)
         return view_fail(error, KILN_ERROR_UNSUPPORTED,
-                         "there is no GLFW here (libglfw.so.3; Debian: libglfw3): the window needs "
-                         "it; kiln render does not");
+                         "the library GLFW (libglfw.so.3; Debian: libglfw3) cannot be loaded; the "
+                         "window needs GLFW, but kiln render does not");
 #define FIND(name)                                                                                 \
     if (!find(library, "glfw" #name, &glfw->name))                                                 \
         return view_fail(error, KILN_ERROR_UNSUPPORTED, "libglfw.so.3 has no glfw" #name);
@@ -225,7 +225,7 @@ static kiln_result open_window(window *w, const view_window_def *def, kiln_error
     const glfw_functions *glfw = &w->glfw;
     choose_platform(glfw);
     if (!glfw->Init())
-        return say(w, "GLFW finds no screen to open a window on", error);
+        return say(w, "GLFW finds no screen on which a window can open", error);
     glfw->WindowHint(GLFW_CLIENT_API, GLFW_OPENGL_ES_API);
     glfw->WindowHint(GLFW_CONTEXT_CREATION_API, GLFW_EGL_CONTEXT_API);
     glfw->WindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
@@ -235,7 +235,7 @@ static kiln_result open_window(window *w, const view_window_def *def, kiln_error
     w->handle = glfw->CreateWindow(def->width ? def->width : 1280, def->height ? def->height : 720,
                                    def->title ? def->title : "kiln", NULL, NULL);
     if (!w->handle)
-        return say(w, "GLFW makes no window with OpenGL ES 3.0", error);
+        return say(w, "GLFW cannot open a window with OpenGL ES 3.0", error);
     glfw->MakeContextCurrent(w->handle);
     glfw->SetWindowUserPointer(w->handle, w);
     glfw->SetCursorPosCallback(w->handle, on_move);
@@ -258,8 +258,8 @@ static kiln_result shoot(kiln_context *context, int width, int height, kiln_imag
     uint8_t *bytes = malloc(row * (size_t)height);
     if (!bytes || !view_gl_load(&gl, lookup, &missing)) {
         free(bytes);
-        return view_fail(error, KILN_ERROR_MEMORY, "cannot read the window of %d x %d", width,
-                         height);
+        return view_fail(error, KILN_ERROR_MEMORY,
+                         "cannot read the picture of %d x %d from the window", width, height);
     }
     gl.PixelStorei(GL_PACK_ALIGNMENT, 1);
     gl.ReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, bytes);
@@ -279,7 +279,8 @@ static kiln_result ask_textbook(window *w, const view_window_def *def, view_rend
     const char *title = def->title ? def->title : "kiln";
     char words[160];
     kiln_result result = def->textbook(def->user, renderer, def->screenshot != NULL, done, error);
-    snprintf(words, sizeof words, "%.100s: the textbook bakes, %.0f %%", title, 100 * *done);
+    snprintf(words, sizeof words, "%.100s: %.0f %% of the textbook's bake is done", title,
+             100 * *done);
     w->glfw.SetWindowTitle(w->handle, *done < 1 ? words : title);
     w->stale |= *done == 1;
     return result;

@@ -24,8 +24,8 @@ BAKER bool baker_sky(baker *b, int size, double elevation, double azimuth, doubl
 BAKER int baker_source_shape(const baker *b);
 BAKER int baker_source_size(const baker *b);
 BAKER const float *baker_source_texels(const baker *b);
-/// Bakes as `kiln bake --size --levels --rotate --exposure` does; 0 levels means all levels. On
-/// failure the previous bake stays.
+/// Bakes as `kiln bake --size --levels --rotate --exposure` does, where 0 levels means all levels.
+/// On failure the previous bake stays.
 BAKER bool baker_bake(baker *b, int size, int levels, double rotation, double exposure);
 BAKER int baker_level_count(const baker *b);
 BAKER int baker_level_size(const baker *b, int level);

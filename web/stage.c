@@ -33,7 +33,7 @@ static bool start(stage *s, const char *canvas)
     EMSCRIPTEN_WEBGL_CONTEXT_HANDLE gl = emscripten_webgl_create_context(canvas, &wanted);
     if (gl <= 0 || emscripten_webgl_make_context_current(gl)) {
         snprintf(s->error.message, sizeof s->error.message,
-                 "this browser offers no WebGL 2, which the balls are drawn by");
+                 "this browser offers no WebGL 2, which is needed to draw the balls");
         return false;
     }
     return view_create(s->context, NULL, &s->renderer, &s->error) == KILN_OK;

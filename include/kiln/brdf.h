@@ -43,8 +43,8 @@ typedef struct kiln_model {
 
 // The following functions of numbers cannot fail: an argument outside its range is clamped to the
 // range. nov, nol and noh are the cosines n.v, n.l and n.h, and voh is v.h = l.h, all in [0, 1].
-// alpha = roughness^2. At roughness 0 a function returns its limit at fixed cosines, and at a
-// cosine of 0 the limit of that.
+// alpha = roughness^2. At roughness 0 a function returns its limit for fixed cosines as roughness
+// tends to 0. At a cosine of 0 it returns the limit as the cosine tends to 0.
 
 /// Returns D per steradian, normalised by int D(h) (n.h) dh = 1. Infinite at roughness 0 and noh 1.
 KILN_API double kiln_brdf_d(kiln_d d, double roughness, double noh);
@@ -52,8 +52,8 @@ KILN_API double kiln_brdf_d(kiln_d d, double roughness, double noh);
 /// on the distribution D.
 KILN_API double kiln_brdf_g(const kiln_model *model, double roughness, double nov, double nol);
 /// Returns the specular lobe for F = 1, D G / (4 nov nol), per steradian. Where nov or nol is 0,
-/// the limit of G / (nov nol) is used, which is finite. Where both are 0, the result is infinite
-/// for the models whose limit is.
+/// the limit of G / (nov nol) is used, which is finite. Where both cosines are 0, the result is
+/// infinite for models whose limit is infinite.
 KILN_API double kiln_brdf_specular(const kiln_model *model, double roughness, double nov,
                                    double nol, double noh);
 
@@ -113,8 +113,9 @@ KILN_API double kiln_pdf_reflection(double pdf, double voh);
 
 // Albedo of a rough surface for light that bounces once, with later bounces lost: a white surface
 // in a white furnace lacks 1 - E. The functions compute one-dimensional integrals with errors below
-// 1e-11, or 1e-8 for Beckmann. Arguments outside [0, 1] are clamped. Roughness 0 and nov 0 are
-// limits, roughness first. Source: docs/theory/energy.md.
+// 1e-11, or 1e-8 for Beckmann. Arguments outside [0, 1] are clamped. The values at roughness 0 are
+// limits as roughness tends to 0, and the values at nov 0 are limits of those as nov tends to 0.
+// Source: docs/theory/energy.md.
 
 /// Returns the directional albedo for F = 1, E(n.v) = int f (n.l) dl, where f is the specular lobe.
 KILN_API double kiln_energy(const kiln_model *model, double roughness, double nov);

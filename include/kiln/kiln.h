@@ -277,7 +277,8 @@ typedef struct kiln_file_info {
     char writer[64];      ///< program that wrote the file, for example "kiln 0.2.0", or empty
     char orientation[16]; ///< orientation of the texels in the file's own words, or empty
     char table[160];      ///< parameters of a table that kiln wrote, "kind=e d=ggx ...", or empty
-    int sh_bands;       ///< number of bands of spherical harmonics in the file, 0 if there are none
+    /// number of bands of spherical harmonics in the file, 0 if the file has no harmonics
+    int sh_bands;
     bool sh_irradiance; ///< true: the harmonics are of irradiance; false: of radiance
     /// Coefficients of the spherical harmonics, converted to the normalisation and order of kiln_sh
     /// but in the axes of the file.
@@ -477,7 +478,8 @@ typedef struct kiln_environment {
     kiln_map irradiance;
     kiln_sh sh; ///< harmonics of the radiance without a window; kiln_sh_filter derives others
     kiln_lobe_kind lobe; ///< lobe that the levels were filtered with
-    int degree;          ///< degree of the spectrum behind the levels; 0 if there was none
+    /// degree of the spectrum that the levels are computed from; 0 if there is no such spectrum
+    int degree;
 } kiln_environment;
 
 enum { KILN_NO_IRRADIANCE = -1 };

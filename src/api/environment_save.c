@@ -17,7 +17,8 @@ static kiln_result write_levels(ki_file_set *set, kiln_context *context,
         return ki_fail(error, KILN_ERROR_ARGUMENT, "lobe is %d, it must be 0 to %d",
                        (int)environment->lobe, (int)KILN_LOBE_CUSTOM);
     if (def->engine && def->zstd)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: zstd is for no engine's files", path);
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "%s: no engine's loader reads zstd, leave zstd 0", path);
     if (def->engine)
         return ki_engine_write(set, context, def->engine, &environment->levels, &environment->sh,
                                def->format, path, report, error);
@@ -37,7 +38,9 @@ static kiln_result write_irradiance(ki_file_set *set, kiln_context *context,
     const kiln_save_def save = {
         .format = def->format, .zstd = ktx2 ? def->zstd : 0, .lobe = lobe_names[KILN_LOBE_LAMBERT]};
     if (!environment->irradiance.size)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: the environment has no irradiance",
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "%s: the environment has no irradiance map to save, bake one or leave "
+                       "irradiance_path NULL",
                        def->irradiance_path);
     return ki_map_write(set, context, &environment->irradiance, def->irradiance_path, &save, report,
                         error);

@@ -15,7 +15,7 @@ static kiln_result find_reading(const kiln_prefilter_def *def, ki_reading *room,
     const ki_recipe *recipe = ki_recipe_of(def->tune_for);
     if (!recipe || !recipe->level)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
-                       "tune_for is no engine of kiln's that reads levels");
+                       "tune_for must be an engine of kiln_engine_find that reads levels");
     *room = (ki_reading){.level = recipe->level,
                          .keep_last = recipe->keeps_last,
                          .flat = recipe->flat,
@@ -38,14 +38,14 @@ static kiln_result find_levels(const kiln_bake_def *def, float roughness[KILN_MA
     *levels = def->levels;
     if ((int)def->tune < 0 || def->tune > KILN_TUNE_SOFT || (def->tune && !def->engine))
         return ki_fail(error, KILN_ERROR_ARGUMENT,
-                       "tune is %d, it must be 0 to %d, and 0 without an engine", (int)def->tune,
+                       "tune is %d, it must be 0 to %d, or 0 if engine is NULL", (int)def->tune,
                        (int)KILN_TUNE_SOFT);
     if (!def->engine)
         return KILN_OK;
     if (decides_itself(levels))
         return ki_fail(error, KILN_ERROR_ARGUMENT,
-                       "the engine decides lobe, roughness, smallest and tuning of the levels: "
-                       "leave them 0");
+                       "the engine decides the lobe, roughness, smallest and tuning of the levels, "
+                       "leave these fields 0");
     kiln_prefilter_def wanted;
     kiln_result result = kiln_engine_levels(def->engine, levels->size, levels->level_count,
                                             roughness, &wanted, error);

@@ -283,7 +283,7 @@ static kiln_result check_source(const kiln_plan *p, const kiln_map *source, kiln
     kiln_result result = ki_map_check(source, error);
     if (result == KILN_OK && (source->shape != p->source_shape || source->size != p->source_size))
         return ki_fail(error, KILN_ERROR_ARGUMENT,
-                       "the plan is for %s of size %d, this map is one of the %s of size %d",
+                       "the plan takes %s of size %d, the source is one of the %s of size %d",
                        shape_names[p->source_shape], p->source_size, shape_names[source->shape],
                        source->size);
     return result;
@@ -301,16 +301,20 @@ static kiln_result check_target(const kiln_plan *p, const kiln_environment *envi
         return result;
     if (map->shape != def->shape || map->size != def->size || map->level_count != def->level_count)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
-                       "the plan writes shape %d, size %d, %d levels; this map has %d, %d, %d",
+                       "the plan writes a map of shape %d, size %d and %d levels, but levels is a "
+                       "map of shape %d, size %d and %d levels",
                        (int)def->shape, def->size, def->level_count, (int)map->shape, map->size,
                        map->level_count);
     if (map->smallest != def->smallest)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "the plan's smallest is %d, this map's is %d",
-                       def->smallest, map->smallest);
+        return ki_fail(
+            error, KILN_ERROR_ARGUMENT,
+            "the plan writes a map with smallest %d, but levels is a map with smallest %d",
+            def->smallest, map->smallest);
     if (p->irradiance_size &&
         (irradiance->shape != def->shape || irradiance->size != p->irradiance_size))
         return ki_fail(error, KILN_ERROR_ARGUMENT,
-                       "the plan writes irradiance of shape %d, size %d; this map has %d, %d",
+                       "the plan writes irradiance of shape %d and size %d, but irradiance is a "
+                       "map of shape %d and size %d",
                        (int)def->shape, p->irradiance_size, (int)irradiance->shape,
                        irradiance->size);
     return KILN_OK;

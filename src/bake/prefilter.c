@@ -49,21 +49,22 @@ kiln_result ki_prefilter_resolve(const kiln_prefilter_def *def, kiln_prefilter_d
         full++;
     d.level_count = d.level_count ? d.level_count : full;
     if (d.smallest < 0 || d.smallest > d.size)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "smallest is %d, it must be 0 to the size, %d",
-                       d.smallest, d.size);
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "smallest is %d, it must be from 0 to the size, which is %d", d.smallest,
+                       d.size);
     if (d.smallest)
         full = KILN_MAX_LEVELS;
     if (d.level_count < 1 || d.level_count > full)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "level_count is %d, a size of %d has 1 to %d",
-                       d.level_count, d.size, full);
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "level_count is %d, a map of size %d has 1 to %d levels", d.level_count,
+                       d.size, full);
     if ((int)d.lobe < 0 || d.lobe > KILN_LOBE_PHONG)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
-                       "lobe %d is not one of GGX, Lambert, Charlie "
-                       "and Phong",
+                       "lobe is %d, it must be one of GGX, Lambert, Charlie and Phong",
                        (int)d.lobe);
     if (!(fabs(d.rotation) <= 1e6))
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "rotation is %g degrees, it must be within 1e6",
-                       d.rotation);
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "rotation is %g degrees, it must be from -1e6 to 1e6", d.rotation);
     d.tolerance = d.tolerance != 0 ? d.tolerance : ki_lobe_tolerance;
     if (!(d.tolerance >= 1e-6 && d.tolerance <= 0.01))
         return ki_fail(error, KILN_ERROR_ARGUMENT, "tolerance is %g, it must be 1e-6 to 0.01",
@@ -117,7 +118,8 @@ static kiln_result plan_tuning(kiln_context *context, ki_prefilter *p, const ki_
                                const kiln_lobe *first, kiln_error *error)
 {
     if (!ki_is_mirror(first))
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "tuned levels are of GGX, the first a mirror");
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "tuned levels need the lobe GGX and a first level of roughness 0");
     if (p->def.size & (p->def.size - 1))
         return ki_fail(error, KILN_ERROR_ARGUMENT,
                        "size is %d, for tuned levels it must be a power of two", p->def.size);

@@ -41,11 +41,11 @@ static void set_rows(ki_reference *r)
         ki_sincos(step * y, &s0, &c0);
         ki_sincos(step * (y + 1), &s1, &c1);
         ki_sincos(centre, &row->sin_centre, &row->cos_centre);
-        // By cos a - cos b = 2 sin((a + b) / 2) sin((b - a) / 2), which avoids the cancellation of
-        // the difference.
+        // The difference of the cosines of the row's edges, by cos a - cos b = 2 sin((a + b) / 2)
+        // sin((b - a) / 2), which avoids cancellation.
         double height = 2 * row->sin_centre * ki_sin(step / 2);
         row->area = height * (2 * KI_PI / r->width);
-        // Means over theta, weighted by sin theta.
+        // Means of cos theta and sin theta over the row, weighted by sin theta.
         row->cos_mean = row->cos_centre * ki_cos(step / 2);
         row->sin_mean = (step - (s1 * c1 - s0 * c0)) / (2 * height);
         for (int k = 0; k < 2; k++)
@@ -256,7 +256,7 @@ static void refine(const ki_reference *r, const ray_sums *ray, const ki_row_geom
                    double *weight)
 {
     double step = 2 * KI_PI / r->width, step_theta = KI_PI / r->height;
-    // Factor from the mean over (theta, phi) to the mean over the solid angle.
+    // Factor that turns a mean over (theta, phi) into a mean over the solid angle.
     double scale = step * step_theta / row->area;
     for (int i = s.first; i <= s.last; i++) {
         int x = wrap(r, i);
@@ -279,7 +279,8 @@ static bool means_suffice(const ki_reference *r, const ray_sums *ray, const ki_r
     double c = ray->d[1] * row->cos_centre + ray->sin_theta * row->sin_centre;
     double nearest = ki_acos(ki_clamp(c, -1, 1)) - 0.5 * theta_size;
 
-    double length = size / r->rule.pairs; // the length of change that 2 x 2 nodes need
+    // length over which the lobe must change at least for 2 x 2 nodes to suffice
+    double length = size / r->rule.pairs;
     *near = 2;
     if (r->rational) {
         double rest = length * length - r->lobe_width * r->lobe_width;
@@ -307,8 +308,8 @@ static void row_of_ray(const ki_reference *r, ray_sums *ray, const ki_row_geomet
 
     double near;
     bool means = means_suffice(r, ray, row, &near);
-    // The range of columns in three pieces: left of the picture's edge, inside the picture, and
-    // right of its edge.
+    // The range of columns is summed in three pieces: left of the picture's edge, inside the
+    // picture, and right of its edge.
     int w = r->width;
     span piece[3] = {{outer.first + w, ki_min(outer.last, -1) + w},
                      {ki_max(outer.first, 0), ki_min(outer.last, w - 1)},
@@ -391,7 +392,7 @@ static void mirror(const kiln_map *panorama, const double direction[3], double v
         value[c] = (double)texel[c];
 }
 
-// Normalises the directions and turns them.
+// Normalises `count` directions and turns them by `rotation` degrees about +Y.
 static void set_directions(double (*to)[3], const double (*from)[3], int count, double rotation)
 {
     for (int i = 0; i < count; i++) {

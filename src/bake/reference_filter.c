@@ -13,9 +13,10 @@ static kiln_result check_directions(const double (*directions)[3], int count, ki
         const double *d = directions[i];
         double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
         if (!(fabs(length - 1) < 1e-3))
-            return ki_fail(error, KILN_ERROR_ARGUMENT,
-                           "direction %d is (%g, %g, %g) of length %g, it must be 1 to 0.001", i,
-                           d[0], d[1], d[2], length);
+            return ki_fail(
+                error, KILN_ERROR_ARGUMENT,
+                "direction %d is (%g, %g, %g) of length %g, its length must be within 0.001 of 1",
+                i, d[0], d[1], d[2], length);
     }
     return KILN_OK;
 }

@@ -54,10 +54,10 @@ typedef struct ki_reference {
     size_t scratch_size;
 } ki_reference;
 
-/// The length over which the lobe changes at a distance from its peak, both in radians.
+/// Returns the length over which the lobe changes at a distance from its peak, both in radians.
 double ki_reference_scale(const ki_reference *r, double distance);
-/// The mean of lobe times sin theta over a cell of this depth, for the unit direction d. The angles
-/// are those of the cell's centre.
+/// Returns the mean of lobe times sin theta over a cell of this depth of cutting, for the unit
+/// direction d. The angles theta and phi are those of the cell's centre.
 double ki_reference_cell(const ki_reference *r, const double d[3], int depth, double sin_theta,
                          double cos_theta, double sin_phi, double cos_phi);
 

@@ -54,7 +54,8 @@ static inline kiln_result ki_fail_memory(kiln_context *context, kiln_error *erro
     ki_describe_memory(context, error, what, byte_count);
     return KILN_ERROR_MEMORY;
 }
-/// Bytes that a block of that size takes from the context, or SIZE_MAX.
+/// Returns the number of bytes that a block of `count` times `size` bytes takes from the context,
+/// or SIZE_MAX if the number overflows.
 size_t ki_block_size(size_t count, size_t size);
 
 /// A block of memory that can grow. {0} is an empty buffer.
@@ -74,15 +75,15 @@ void ki_buffer_free(ki_buffer *buffer);
 /// from the context as ever. Without memory (capacity 0) it only measures.
 typedef struct ki_scratch {
     uint8_t *memory;
-    size_t capacity, peak; ///< bytes there are, and the most that were wanted
-    struct ki_block *top;  ///< the last block that is there
+    size_t capacity, peak; ///< size of `memory` in bytes, and the largest size that was wanted
+    struct ki_block *top;  ///< the last block taken and not yet dropped
 } ki_scratch;
 
 void ki_scratch_begin(kiln_context *context, ki_scratch *scratch);
-/// All blocks that were taken are freed by now.
+/// Ends the use of the scratch. The caller has freed all blocks taken from the scratch.
 void ki_scratch_end(kiln_context *context);
-/// Gives it as much memory as was ever wanted, and `more` bytes; false where there is not so much. Not
-/// between begin and end.
+/// Enlarges the scratch to the largest size that was ever wanted, and `more` bytes. Returns false
+/// if memory runs out. Must not be called between ki_scratch_begin and ki_scratch_end.
 bool ki_scratch_reserve(kiln_context *context, ki_scratch *scratch, size_t more);
 void ki_scratch_free(ki_scratch *scratch);
 

@@ -17,15 +17,17 @@ const char *kiln_version(void)
     return KI_STR(KILN_VERSION_MAJOR) "." KI_STR(KILN_VERSION_MINOR) "." KI_STR(KILN_VERSION_PATCH);
 }
 
-// A header of 64 bytes before every memory block says where the block came from. The blocks of a scratch
-// are a list from the last to the first.
+// A header of 64 bytes before every memory block says where the block came from. The blocks taken
+// during an execution of a plan form a list from the last to the first (`below`).
 typedef struct ki_block {
     alignas(64) ki_heap *heap;
-    size_t size; // with these bytes
+    size_t size; // size of the block in bytes, with this header
     ki_scratch *scratch;
     struct ki_block *below;
-    size_t offset;            // in the scratch, or where it would be
-    bool is_freed, is_inside; // of a scratch: freed, but others are above; in the scratch's memory
+    size_t offset; // position in the scratch's memory, which may be beyond its end
+    // is_freed: the block is freed, but later blocks of the scratch are not. is_inside: the block
+    // lies in the scratch's memory.
+    bool is_freed, is_inside;
 } ki_block;
 
 bool ki_mul_size(size_t a, size_t b, size_t *product)
@@ -213,9 +215,10 @@ void ki_describe_memory(kiln_context *context, kiln_error *error, const char *wh
                         size_t byte_count)
 {
     if (context->heap->limit)
-        ki_describe(error, KILN_ERROR_MEMORY,
-                    "out of memory: %s needs %zu bytes, %zu are held, the limit is %zu", what,
-                    byte_count, atomic_load(&context->heap->held), context->heap->limit);
+        ki_describe(
+            error, KILN_ERROR_MEMORY,
+            "out of memory: %s needs %zu bytes, the context holds %zu bytes, its limit is %zu",
+            what, byte_count, atomic_load(&context->heap->held), context->heap->limit);
     else
         ki_describe(error, KILN_ERROR_MEMORY, "out of memory: %s needs %zu bytes", what,
                     byte_count);

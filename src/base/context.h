@@ -39,8 +39,8 @@ typedef struct ki_heap {
 struct kiln_context {
     kiln_context_def def;
     ki_heap *heap;
-    ki_scratch *scratch; // of the execution that runs; NULL if none runs
-    ki_stage said;       // the last progress report
+    ki_scratch *scratch; // scratch of the plan execution that runs; NULL if no execution runs
+    ki_stage said;       // the last progress report, repeated by ki_go_on
     ki_pool pool;
 };
 

@@ -229,7 +229,8 @@ kiln_result ki_file_set_add(ki_file_set *set, const char *path, const void *byte
     ki_os_kind kind = ki_os_kind_of(path);
     if (kind != KI_OS_NOTHING && kind != KI_OS_FILE) {
         ki_free(entry);
-        return ki_fail(error, KILN_ERROR_IO, "%s: exists and is not a file", path);
+        return ki_fail(error, KILN_ERROR_IO,
+                       "%s: the path exists and is not a regular file, name another path", path);
     }
     int fd = create_temporary(entry->temporary, length + ROOM, path);
     if (fd < 0) {
@@ -279,8 +280,9 @@ kiln_result ki_file_set_commit(ki_file_set *set, kiln_error *error)
         if (!entry->temporary)
             continue;
         if (result == KILN_OK && !ki_os_replace(entry->temporary, entry->path))
-            result = ki_fail(error, KILN_ERROR_IO, "%s: cannot be put in place: %s", entry->path,
-                             strerror(errno));
+            result = ki_fail(error, KILN_ERROR_IO,
+                             "%s: the finished file cannot be renamed to this path: %s",
+                             entry->path, strerror(errno));
         if (result != KILN_OK)
             ki_os_remove(entry->temporary);
     }

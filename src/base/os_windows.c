@@ -1,5 +1,6 @@
-// The functions of os.h for Windows 7 and later. The wide functions of Windows are called, because
-// the others take paths in the user's code page. Paths are converted from kiln's UTF-8 to UTF-16. A
+// The functions of os.h for Windows 7 and later. In: paths in kiln's UTF-8, descriptors, sizes.
+// Out: as os.h states. The functions of Windows with wide characters are called, because those with
+// narrow characters take paths in the user's code page. Paths are converted from UTF-8 to UTF-16. A
 // path may have as many characters as Windows allows without a prefix (260), and may use forward
 // slashes.
 #define WIN32_LEAN_AND_MEAN

@@ -6,7 +6,8 @@ bool ki_progress(kiln_context *context, const char *stage, double fraction)
     context->said = (ki_stage){stage, fraction, fraction};
     if (!context->def.progress)
         return true;
-    // What the callback allocates by this context does not belong to the execution that reports.
+    // The callback may allocate from this context. Its memory must not come from the scratch of the
+    // execution that reports progress.
     ki_scratch *scratch = context->scratch;
     context->scratch = NULL;
     bool go_on = context->def.progress(context->def.progress_user, stage, fraction);

@@ -57,7 +57,8 @@ double kiln_kulla_conty_fresnel(kiln_f_add form, double f_average, double e_aver
 
 double kiln_turquin(double f0, double e)
 {
-    // Below every albedo that a lobe with light in it has; so that the factor stays finite.
+    // Every lobe that reflects light has an albedo above 1e-6, and this bound keeps the factor
+    // finite.
     return ki_turquin(ki_unit(f0), ki_clamp(e, 1e-6, 1));
 }
 

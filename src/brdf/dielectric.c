@@ -108,7 +108,7 @@ static double facet(const boundary *s, part what, double cos_h, double c)
     return nol > 0 ? (1 - f) * c * transmitted_masking(s, nol) : 0;
 }
 
-// The phi at which cos phi = y, clamped to [0, pi].
+// Returns the phi at which cos phi = y, clamped to [0, pi].
 static double arc_end(double y)
 {
     return y >= 1 ? 0 : y <= -1 ? KI_PI : ki_acos(y);

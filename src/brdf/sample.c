@@ -50,7 +50,7 @@ void ki_sample_visible(double alpha, const double v[3], const double xi[2], doub
         h[c] /= length;
 }
 
-// xi into [0, 1): generators of floats may well round up to 1.
+// Clamps xi to [0, 1), because random number generators for floats may round up to 1.
 static const double *clamp_xi(const double xi[2], double clamped[2])
 {
     for (int i = 0; i < 2; i++)
@@ -88,7 +88,7 @@ void kiln_sample_visible(double roughness, const double v[3], const double xi[2]
 {
     double r = ki_roughness(roughness), x[2];
     h[0] = h[1] = 0;
-    h[2] = 1; // of the mirror
+    h[2] = 1; // the half vector of a mirror
     if (r > 0)
         ki_sample_visible(r * r, v, clamp_xi(xi, x), h);
 }

@@ -21,7 +21,7 @@ double ki_grazing_scale(const kiln_model *model, double roughness)
     return alpha > 1e-12 ? alpha : 1e-12;
 }
 
-// Chebyshev point `index` of the first kind, of `count` points on [0, 1].
+// Returns Chebyshev point `index` of the `count` points of the first kind on [0, 1].
 static double point(int index, int count)
 {
     return (1 + ki_cos(KI_PI * (index + 0.5) / count)) / 2;

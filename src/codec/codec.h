@@ -66,7 +66,7 @@ typedef struct ki_exr_options {
     bool octahedron;
     float roughness;   ///< value of the attribute "kilnRoughness"; negative for no attribute
     const char *table; ///< value of the attribute "kilnTable"; NULL for no attribute
-    /// Value of the attribute "kilnEngine", by ki_engine_text_write; NULL for none.
+    /// Value of the attribute "kilnEngine", by ki_engine_text_write; NULL for no attribute.
     const char *engine;
 } ki_exr_options;
 kiln_result ki_exr_encode(const float *pixels, int width, int height, int channels,

@@ -15,7 +15,7 @@ enum {
     // The fields caps, size, format and levels are present.
     FLAGS = 0x1 | 0x2 | 0x4 | 0x1000 | 0x20000,
     FLAG_PITCH = 0x8, // the pitch field holds the bytes of a row
-    // The pitch field holds the bytes of a face, for formats of blocks.
+    // For formats of blocks the pitch field holds the number of bytes of a face.
     FLAG_LINEAR = 0x80000,
     FORMAT_SIZE = 32,
     FORMAT_FOURCC = 0x4,
@@ -41,16 +41,19 @@ static kiln_result check(const kiln_map *map, const kiln_save_def *def, kiln_err
 {
     const ki_pixel_format *pixel = ki_pixel_format_of(def->format);
     if (map->shape != KILN_SHAPE_CUBE)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "a DDS file holds a cube, not another shape");
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "a DDS file holds a cube only, convert the map by kiln_map_convert");
     if (!pixel || !pixel->vk)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "format is %d, it must be 0 to %d",
                        (int)def->format, (int)KILN_FORMAT_BC6H);
     if (map->smallest > 1 && map->size >> (map->level_count - 1) < map->smallest)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
-                       "a DDS file halves every level, the map's smallest is %d", map->smallest);
+                       "each level of a DDS file has half the size of the previous level, which "
+                       "the map's smallest of %d prevents",
+                       map->smallest);
     if (def->zstd)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "zstd is %d, a DDS file has no compression",
-                       def->zstd);
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "zstd is %d, it must be 0 because DDS files are not compressed", def->zstd);
     return KILN_OK;
 }
 
@@ -143,23 +146,24 @@ typedef struct dds_header {
     const ki_pixel_format *pixel;
 } dds_header;
 
-// Checks what the header says of pixels and sizes. `format` is the number that it gives its pixels.
+// Checks the pixel format, the size and the number of levels that the header states. `format` is
+// the header's number for the pixel format.
 static kiln_result check_header(dds_header *h, uint32_t format, const char *name, kiln_error *error)
 {
     if (!h->pixel)
-        return ki_fail(
-            error, KILN_ERROR_UNSUPPORTED,
-            "%s: has pixel format %u; DXGI 2, 10, 26, 67 and 95 and the codes 113 and 116 "
-            "are read",
-            name, format);
+        return ki_fail(error, KILN_ERROR_UNSUPPORTED,
+                       "%s: has pixel format %u; kiln reads the DXGI formats 2, 10, 26, 67 and 95 "
+                       "and the older codes 113 and 116",
+                       name, format);
     if (h->width < 1 || h->width != h->height || h->width > KILN_MAX_SIZE)
         return ki_fail(error, KILN_ERROR_FORMAT,
-                       "%s: faces are %u x %u, they must be square and 1 to %d", name, h->width,
-                       h->height, KILN_MAX_SIZE);
+                       "%s: faces are %u x %u, they must be square with sides of 1 to %d", name,
+                       h->width, h->height, KILN_MAX_SIZE);
     h->levels = h->levels ? h->levels : 1;
     if (h->levels > KILN_MAX_LEVELS || h->width >> (h->levels - 1) == 0)
-        return ki_fail(error, KILN_ERROR_FORMAT, "%s: has %u levels for a size of %u", name,
-                       h->levels, h->width);
+        return ki_fail(error, KILN_ERROR_FORMAT,
+                       "%s: has %u levels, which is too many for faces of size %u", name, h->levels,
+                       h->width);
     return KILN_OK;
 }
 
@@ -206,7 +210,9 @@ static kiln_result read_header(ki_reader *r, const char *name, dds_header *h, ki
     h->flat = h->describing && !cube && !caps2;
     if ((!cube && !h->flat) || cubes != 1)
         return ki_fail(error, KILN_ERROR_UNSUPPORTED,
-                       "%s: is no single cube of six faces, others are not read", name);
+                       "%s: kiln reads DDS files of one cube with six faces, and this file holds "
+                       "something else",
+                       name);
     return check_header(h, format, name, error);
 }
 
@@ -249,7 +255,7 @@ kiln_result ki_dds_decode(kiln_context *context, const uint8_t *bytes, size_t si
         wanted += faces * ki_pixels_size(h.pixel, (int)h.width >> k, (int)h.width >> k);
     if (wanted > ki_reader_left(&r))
         return ki_fail(error, KILN_ERROR_FORMAT,
-                       "%s: its levels need %llu bytes, %zu are left behind the header", name,
+                       "%s: its levels need %llu bytes, but only %zu bytes follow the header", name,
                        (unsigned long long)wanted, ki_reader_left(&r));
     describe(&h, info);
     if (!decoded)

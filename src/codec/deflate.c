@@ -283,7 +283,7 @@ static void put_items(ki_deflater *d, int count)
 static uint64_t stored_bits(size_t size)
 {
     size_t pieces = size ? (size + 65534) / 65535 : 1;
-    // For each piece 3 bits of header, up to 7 bits of padding, 32 bits of length.
+    // Each piece takes 3 bits of header, up to 7 bits of padding, and 32 bits for its length.
     return 8 * (uint64_t)size + 42 * (uint64_t)pieces;
 }
 
@@ -419,7 +419,7 @@ typedef struct match {
 } match;
 
 // Finds the longest match at a position that is longer than `best`. Returns the length `best` and
-// distance 0 if there is none.
+// distance 0 if there is no longer match.
 static inline match find(ki_deflater *d, int32_t position, int32_t best, int tries)
 {
     match found = {best, 0};
@@ -494,7 +494,7 @@ static void compress(ki_deflater *d)
         bool taken = pays(d, m);
         while (taken && m.length < NICE) {
             match later = find(d, d->at + 1, m.length - 1, CHAIN / 2);
-            // one bit of a distance counts as a quarter of a byte
+            // a bit more in the distance cancels a quarter of a byte in the length
             int gain = 4 * (later.length - m.length);
             if (!later.distance ||
                 gain + log2_of((uint32_t)m.distance) - log2_of((uint32_t)later.distance) <= 2)

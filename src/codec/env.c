@@ -212,21 +212,24 @@ static void read_manifest(ki_json *j, manifest *m)
 static kiln_result check(const manifest *m, size_t left, const char *name, kiln_error *error)
 {
     if (m->version < 1 || m->version > 2)
-        return ki_fail(error, KILN_ERROR_UNSUPPORTED, "%s: is .env of version %d; 1 and 2 are read",
-                       name, m->version);
+        return ki_fail(error, KILN_ERROR_UNSUPPORTED,
+                       "%s: is an .env file of version %d, kiln reads the versions 1 and 2", name,
+                       m->version);
     if (m->width < 1 || m->width > KILN_MAX_SIZE)
         return ki_fail(error, KILN_ERROR_FORMAT, "%s: faces are %d wide, they must be 1 to %d",
                        name, m->width, KILN_MAX_SIZE);
     int levels = m->image_count / 6;
     if (levels < 1 || m->image_count % 6 || levels > KILN_MAX_LEVELS ||
         m->width >> (levels - 1) == 0)
-        return ki_fail(error, KILN_ERROR_FORMAT,
-                       "%s: has %d images for a size of %d, they must be six a level", name,
-                       m->image_count, m->width);
+        return ki_fail(
+            error, KILN_ERROR_FORMAT,
+            "%s: has %d images for faces of size %d, it must have six images for each level", name,
+            m->image_count, m->width);
     if (m->image_bytes > left)
-        return ki_fail(error, KILN_ERROR_FORMAT,
-                       "%s: its images end at byte %llu behind the manifest, where %zu are left",
-                       name, (unsigned long long)m->image_bytes, left);
+        return ki_fail(
+            error, KILN_ERROR_FORMAT,
+            "%s: its images need %llu bytes after the manifest, but only %zu bytes follow it", name,
+            (unsigned long long)m->image_bytes, left);
     return KILN_OK;
 }
 
@@ -252,8 +255,8 @@ kiln_result ki_env_describe(const uint8_t *bytes, size_t size, const char *name,
     const uint8_t *from = bytes + sizeof magic;
     const uint8_t *end = size > sizeof magic ? memchr(from, 0, size - sizeof magic) : NULL;
     if (!end)
-        return ki_fail(error, KILN_ERROR_FORMAT, "%s: the manifest has no end in %zu bytes", name,
-                       size);
+        return ki_fail(error, KILN_ERROR_FORMAT,
+                       "%s: the manifest does not end within the file's %zu bytes", name, size);
     manifest m = {.lod_scale = 0.8}; // the value that Babylon.js uses if a file states none
     ki_json json = ki_json_make(from, (size_t)(end - from));
     read_manifest(&json, &m);

@@ -100,14 +100,14 @@ static kiln_result choose_part(exr_file *f, kiln_error *error)
     const ki_exr_part *p = &f->header.parts[0];
     if (!first && p->deep)
         return ki_fail(error, KILN_ERROR_UNSUPPORTED,
-                       "%s: holds deep samples, flat pictures are read", f->name);
+                       "%s: holds deep samples, kiln reads flat pictures only", f->name);
     if (!first)
         return ki_fail(error, KILN_ERROR_UNSUPPORTED, "%s: has %d channels, the limit is %d",
                        f->name, p->channel_count, KI_EXR_MAX_CHANNELS);
     char names[256];
     list_channels(first, names, sizeof names);
     return ki_fail(error, KILN_ERROR_UNSUPPORTED,
-                   "%s: has no channel R, G, B or Y, its channels are %s", f->name, names);
+                   "%s: has no channel R, G, B or Y; its channels are %s", f->name, names);
 }
 
 // Fails unless the chosen channels hold red, green and blue without subsampling.
@@ -120,17 +120,18 @@ static kiln_result check_channels(const exr_file *f, kiln_error *error)
             f->picture.source[k] < 0 ? NULL : &p->channels[f->picture.source[k]];
         if (c && (c->x_sampling != 1 || c->y_sampling != 1))
             return ki_fail(error, KILN_ERROR_UNSUPPORTED,
-                           "%s: channel %.32s has one sample for %d x %d pixels, only full "
-                           "resolution is read",
+                           "%s: channel %.32s has one sample for %d x %d pixels, kiln reads one "
+                           "sample for each pixel only",
                            f->name, c->name, c->x_sampling, c->y_sampling);
         chosen = c ? c->name : chosen;
     }
     size_t layer = (size_t)(ki_exr_suffix(chosen) - chosen);
     if (!strcmp(chosen + layer, "Y") &&
         (find_channel(p, chosen, layer, "RY") >= 0 || find_channel(p, chosen, layer, "BY") >= 0))
-        return ki_fail(error, KILN_ERROR_UNSUPPORTED,
-                       "%s: stores luminance and chroma (Y, RY, BY), channels R, G and B are read",
-                       f->name);
+        return ki_fail(
+            error, KILN_ERROR_UNSUPPORTED,
+            "%s: stores luminance and chroma (Y, RY, BY), kiln reads channels R, G and B only",
+            f->name);
     return KILN_OK;
 }
 
@@ -144,7 +145,8 @@ static kiln_result check_window(const exr_file *f, const char *what, const ki_ex
                        (long long)height, KILN_MAX_SIZE);
     enum { FAR = 1 << 28 };
     if (w->left < -FAR || w->top < -FAR || w->right > FAR || w->bottom > FAR)
-        return ki_fail(error, KILN_ERROR_FORMAT, "%s: %s begins at (%d, %d)", f->name, what,
+        return ki_fail(error, KILN_ERROR_FORMAT,
+                       "%s: %s begins at (%d, %d), which is too far from the origin", f->name, what,
                        w->left, w->top);
     return KILN_OK;
 }
@@ -161,7 +163,7 @@ static kiln_result open_file(exr_file *f, const uint8_t *bytes, size_t size, kil
     const ki_exr_window *display = &f->part->display;
     if (f->part->compression >= KI_EXR_COMPRESSIONS)
         return ki_fail(error, KILN_ERROR_FORMAT,
-                       "%s: has compression %d, of which nothing is known", f->name,
+                       "%s: has compression %d, which OpenEXR does not define", f->name,
                        f->part->compression);
     result = check_window(f, "dataWindow", &f->part->data, error);
     if (result == KILN_OK)

@@ -160,8 +160,8 @@ const uint8_t *ki_exr_chunk_samples(const ki_exr_workspace *work, int compressio
 
 typedef struct ki_exr_picture {
     int left, top, width, height; // display window, in the file's coordinates
-    int source[3];                // channels that become red, green and blue; -1 for none
-    float *pixels;                // width * height * 3 floats
+    int source[3]; // indices of the channels that become red, green and blue; -1 for no channel
+    float *pixels; // width * height * 3 floats
 } ki_exr_picture;
 
 /// Writes the samples of a box to the pixels of the picture that the box overlaps.

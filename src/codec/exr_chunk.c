@@ -150,10 +150,10 @@ kiln_result ki_exr_find_chunks(kiln_context *context, const ki_exr_header *heade
     *count = 0;
     int64_t needed = s.grid.across * s.grid.down;
     if (needed < 1 || s.entry_count < needed || (size_t)s.entry_count > header->size / 8)
-        return ki_fail(
-            error, KILN_ERROR_FORMAT,
-            "%s: a table of %d chunks does not fit into %zu bytes or is too short for %lld", name,
-            s.entry_count, header->size, (long long)needed);
+        return ki_fail(error, KILN_ERROR_FORMAT,
+                       "%s: its table of %d chunks does not fit into the file's %zu bytes or is "
+                       "shorter than the %lld chunks of the picture",
+                       name, s.entry_count, header->size, (long long)needed);
     ki_exr_chunk *found = ki_alloc(context, (size_t)needed, sizeof *found);
     if (!found)
         return ki_fail_memory(context, error, name, (size_t)needed * sizeof *found);

@@ -54,7 +54,8 @@ typedef struct counts {
 
 typedef struct dwa_rule {
     char suffix[32];
-    int scheme, place, type; // position of the channel in a colour triple, -1 for none
+    // place: position of the channel in a colour triple, -1 for a channel outside of triples
+    int scheme, place, type;
     bool any_case;
 } dwa_rule;
 

@@ -19,7 +19,7 @@ enum {
 typedef struct decoder {
     uint8_t length[SYMBOLS];
     uint32_t symbol[SYMBOLS]; // symbols by code length, then by value
-    // Entries symbol << 6 | length for short codes, 0 for longer ones.
+    // Entries symbol << 6 | length for short codes, and 0 for codes longer than TABLE_BITS.
     uint32_t table[1 << TABLE_BITS];
     uint64_t first[LONGEST + 1]; // lowest code of each length
     uint32_t count[LONGEST + 1], start[LONGEST + 1];

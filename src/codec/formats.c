@@ -261,8 +261,8 @@ static kiln_result read_bytes(kiln_context *context, const uint8_t *bytes, size_
     const ki_file_format *format = find_bytes(bytes, size);
     if (!format)
         return ki_fail(error, KILN_ERROR_FORMAT,
-                       "%s: its %zu bytes do not begin as EXR, HDR, PNG, KTX2 or DDS do", name,
-                       size);
+                       "%s: its %zu bytes do not begin like a file of EXR, HDR, PNG, KTX2 or DDS",
+                       name, size);
     if (format->describe && decoded)
         return ki_fail(error, KILN_ERROR_UNSUPPORTED,
                        "%s: is a %s file, which kiln writes and describes but does not read", name,
@@ -292,7 +292,7 @@ kiln_result ki_decode(kiln_context *context, const uint8_t *bytes, size_t size, 
     }
     bool is_map = info->face_count == 6;
     const char *layout = is_map ? "cube" : ki_layout_name(info->width, info->height);
-    if (!info->layout[0]) // unless the file states its layout
+    if (!info->layout[0]) // the file does not state its layout
         snprintf(info->layout, sizeof info->layout, "%s", layout ? layout : "image");
     if (decoded) {
         decoded->is_map = is_map;

@@ -22,7 +22,7 @@ typedef struct ki_picture_about {
     bool radiance;
     kiln_format format;
     bool panorama, octahedron;
-    float roughness; ///< roughness of the level; negative if there is none
+    float roughness; ///< roughness of the level; negative if the picture has no roughness
 } ki_picture_about;
 
 typedef kiln_result ki_read_picture(kiln_context *context, const uint8_t *bytes, size_t size,

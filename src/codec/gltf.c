@@ -217,16 +217,18 @@ static kiln_result check(const light *l, size_t binary, const char *name, kiln_e
 {
     if (!l->found)
         return ki_fail(error, KILN_ERROR_UNSUPPORTED,
-                       "%s: holds no light of EXT_lights_image_based, other glTF is not described",
+                       "%s: is a glTF file without a light of EXT_lights_image_based, which kiln "
+                       "does not describe",
                        name);
     if (l->width < 1 || l->width > KILN_MAX_SIZE || l->level_count < 1 || l->uneven ||
         l->level_count > KILN_MAX_LEVELS || l->width >> (l->level_count - 1) == 0)
         return ki_fail(error, KILN_ERROR_FORMAT,
-                       "%s: its light has %d levels for a size of %d, six images each", name,
-                       l->level_count, l->width);
+                       "%s: its light has %d levels for faces of size %d, which is too many, or a "
+                       "level without six images",
+                       name, l->level_count, l->width);
     if (l->image_bytes > binary)
         return ki_fail(error, KILN_ERROR_FORMAT,
-                       "%s: its images end at byte %llu of the buffer, which has %zu", name,
+                       "%s: its images need %llu bytes of the buffer, which has %zu bytes", name,
                        (unsigned long long)l->image_bytes, binary);
     return KILN_OK;
 }
@@ -268,8 +270,8 @@ kiln_result ki_gltf_describe(const uint8_t *bytes, size_t size, const char *name
     const uint8_t *text = read_chunk(&r, CHUNK_JSON, &json_size);
     if (!text || version != VERSION || stated > size)
         return ki_fail(error, KILN_ERROR_FORMAT,
-                       "%s: glTF of version %u, stated to have %u bytes, in %zu, is cut off or "
-                       "damaged",
+                       "%s: the glTF file is cut off or damaged: its header states version %u and "
+                       "%u bytes, the file has %zu bytes",
                        name, version, stated, size);
     light l = {0};
     ki_json json = ki_json_make(text, json_size);

@@ -63,8 +63,10 @@ static kiln_result read_resolution(hdr_file *f, const char *line, kiln_error *er
                &count[1], &rest) != 6 ||
         !((axis[0] == 'Y' && axis[1] == 'X') || (axis[0] == 'X' && axis[1] == 'Y')) ||
         (sign[0] != '-' && sign[0] != '+') || (sign[1] != '-' && sign[1] != '+'))
-        return ki_fail(error, KILN_ERROR_FORMAT, "%s: the HDR resolution line is \"%.40s\"",
-                       f->name, line);
+        return ki_fail(
+            error, KILN_ERROR_FORMAT,
+            "%s: the HDR resolution line is \"%.40s\", it must be like \"-Y 512 +X 1024\"", f->name,
+            line);
     f->columns = axis[0] == 'X';
     f->line_count = count[0];
     f->line_length = count[1];
@@ -93,23 +95,26 @@ static kiln_result read_header(hdr_file *f, ki_reader *r, kiln_file_info *info, 
         }
         if (!strncmp(line, "FORMAT=", 7) && strcmp(line + 7, "32-bit_rle_rgbe") != 0)
             return ki_fail(error, KILN_ERROR_UNSUPPORTED,
-                           "%s: the HDR format is \"%.40s\", only 32-bit_rle_rgbe is read", f->name,
-                           line + 7);
+                           "%s: the HDR format is \"%.40s\", kiln reads 32-bit_rle_rgbe only",
+                           f->name, line + 7);
         if (!strncmp(line, "EXPOSURE=", 9)) {
             double value = 0;
             ki_parse_number(line + 9, &value);
             if (!(value > 0) || !(value < 1e30) || !(f->exposure * value > 1e-30) ||
                 !(f->exposure * value < 1e30))
-                return ki_fail(error, KILN_ERROR_FORMAT, "%s: the HDR header says \"%.40s\"",
-                               f->name, line);
+                return ki_fail(
+                    error, KILN_ERROR_FORMAT,
+                    "%s: the HDR header has the line \"%.40s\", which is no usable exposure",
+                    f->name, line);
             f->exposure *= value;
         }
         if (info && !strncmp(line, "SOFTWARE=kiln ", 14))
             ki_copy_printable(info->writer, sizeof info->writer, line + 9);
     }
     if (!ended || !next_line(r, line, sizeof line))
-        return ki_fail(error, KILN_ERROR_FORMAT, "%s: the HDR header has no end in %zu bytes",
-                       f->name, f->size);
+        return ki_fail(error, KILN_ERROR_FORMAT,
+                       "%s: the HDR header does not end within the file's %zu bytes", f->name,
+                       f->size);
     return read_resolution(f, line, error);
 }
 

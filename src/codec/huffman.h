@@ -20,8 +20,8 @@ void ki_huffman_make(ki_huffman_code *code, const uint32_t *counts, int count, i
 /// Assigns bits to the lengths of `count` symbols. `with` holds the number of codes of each length.
 void ki_huffman_assign(ki_huffman_code *code, int count, const int *with, int longest);
 
-/// The lowest `length` bits, 16 at most, in the opposite order: codes are counted from their highest bit,
-/// and written and read from their lowest.
+/// Returns the lowest `length` bits, 16 at most, in reverse order. Codes are counted from their
+/// highest bit, but written and read from their lowest bit.
 static inline uint32_t ki_reverse_bits(uint32_t bits, int length)
 {
     bits = (bits & 0x5555) << 1 | (bits >> 1 & 0x5555);

@@ -246,7 +246,7 @@ static bool stored(state *st)
         *st->out++ = (uint8_t)drop(s, 8);
     if (overdrawn(s) || (size_t)(s->in_end - s->in) < count)
         return false;
-    st->full = full; // only now is every byte of the output written
+    st->full = full; // set here, because the held bytes are now written
     if (count) {
         memcpy(st->out, s->in, count);
         s->bits = 0;

@@ -38,8 +38,8 @@ static void write_header(ki_writer *w, const uint32_t types[5], int size, int le
         ki_write_u32(w, types[i]);
     ki_write_u32(w, (uint32_t)size);
     ki_write_u32(w, (uint32_t)size);
-    ki_write_u32(w, 0); // depth of a volume: none
-    ki_write_u32(w, 0); // number of array elements: not an array
+    ki_write_u32(w, 0); // depth, 0 because the texture is no volume
+    ki_write_u32(w, 0); // number of array elements, 0 because the texture is no array
     ki_write_u32(w, 6);
     ki_write_u32(w, (uint32_t)level_count);
 }
@@ -132,14 +132,16 @@ static kiln_result read_header(ki_reader *r, const char *name, header *h, kiln_e
                    : NULL;
     if (!h->pixel || rest[0] || rest[1] || rest[2] != 6)
         return ki_fail(error, KILN_ERROR_UNSUPPORTED,
-                       "%s: is KTX 1 of type 0x%x, internal format 0x%x, %u faces; cubes of halves "
-                       "and of 11, 11 and 10 bits are described",
+                       "%s: is a KTX 1 file of type 0x%x, internal format 0x%x and %u faces; kiln "
+                       "describes cubes of 16-bit floats and of floats with 11, 11 and 10 bits",
                        name, types[0], types[3], rest[2]);
     h->level_count = h->level_count ? h->level_count : 1;
     if (h->width < 1 || h->width != h->height || h->width > KILN_MAX_SIZE ||
         h->level_count > KILN_MAX_LEVELS || h->width >> (h->level_count - 1) == 0)
-        return ki_fail(error, KILN_ERROR_FORMAT, "%s: has %u levels for faces of %u x %u", name,
-                       h->level_count, h->width, h->height);
+        return ki_fail(error, KILN_ERROR_FORMAT,
+                       "%s: has %u levels of faces of %u x %u, which are not square, too large, or "
+                       "too small for so many levels",
+                       name, h->level_count, h->width, h->height);
     return KILN_OK;
 }
 
@@ -195,8 +197,8 @@ kiln_result ki_ktx1_describe(const uint8_t *bytes, size_t size, const char *name
         return result;
     const uint8_t *pairs = ki_read_bytes(&r, h.pair_bytes);
     if (!pairs || !read_pairs(pairs, h.pair_bytes, info))
-        return ki_fail(error, KILN_ERROR_FORMAT, "%s: its %u bytes of pairs are damaged", name,
-                       h.pair_bytes);
+        return ki_fail(error, KILN_ERROR_FORMAT, "%s: its %u bytes of key-value pairs are damaged",
+                       name, h.pair_bytes);
     if (!has_levels(&r, &h))
         return ki_fail(error, KILN_ERROR_FORMAT, "%s: its %u levels are cut off or damaged", name,
                        h.level_count);

@@ -59,7 +59,7 @@ kiln_result ki_ktx2_begin(ki_writer *w, const ki_ktx2_file *file, ki_ktx2_writer
     ki_write_u32(w, (uint32_t)file->width);
     ki_write_u32(w, (uint32_t)file->height);
     ki_write_u32(w, (uint32_t)file->depth);
-    ki_write_u32(w, 0); // number of array layers: not an array
+    ki_write_u32(w, 0); // number of array layers, 0 because the texture is no array
     ki_write_u32(w, (uint32_t)file->face_count);
     ki_write_u32(w, (uint32_t)file->level_count);
     ki_write_u32(w, file->zstd ? SCHEME_ZSTD : SCHEME_NONE);
@@ -170,14 +170,15 @@ static kiln_result read_header(ki_ktx2_source *s, kiln_error *error)
         return ki_fail(error, KILN_ERROR_FORMAT, "%s: the KTX2 header is cut off", s->name);
     bool cube = s->face_count == 6 && s->depth == 0;
     if ((!cube && s->face_count != 1) || s->layer_count > 1)
-        return ki_fail(error, KILN_ERROR_UNSUPPORTED,
-                       "%s: has %u faces, %u layers and depth %u, only single cubes and tables are "
-                       "read",
-                       s->name, s->face_count, s->layer_count, s->depth);
+        return ki_fail(
+            error, KILN_ERROR_UNSUPPORTED,
+            "%s: has %u faces, %u layers and depth %u; kiln reads single cubes and tables only",
+            s->name, s->face_count, s->layer_count, s->depth);
     if (scheme != SCHEME_NONE && scheme != SCHEME_ZSTD)
-        return ki_fail(error, KILN_ERROR_UNSUPPORTED,
-                       "%s: has supercompression scheme %u; 0 and 2 (zstd) are read", s->name,
-                       scheme);
+        return ki_fail(
+            error, KILN_ERROR_UNSUPPORTED,
+            "%s: has supercompression scheme %u; kiln reads the schemes 0 (none) and 2 (zstd)",
+            s->name, scheme);
     s->zstd = scheme == SCHEME_ZSTD;
     s->level_count = s->level_count ? s->level_count : 1;
     return s->zstd ? ki_zstd_known(s->name, error) : KILN_OK;
@@ -189,22 +190,24 @@ kiln_result ki_ktx2_find_level(ki_ktx2_source *s, uint32_t k, uint64_t wanted, k
     ki_reader *r = &s->reader;
     uint64_t offset = ki_read_u64(r), length = ki_read_u64(r), plain = ki_read_u64(r);
     if (r->failed || offset > s->size || length > s->size - offset)
-        return ki_fail(error, KILN_ERROR_FORMAT,
-                       "%s: level %u has %llu bytes at %llu, the file has %zu", s->name, k,
-                       (unsigned long long)length, (unsigned long long)offset, s->size);
+        return ki_fail(
+            error, KILN_ERROR_FORMAT,
+            "%s: level %u has %llu bytes from byte %llu on, but the file has only %zu bytes",
+            s->name, k, (unsigned long long)length, (unsigned long long)offset, s->size);
     *level = (ki_ktx2_level){s->bytes + offset, (size_t)length, (size_t)wanted};
     uint64_t stated = length;
     if (s->zstd && !ki_zstd_stated_size(level->bytes, level->size, &stated))
         return ki_fail(error, KILN_ERROR_FORMAT,
-                       "%s: level %u is no zstd frame that states its size", s->name, k);
+                       "%s: level %u is not a zstd frame that states its size", s->name, k);
     if (plain != wanted || stated != wanted)
-        return ki_fail(error, KILN_ERROR_FORMAT, "%s: level %u holds %llu bytes, its %s %llu",
-                       s->name, k, (unsigned long long)(plain != wanted ? plain : stated),
-                       s->face_count == 6 ? "six faces need" : "texels need",
-                       (unsigned long long)wanted);
+        return ki_fail(
+            error, KILN_ERROR_FORMAT, "%s: level %u holds %llu bytes, but its %s %llu bytes",
+            s->name, k, (unsigned long long)(plain != wanted ? plain : stated),
+            s->face_count == 6 ? "six faces need" : "texels need", (unsigned long long)wanted);
     // zstd expands a byte to at most 43691 bytes: a block of 128 KiB takes at least three bytes.
     if (wanted / 43691 > length)
-        return ki_fail(error, KILN_ERROR_FORMAT, "%s: level %u is damaged", s->name, k);
+        return ki_fail(error, KILN_ERROR_FORMAT,
+                       "%s: level %u is damaged: its bytes are too few for its size", s->name, k);
     return KILN_OK;
 }
 

@@ -87,13 +87,16 @@ kiln_result ki_ktx2_encode(const kiln_map *map, const kiln_save_def *def, ki_wri
 {
     const ki_pixel_format *pixel = ki_pixel_format_of(def->format);
     if (map->shape != KILN_SHAPE_CUBE)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "a KTX2 file holds a cube, not another shape");
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "a KTX2 file holds a cube only, convert the map by kiln_map_convert");
     if (!pixel || !pixel->vk)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "format is %d, it must be 0 to %d",
                        (int)def->format, (int)KILN_FORMAT_BC6H);
     if (map->smallest > 1 && map->size >> (map->level_count - 1) < map->smallest)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
-                       "a KTX2 file halves every level, the map's smallest is %d", map->smallest);
+                       "each level of a KTX2 file has half the size of the previous level, which "
+                       "the map's smallest of %d prevents",
+                       map->smallest);
     ki_ktx2_file file = {.vk = pixel->vk,
                          .type_size = pixel->type_size,
                          .texel_size = pixel->bytes,
@@ -124,14 +127,17 @@ kiln_result ki_ktx2_encode(const kiln_map *map, const kiln_save_def *def, ki_wri
 static kiln_result check(const ki_ktx2_source *s, const ki_pixel_format *pixel, kiln_error *error)
 {
     if (!pixel)
-        return ki_fail(error, KILN_ERROR_UNSUPPORTED,
-                       "%s: has vkFormat %u; 97, 109, 122, 123 and 143 are read", s->name, s->vk);
+        return ki_fail(
+            error, KILN_ERROR_UNSUPPORTED,
+            "%s: has vkFormat %u; kiln reads cubes of the formats 97, 109, 122, 123 and 143",
+            s->name, s->vk);
     if (s->width < 1 || s->width != s->height || s->width > KILN_MAX_SIZE)
         return ki_fail(error, KILN_ERROR_FORMAT,
-                       "%s: faces are %u x %u, they must be square and 1 to %d", s->name, s->width,
-                       s->height, KILN_MAX_SIZE);
+                       "%s: faces are %u x %u, they must be square with sides of 1 to %d", s->name,
+                       s->width, s->height, KILN_MAX_SIZE);
     if (s->level_count > KILN_MAX_LEVELS || s->width >> (s->level_count - 1) == 0)
-        return ki_fail(error, KILN_ERROR_FORMAT, "%s: has %u levels for a size of %u", s->name,
+        return ki_fail(error, KILN_ERROR_FORMAT,
+                       "%s: has %u levels, which is too many for faces of size %u", s->name,
                        s->level_count, s->width);
     return KILN_OK;
 }

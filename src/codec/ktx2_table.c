@@ -80,8 +80,9 @@ kiln_result ki_ktx2_encode_table(const kiln_image *image, int depth, const char 
 {
     const table_texel *texel = find_texel(format, image->channels);
     if (!texel)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "a KTX2 file has no format %d of %d channels",
-                       (int)format, image->channels);
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "a KTX2 file cannot hold a table of format %d with %d channels", (int)format,
+                       image->channels);
     ki_ktx2_file file = {.vk = texel->vk,
                          .type_size = ki_component_bytes(format),
                          .texel_size = (int)texel_size(texel),
@@ -122,19 +123,20 @@ static kiln_result check(const ki_ktx2_source *s, const table_texel *texel, kiln
 {
     enum { LIMIT = 6 * KILN_MAX_SIZE };
     if (!texel)
-        return ki_fail(
-            error, KILN_ERROR_UNSUPPORTED,
-            "%s: has vkFormat %u; of tables 8 and 16 bits, halves and floats of 1, 2 and "
-            "4 channels are read",
-            s->name, s->vk);
+        return ki_fail(error, KILN_ERROR_UNSUPPORTED,
+                       "%s: has vkFormat %u; kiln reads tables of 8 and 16 bits, 16-bit floats and "
+                       "32-bit floats with 1, 2 and 4 channels",
+                       s->name, s->vk);
     if (s->width < 1 || s->height < 1)
-        return ki_fail(error, KILN_ERROR_FORMAT, "%s: is %u x %u texels", s->name, s->width,
+        return ki_fail(error, KILN_ERROR_FORMAT,
+                       "%s: is %u x %u texels, each side must be at least 1", s->name, s->width,
                        s->height);
     uint64_t rows = (uint64_t)s->height * (s->depth ? s->depth : 1);
     if (s->width > LIMIT || s->depth > LIMIT || rows > LIMIT)
-        return ki_fail(error, KILN_ERROR_UNSUPPORTED,
-                       "%s: is %u x %u x %u texels, the limit of a side and of rows is %d", s->name,
-                       s->width, s->height, s->depth, LIMIT);
+        return ki_fail(
+            error, KILN_ERROR_UNSUPPORTED,
+            "%s: is %u x %u x %u texels; width, depth, and height times depth may be %d at most",
+            s->name, s->width, s->height, s->depth, LIMIT);
     return KILN_OK;
 }
 

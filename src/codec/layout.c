@@ -93,6 +93,5 @@ kiln_result ki_lay_out(kiln_context *context, kiln_image *image, const char *nam
     };
     return ki_fail(error, KILN_ERROR_FORMAT, "%s: is %lld x %lld, its sides must be %s%s", name,
                    (long long)w, (long long)h, wanted[layout],
-                   any && w == h ? "; a square may be an octahedron, which the layout must say"
-                                 : "");
+                   any && w == h ? "; if the square is an octahedron, say so by the layout" : "");
 }

@@ -185,9 +185,10 @@ static kiln_result search_folder(kiln_context *context, const char *path, face_p
                        "%s: holds no face named px.exr, NAME_px.exr or the like (exr, hdr, png)",
                        path);
     if (other[0] && face_in(best) > best)
-        return ki_fail(error, KILN_ERROR_IO,
-                       "%s: holds both %.64s and %.64s; name the faces by a pattern with %%s", path,
-                       best, other);
+        return ki_fail(
+            error, KILN_ERROR_IO,
+            "%s: holds two sets of faces, as %.64s and %.64s; name one set by a pattern with %%s",
+            path, best, other);
     size_t length = strlen(path);
     bool slash = length && ki_os_is_separator(path[length - 1]);
     size_t room = length + strlen(best) + 2;
@@ -208,11 +209,12 @@ static kiln_result check_face(const char *path, const kiln_image *image, const k
     if (image->channels != 3)
         return ki_fail(error, KILN_ERROR_UNSUPPORTED, "%s: holds a table, not a face", path);
     if (image->width != image->height)
-        return ki_fail(error, KILN_ERROR_FORMAT, "%s: is %d x %d, a face must be square", path,
-                       image->width, image->height);
+        return ki_fail(error, KILN_ERROR_FORMAT, "%s: is %d x %d pixels, a face must be square",
+                       path, image->width, image->height);
     if (map->size && image->width != map->size)
-        return ki_fail(error, KILN_ERROR_FORMAT, "%s: is %d x %d, the first face %d x %d", path,
-                       image->width, image->height, map->size, map->size);
+        return ki_fail(error, KILN_ERROR_FORMAT,
+                       "%s: is %d x %d pixels, but the first face is %d x %d", path, image->width,
+                       image->height, map->size, map->size);
     return KILN_OK;
 }
 

@@ -208,21 +208,24 @@ static kiln_result check_pack(const kiln_map *map, int level, kiln_format format
     if (result != KILN_OK)
         return result;
     if (level < 0 || level >= map->level_count)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "level is %d, the map has %d", level,
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "level is %d, it must be less than the map's level count of %d", level,
                        map->level_count);
     if (!packed_rows(map, level, format, rows, row_bytes))
-        return ki_fail(error, KILN_ERROR_ARGUMENT,
-                       "format is %d, levels are packed as rgba16f, rgba32f, rgb9e5, b10g11r11 "
-                       "and bc6h",
-                       (int)format);
+        return ki_fail(
+            error, KILN_ERROR_ARGUMENT,
+            "format is %d, it must be one of rgba16f, rgba32f, rgb9e5, b10g11r11 and bc6h",
+            (int)format);
     stride = stride ? stride : *row_bytes;
     if (stride < *row_bytes)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "row_stride is %zu bytes, a row has %zu", stride,
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "row_stride is %zu bytes, it must be at least a row's %zu bytes", stride,
                        *row_bytes);
     size_t before;
     if (!ki_mul_size(*rows - 1, stride, &before) || size < before || size - before < *row_bytes)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
-                       "the destination has %zu bytes, %zu rows of %zu bytes, %zu apart, need more",
+                       "the destination has %zu bytes, which are too few for %zu rows of %zu bytes "
+                       "that are %zu bytes apart",
                        size, *rows, *row_bytes, stride);
     return KILN_OK;
 }

@@ -12,7 +12,7 @@ static kiln_result check_pixels(const kiln_pixels *p, size_t *row_bytes, kiln_er
     if (!p->data)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "the pixels' data is NULL");
     if (p->channels != 3 && p->channels != 4)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "pixels have %d channels, it must be 3 or 4",
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "pixels have %d channels, they must have 3 or 4",
                        p->channels);
     if ((unsigned)p->type > KILN_PIXEL_HALF)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "the pixels' type is %d, it must be 0 or %d",
@@ -22,11 +22,14 @@ static kiln_result check_pixels(const kiln_pixels *p, size_t *row_bytes, kiln_er
                        (int)p->layout, (int)KILN_LAYOUT_OCTAHEDRON);
     size_t sample = p->type == KILN_PIXEL_HALF ? 2 : 4;
     if (p->width < 0 || !ki_mul_size((size_t)p->width, sample * (size_t)p->channels, row_bytes))
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "pixels are %d wide", p->width);
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "the width is %d pixels, it must be positive and small enough for memory",
+                       p->width);
     // Negated as an unsigned number, because -PTRDIFF_MIN does not exist.
     size_t stride = p->row_stride < 0 ? 0 - (size_t)p->row_stride : (size_t)p->row_stride;
     if (stride && stride < *row_bytes)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "row_stride is %td bytes, a row has %zu",
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "row_stride is %td bytes, it must be 0 or at least a row's %zu bytes",
                        p->row_stride, *row_bytes);
     return KILN_OK;
 }

@@ -105,7 +105,7 @@ static kiln_result read_head(png_file *f, kiln_error *error)
     if (!ki_read_bytes(&f->reader, 8) || !next_chunk(f, &c))
         return damaged(f, error, "the file ends too early");
     if (!is(&c, "IHDR") || c.size != 13 || !c.intact)
-        return damaged(f, error, "its first chunk is no IHDR of 13 bytes with the right sum");
+        return damaged(f, error, "its first chunk is not an IHDR of 13 bytes with a correct CRC");
     ki_reader r = ki_reader_make(c.bytes, c.size);
     uint32_t width = read_u32_high_first(&r), height = read_u32_high_first(&r);
     f->depth = ki_read_u8(&r);
@@ -150,7 +150,7 @@ static kiln_result join_data(png_file *f, chunk *c, kiln_error *error)
     int count = 0;
     for (bool more = true; more && is(&next, "IDAT"); more = next_chunk(f, &next)) {
         if (!next.intact)
-            return damaged(f, error, "the sum of a chunk is wrong");
+            return damaged(f, error, "the CRC of a chunk is wrong");
         f->packed_size += next.size;
         count++;
     }
@@ -182,14 +182,14 @@ static kiln_result read_chunks(png_file *f, kiln_error *error)
         if (!critical)
             continue;
         if (!c.intact)
-            return damaged(f, error, "the sum of a chunk is wrong");
+            return damaged(f, error, "the CRC of a chunk is wrong");
         if (is(&c, "IDAT"))
             break;
         if (!is(&c, "PLTE") || !read_palette(f, &c))
             return damaged(f, error,
                            is(&c, "PLTE")   ? "its palette has a wrong size"
                            : is(&c, "IEND") ? "it has no chunk IDAT"
-                                            : "it has a critical chunk of which nothing is known");
+                                            : "it has a critical chunk that PNG does not define");
     }
     if (f->color & KI_PNG_PALETTE && !f->has_palette)
         return damaged(f, error, "its palette is missing");
@@ -378,7 +378,9 @@ static kiln_result unpack(png_file *f, kiln_error *error)
         result = ki_fail_memory(f->context, error, f->name, size);
     } else if (!ki_inflate(f->packed, f->packed_size, f->raw, size) &&
                !ki_inflate_beginning(f->packed, f->packed_size, f->raw, size)) {
-        result = damaged(f, error, "its data does not inflate to its size, or to another sum");
+        result =
+            damaged(f, error,
+                    "its data does not inflate to the picture's size or has a wrong Adler-32 sum");
     } else {
         uint8_t *raw = f->raw;
         bool good = true;
@@ -387,7 +389,7 @@ static kiln_result unpack(png_file *f, kiln_error *error)
             raw += f->passes[i].height * (f->passes[i].row + 1);
         }
         if (!good)
-            result = damaged(f, error, "a row has a filter of which nothing is known");
+            result = damaged(f, error, "a row has a filter that PNG does not define");
     }
     ki_free(zeros);
     return result;

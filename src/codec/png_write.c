@@ -75,7 +75,7 @@ static void write_part(png_writer *p, bool last)
     uint8_t *rows = p->rows + p->history;
     size_t bound = ki_deflate_bound(p->waiting), start = begin_chunk(p->out, "IDAT");
     uint8_t *room = ki_write_room(p->out, bound);
-    if (!room) { // the writer has failed; the rows make way for those that follow
+    if (!room) { // the writer has failed, so the waiting rows are dropped
         p->waiting = 0;
         return;
     }

@@ -49,9 +49,10 @@ static kiln_result check_format(const char *path, const ki_file_format *file, ki
     if (format == KILN_FORMAT_AUTO || file->pixel_formats & 1U << format)
         return KILN_OK;
     if (!file->pixel_formats)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: %s has one format only, leave %s out", path,
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "%s: %s files have one format only, leave the format %s out", path,
                        file->endings[0], ki_format_names[format]);
-    return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: format %s is for %s", path,
+    return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: the format %s can be written to %s only", path,
                    ki_format_names[format], ki_list_endings_of_format(format, list));
 }
 
@@ -68,14 +69,15 @@ kiln_result kiln_map_save_check(const char *path, kiln_shape shape, const kiln_s
         return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: must end in %s", path,
                        ki_list_endings(KI_HOLDS_PICTURE | KI_HOLDS_CUBE, "/", list));
     if (shape != KILN_SHAPE_CUBE && !ki_file_holds(file, KI_HOLDS_PICTURE))
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: %s holds a cube; %s goes to %s", path,
-                       file->endings[0], shape_names[shape],
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: %s files hold cubes only, save %s to %s",
+                       path, file->endings[0], shape_names[shape],
                        ki_list_endings(KI_HOLDS_PICTURE, NULL, list));
     if (shape != KILN_SHAPE_CUBE && has_face(path))
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: names a face, %s has none", path,
-                       shape_names[shape]);
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: the path names a face, but %s has no faces",
+                       path, shape_names[shape]);
     if (def->zstd && !file->zstd)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: zstd is for .ktx2", path);
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: only .ktx2 files are compressed by zstd",
+                       path);
     return check_format(path, file, def->format, error);
 }
 
@@ -297,11 +299,13 @@ kiln_result kiln_image_save(kiln_context *context, const kiln_image *image, cons
                        ki_list_endings(KI_HOLDS_PICTURE, NULL, list));
     if (!image->pixels || image->width < 1 || image->height < 1 || image->channels < 1 ||
         image->channels > 4)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "the image is %d x %d with %d channels%s",
-                       image->width, image->height, image->channels,
-                       image->pixels ? "" : " and no pixels");
+        return ki_fail(
+            error, KILN_ERROR_ARGUMENT,
+            "the image is %d x %d with %d channels%s, it must have pixels and 1 to 4 channels",
+            image->width, image->height, image->channels, image->pixels ? "" : " and no pixels");
     if (!strcmp(file->name, "hdr") && image->channels != 3)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: HDR has three channels, the image %d", path,
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "%s: an HDR file has three channels, but the image has %d", path,
                        image->channels);
     ki_writer bytes = {.context = context};
     const ki_picture_about about = {.roughness = -1};

@@ -53,8 +53,8 @@ static kiln_result finish(const char *format, int count, const char *name, kiln_
         bands++;
     if (bands * bands != count)
         return ki_fail(error, KILN_ERROR_FORMAT,
-                       "%s: holds %d whole coefficients, they must be 1, 4, 9, 16 or 25", name,
-                       count);
+                       "%s: holds %d complete coefficients, the number must be 1, 4, 9, 16 or 25",
+                       name, count);
     snprintf(info->format, sizeof info->format, "%s", format);
     snprintf(info->encoding, sizeof info->encoding, "text");
     snprintf(info->layout, sizeof info->layout, "harmonics");

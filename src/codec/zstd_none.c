@@ -3,7 +3,9 @@
 
 kiln_result ki_zstd_known(const char *name, kiln_error *error)
 {
-    return ki_fail(error, KILN_ERROR_UNSUPPORTED, "%s: this build of kiln leaves zstd out", name);
+    return ki_fail(error, KILN_ERROR_UNSUPPORTED,
+                   "%s: this build of kiln has no zstd, which the CMake option KILN_ZSTD adds",
+                   name);
 }
 
 size_t ki_zstd_bound(size_t size)
@@ -29,5 +31,5 @@ bool ki_zstd_stated_size(const uint8_t *packed, size_t packed_size, uint64_t *si
 const char *ki_zstd_unpack(const uint8_t *packed, size_t packed_size, uint8_t *plain, size_t size)
 {
     (void)packed, (void)packed_size, (void)plain, (void)size;
-    return "this build of kiln leaves zstd out";
+    return "this build of kiln has no zstd";
 }

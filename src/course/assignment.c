@@ -178,7 +178,8 @@ static void error_color(double off, float color[3])
         color[c] = (float)((low[c] + (high[c] - low[c]) * (at - i)) / 255);
 }
 
-// Differences table - exact; `map`, which may be NULL, receives colours of them.
+// Computes the differences table - exact. `map`, which may be NULL, receives the colours of the
+// differences.
 static kiln_difference compare_tables(const kiln_image *table, const kiln_image *exact,
                                       kiln_image *map)
 {
@@ -206,7 +207,7 @@ static kiln_result complete(kiln_assignment_method method, const kiln_assignment
     def->size = def->size ? def->size : 128;
     def->sample_count = def->sample_count ? def->sample_count : 1024;
     if ((unsigned)method > KILN_ASSIGNMENT_SPLIT_SUM)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "the method is %d, there are 0 to %d",
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "the method is %d, it must be 0 to %d",
                        (int)method, KILN_ASSIGNMENT_SPLIT_SUM);
     if (def->size < 2 || def->size > MAX_SIZE)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
@@ -215,7 +216,7 @@ static kiln_result complete(kiln_assignment_method method, const kiln_assignment
         return ki_fail(error, KILN_ERROR_ARGUMENT, "sample_count is %d, it must be 1 to %d, or 0",
                        def->sample_count, MAX_SAMPLES);
     if ((unsigned)def->g > KILN_ASSIGNMENT_G_UNCORRELATED)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "g is %d, there are 0 to %d", (int)def->g,
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "g is %d, it must be 0 to %d", (int)def->g,
                        KILN_ASSIGNMENT_G_UNCORRELATED);
     return KILN_OK;
 }
@@ -247,8 +248,9 @@ static kiln_result check_table(const char *name, const kiln_image *table, kiln_e
 {
     if (!table->pixels || table->channels != 1 || table->width < 1 || table->height < 1)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
-                       "%s is %d x %d with %d channels%s, it must have one", name, table->width,
-                       table->height, table->channels, table->pixels ? "" : " and no pixels");
+                       "%s is %d x %d with %d channels%s, it must have texels with one channel",
+                       name, table->width, table->height, table->channels,
+                       table->pixels ? "" : " and no pixels");
     return KILN_OK;
 }
 
@@ -275,9 +277,10 @@ kiln_result kiln_assignment_compare(kiln_context *context, const kiln_image *tab
     if (!result)
         result = check_table("the exact table", exact, error);
     if (!result && (table->width != exact->width || table->height != exact->height))
-        result = ki_fail(error, KILN_ERROR_ARGUMENT,
-                         "the table is %d x %d, the exact one %d x %d: they must be alike",
-                         table->width, table->height, exact->width, exact->height);
+        result = ki_fail(
+            error, KILN_ERROR_ARGUMENT,
+            "the table is %d x %d and the exact table is %d x %d, they must have the same size",
+            table->width, table->height, exact->width, exact->height);
     if (!result && map)
         result = kiln_image_create(context, table->width, table->height, 3, map, error);
     if (!result)

@@ -68,14 +68,16 @@ static kiln_result check_levels(const ki_recipe *recipe, int size, int level_cou
                        "%s: size is %d, it must be a power of two from %d to %d", name, size,
                        recipe->size_min, recipe->size_max);
     if (!recipe->level_count_min && level_count != all)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: %d levels, a size of %d must have %d", name,
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "%s: level_count is %d, a cube of size %d must have %d levels", name,
                        level_count, size, all);
     int most = 1;
     while (size >> most && most < KILN_MAX_LEVELS)
         most++;
     if (level_count < recipe->level_count_min || level_count > most + recipe->extra_levels)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: %d levels, a size of %d may have %d to %d",
-                       name, level_count, size, recipe->level_count_min, most);
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "%s: level_count is %d, a cube of size %d may have %d to %d levels", name,
+                       level_count, size, recipe->level_count_min, most);
     return KILN_OK;
 }
 
@@ -85,7 +87,7 @@ static kiln_result find_recipe(const kiln_engine *engine, const ki_recipe **reci
     *recipe = ki_recipe_of(engine);
     return *recipe ? KILN_OK
                    : ki_fail(error, KILN_ERROR_ARGUMENT,
-                             "the engine is none of kiln's: take it from kiln_engine_find");
+                             "the engine is unknown, take an engine from kiln_engine_find");
 }
 
 kiln_result kiln_engine_levels(const kiln_engine *engine, int size, int level_count,
@@ -137,11 +139,12 @@ kiln_result kiln_engine_format(const kiln_engine *engine, kiln_format *format, k
                  ki_format_names[formats[i]]);
     }
     if (!names[0])
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: has one format and takes no other",
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "%s: the engine's files have one format only, leave the format out",
                        engine->name);
     bool known = *format > KILN_FORMAT_AUTO && *format <= KILN_FORMAT_RGBP;
     return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: format is %s, it must be %s", engine->name,
-                   known ? ki_format_names[*format] : "none of kiln's", names);
+                   known ? ki_format_names[*format] : "unknown", names);
 }
 
 // The levels and directions for kiln_engine_show: level `level` and the next level are mixed by
@@ -182,7 +185,8 @@ kiln_result kiln_engine_show(kiln_context *context, const kiln_engine *engine, c
     if (result != KILN_OK || (result = ki_map_check(map, error)) != KILN_OK)
         return result;
     if (!recipe->level || map->shape != KILN_SHAPE_CUBE)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: shows levels of cubes only",
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "%s: only cubes of an engine that reads levels can be shown",
                        recipe->about.name);
     if (!(roughness >= 0 && roughness <= 1))
         return ki_fail(error, KILN_ERROR_ARGUMENT, "roughness is %g, it must be 0 to 1", roughness);
@@ -211,16 +215,17 @@ static kiln_result check_map(const ki_recipe *recipe, const kiln_map *map, const
     if (result != KILN_OK)
         return result;
     if (map->shape != KILN_SHAPE_CUBE)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: takes a cube, the map has shape %d",
-                       recipe->about.name, (int)map->shape);
-    if (map->smallest != recipe->smallest)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
-                       "%s: levels are no smaller than %d, the map's smallest is %d",
+                       "%s: the engine reads cubes, but the map has shape %d", recipe->about.name,
+                       (int)map->shape);
+    if (map->smallest != recipe->smallest)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: the map's smallest must be %d, it is %d",
                        recipe->about.name, recipe->smallest, map->smallest);
     if (!sh || sh->bands < 3 || sh->bands > KILN_MAX_BANDS || sh->irradiance)
-        return ki_fail(error, KILN_ERROR_ARGUMENT,
-                       "%s: takes harmonics of radiance, of 3 to %d bands", recipe->about.name,
-                       KILN_MAX_BANDS);
+        return ki_fail(
+            error, KILN_ERROR_ARGUMENT,
+            "%s: the engine's files need spherical harmonics of radiance with 3 to %d bands",
+            recipe->about.name, KILN_MAX_BANDS);
     return check_levels(recipe, map->size, map->level_count, error);
 }
 

@@ -5,7 +5,8 @@
 
 #include <math.h>
 
-// Floats of a sample: wanted RGB and weight in the first array, remaining RGB in the second.
+// WANTED: floats of a sample in the first array, the wanted RGB and the weight. REST: floats of a
+// sample in the second array, the remainder of RGB.
 enum { WANTED = 4, REST = 3 };
 
 static ptrdiff_t samples_across(const ki_picture *p)

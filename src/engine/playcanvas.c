@@ -55,7 +55,8 @@ typedef struct atlas {
     float *pixels; // the atlas: size x size x 4 floats
     float *texels; // texels of the picture that is being drawn
     float *room;   // scratch memory of the picture, see ki_picture
-    // Level 0 of the cube halved repeatedly: level k is 2 << k times smaller than the cube.
+    // Copies of level 0 of the cube at smaller sizes: level k of `halves` has 2 << k times fewer
+    // texels along an edge than the cube.
     kiln_map halves;
 } atlas;
 

@@ -24,8 +24,9 @@ static kiln_result check_numbers(const kiln_map *map, kiln_error *error)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "%s size is %d, it must be 1 to %d",
                        shape_names[map->shape], map->size, KILN_MAX_SIZE);
     if (map->smallest < 0 || map->smallest > map->size)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "smallest is %d, it must be 0 to the size, %d",
-                       map->smallest, map->size);
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "smallest is %d, it must be from 0 to the size, which is %d", map->smallest,
+                       map->size);
     if (map->level_count < 1 || map->level_count > KILN_MAX_LEVELS)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "level_count is %d, it must be 1 to %d",
                        map->level_count, KILN_MAX_LEVELS);
@@ -38,8 +39,9 @@ kiln_result ki_map_check(const kiln_map *map, kiln_error *error)
         return KILN_ERROR_ARGUMENT;
     for (int k = 0; k < map->level_count; k++)
         if (!map->level[k])
-            return ki_fail(error, KILN_ERROR_ARGUMENT, "level %d of %d of the %s is NULL", k,
-                           map->level_count, shape_names[map->shape]);
+            return ki_fail(error, KILN_ERROR_ARGUMENT,
+                           "level %d of the %d levels of the %s is NULL", k, map->level_count,
+                           shape_names[map->shape]);
     return KILN_OK;
 }
 

@@ -18,7 +18,7 @@ typedef enum ki_resample_method {
     KI_RESAMPLE_SCATTER,   ///< cube or octahedron to panorama
     KI_RESAMPLE_SEPARABLE, ///< panorama to panorama
     KI_RESAMPLE_FACES,     ///< cube to cube of another size, by quarter turns
-    KI_RESAMPLE_SUBSAMPLE  ///< all else
+    KI_RESAMPLE_SUBSAMPLE  ///< all other pairs of shapes, sizes and rotations
 } ki_resample_method;
 
 /// The range of source columns or rows that a target column or row overlaps.
@@ -36,18 +36,20 @@ struct ki_resample_plan {
     ki_resample_method method;
     union {
         struct
-        { // gather, scatter: the cube or octahedron is computed `factor` times finer than its size
+        // gather and scatter: the cube or octahedron is computed `factor` times finer than its size
+        {
             ki_stencil_grid grid[KI_RESAMPLE_GRIDS];
             int grid_count;
             int factor;
-            float *fine_area; // solid angles of the finer map's first face's texels; gather only
-            int band_rows;    // rows of a band; scatter only
+            // gather only: solid angles of the texels of the finer map's first face
+            float *fine_area;
+            int band_rows; // scatter only: number of rows of a band
         };
         struct { // separable
             ki_resample_span *columns, *rows;
             float *weights;
         };
-        int sub; // subsample: points along a texel's side
+        int sub; // subsample: number of points along a texel's side
     };
 };
 
@@ -72,7 +74,7 @@ static inline int wrap(int column, int width)
     return column;
 }
 
-/// Whether a number is whole, up to rounding.
+/// Returns whether a number is whole, up to rounding.
 static inline bool ki_is_whole(double x)
 {
     return fabs(x - floor(x + 0.5)) < 1e-9;

@@ -43,7 +43,8 @@ static ptrdiff_t quarter_texel(ki_stencil_kind kind, int quarter, bool flip, int
     // Forward is -Z and right is +X: (forward, right) is (p, q) turned by the number of quarters.
     static const int forward_sign[4] = {1, -1, -1, 1}, right_sign[4] = {1, 1, -1, -1};
     int forward = quarter & 1 ? q : p, right = quarter & 1 ? p : q;
-    bool bottom = flip && kind == KI_STENCIL_TOP; // On -Y the coordinate t runs the other way
+    // on the face -Y the coordinate t runs in the opposite direction
+    bool bottom = flip && kind == KI_STENCIL_TOP;
     int x = from_middle(right_sign[quarter], right, half);
     int y = from_middle(bottom ? forward_sign[quarter] : -forward_sign[quarter], forward, half);
     ptrdiff_t n = 2 * (ptrdiff_t)half;
@@ -441,7 +442,8 @@ void ki_resample_scatter(void *data, int index)
         }
     }
     for (int r = first; r < end; r++) {
-        // By cos a - cos b = 2 sin((a + b) / 2) sin((b - a) / 2), without cancellation.
+        // The difference of the cosines of a row's edges, by cos a - cos b = 2 sin((a + b) / 2)
+        // sin((b - a) / 2), which avoids cancellation.
         double step = KI_PI / height;
         double tall = 2 * ki_sin((r + 0.5) * step) * ki_sin(0.5 * step);
         double scale = width / (2 * KI_PI * tall);

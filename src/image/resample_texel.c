@@ -1,6 +1,7 @@
-// Resampling texel by texel of the target. Panorama to panorama: separable weights of columns and rows.
-// Cube to cube by quarter turns: rectangles on faces. All else: sub-samples, each weighted by its solid
-// angle.
+// Resampling texel by texel of the target. In: a plan and the texels of the source. Out: the texels
+// of the target. Method: from panorama to panorama, separable weights of columns and rows; from
+// cube to cube by quarter turns, rectangles on faces; for all other pairs of maps, samples within
+// each texel, weighted by solid angle.
 #include "image/resample_method.h"
 
 #include "image/image.h"

@@ -13,11 +13,12 @@ kiln_result kiln_spectrum_filter(kiln_context *context, const kiln_spectrum *spe
     if (result != KILN_OK || (result = ki_lobe_check(lobe, error)) != KILN_OK)
         return result;
     if (level < 0 || level >= map->level_count)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "level is %d, the map has %d", level,
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "level is %d, it must be less than the map's level count of %d", level,
                        map->level_count);
     if (!(fabs(rotation) <= 1e6))
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "rotation is %g degrees, it must be within 1e6",
-                       rotation);
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "rotation is %g degrees, it must be from -1e6 to 1e6", rotation);
     ki_zonal zonal;
     ki_zonal_spectrum zonal_spectrum;
     ki_legendre legendre = {0};
@@ -29,9 +30,10 @@ kiln_result kiln_spectrum_filter(kiln_context *context, const kiln_spectrum *spe
         return result;
     double rest = zonal_spectrum.rest;
     if (zonal_spectrum.degree > spectrum->degree || rest > 10 * ki_lobe_tolerance) {
-        result = ki_fail(
-            error, KILN_ERROR_ARGUMENT, "the lobe needs a spectrum of degree %s%d, this one has %d",
-            rest > 10 * ki_lobe_tolerance ? "above " : "", zonal_spectrum.degree, spectrum->degree);
+        result = ki_fail(error, KILN_ERROR_ARGUMENT,
+                         "the lobe needs a spectrum of degree %s%d, but the spectrum has degree %d",
+                         rest > 10 * ki_lobe_tolerance ? "above " : "", zonal_spectrum.degree,
+                         spectrum->degree);
         ki_zonal_free(&zonal_spectrum);
         return result;
     }

@@ -48,7 +48,9 @@ typedef struct ki_fft {
 typedef struct ki_sun_points {
     int count, near_count;
     double far_versine, near_versine, horizon;
-    double (*centre)[6], (*pairs)[6], (*near)[6]; // [count], [count][4], [count][near_count]
+    // arrays of `count` centre points, `count` sets of 4 points, and `count` sets of near_count
+    // points
+    double (*centre)[6], (*pairs)[6], (*near)[6];
 } ki_sun_points;
 
 typedef struct ki_kernels {

@@ -39,7 +39,8 @@ kiln_result ki_level_execute(const ki_level *level, const ki_level_workspace *wo
                              double rotation, kiln_map *map, int index, const ki_stage *stage,
                              kiln_error *error);
 
-/// Bytes that an execution takes for `count` suns of a panorama of `source_size` rows, and all.
+/// Returns the number of bytes that an execution takes in all for `count` suns of a panorama of
+/// `source_size` rows.
 size_t ki_level_suns_size(const ki_level *level, int source_size, size_t count);
 
 #endif

@@ -99,7 +99,8 @@ kiln_result ki_lobe_check(const kiln_lobe *lobe, kiln_error *error)
         high = KI_PI + 1e-9;
         break;
     default:
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "lobe kind %d is unknown", (int)lobe->kind);
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "the lobe's kind is %d, which kiln does not know", (int)lobe->kind);
     }
     if (!(lobe->parameter >= low && lobe->parameter <= high))
         return ki_fail(error, KILN_ERROR_ARGUMENT, "%s is %g, it must be %g to %g", name,

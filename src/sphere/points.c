@@ -194,9 +194,10 @@ void ki_points_add(const ki_points *points, const double *directions, double *su
 
 // -------------------------------------------------------------------------------- narrow lobes
 
-// Integrates lobe * (1 - step) over a square cell of a texel. The cell is cut in four until it is
-// small relative to its distance from the direction and to the lobe's width. It is then integrated
-// with four by four Gauss nodes, or two by two if it is very small.
+// A sum over square cells of a texel, in which integrate_cell integrates lobe * (1 - step). A cell
+// is cut in four until the cell is small relative to its distance from the direction and to the
+// lobe's width. The cell is then integrated with four by four Gauss nodes, or with two by two nodes
+// if the cell is very small.
 typedef struct cell_sum {
     const ki_zonal *zonal;
     double direction[3], width;

@@ -119,8 +119,8 @@ kiln_result ki_sh_check_bands(int bands, double window, double rotation, kiln_er
     if (!(window >= 0 && window <= 1e6))
         return ki_fail(error, KILN_ERROR_ARGUMENT, "window is %g, it must be 0 to 1e6", window);
     if (!(fabs(rotation) <= 1e6))
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "rotation is %g degrees, it must be within 1e6",
-                       rotation);
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "rotation is %g degrees, it must be from -1e6 to 1e6", rotation);
     return KILN_OK;
 }
 
@@ -137,8 +137,8 @@ kiln_result kiln_sh_filter(const kiln_sh *radiance, int bands, bool irradiance, 
         return result;
     if (from.bands < bands || from.bands > KILN_MAX_BANDS || from.irradiance || from.window > 0)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
-                       "%d bands are wanted of %d bands of %s%s, they must be of radiance without "
-                       "a window",
+                       "cannot make %d bands from %d bands of %s%s: the source must have as many "
+                       "bands, of radiance, without a window",
                        bands, from.bands, from.irradiance ? "irradiance" : "radiance",
                        from.window > 0 ? " with a window" : "");
     *sh = (kiln_sh){.bands = bands, .irradiance = irradiance, .window = window};

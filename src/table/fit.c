@@ -16,19 +16,19 @@
 static kiln_result complete(kiln_fit_def *def, kiln_error *error)
 {
     if ((unsigned)def->kind > KILN_FIT_SHEEN)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "kind of the fit is %d, there are 0 to %d",
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "the kind of the fit is %d, it must be 0 to %d",
                        (int)def->kind, KILN_FIT_SHEEN);
     if ((unsigned)def->form > KILN_FIT_RATIONAL)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "form of the fit is %d, there are 0 to %d",
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "the form of the fit is %d, it must be 0 to %d",
                        (int)def->form, KILN_FIT_RATIONAL);
     if ((unsigned)def->model.d > KILN_D_BECKMANN || (unsigned)def->model.g > KILN_G_SCHLICK_TEXT)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
-                       "the model is (%d, %d), there are 0 to %d and 0 to %d", (int)def->model.d,
-                       (int)def->model.g, KILN_D_BECKMANN, KILN_G_SCHLICK_TEXT);
+                       "the model has d %d and g %d, which must be 0 to %d and 0 to %d",
+                       (int)def->model.d, (int)def->model.g, KILN_D_BECKMANN, KILN_G_SCHLICK_TEXT);
     def->error = def->error != 0 ? def->error : 1e-3;
     if (!(def->error >= 1e-6 && def->error <= 0.5))
         return ki_fail(error, KILN_ERROR_ARGUMENT,
-                       "error of the fit is %g, it must be 1e-06 to 0.5", def->error);
+                       "the error of the fit is %g, it must be 1e-06 to 0.5", def->error);
     if (!(def->roughness_min >= 0 && def->roughness_min <= 0.9))
         return ki_fail(error, KILN_ERROR_ARGUMENT, "roughness_min is %g, it must be 0 to 0.9",
                        def->roughness_min);
@@ -175,11 +175,12 @@ static kiln_result find_part(kiln_context *context, const kiln_fit *fit, ki_fit_
     }
     if (!best_count)
         return ki_fail(error, KILN_ERROR_UNSUPPORTED,
-                       "no form with up to %d coefficients comes near an error of %g",
+                       "no function with up to %d coefficients comes near an error of %g, allow a "
+                       "larger error",
                        fit->def.max_coefficients, wanted);
     return ki_fail(error, KILN_ERROR_UNSUPPORTED,
-                   "no form with up to %d coefficients errs by %g or less; the best errs by %.3g "
-                   "with %d",
+                   "no function with up to %d coefficients has an error of %g or less; the best "
+                   "function has an error of %.3g with %d coefficients",
                    fit->def.max_coefficients, wanted, best, best_count);
 }
 

@@ -228,7 +228,8 @@ kiln_result kiln_fit_save(kiln_context *context, const kiln_fit *fit, const char
 {
     static const char *const names[] = {"kiln_e", "kiln_e_average", "kiln_dfg", "kiln_sheen"};
     if (!is_form(fit))
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "the fit has %d parts, it is not made",
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "the fit has %d parts, make it by kiln_fit_create before it is saved",
                        fit->part_count);
     ki_source_name made;
     kiln_result result =
@@ -237,7 +238,7 @@ kiln_result kiln_fit_save(kiln_context *context, const kiln_fit *fit, const char
         return result;
     bool glsl = ki_ends_with(path, ".glsl");
     if (!glsl && !ki_ends_with(path, ".h"))
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: ends in none of .h .glsl", path);
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: must end in .h or .glsl", path);
     ki_writer text = {.context = context};
     ki_fit_write_code(fit, made.text, glsl, &text);
     result = text.failed ? ki_fail_memory(context, error, path, text.size)

@@ -11,7 +11,7 @@
 
 #include <math.h>
 
-// The exact value of a target function at this roughness and nov.
+// Returns the exact value of a target function at this roughness and nov.
 static double target_value(const kiln_fit_def *def, ki_fit_target target, double roughness,
                            double nov)
 {
@@ -90,7 +90,7 @@ void ki_fit_points_free(ki_fit_points *points)
     *points = (ki_fit_points){0};
 }
 
-// The n.v that belongs to the argument x in [-1, 1] on an axis.
+// Returns the n.v that belongs to the argument x in [-1, 1] on an axis.
 static double nov_of(const kiln_fit_def *def, kiln_fit_axis axis, double roughness, double x)
 {
     double u = ki_clamp((1 + x) / 2, 0, 1);
@@ -107,15 +107,15 @@ static double nov_of(const kiln_fit_def *def, kiln_fit_axis axis, double roughne
     }
 }
 
-// The roughness that belongs to the argument y in [-1, 1].
+// Returns the roughness that belongs to the argument y in [-1, 1].
 static double roughness_of(const kiln_fit_def *def, double y)
 {
     return ki_clamp(def->roughness_min + (1 - def->roughness_min) * (1 + y) / 2, def->roughness_min,
                     1);
 }
 
-// Chebyshev point `index` of the second kind on [-1, 1]: an extremum of a Chebyshev polynomial, or
-// an end.
+// Returns Chebyshev point i of `count` of the second kind on [-1, 1]: an extremum of a Chebyshev
+// polynomial, or an end of the interval.
 static double node(int i, int count)
 {
     return count > 1 ? -ki_cos(KI_PI * i / (count - 1)) : 0;

@@ -131,9 +131,10 @@ static kiln_result check_depth(const kiln_table_def *def, bool has_depth, kiln_e
 {
     enum { LIMIT = 1 << 26 };
     if (!has_depth && def->depth != 1)
-        return ki_fail(error, KILN_ERROR_ARGUMENT,
-                       "depth of the table is %d, it must be 1: this kind has no third axis",
-                       def->depth);
+        return ki_fail(
+            error, KILN_ERROR_ARGUMENT,
+            "depth of the table is %d, it must be 1 because this kind of table has no third axis",
+            def->depth);
     if ((int64_t)def->width * def->height * def->depth > LIMIT)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "%d x %d x %d texels are %lld, the limit is %d",
                        def->width, def->height, def->depth,
@@ -144,34 +145,35 @@ static kiln_result check_depth(const kiln_table_def *def, bool has_depth, kiln_e
 static kiln_result check_choices(const kiln_table_def *def, kiln_error *error)
 {
     if ((unsigned)def->kind > KILN_TABLE_E_WALK)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "kind of the table is %d, there are 0 to %d",
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "kind of the table is %d, it must be 0 to %d",
                        (int)def->kind, KILN_TABLE_E_WALK);
     if ((unsigned)def->model.d > KILN_D_BECKMANN || (unsigned)def->model.g > KILN_G_SCHLICK_TEXT)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
-                       "the model is (%d, %d), there are 0 to %d and 0 to %d", (int)def->model.d,
-                       (int)def->model.g, KILN_D_BECKMANN, KILN_G_SCHLICK_TEXT);
+                       "the model has d %d and g %d, which must be 0 to %d and 0 to %d",
+                       (int)def->model.d, (int)def->model.g, KILN_D_BECKMANN, KILN_G_SCHLICK_TEXT);
     if ((unsigned)def->sheen > KILN_SHEEN_ESTEVEZ)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "sheen is %d, there are 0 to %d",
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "sheen is %d, it must be 0 to %d",
                        (int)def->sheen, KILN_SHEEN_ESTEVEZ);
     if ((unsigned)def->axis > KILN_AXIS_GRAZING)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "axis of the table is %d, there are 0 to %d",
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "axis of the table is %d, it must be 0 to %d",
                        (int)def->axis, KILN_AXIS_GRAZING);
     if (def->kind == KILN_TABLE_E_WALK && def->axis != KILN_AXIS_LINEAR &&
         def->axis != KILN_AXIS_GRAZING)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
-                       "axis of the table is %d, for a table of walks it must be %d, or 0",
+                       "axis of the table is %d, it must be %d, or 0, for a table of random walks",
                        (int)def->axis, KILN_AXIS_GRAZING);
     if (def->kind == KILN_TABLE_E_WALK &&
         (def->model.d != KILN_D_GGX || def->model.g != KILN_G_SMITH))
         return ki_fail(error, KILN_ERROR_ARGUMENT,
-                       "the walk is of GGX and height-correlated Smith, not of the model (%d, %d)",
+                       "random walks need the model of GGX and height-correlated Smith, but d is "
+                       "%d and g is %d",
                        (int)def->model.d, (int)def->model.g);
     if (def->path_count && (def->path_count < 16 || def->path_count > 1 << 24))
         return ki_fail(error, KILN_ERROR_ARGUMENT, "path_count is %d, it must be 16 to %d, or 0",
                        def->path_count, 1 << 24);
     if (def->complement && ki_table_channels(def->kind) != 1)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
-                       "the complement is for tables of one channel, this one has %d",
+                       "complement needs a table of one channel, but this kind of table has %d",
                        ki_table_channels(def->kind));
     return KILN_OK;
 }

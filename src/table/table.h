@@ -7,7 +7,7 @@
 
 #include <kiln/brdf.h>
 
-/// The number of channels of a table of this kind, 1 to 4.
+/// Returns the number of channels of a table of this kind, 1 to 4.
 int ki_table_channels(kiln_table_kind kind);
 
 /// Replaces zeros in `def` by defaults and checks every field. Fails with KILN_ERROR_ARGUMENT.

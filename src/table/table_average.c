@@ -58,8 +58,7 @@ kiln_result kiln_table_average(kiln_context *context, const kiln_table *table, i
     kiln_result result = KILN_OK;
     if (table->def.kind != KILN_TABLE_E || !table->image.pixels)
         result = ki_fail(error, KILN_ERROR_ARGUMENT,
-                         "the average is that of a table of E, not of "
-                         "kind %d",
+                         "the average needs a table of kind E, but the table's kind is %d",
                          (int)table->def.kind);
     if (!result)
         result = ki_table_complete(&average->def, error);

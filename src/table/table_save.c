@@ -21,15 +21,17 @@ static kiln_result check_def(const kiln_table_def *def, kiln_error *error)
         (unsigned)def->model.g > KILN_G_SCHLICK_TEXT || (unsigned)def->axis > KILN_AXIS_GRAZING ||
         (unsigned)def->sheen > KILN_SHEEN_ESTEVEZ)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
-                       "the table's kind, D, G, axis and sheen are %d, %d, %d, %d and %d",
+                       "the table's kind, d, g, axis and sheen are %d, %d, %d, %d and %d, of which "
+                       "one is unknown",
                        (int)def->kind, (int)def->model.d, (int)def->model.g, (int)def->axis,
                        (int)def->sheen);
     if (def->width < 1 || def->width > KILN_MAX_TABLE || def->height < 1 ||
         def->height > KILN_MAX_TABLE || def->depth < 1 || def->depth > KILN_MAX_TABLE ||
         def->path_count < 0)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
-                       "the table is %d x %d x %d with %d paths, sides must be 1 to %d", def->width,
-                       def->height, def->depth, def->path_count, KILN_MAX_TABLE);
+                       "the table is %d x %d x %d with %d paths, its sides must be 1 to %d and its "
+                       "paths 0 or more",
+                       def->width, def->height, def->depth, def->path_count, KILN_MAX_TABLE);
     return KILN_OK;
 }
 
@@ -65,7 +67,7 @@ static kiln_result find_format(const char *path, const kiln_table_save_def *def,
     char list[KI_ENDINGS_TEXT];
     *file = ki_file_format_of_path(path);
     if (!ki_file_holds(*file, KI_HOLDS_TABLE))
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: must be a name in %s", path,
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: must end in %s", path,
                        ki_list_endings(KI_HOLDS_TABLE, NULL, list));
     if ((unsigned)def->format > KILN_TABLE_FORMAT_RGBD)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "format is %d, it must be 0 to %d",
@@ -74,7 +76,8 @@ static kiln_result find_format(const char *path, const kiln_table_save_def *def,
         return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: a %s file has no format %s", path,
                        kiln_path_ending(path), names[def->format]);
     if (def->zstd && !(*file)->zstd)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: only KTX2 has zstd", path);
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: only .ktx2 files are compressed by zstd",
+                       path);
     *format = def->format ? def->format : (*file)->table_format;
     return KILN_OK;
 }
@@ -116,7 +119,8 @@ static kiln_result encode_hdr(const kiln_table *table, const char *path, ki_writ
     kiln_image rgb = {0};
     int channels = table->image.channels;
     if (channels == 4)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: HDR has three channels, the table 4", path);
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "%s: an HDR file has three channels, but the table has 4", path);
     kiln_result result = channels == 3 ? KILN_OK : widen(w->context, &table->image, &rgb, error);
     const kiln_image *image = channels == 3 ? &table->image : &rgb;
     if (result == KILN_OK)
@@ -133,8 +137,9 @@ static kiln_result encode_png(const kiln_table *table, kiln_table_format format,
     kiln_image rgb = {0};
     int channels = table->image.channels;
     if (format == KILN_TABLE_FORMAT_RGBD && channels != 3)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: rgbd has three channels, the table %d",
-                       path, channels);
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "%s: the format rgbd has three channels, but the table has %d", path,
+                       channels);
     if (format == KILN_TABLE_FORMAT_RGBD)
         return ki_rgbx_png_encode(&table->image, ki_rgbd_from_float, false, w, error);
     kiln_result result = channels == 2 ? widen(w->context, &table->image, &rgb, error) : KILN_OK;
@@ -259,7 +264,7 @@ kiln_result kiln_table_lookup_save(kiln_context *context, const kiln_table_def *
 {
     bool glsl = ki_ends_with(path, ".glsl");
     if (!glsl && !ki_ends_with(path, ".h"))
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: ends in none of .h .glsl", path);
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: must end in .h or .glsl", path);
     ki_source_name made;
     kiln_result result = check_def(def, error);
     if (result == KILN_OK)
@@ -288,18 +293,21 @@ static kiln_result take(const char *path, ki_decoded *decoded, const kiln_file_i
     kiln_image *image = &decoded->image;
     kiln_table_def def;
     if (!decoded->is_table)
-        return ki_fail(error, KILN_ERROR_UNSUPPORTED, "%s: holds no table, but a %s (%s)", path,
+        return ki_fail(error, KILN_ERROR_UNSUPPORTED, "%s: holds a %s (%s) and not a table", path,
                        info->layout, info->format);
     if (!ki_table_parse(info->table, &def))
-        return ki_fail(error, KILN_ERROR_FORMAT, "%s: says of its table \"%s\"", path, info->table);
+        return ki_fail(error, KILN_ERROR_FORMAT,
+                       "%s: describes its table as \"%s\", which kiln does not understand", path,
+                       info->table);
     if (def.width != info->width || def.height != info->height || def.depth != info->depth)
         return ki_fail(error, KILN_ERROR_FORMAT,
-                       "%s: is %d x %d x %d texels and says that its table is %d x %d x %d", path,
+                       "%s: has %d x %d x %d texels, but describes its table as %d x %d x %d", path,
                        info->width, info->height, info->depth, def.width, def.height, def.depth);
     int channels = ki_table_channels(def.kind);
     if (image->channels != channels + (channels == 3))
-        return ki_fail(error, KILN_ERROR_FORMAT, "%s: has %d channels, its kind of table %d", path,
-                       image->channels, channels);
+        return ki_fail(error, KILN_ERROR_FORMAT,
+                       "%s: has %d channels, but its kind of table has %d", path, image->channels,
+                       channels);
     if (channels == 3)
         narrow(image);
     *table = (kiln_table){def, *image};

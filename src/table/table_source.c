@@ -44,11 +44,10 @@ kiln_result ki_source_name_make(const char *path, const char *wanted, ki_source_
     *name = (ki_source_name){0};
     if (wanted) {
         if (!is_name(wanted) || strlen(wanted) >= ROOM)
-            return ki_fail(
-                error, KILN_ERROR_ARGUMENT,
-                "the name is \"%.80s\", it must be at most %d letters, digits and single "
-                "underscores, a letter first, no gl_",
-                wanted, ROOM - 1);
+            return ki_fail(error, KILN_ERROR_ARGUMENT,
+                           "the name is \"%.80s\", it must have at most %d letters, digits and "
+                           "single underscores, begin with a letter, and not begin with gl_",
+                           wanted, ROOM - 1);
         snprintf(name->text, sizeof name->text, "%s", wanted);
         return KILN_OK;
     }
@@ -92,7 +91,7 @@ static void write_guard(const char *name, const char *rest, ki_writer *w)
 
 // ------------------------------------------------------------------------------------------ arrays
 
-// The number of values in a table.
+// Returns the number of values in a table.
 static size_t number_count(const kiln_table *table)
 {
     return (size_t)table->image.width * (size_t)table->image.height * (size_t)table->image.channels;
@@ -121,8 +120,9 @@ kiln_result ki_table_write_header(const kiln_table *table, const char *path, con
     const kiln_table_def *def = &table->def;
     size_t count = number_count(table);
     if (count > LIMIT)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: would hold %zu numbers, the limit is %d",
-                       path, count, LIMIT);
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "%s: would hold %zu numbers, the limit is %d, choose a smaller size", path,
+                       count, LIMIT);
     write_head(def, "A table, row after row, slice after slice:", w);
     write_guard(name, "_H", w);
     ki_write_text(w,
@@ -181,8 +181,8 @@ kiln_result ki_table_write_glsl(const kiln_table *table, kiln_table_format forma
     size_t words = (size + 3) / 4;
     if (size > LIMIT)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
-                       "%s: would hold %zu bytes, the limit of a constant array is %d; a smaller "
-                       "size, fewer bits or a texture will do",
+                       "%s: would hold %zu bytes, the limit of a constant array is %d; choose a "
+                       "smaller size, a format of fewer bits, or a texture",
                        path, size, LIMIT);
     write_head(&table->def, "A table and its lookup, GLSL ES 3.00:", w);
     const char *type = floats ? "float" : "uint";

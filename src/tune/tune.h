@@ -43,7 +43,7 @@ kiln_result ki_tune_create(kiln_context *context, const kiln_prefilter_def *def,
                            const float roughness[KILN_MAX_LEVELS], const ki_reading *reading,
                            ki_tune **tune, kiln_error *error);
 void ki_tune_destroy(ki_tune *tune);
-/// The degree of spherical harmonics that ki_tune_execute needs of the spectrum.
+/// Returns the degree of spherical harmonics that ki_tune_execute needs of the spectrum.
 int ki_tune_degree(const ki_tune *tune);
 /// Returns true if `level` is tuned. Before ki_tune_execute is called, the map must hold the exact
 /// content of all other levels and, even if it is tuned, of level 0.

@@ -14,7 +14,7 @@ typedef struct halving {
     int width;
 } halving;
 
-// Task: computes a row of means of 2 x 2 texels.
+// Task of one thread: computes a row of means of 2 x 2 texels.
 static void halve_row(void *data, int row)
 {
     const halving *h = data;

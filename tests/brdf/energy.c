@@ -331,13 +331,14 @@ static void wrong_tables_are_named(void **unused)
         const char *says;
     } wrong[] = {
         {{.kind = (kiln_table_kind)99}, "kind of the table is 99"},
-        {{.model.g = (kiln_g)7}, "the model is (0, 7)"},
+        {{.model.g = (kiln_g)7}, "the model has d 0 and g 7"},
         {{.axis = (kiln_axis)5}, "axis of the table is 5"},
         {{.width = 5000}, "width of the table is 5000, it must be 1 to 4096"},
         {{.height = -1}, "height of the table is -1"},
         {{.depth = 4}, "depth of the table is 4, it must be 1"},
-        {{.kind = KILN_TABLE_DFG, .complement = true}, "this one has 2"},
-        {{.kind = KILN_TABLE_E_WALK, .axis = KILN_AXIS_CBRT}, "of walks it must be 3, or 0"},
+        {{.kind = KILN_TABLE_DFG, .complement = true}, "this kind of table has 2"},
+        {{.kind = KILN_TABLE_E_WALK, .axis = KILN_AXIS_CBRT},
+         "it must be 3, or 0, for a table of random walks"},
     };
     kiln_context *context = make_context(0);
     kiln_error error;

@@ -78,7 +78,7 @@ static void tables_hold_the_integrals(void **unused)
     kiln_table_free(&table);
     def = (kiln_table_def){.kind = KILN_TABLE_SHEEN, .sheen = (kiln_sheen)2};
     assert_int_equal(kiln_table_create(context, &def, &table, &error), KILN_ERROR_ARGUMENT);
-    assert_string_equal(error.message, "sheen is 2, there are 0 to 1");
+    assert_string_equal(error.message, "sheen is 2, it must be 0 to 1");
     kiln_context_destroy(context);
 }
 

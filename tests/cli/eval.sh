@@ -104,12 +104,12 @@ bad() {
     printf '.5 .5\n%b' "$2" >log/in
     expect 1 "$1" eval e <log/in
 }
-bad "line 2 must be numbers, 'roughness mu'" '.5\n'
-bad "line 2 must be numbers, 'roughness mu'" '\n.5 .5\n'
+bad "line 2 must be numbers for 'roughness mu'" '.5\n'
+bad "line 2 must be numbers for 'roughness mu'" '\n.5 .5\n'
 bad "line 2 must be numbers" '.5 x\n'
 bad "line 2 must be numbers" '.5,.5\n'
 bad "line 2 must be numbers" '.5x .5\n'
-bad "line 3 has more than 'roughness mu'" '.5 .5\n.5 .5 .5'
+bad "line 3 has more numbers than 'roughness mu'" '.5 .5\n.5 .5 .5'
 bad "line 2: mu is 1.5, it must be from 0 to 1" '.5 1.5'
 bad "line 2: roughness is nan" 'nan 1'
 bad "line 2: mu is -0.5" '1 -.5'

@@ -105,9 +105,9 @@ fi
 
 # What cannot be reached is said, and nothing is written.
 rm -f ./*.glsl ./*.[ch] e g a d
-expect 1 "no form with up to 16 coefficients errs by 0.01 or less; the best" fit e -o e.h \
+expect 1 "no function with up to 16 coefficients has an error of 0.01 or less; the best" fit e -o e.h \
     --max-coefficients 16 --error 0.01
-expect 1 "no form with up to 2 coefficients comes near an error of 1e-05" fit e -o e.h \
+expect 1 "no function with up to 2 coefficients comes near an error of 1e-05" fit e -o e.h \
     --max-coefficients 2 --error 1e-5
 [ -z "$(find . -type f -not -path "./log/*")" ] || die "something was written"
 expect 1 "there is no folder nowhere" fit e -o nowhere/e.h

@@ -55,9 +55,9 @@ only t.ktx2 mean.ktx2 t_lookup.h t_lookup.glsl
 rm t.ktx2 mean.ktx2 t_lookup.h t_lookup.glsl
 
 expect 2 "no output" tables --table dfg
-expect 2 "must be a name in" tables -o out.tga
+expect 2 "must end in" tables -o out.tga
 expect 2 "a .png file has no format f16" tables -o out.png --format f16
-expect 2 "only KTX2 has zstd" tables -o out.png --zstd=3
+expect 2 "only .ktx2 files are compressed by zstd" tables -o out.png --zstd=3
 expect 2 "a .exr file has no format u8" tables -o out.ktx2 --format u8 --average mean.exr
 expect 2 "it must be e, eavg" tables -o out.ktx2 --table energy
 expect 2 "it must be N, WxH or WxHxD" tables -o out.ktx2 --size 4x

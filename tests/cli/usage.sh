@@ -31,7 +31,7 @@ expect 2 "no input" bake -o out.ktx2
 expect 2 "no output" bake in.exr
 expect 2 "2 inputs" bake a.exr b.exr -o out.ktx2
 expect 2 "7 inputs" bake 1 2 3 4 5 6 7 -o out.ktx2
-expect 2 "which face" bake a b c d e f_px.exr -o out.ktx2
+expect 2 "do not tell which face each is" bake a b c d e f_px.exr -o out.ktx2
 expect 2 "standard input" bake a b c d e - -o out.ktx2
 expect 2 "must end in" bake in.exr -o out
 expect 2 "must end in" bake in.exr -o out.jpg
@@ -53,10 +53,10 @@ expect 2 "out.dds: --for three writes .ktx2" bake in.exr -o out.dds --for three
 expect 2 "decides what --lobe is" bake in.exr -o out.ktx2 --for three --lobe ggx
 expect 2 "for filament: format is bc6h, it must be rgba16f or b10g11r11" \
     bake in.exr -o out --for filament --format bc6h
-expect 2 "for babylon: has one format and takes no other" bake in.exr -o out.env --for babylon --format rgba16f
+expect 2 "for babylon: the engine.s files have one format only, leave the format out" bake in.exr -o out.env --for babylon --format rgba16f
 expect 2 "three: size is 100, it must be a power of two from 16 to 4096" \
     bake in.exr -o out.ktx2 --for three --size 100
-expect 2 "three: 1 levels, a size of 32 may have 2 to 6" \
+expect 2 "three: level_count is 1, a cube of size 32 may have 2 to 6 levels" \
     bake in.exr -o out.ktx2 --for three --size 32 --levels 1
 expect 2 "one engine at a time" engines three babylon
 expect 2 "frob: no such engine, it must be three, .* or unreal" engines frob
@@ -71,7 +71,7 @@ expect 2 "whole number" bake in.exr -o out.ktx2 --size 1e3
 expect 2 "whole number" bake in.exr -o out.ktx2 --size ''
 expect 2 "\-\-size needs a value" bake in.exr -o out.ktx2 --size
 expect 2 "from 1 to 16" bake in.exr -o out.ktx2 --levels 17
-expect 2 "5 levels: a size of 8 has 4" bake in.exr -o out.ktx2 --size 8 --levels 5
+expect 2 "levels is 5, a map of size 8 has 4 levels" bake in.exr -o out.ktx2 --size 8 --levels 5
 expect 2 "from 1 to 22" bake in.exr -o out.ktx2 --zstd=23
 expect 2 "from 1 to 5" bake in.exr -o out.ktx2 --sh-bands 6
 expect 2 "from 1 to 256" bake in.exr -o out.ktx2 --threads 0
@@ -136,7 +136,7 @@ expect 2 "name is 'a__b'" fit e -o out.glsl --name a__b
 expect 2 "name is 'int'" tables -o out.h --name int
 expect 2 "name is 'vec3'" fit e -o e.glsl --name vec3
 expect 2 "no input" info
-expect 2 "no quantity: name e, eavg" eval
+expect 2 "no quantity is named, name e, eavg" eval
 expect 2 "frob: no such quantity, it must be e, .* or turquin" eval frob
 expect 2 "one quantity at a time" eval e a --mu 1
 expect 2 "from 0 to 1" eval e --roughness 1.5 --mu 1
@@ -147,7 +147,7 @@ expect 2 "eavg does not depend on --mu" eval eavg --roughness 1 --mu 1
 expect 2 "d is 'frob', it must be ggx or beckmann" eval e --d frob
 expect 2 "g is 'frob', it must be smith, .* or schlick-text" eval e --g frob
 expect 2 "sheen is 'frob'" eval sheen --sheen frob
-expect 2 "no quantity: name e, eavg" fit -o e.h
+expect 2 "no quantity is named, name e, eavg" fit -o e.h
 expect 2 "no such quantity, it must be e, eavg, dfg or sheen" fit a -o e.h
 expect 2 "one quantity at a time" fit e eavg -o e.h
 expect 2 "no output" fit e

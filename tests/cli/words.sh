@@ -86,10 +86,10 @@ done
 ! grep -q -- '--fit' log/err || die "--fit is suggested"
 
 # A picture without a command, and a file of an engine without its name.
-expect 2 "x.hdr: no such command; kiln bake x.hdr -o OUT" x.hdr
-expect 2 "sky.exr: no such command; kiln bake sky.exr -o OUT" sky.exr
-expect 2 "output x.env: .env is what Babylon.js 9, .env loads, add --for babylon$" bake sky.exr -o x.env
-expect 2 "output x.glb: .glb is what glTF .* loads, add --for gltf$" bake sky.exr -o x.glb
+expect 2 "x.hdr: no such command, use 'kiln bake x.hdr -o OUT'" x.hdr
+expect 2 "sky.exr: no such command, use 'kiln bake sky.exr -o OUT'" sky.exr
+expect 2 "output x.env: .env is a file for Babylon.js 9, .env, add --for babylon$" bake sky.exr -o x.env
+expect 2 "output x.glb: .glb is a file for glTF .*, add --for gltf$" bake sky.exr -o x.glb
 expect 2 "irradiance x.env: must end in" bake sky.exr -o x.ktx2 --irradiance x.env
 
 # Endings in capitals are endings.

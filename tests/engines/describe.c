@@ -159,7 +159,7 @@ static void what_is_not_read_says_what_it_is(void **state)
         {"f_ibl.ktx", "is a .ktx file, which kiln writes and describes but does not read"},
         {"a.exr", "is the atlas of three-cubeuv, which kiln describes but does not read"},
         {"p.png", "is the atlas of playcanvas, which kiln describes but does not read"},
-        {"p.dds", "is no single cube of six faces, others are not read"}};
+        {"p.dds", "kiln reads DDS files of one cube with six faces"}};
     kiln_map map;
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         assert_int_equal(kiln_map_load(context, in_folder(names[i][0]), NULL, &map, &error),

@@ -221,7 +221,8 @@ static void what_an_engine_does_not_take_is_said(void **state)
     assert_int_equal(
         kiln_engine_save(context, babylon, &chain, &sh, KILN_FORMAT_RGB9E5, "x.env", NULL, &error),
         KILN_ERROR_ARGUMENT);
-    assert_string_equal(error.message, "babylon: has one format and takes no other");
+    assert_string_equal(error.message,
+                        "babylon: the engine's files have one format only, leave the format out");
     kiln_map_free(&chain);
     map.shape = KILN_SHAPE_OCTAHEDRON;
     assert_int_equal(

@@ -343,29 +343,33 @@ static void what_is_not_read_is_said(void **state)
     kiln_save_def def = {0};
     CHECK_OK(ki_ktx2_encode(&map, &def, &w, &error));
     refused(&w, 12, 37, KILN_ERROR_UNSUPPORTED,
-            "bad: has vkFormat 37; 97, 109, 122, 123 and 143 are read");
+            "bad: has vkFormat 37; kiln reads cubes of the formats 97, 109, 122, 123 and 143");
     refused(&w, 36, 3, KILN_ERROR_UNSUPPORTED,
-            "bad: has 3 faces, 0 layers and depth 0, only single cubes and tables are read");
+            "bad: has 3 faces, 0 layers and depth 0; kiln reads single cubes and tables only");
     refused(&w, 28, 2, KILN_ERROR_UNSUPPORTED,
-            "bad: has 6 faces, 0 layers and depth 2, only single cubes and tables are read");
-    refused(&w, 36, 1, KILN_ERROR_FORMAT, "bad: level 0 holds 3072 bytes, its texels need 512");
+            "bad: has 6 faces, 0 layers and depth 2; kiln reads single cubes and tables only");
+    refused(&w, 36, 1, KILN_ERROR_FORMAT,
+            "bad: level 0 holds 3072 bytes, but its texels need 512 bytes");
     refused(&w, 44, 1, KILN_ERROR_UNSUPPORTED,
-            "bad: has supercompression scheme 1; 0 and 2 (zstd) are read");
+            "bad: has supercompression scheme 1; kiln reads the schemes 0 (none) and 2 (zstd)");
     refused(&w, 24, 4, KILN_ERROR_FORMAT,
-            "bad: faces are 8 x 4, they must be square and 1 to 32768");
-    refused(&w, 40, 5, KILN_ERROR_FORMAT, "bad: has 5 levels for a size of 8");
-    refused(&w, 88, 16, KILN_ERROR_FORMAT, "bad: level 0 holds 16 bytes, its six faces need 3072");
+            "bad: faces are 8 x 4, they must be square with sides of 1 to 32768");
+    refused(&w, 40, 5, KILN_ERROR_FORMAT,
+            "bad: has 5 levels, which is too many for faces of size 8");
+    refused(&w, 88, 16, KILN_ERROR_FORMAT,
+            "bad: level 0 holds 16 bytes, but its six faces need 3072 bytes");
     ki_writer_free(&w);
     w.context = context;
     CHECK_OK(ki_dds_encode(&map, &def, &w, &error));
+    refused(&w, 128, 28, KILN_ERROR_UNSUPPORTED,
+            "bad: has pixel format 28; kiln reads the DXGI formats 2, 10, 26, 67 and 95 and the "
+            "older codes 113 and 116");
     refused(
-        &w, 128, 28, KILN_ERROR_UNSUPPORTED,
-        "bad: has pixel format 28; DXGI 2, 10, 26, 67 and 95 and the codes 113 and 116 are read");
-    refused(&w, 136, 0, KILN_ERROR_UNSUPPORTED,
-            "bad: is no single cube of six faces, others are not read");
+        &w, 136, 0, KILN_ERROR_UNSUPPORTED,
+        "bad: kiln reads DDS files of one cube with six faces, and this file holds something else");
     w.size -= 8;
     refused(&w, 128, 10, KILN_ERROR_FORMAT,
-            "bad: its levels need 3840 bytes, 3832 are left behind the header");
+            "bad: its levels need 3840 bytes, but only 3832 bytes follow the header");
     ki_writer_free(&w);
     w.context = context;
     def.zstd = 3;

@@ -142,18 +142,20 @@ static void manifests_are_checked(void **state)
         {"{\"version\":2.5}", KILN_ERROR_FORMAT, "damaged"},
         {"{\"version\":1e400}", KILN_ERROR_FORMAT, "damaged"},
         {"{\"version\":\"2\"}", KILN_ERROR_FORMAT, "damaged"},
-        {"{\"version\":3}", KILN_ERROR_UNSUPPORTED, "is .env of version 3; 1 and 2 are read"},
+        {"{\"version\":3}", KILN_ERROR_UNSUPPORTED,
+         "is an .env file of version 3, kiln reads the versions 1 and 2"},
         {"{\"version\":2,\"width\":0}", KILN_ERROR_FORMAT, "faces are 0 wide"},
         {"{\"version\":2,\"width\":40000}", KILN_ERROR_FORMAT, "faces are 40000 wide"},
-        {"{\"version\":2,\"width\":4}", KILN_ERROR_FORMAT, "has 0 images for a size of 4"},
+        {"{\"version\":2,\"width\":4}", KILN_ERROR_FORMAT, "has 0 images for faces of size 4"},
         {"{\"version\":2,\"width\":4,\"specular\":{\"mipmaps\":[" IMAGE "]}}", KILN_ERROR_FORMAT,
-         "has 1 images for a size of 4"},
+         "has 1 images for faces of size 4"},
         {"{\"version\":2,\"width\":1,\"specular\":{\"mipmaps\":[" SIX "," SIX "]}}",
-         KILN_ERROR_FORMAT, "has 12 images for a size of 1"},
+         KILN_ERROR_FORMAT, "has 12 images for faces of size 1"},
         {"{\"version\":2,\"width\":4,\"specular\":{\"mipmaps\":[" SIX
          ",{\"length\":1,\"position\":4294967295}," IMAGE "," IMAGE "," IMAGE "," IMAGE "," IMAGE
          "]}}",
-         KILN_ERROR_FORMAT, "end at byte 4294967296 behind the manifest, where 200 are left"},
+         KILN_ERROR_FORMAT,
+         "need 4294967296 bytes after the manifest, but only 200 bytes follow it"},
     };
     kiln_file_info info;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -211,15 +213,15 @@ static void gltf_is_checked(void **state)
         const char *sentence;
     } cases[] = {
         {LIGHT("[0,1,2,3,4,5],[0,1,2,3,4,5]", "8", ""), KILN_OK, ""},
-        {"{\"asset\":{}}", KILN_ERROR_UNSUPPORTED, "holds no light of EXT_lights_image_based"},
+        {"{\"asset\":{}}", KILN_ERROR_UNSUPPORTED, "without a light of EXT_lights_image_based"},
         {"{\"extensions\":{\"EXT_lights_image_based\":{\"lights\":[]}}}", KILN_ERROR_UNSUPPORTED,
-         "holds no light"},
+         "without a light"},
         {"{\"extensions\":{\"EXT_lights_image_based\":[]}}", KILN_ERROR_FORMAT, "damaged at byte"},
-        {LIGHT("[0,1,2,3,4]", "8", ""), KILN_ERROR_FORMAT, "six images each"},
-        {LIGHT("[0,1,2,3,4,5,6]", "8", ""), KILN_ERROR_FORMAT, "six images each"},
-        {LIGHT("", "8", ""), KILN_ERROR_FORMAT, "has 0 levels for a size of 8"},
+        {LIGHT("[0,1,2,3,4]", "8", ""), KILN_ERROR_FORMAT, "a level without six images"},
+        {LIGHT("[0,1,2,3,4,5,6]", "8", ""), KILN_ERROR_FORMAT, "a level without six images"},
+        {LIGHT("", "8", ""), KILN_ERROR_FORMAT, "has 0 levels for faces of size 8"},
         {LIGHT("[0,1,2,3,4,5],[0,1,2,3,4,5]", "1", ""), KILN_ERROR_FORMAT,
-         "has 2 levels for a size of 1"},
+         "has 2 levels for faces of size 1"},
         {"{\"bufferViews\":[{\"byteOffset\":5,\"byteLength\":12}],\"extensions\":"
          "{\"EXT_lights_image_based\":{\"lights\":[{\"specularImageSize\":4,\"specularImages\":"
          "[[0,0,0,0,0,0]]}]}}}",
@@ -443,17 +445,17 @@ static void harmonics_in_text_are_checked(void **state)
     static const struct {
         const char *text, *sentence;
     } cases[] = {
-        {"{\"bands\": 2, \"coefficients\": [[1,2,3],[1,2,3]]}", "holds 2 whole coefficients"},
+        {"{\"bands\": 2, \"coefficients\": [[1,2,3],[1,2,3]]}", "holds 2 complete coefficients"},
         {"{\"bands\": 1, \"coefficients\": [[1,2]]}", "damaged at byte 35"},
         {"{\"bands\": 1", "damaged at byte 11"},
-        {"{\"bands\": 1}", "holds 0 whole coefficients"},
-        {"1 2 3 ; Y0,0\n1 2\n", "holds 0 whole coefficients"},
-        {"1 2 ; Y0,0\n", "holds 0 whole coefficients"},
-        {"(1, 2, 3); // L00, irradiance, pre-scaled base\n(1, 2, 3)\n", "holds 0 whole"},
-        {"// Spherical harmonics of radiance, 1 bands", "holds 0 whole coefficients"},
-        {"// Spherical harmonics of radiance\nx = {\n{1, 2, x},", "holds 0 whole coefficients"},
-        {"{\"json\": 1}", "do not begin as"},
-        {"// other", "do not begin as"},
+        {"{\"bands\": 1}", "holds 0 complete coefficients"},
+        {"1 2 3 ; Y0,0\n1 2\n", "holds 0 complete coefficients"},
+        {"1 2 ; Y0,0\n", "holds 0 complete coefficients"},
+        {"(1, 2, 3); // L00, irradiance, pre-scaled base\n(1, 2, 3)\n", "holds 0 complete"},
+        {"// Spherical harmonics of radiance, 1 bands", "holds 0 complete coefficients"},
+        {"// Spherical harmonics of radiance\nx = {\n{1, 2, x},", "holds 0 complete coefficients"},
+        {"{\"json\": 1}", "do not begin like"},
+        {"// other", "do not begin like"},
     };
     kiln_file_info info;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {

@@ -306,17 +306,18 @@ static void what_is_not_read_is_said(void **state)
                      .channel_count = 1,
                      .value = ramp};
     check_refused(&make, KILN_ERROR_UNSUPPORTED,
-                  "made.exr: has no channel R, G, B or Y, its channels are Z");
+                  "made.exr: has no channel R, G, B or Y; its channels are Z");
     make.channels = chroma;
     make.channel_count = 3;
-    check_refused(&make, KILN_ERROR_UNSUPPORTED,
-                  "made.exr: stores luminance and chroma (Y, RY, BY), channels R, G and B are "
-                  "read");
+    check_refused(
+        &make, KILN_ERROR_UNSUPPORTED,
+        "made.exr: stores luminance and chroma (Y, RY, BY), kiln reads channels R, G and B "
+        "only");
     make.channels = sampled;
     make.channel_count = 2;
     check_refused(&make, KILN_ERROR_UNSUPPORTED,
-                  "made.exr: channel R has one sample for 2 x 2 pixels, only full resolution is "
-                  "read");
+                  "made.exr: channel R has one sample for 2 x 2 pixels, kiln reads one sample for "
+                  "each pixel only");
     make.channels = half_rgb;
     make.channel_count = 3;
     make.display = (exr_attr_box2i_t){{{{0, 0}}}, {{{69999, 34999}}}};

@@ -140,8 +140,8 @@ static void layouts_can_be_said(void **state)
         {8, 6, KILN_LAYOUT_CROSS, KILN_SHAPE_CUBE, NULL},
         {2, 12, KILN_LAYOUT_STRIP, KILN_SHAPE_CUBE, NULL},
         {6, 6, KILN_LAYOUT_AUTO, 0,
-         "is 6 x 6, its sides must be 2:1 (panorama), 4:3 or 3:4 (cross), 6:1 or 1:6 (strip); a "
-         "square may be an octahedron, which the layout must say"},
+         "is 6 x 6, its sides must be 2:1 (panorama), 4:3 or 3:4 (cross), 6:1 or 1:6 (strip); if "
+         "the square is an octahedron, say so by the layout"},
         {7, 5, KILN_LAYOUT_AUTO, 0,
          "is 7 x 5, its sides must be 2:1 (panorama), 4:3 or 3:4 (cross), 6:1 or 1:6 (strip)"},
         {8, 4, KILN_LAYOUT_CROSS, 0, "is 8 x 4, its sides must be 4:3 or 3:4 for a cross"},

@@ -145,16 +145,18 @@ static void what_is_not_read_is_said(void **state)
 {
     (void)state;
     refused("#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\nabcd", KILN_ERROR_UNSUPPORTED,
-            "bad.hdr: the HDR format is \"32-bit_rle_xyze\", only 32-bit_rle_rgbe is read");
+            "bad.hdr: the HDR format is \"32-bit_rle_xyze\", kiln reads 32-bit_rle_rgbe only");
     refused("#?RADIANCE\n\n-Y 40000 +X 80000\nabcd", KILN_ERROR_UNSUPPORTED,
             "bad.hdr: the picture is 80000 x 40000, the limit is 32768");
     refused("#?RADIANCE\n\n-Y 2 +X 1\nabcd", KILN_ERROR_FORMAT,
             "bad.hdr: line 1 of 2 is damaged, at byte 26");
-    refused("#?RADIANCE\n\n-Y 2 +Y 1\nabcd", KILN_ERROR_FORMAT,
-            "bad.hdr: the HDR resolution line is \"-Y 2 +Y 1\"");
+    refused(
+        "#?RADIANCE\n\n-Y 2 +Y 1\nabcd", KILN_ERROR_FORMAT,
+        "bad.hdr: the HDR resolution line is \"-Y 2 +Y 1\", it must be like \"-Y 512 +X 1024\"");
     refused("#?RADIANCE\nEXPOSURE=-1\n\n-Y 1 +X 1\nabcd", KILN_ERROR_FORMAT,
-            "bad.hdr: the HDR header says \"EXPOSURE=-1\"");
-    refused("#?RADIANCE\n", KILN_ERROR_FORMAT, "bad.hdr: the HDR header has no end in 11 bytes");
+            "bad.hdr: the HDR header has the line \"EXPOSURE=-1\", which is no usable exposure");
+    refused("#?RADIANCE\n", KILN_ERROR_FORMAT,
+            "bad.hdr: the HDR header does not end within the file's 11 bytes");
 }
 
 // A byte's mantissa of 128 to 255 is rounded by at most half a step: 1/256 of the largest channel.

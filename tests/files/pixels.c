@@ -122,11 +122,12 @@ static void six_faces_in_a_row_are_a_cube(void **state)
     static const struct {
         kiln_pixels change;
         const char *said;
-    } wrong[] = {{{.width = 7, .height = 41, .channels = 3}, "pixels: is 7 x 41"},
-                 {{.width = 7, .height = 42, .channels = 2}, "2 channels"},
-                 {{.width = 7, .height = 42, .channels = 3, .row_stride = 83}, "a row has 84"},
-                 {{.width = -7, .height = 42, .channels = 3}, "-7"},
-                 {{.width = 7, .height = 42, .channels = 3, .layout = 9}, "layout is 9"}};
+    } wrong[] = {
+        {{.width = 7, .height = 41, .channels = 3}, "pixels: is 7 x 41"},
+        {{.width = 7, .height = 42, .channels = 2}, "2 channels"},
+        {{.width = 7, .height = 42, .channels = 3, .row_stride = 83}, "at least a row's 84 bytes"},
+        {{.width = -7, .height = 42, .channels = 3}, "-7"},
+        {{.width = 7, .height = 42, .channels = 3, .layout = 9}, "layout is 9"}};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         pixels = wrong[i].change;
         pixels.data = cube.level[0];

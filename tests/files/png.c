@@ -331,23 +331,23 @@ static void what_is_damaged_is_said(void **state)
     refused(&w, "bad.png: the PNG is damaged: the file ends too early");
     w.size = size;
     w.bytes[data + 10] ^= 1;
-    refused(&w, "bad.png: the PNG is damaged: the sum of a chunk is wrong");
+    refused(&w, "bad.png: the PNG is damaged: the CRC of a chunk is wrong");
     set_sum(&w, data);
-    refused(&w, "bad.png: the PNG is damaged: its data does not inflate to its size, or to another "
-                "sum");
+    refused(&w, "bad.png: the PNG is damaged: its data does not inflate to the picture's size "
+                "or has a wrong Adler-32 sum");
     w.bytes[data + 10] ^= 1;
     uint32_t bytes;
     memcpy(&bytes, w.bytes + data - 4, 4);
     w.bytes[data + 3 + __builtin_bswap32(bytes)] ^= 1; // the last byte of the data's own sum
     set_sum(&w, data);
-    refused(&w, "bad.png: the PNG is damaged: its data does not inflate to its size, or to another "
-                "sum");
+    refused(&w, "bad.png: the PNG is damaged: its data does not inflate to the picture's size "
+                "or has a wrong Adler-32 sum");
     w.bytes[data + 3 + __builtin_bswap32(bytes)] ^= 1;
     set_sum(&w, data);
     size_t gamma = find(&w, "gAMA");
     w.bytes[gamma] = 'G'; // critical now
     set_sum(&w, gamma);
-    refused(&w, "bad.png: the PNG is damaged: it has a critical chunk of which nothing is known");
+    refused(&w, "bad.png: the PNG is damaged: it has a critical chunk that PNG does not define");
     w.bytes[gamma] = 'g'; // whose sum is wrong now, which is nobody's loss
     kiln_image image;
     CHECK_OK(ki_png_decode(context, w.bytes, w.size, "good.png", &image, NULL, &error));
