@@ -175,7 +175,7 @@ function wantTextbook() {
     textbook.start({
         key: lit, source: sourceKey(), open: openIn,
         steps: [16, 64, 256, 1024].map((samples) => ({
-            words: `The textbook bakes right of the handle, ${samples} of its 1024 samples a texel`,
+            words: `The textbook bakes the right side: ${samples} of its 1024 samples for each texel`,
             work: (worker) => worker.scenery({ size, samples }),
         })),
     });
@@ -219,8 +219,8 @@ function wantTruth() {
         key, source: sourceKey(), open: openIn,
         steps: noises.filter((value, i) => value !== noises[i + 1]).map((value) => ({
             key, seen,
-            words: `Integrating every path of light to a noise of ${Number(value.toPrecision(2))}` +
-                   (value > noise ? `, of ${noise} in the end` : ''),
+            words: `Integrating all light paths until the noise is ${Number(value.toPrecision(2))}` +
+                   (value > noise ? `, later ${noise}` : ''),
             work: (worker) => worker.truth({ numbers, ...rest, noise: value }),
         })),
     }), 250);
@@ -299,10 +299,10 @@ function noteOf(error) {
                `${error.noise.toPrecision(2)}${error.last ? '' : ' so far'}`;
     if (state.scene === 'furnace') {
         const { largest, rms } = stage.furnace(viewOf(), 512, 256);
-        return `Furnace: what is left of the balls is ${largest.toExponential(1)} at most, ` +
+        return `Furnace: the balls differ from the background by ${largest.toExponential(1)} at most, ` +
                `${rms.toExponential(1)} RMS`;
     }
-    return state.scene === 'compare' ? 'Exact left of the handle, the textbook right of it' : '';
+    return state.scene === 'compare' ? 'Left of the line the exact bake, right of it the textbook\'s bake' : '';
 }
 
 function refresh() {
@@ -315,7 +315,7 @@ function refresh() {
     flat.hidden = !showsLevel && !error;
     canvas.hidden = !flat.hidden;
     flat.dataset.error = !error ? '' : error.last ? 'whole' : 'so far';
-    flat.setAttribute('aria-label', error ? 'The error against the reference'
+    flat.setAttribute('aria-label', error ? 'The error of the picture against the reference'
                                           : 'A baked level, unrolled as a panorama');
     if (error)
         paint(error);
@@ -325,7 +325,7 @@ function refresh() {
     get('handle').hidden = !flat.hidden || state.scene !== 'compare';
     get('handle').setAttribute('aria-valuenow', String(Math.round(100 * state.split)));
     try {
-        get('note').textContent = showsLevel && stage.ready ? `Level ${k}, unrolled` : noteOf(error);
+        get('note').textContent = showsLevel && stage.ready ? `Level ${k}, unrolled as a panorama` : noteOf(error);
     } catch (problem) {
         get('note').textContent = problem.message;
     }
@@ -448,7 +448,7 @@ document.addEventListener('drop', (event) => {
     if (event.dataTransfer.files.length)
         take(event.dataTransfer.files[0]);
     else
-        complain('What was dropped is no file');
+        complain('The dropped item is not a file.');
 });
 window.addEventListener('hashchange', () => {
     Object.assign(state, readAddress());
@@ -459,4 +459,4 @@ window.addEventListener('hashchange', () => {
 const wanted = state.source;
 await bake(null);
 if (wanted !== 'sky')
-    complain(`This address shows ${wanted}, which is on somebody's disk: drop it here`);
+    complain(`This address names the file ${wanted}, which this page does not have. Drop the file here.`);

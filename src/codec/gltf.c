@@ -223,8 +223,8 @@ static kiln_result check(const light *l, size_t binary, const char *name, kiln_e
     if (l->width < 1 || l->width > KILN_MAX_SIZE || l->level_count < 1 || l->uneven ||
         l->level_count > KILN_MAX_LEVELS || l->width >> (l->level_count - 1) == 0)
         return ki_fail(error, KILN_ERROR_FORMAT,
-                       "%s: its light has %d levels for faces of size %d, which is too many, or a "
-                       "level without six images",
+                       "%s: its light has %d levels for faces of size %d; each level must have six "
+                       "images, and the smallest level at least one texel",
                        name, l->level_count, l->width);
     if (l->image_bytes > binary)
         return ki_fail(error, KILN_ERROR_FORMAT,

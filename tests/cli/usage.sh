@@ -103,19 +103,19 @@ expect 2 "not charlie" bake in.exr -o out.ktx2 --method textbook --lobe charlie
 expect 2 "leave --roughness out" bake in.exr -o out.ktx2 --method textbook --roughness 0,1
 expect 2 "for --lobe ggx" bake in.exr -o out.ktx2 --method textbook --lobe lambert --samples 8
 expect 2 "are for irradiance" bake in.exr -o out.ktx2 --method textbook --phi-steps 8
-expect 2 "one level, not 3" bake in.exr -o out.ktx2 --lobe lambert --levels 3
-expect 2 "holds a cube" bake in.exr -o out.ktx2 --shape panorama
-expect 2 "holds a cube" bake in.exr -o out.dds --shape octahedron
-expect 2 "holds a cube" bake in.exr -o out.exr --shape panorama --irradiance diffuse.ktx2
-expect 2 "for .ktx2 and .dds" bake in.exr -o out.exr --format rgb9e5
-expect 2 "rgbm is for .png" bake in.exr -o out.exr --format rgbm
-expect 2 "rgbp is for .png" bake in.exr -o out.ktx2 --format rgbp
-expect 2 "bc6h is for .ktx2 and .dds" bake in.exr -o out.png --format bc6h
+expect 2 "levels is 3, it must be 1 for --lobe lambert" bake in.exr -o out.ktx2 --lobe lambert --levels 3
+expect 2 "files hold cubes only, save a" bake in.exr -o out.ktx2 --shape panorama
+expect 2 "files hold cubes only, save a" bake in.exr -o out.dds --shape octahedron
+expect 2 "files hold cubes only, save a" bake in.exr -o out.exr --shape panorama --irradiance diffuse.ktx2
+expect 2 "can be written to .ktx2 and .dds only" bake in.exr -o out.exr --format rgb9e5
+expect 2 "rgbm can be written to .png only" bake in.exr -o out.exr --format rgbm
+expect 2 "rgbp can be written to .png only" bake in.exr -o out.ktx2 --format rgbp
+expect 2 "bc6h can be written to .ktx2 and .dds only" bake in.exr -o out.png --format bc6h
 expect 2 "one format only" bake in.exr -o out.hdr --format rgba16f
-expect 2 "format rgba32f is for .ktx2 .dds and .exr" bake in.exr -o out.png --format rgba32f
-expect 2 "holds a cube" bake in.exr -o OUT.KTX2 --shape panorama
+expect 2 "format rgba32f can be written to .ktx2 .dds and .exr only" bake in.exr -o out.png --format rgba32f
+expect 2 "files hold cubes only, save a" bake in.exr -o OUT.KTX2 --shape panorama
 expect 2 "zstd is for .ktx2" bake in.exr -o out.dds --zstd
-expect 2 "not for six faces" bake 1 2 3 4 5 6 -o out.ktx2 --layout cross
+expect 2 "leave it out for six faces" bake 1 2 3 4 5 6 -o out.ktx2 --layout cross
 
 expect 2 "no output" sky
 expect 2 "takes no input" sky in.exr -o out.exr
@@ -125,12 +125,12 @@ expect 2 "from 1.7 to 10" sky -o out.exr --turbidity 1
 expect 2 "from 0 to 1" sky -o out.exr --albedo 2
 expect 2 "from 16 to 8192" sky -o out.exr --size 8
 expect 2 "no output" tables
-expect 2 "only textbook" tables -o out.exr --method exact
+expect 2 "it must be textbook" tables -o out.exr --method exact
 expect 2 "must end in" tables -o out.ktx2 --method textbook
 expect 2 "from 2 to 4096" tables -o out.exr --method textbook --size 1
 expect 2 "size is '3x+5'" tables -o out.exr --size 3x+5
-expect 2 "written already" tables -o out.exr --average out.exr
-expect 2 "written already" tables -o out.ktx2 --average out_lookup.h --lookup
+expect 2 "name another file" tables -o out.exr --average out.exr
+expect 2 "name another file" tables -o out.ktx2 --average out_lookup.h --lookup
 expect 2 "name is '1x', it must be letters" tables -o out.h --name 1x
 expect 2 "name is 'a__b'" fit e -o out.glsl --name a__b
 expect 2 "name is 'int'" tables -o out.h --name int
@@ -180,10 +180,10 @@ case $commands in
     expect 2 "contradict" render -o out.png --reference --error
     expect 2 "needs --reference or --error" render -o out.png --noise 0.1
     expect 2 "\-\-walk needs" render -o out.png --walk
-    expect 2 "light of no size" render -o out.png --walk --reference
+    expect 2 "light comes from one direction" render -o out.png --walk --reference
     expect 2 "from 0.0001 to 1" render -o out.png --reference --noise 0
-    expect 2 "has no reference" render -o out.png --reference --debug e
-    expect 2 "hold an error's sign" render -o out.hdr --error
+    expect 2 "leave --reference and --error out" render -o out.png --reference --debug e
+    expect 2 "cannot hold negative errors" render -o out.hdr --error
     expect 1 "there is no folder nowhere" render -o nowhere/out.png
     for option in scene method material debug diffuse; do
         expect 2 "$option is 'frob', it must be .* or " render -o out.png --$option frob

@@ -217,15 +217,15 @@ static void gltf_is_checked(void **state)
         {"{\"extensions\":{\"EXT_lights_image_based\":{\"lights\":[]}}}", KILN_ERROR_UNSUPPORTED,
          "without a light"},
         {"{\"extensions\":{\"EXT_lights_image_based\":[]}}", KILN_ERROR_FORMAT, "damaged at byte"},
-        {LIGHT("[0,1,2,3,4]", "8", ""), KILN_ERROR_FORMAT, "a level without six images"},
-        {LIGHT("[0,1,2,3,4,5,6]", "8", ""), KILN_ERROR_FORMAT, "a level without six images"},
+        {LIGHT("[0,1,2,3,4]", "8", ""), KILN_ERROR_FORMAT, "each level must have six images"},
+        {LIGHT("[0,1,2,3,4,5,6]", "8", ""), KILN_ERROR_FORMAT, "each level must have six images"},
         {LIGHT("", "8", ""), KILN_ERROR_FORMAT, "has 0 levels for faces of size 8"},
         {LIGHT("[0,1,2,3,4,5],[0,1,2,3,4,5]", "1", ""), KILN_ERROR_FORMAT,
          "has 2 levels for faces of size 1"},
         {"{\"bufferViews\":[{\"byteOffset\":5,\"byteLength\":12}],\"extensions\":"
          "{\"EXT_lights_image_based\":{\"lights\":[{\"specularImageSize\":4,\"specularImages\":"
          "[[0,0,0,0,0,0]]}]}}}",
-         KILN_ERROR_FORMAT, "its images end at byte 17 of the buffer, which has 16"},
+         KILN_ERROR_FORMAT, "its images need 17 bytes of the buffer, which has 16 bytes"},
     };
     kiln_file_info info;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
