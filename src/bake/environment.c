@@ -54,7 +54,7 @@ struct kiln_plan {
     int source_size;
     bool mirror;
     double exposure, rotation;
-    // Size of the irradiance map and number of bands; 0 where the plan computes no irradiance or no
+    // Size of the irradiance map, or 0 for no map, and number of bands of harmonics, or 0 for no
     // harmonics.
     int irradiance_size, sh_bands;
     ki_resample_plan *to_panorama; // NULL if the source is a panorama

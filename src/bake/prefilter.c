@@ -122,7 +122,7 @@ static kiln_result plan_tuning(kiln_context *context, ki_prefilter *p, const ki_
                        "tuned levels need the lobe GGX and a first level of roughness 0");
     if (p->def.size & (p->def.size - 1))
         return ki_fail(error, KILN_ERROR_ARGUMENT,
-                       "size is %d, for tuned levels it must be a power of two", p->def.size);
+                       "size is %d, it must be a power of two for tuned levels", p->def.size);
     return ki_tune_create(context, &p->def, p->roughness, reading, &p->tune, error);
 }
 

@@ -60,7 +60,7 @@ void ki_prefilter_workspace_free(ki_prefilter_workspace *workspace);
 kiln_result ki_prefilter_execute(const ki_prefilter *prefilter, ki_prefilter_workspace *workspace,
                                  const kiln_map *panorama, const kiln_map *source, bool rehearses,
                                  kiln_map *map, kiln_error *error);
-/// Bytes that an execution takes at most for `count` suns.
+/// Returns the greatest number of bytes that an execution takes for `count` suns.
 size_t ki_prefilter_suns_size(const ki_prefilter *prefilter, size_t count);
 /// Frees a prefilter. `prefilter` may be NULL.
 void ki_prefilter_destroy(ki_prefilter *prefilter);

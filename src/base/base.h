@@ -69,10 +69,11 @@ typedef struct ki_buffer {
 bool ki_buffer_reserve(kiln_context *context, ki_buffer *buffer, size_t count, size_t size);
 void ki_buffer_free(ki_buffer *buffer);
 
-/// Memory for what lives during one execution of a plan, so that an execution allocates nothing. Between
-/// begin and end, blocks are taken from it one behind the other; a block that is freed makes room once
-/// all blocks behind it are freed. The calling thread alone may allocate then. What does not fit comes
-/// from the context as ever. Without memory (capacity 0) it only measures.
+/// Memory for one execution of a plan, so that the execution allocates nothing from the context.
+/// Between ki_scratch_begin and ki_scratch_end, ki_alloc takes blocks from this memory one after
+/// the other, and only the calling thread may allocate. The bytes of a freed block are used again
+/// once all blocks after that block are freed too. Blocks that do not fit are allocated by the
+/// context as usual. With capacity 0 the scratch only measures how much memory is wanted.
 typedef struct ki_scratch {
     uint8_t *memory;
     size_t capacity, peak; ///< size of `memory` in bytes, and the largest size that was wanted

@@ -53,12 +53,12 @@ struct ki_resample_plan {
     };
 };
 
-/// One execution, which the tasks below share.
+/// The data of one execution, which all its tasks share.
 typedef struct ki_resample_run {
     const ki_resample_plan *plan;
     const float *source;
     float *target;
-    float *fine;    ///< gather: the finer map, or `target` where the factor is 1
+    float *fine;    ///< gather: texels of the finer map, or `target` if factor is 1
     double *bands;  ///< scatter: sums of KI_RESAMPLE_BANDS bands of rows of a panorama
     int first_band; ///< scatter: index of the first of these bands
 } ki_resample_run;

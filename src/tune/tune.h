@@ -57,7 +57,8 @@ kiln_result ki_tune_execute(const ki_tune *tune, const ki_legendre *legendre,
                             const kiln_spectrum *spectrum, double rotation, bool rehearses,
                             kiln_map *map, kiln_error *error);
 
-/// Bytes that an execution takes at most for `count` suns of a panorama of `source_size` rows.
+/// Returns the greatest number of bytes that an execution takes for `count` suns of a panorama of
+/// `source_size` rows.
 size_t ki_tune_suns_size(const ki_tune *tune, int source_size, size_t count);
 
 #endif
