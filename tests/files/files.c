@@ -264,13 +264,13 @@ static void faces_are_found_again(void **state)
     CHECK_OK(kiln_image_save(context, &image, in_folder("g/ny.exr"), &error));
     assert_int_equal(kiln_map_load(context, in_folder("g"), NULL, &back, &error),
                      KILN_ERROR_FORMAT);
-    CHECK_SAYS(error.message, "ny.exr: is 5 x 5, the first face 6 x 6");
+    CHECK_SAYS(error.message, "ny.exr: is 5 x 5 pixels, but the first face is 6 x 6");
     kiln_image_free(&image);
     CHECK_OK(kiln_image_create(context, 6, 5, 3, &image, &error));
     CHECK_OK(kiln_image_save(context, &image, in_folder("g/px.exr"), &error));
     assert_int_equal(kiln_map_load(context, in_folder("g"), NULL, &back, &error),
                      KILN_ERROR_FORMAT);
-    CHECK_SAYS(error.message, "px.exr: is 6 x 5, a face must be square");
+    CHECK_SAYS(error.message, "px.exr: is 6 x 5 pixels, a face must be square");
     kiln_image_free(&image);
     kiln_map_free(&cube);
 }

@@ -186,7 +186,7 @@ static void what_cannot_be_is_said(void **state)
     kiln_fit fit;
     kiln_fit_def def = {.error = 1e-2, .max_coefficients = 16};
     assert_int_equal(kiln_fit_create(context, &def, &fit, &error), KILN_ERROR_UNSUPPORTED);
-    CHECK_SAYS(error.message, "up to 16 coefficients errs by 0.01 or less; the best");
+    CHECK_SAYS(error.message, "up to 16 coefficients has an error of 0.01 or less; the best");
     assert_int_equal(fit.part_count, 0);
     def = (kiln_fit_def){.error = 1e-9};
     assert_int_equal(kiln_fit_create(context, &def, &fit, &error), KILN_ERROR_ARGUMENT);
