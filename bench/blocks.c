@@ -1,7 +1,9 @@
-// What bench/blocks/blocks.mjs needs of kiln:
-//     bench_blocks save PANORAMA TRUTH.ktx2 BLOCKS.dds    bakes, writes floats and BC6H, prints the latter's
-//                                                         fewest CPU microseconds a texel
-//     bench_blocks error TRUTH.ktx2 LEVEL PICTURE         prints errors of six faces, one below the other
+// The program bench_blocks, which bench/blocks/blocks.mjs calls for kiln's part of the comparison.
+//     bench_blocks save PANORAMA TRUTH.ktx2 BLOCKS.dds
+//         bakes, writes the levels as floats and as BC6H, and prints the least CPU time of the
+//         encoding in microseconds for each texel
+//     bench_blocks error TRUTH.ktx2 LEVEL PICTURE
+//         prints the errors of a picture of six faces, one below the other
 #include <kiln/kiln.h>
 
 #include <math.h>

@@ -1,9 +1,10 @@
 #!/bin/sh
-# Makes the benches' inputs and runs them: bench/run.sh [--update] [CASE...]
-# Results go to bench/results/MACHINE/CASE.csv. Beside the cases of `bench --list` there is `count`,
-# the instructions of a fixed bake (--update makes today's count the reference), `web`, kiln in a
-# browser's page beside three.js, `engines`, what engines show of kiln's files and of their own bakes, and
-# `blocks`, BC6H beside Basis Universal's.
+# Makes the inputs of the benchmarks and runs cases: bench/run.sh [--update] [CASE...]
+# Results go to bench/results/MACHINE/CASE.csv. Further cases than those of `bench --list` are:
+#   count    counts the instructions of a fixed bake; --update makes the new count the reference
+#   web      compares kiln and three.js in a page of a browser
+#   engines  compares the pixels of engines with kiln's files and with the engines' own bakes
+#   blocks   compares BC6H by kiln and by Basis Universal
 set -eu
 cd "$(dirname "$0")/.."
 bin=build/release/bin
@@ -21,12 +22,12 @@ if [ "${1:-}" = --update ]; then
 fi
 [ $# -gt 0 ] || set -- accuracy probe threads instructions files scaling peer memory tables tune count web engines blocks
 for part in bench bench_reference kiln; do
-    [ -x $bin/$part ] || fail "there is no $bin/$part: run ./do bench"
+    [ -x $bin/$part ] || fail "$bin/$part is missing: run ./do bench"
 done
-[ -s build/data/blender/city.exr ] || fail "there are no panoramas: run scripts/panoramas.sh"
+[ -s build/data/blender/city.exr ] || fail "the panoramas are missing: run scripts/panoramas.sh"
 mkdir -p $inputs
 
-# picture NAME WIDTHxHEIGHT: the city, enlarged, as half floats in zip compression.
+# picture NAME WIDTHxHEIGHT: makes NAME.exr from the panorama city, enlarged, as half floats compressed by ZIP.
 picture() {
     [ ! -s "$inputs/$1.exr" ] || return 0
     have oiiotool || fail "oiiotool is missing: install Debian's openimageio-tools"
@@ -56,37 +57,37 @@ count() {
         printf "  %.1f million by gcc %s, reference %.1f million by gcc %s: %+.2f %%\n",
             now / 1e6, version, before / 1e6, by, 100 * (ratio - 1)
         if (ratio > 1.02 && version == by) {
-            print "  more than 2 % more: MISSED (bench/run.sh --update count makes it the reference)"
+            print "  the count grew by more than 2 %: MISSED (bench/run.sh --update count makes it the reference)"
             exit 1
         }
     }'
 }
 
-# The page's baker beside three.js's, in one browser.
+# Compares kiln's WebAssembly and three.js's PMREMGenerator in one browser.
 web() {
     have chromium || fail "chromium is missing: install Debian's chromium"
-    [ -s build/wasm/site/baker.wasm ] || fail "there is no build/wasm/site: run ./do bench"
+    [ -s build/wasm/site/baker.wasm ] || fail "build/wasm/site is missing: run ./do bench"
     for folder in tests/web tests/engines; do
         [ -d $folder/node_modules ] || fail "packages are missing: run  npm ci --prefix $folder"
     done
-    printf '\nweb: bakes in a page, beside three.js, both against brute force\n'
+    printf '\nweb: bakes in a page by kiln and by three.js, compared with brute force\n'
     node bench/web/pmrem.mjs build/release/bin build/wasm/site build/data/blender $inputs/web \
         "$results/$($bin/bench --machine)/web.csv"
 }
 
-# What engines show, by kiln's files and by their own filters.
+# Measures the pixels of engines, with kiln's files and with the engines' own filters.
 engines() {
     have chromium || fail "chromium is missing: install Debian's chromium"
     have cmgen || fail "cmgen is missing: install Debian's libfilament-tools"
     for folder in tests/web tests/engines; do
         [ -d $folder/node_modules ] || fail "packages are missing: run  npm ci --prefix $folder"
     done
-    printf '\nengines: what they show, against brute force\n'
+    printf '\nengines: errors of pixels, compared with brute force\n'
     node bench/engines/displayed.mjs build/release/bin build/data/blender $inputs/engines \
         "$results/$($bin/bench --machine)/engines.csv"
 }
 
-# BC6H beside another encoder's, both decoded by oiiotool.
+# Compares BC6H by kiln and by Basis Universal, decoded by oiiotool.
 blocks() {
     have oiiotool || fail "oiiotool is missing: install Debian's openimageio-tools"
     [ -d bench/blocks/node_modules ] || fail "packages are missing: run  npm ci --prefix bench/blocks"

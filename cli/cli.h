@@ -106,8 +106,8 @@ int cli_close_output(int code);
 
 // ------------------------------------------------------------------------------------- file names
 
-/// Returns whether a file name ends in a dot and `ending`, in lower or upper case. The ending "/" means a
-/// folder: the name ends in a slash, or a folder with this name exists.
+/// Returns whether a file name ends in a dot and `ending`, in lower or upper case. The ending "/"
+/// means a folder: the name ends in a slash, or a folder with this name exists.
 bool cli_ends_in(const char *path, const char *ending);
 /// The file name's ending in lower case without its dot; "" for an ending that kiln does not know,
 /// "/" for a folder.

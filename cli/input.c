@@ -15,8 +15,8 @@ static const char *const face_words[][FACES] = {
     {"right", "left", "up", "down", "front", "back"},
 };
 
-// Returns whether `word` is the last word of a file name, where words are runs of letters: the last word of
-// "sky_px.exr" is "px".
+// Returns whether `word` is the last word of a file name, where words are runs of letters: the last
+// word of "sky_px.exr" is "px".
 static bool has_word(const char *path, const char *word)
 {
     const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;

@@ -1,4 +1,5 @@
-// The kiln command: finds the command named by the first argument and runs it.
+// The kiln command. In: the words of the command line. Out: an exit code, and the help or the
+// version. The first word names a command of a table, which then reads the other words.
 #include "cli.h"
 #include "manual.h"
 #include "os.h"
@@ -33,8 +34,8 @@ static void print_overview(FILE *file)
           file);
 }
 
-// Returns whether an unknown command name looks like a picture: the user most likely forgot the word
-// `bake`.
+// Returns whether an unknown command name looks like a picture: the user most likely forgot the
+// word `bake`.
 static bool is_input(const char *name)
 {
     static const char *const endings[] = {"exr", "hdr", "png", "ktx2", "dds", "/"};

@@ -1,5 +1,7 @@
-// BC6H of a cube's levels by kiln and by Basis Universal (UASTC HDR 4x4 at its default effort, transcoded; npm
-// ktx2-encoder, WebAssembly), both decoded by oiiotool: node blocks.mjs BIN PANORAMAS FOLDER CSV
+// Compares the errors of BC6H by kiln and by Basis Universal: node blocks.mjs BIN PANORAMAS FOLDER CSV
+// In: the panoramas NAMES. Out: errors and CPU times, printed and as rows of CSV. kiln bakes a cube of each
+// panorama and encodes its levels. Basis Universal (UASTC HDR 4x4 at its default effort, transcoded to BC6H; npm
+// ktx2-encoder, WebAssembly) encodes the same levels. oiiotool decodes the files of the two encoders.
 import { execFileSync } from 'node:child_process';
 import fs from 'node:fs';
 import path from 'node:path';
@@ -15,7 +17,7 @@ fs.mkdirSync(folder, { recursive: true });
 const basis = await BASIS({ print() {} });
 basis.initializeBasis();
 
-// Levels of an rgba32f KTX2 cube: size, and each face's bytes.
+// Returns the levels of a KTX2 cube in rgba32f: the size and the bytes of each face.
 function readCube(name) {
     const file = fs.readFileSync(path.join(folder, name));
     return Array.from({ length: LEVELS }, (_, level) => {
@@ -26,7 +28,7 @@ function readCube(name) {
     });
 }
 
-// A DDS of one level with the header that kiln wrote for the whole.
+// Writes one level as a DDS file, with the header that kiln wrote for all levels.
 function writeLevel(name, header, size, faces) {
     const own = Buffer.from(header);
     [size, size, faces[0].length].forEach((value, i) => own.writeUInt32LE(value, 12 + 4 * i));
@@ -57,7 +59,8 @@ function basisFace(pixels, size) {
     return { blocks, microseconds };
 }
 
-// Root of the mean squared difference in half floats' bits, and relative to the level's radiance.
+// Returns the RMS difference of the half floats' bits, and the RMS difference of the radiance relative to the
+// level's RMS radiance.
 function measure(name, truth, level) {
     run('oiiotool', `${name}.dds`, '--fullpixels', '--scanline', '-o', `${name}.exr`);
     return ours('error', truth, `${level}`, `${name}.exr`);
@@ -65,7 +68,8 @@ function measure(name, truth, level) {
 
 const rows = ['name,unit,median,minimum'];
 const add = (name, unit, value) => rows.push(`${name},${unit},${value},${value}`);
-console.log('blocks: RMSE in half floats\' bits (10 are nearly 1 %) | of the energy | CPU microseconds a texel');
+console.log('blocks: RMS error in steps of half floats (10 steps are nearly 1 %) | RMS error relative to the RMS ' +
+            'radiance | CPU microseconds for each texel');
 for (const name of NAMES) {
     const truth = `${name}.ktx2`;
     const [time] = ours('save', path.join(panoramas, `${name}.exr`), truth, `${name}.dds`);

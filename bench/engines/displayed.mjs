@@ -1,8 +1,9 @@
-// What engines display of a panorama, by kiln's files and by their own filters, against brute force:
+// Measures the errors of engines' pixels, with kiln's files and with the engines' own filters:
 //   node displayed.mjs BIN PANORAMAS FOLDER CSV [ENGINE...]
-// White metal is drawn as the tests draw it (tests/engines), over a dense sweep of roughness. The truth is
-// the engine's own shading of light that is filtered without approximation for just that direction and
-// roughness; so mixing two levels and reading coarse texels count, and how the engine shades does not.
+// In: the panoramas NAMES. Out: relative RMS errors, printed and as rows of CSV. Each engine draws white metal as
+// in tests/engines, at 19 roughnesses. The pixels are compared with the engine's own shading formula applied to
+// light that a brute-force sum filters for each direction and roughness. The errors therefore come from mixing two
+// levels and from interpolating texels, and not from the engine's formula.
 import { execFileSync } from 'node:child_process';
 import fs from 'node:fs';
 import path from 'node:path';
@@ -15,10 +16,11 @@ const [bin, panoramas, folder, csv] = process.argv.slice(2, 6).map((name) => pat
 const only = process.argv.slice(6);
 const NAMES = ['courtyard', 'sunrise'], CELL = 4;
 const ROUGHNESS = Array.from({ length: 19 }, (_, i) => (10 + 5 * i) / 100);
-// 192 directions, from six sides.
+// Six views, which show 192 directions.
 const VIEWS = makeViews([[0.9, 0.3, 0.1], [-0.9, -0.2, 0.2], [0.1, 0.9, 0.3], [-0.2, -0.9, 0.1],
                          [0.3, 0.2, 0.9], [-0.4, 0.1, -0.9]]);
-// What a row of patches would be, were its light filtered exactly. Brute force is asked once for all.
+// Returns the pixels that the engine would draw if the light were filtered exactly. bench_reference is called once
+// for all pixels.
 function truth(engine, panorama) {
     const { size, level_count: count } = engineOf(bin, engine.name);
     const model = engine.model(count, size), asked = [];
@@ -28,7 +30,7 @@ function truth(engine, panorama) {
             asked.push([p.r, ...model.toKiln(p.way)]);
             return p;
         })));
-    // Irradiance / pi is what GGX gives at roughness 1 with n = v.
+    // GGX of roughness 1 with n = v gives irradiance / pi.
     VIEWS.forEach((view) => view.normals.forEach((n) => asked.push([1, ...model.toKiln(n)])));
     const values = execFileSync(path.join(bin, 'bench_reference'), [path.join(folder, panorama)], {
         input: `${asked.map((line) => line.join(' ')).join('\n')}\n`, encoding: 'utf8', maxBuffer: 1 << 26,
@@ -41,7 +43,7 @@ function truth(engine, panorama) {
         values[at++].map((x, c) => p.single * x + p.multiple * around[i][c])));
 }
 
-// Relative RMS of each roughness.
+// Returns the relative RMS error at each roughness.
 function errors(shown, wanted) {
     return ROUGHNESS.map((_, row) => {
         let off = 0, whole = 0;
@@ -59,7 +61,8 @@ makeSite(folder);
 const ways = makeWays(bin, folder, ['--tune=none']);
 for (const name of NAMES)
     makePanorama(bin, folder, path.join(panoramas, `${name}.exr`), `${name}.hdr`);
-console.log('  relative rms in % of 192 directions, by roughness from 0.1 to 1; over all 19, and the worst');
+console.log('  relative RMS error in % over 192 directions, at roughness 0.1, 0.2, 0.3, 0.5, 0.7 and 1; then over all ' +
+            '19 roughnesses, and at the worst');
 await withPage(folder, async (browser, address) => {
     browser.setDefaultTimeout(300000);
     for (const engine of Object.values(models).filter(({ name }) => !only.length || only.includes(name))) {

@@ -1,6 +1,8 @@
-// The ways to light in an engine: its own filter, or cmgen's where it has none in the browser, and kiln's file.
-//   const ways = makeWays(BIN, FOLDER, ['--tune=none']): of an engine of models.mjs, [{ maker, make }]; make(panorama)
-//   writes what the engine's page loads into FOLDER and names it.
+// The ways to light a scene in an engine: the engine's own filter (or cmgen for Filament, which has no filter in
+// the browser), and kiln's file.
+//   const ways = makeWays(BIN, FOLDER, ['--tune=none']);
+// ways(engine) returns [{ maker, make }] for an engine of models.mjs. make(panorama) writes the file that the
+// engine's page loads into FOLDER, and returns its name.
 import { execFileSync } from 'node:child_process';
 import path from 'node:path';
 
@@ -28,12 +30,12 @@ export function makeWays(bin, folder, more = []) {
     return (engine) => [engine.name === 'filament' ? cmgen : own, byKiln(engine, 'kiln'), ...more.map((fit) => byKiln(engine, `kiln ${fit}`, fit))];
 }
 
-// What kiln knows of an engine.
+// Returns kiln's description of an engine.
 export const engineOf = (bin, name) =>
     JSON.parse(execFileSync(path.join(bin, 'kiln'), ['engines', '--json'], { encoding: 'utf8' }))
         .find((row) => row.name === name);
 
-// A panorama as .hdr, which every engine reads.
+// Converts a panorama to .hdr, which every engine reads.
 export const makePanorama = (bin, folder, from, name) =>
     execFileSync(path.join(bin, 'kiln'), ['bake', from, '--shape', 'panorama', '--roughness', '0', '--size', '512',
                                           '-q', '-o', name], { cwd: folder });

@@ -1,6 +1,7 @@
-// Bakes panoramas in one browser's page by kiln's WebAssembly and by three.js's PMREMGenerator, and
-// compares both with brute force: node pmrem.mjs BIN SITE PANORAMAS FOLDER CSV
-// The page is put together in FOLDER. three.js is the one that tests/engines locks.
+// Bakes panoramas in one page of a browser by kiln's WebAssembly and by three.js's PMREMGenerator, and compares
+// the results with brute force: node pmrem.mjs BIN SITE PANORAMAS FOLDER CSV
+// In: the panoramas NAMES. Out: times and errors, printed and as rows of CSV. The files of the page are copied to
+// FOLDER. The version of three.js is that of tests/engines/package-lock.json.
 import { execFileSync } from 'node:child_process';
 import fs from 'node:fs';
 import path from 'node:path';
@@ -20,13 +21,14 @@ gather(three, 'three.module.js', 'three.core.js');
 gather(panoramas, ...NAMES.map((name) => `${name}.exr`));
 fs.copyFileSync(new URL('pmrem.html', import.meta.url), path.join(folder, 'index.html'));
 
-// Faces of OpenGL: +X -X +Y -Y +Z -Z.
+// Directions of the cube faces +X -X +Y -Y +Z -Z, as OpenGL defines them.
 const FACES = [(s, t) => [1, -t, -s], (s, t) => [-1, -t, s], (s, t) => [s, 1, t],
                (s, t) => [s, -1, -t], (s, t) => [s, -t, 1], (s, t) => [-s, -t, -1]];
-// three's panoramas have +X in the centre and +Z to the right, where kiln's have -Z and +X.
+// three.js's panoramas have +X in the centre and +Z to the right, where kiln's have -Z and +X.
 const toKiln = { kiln: (d) => d, three: ([x, y, z]) => [z, y, -x] };
 
-// TEXELS texels of a level spread evenly over all, or all: [face, column, row].
+// Returns [face, column, row] of TEXELS texels that are evenly spread over a level, or of all texels of a small
+// level.
 const places = ({ size }) => {
     const all = 6 * size * size, count = Math.min(all, TEXELS);
     return Array.from({ length: count }, (_, i) => {
@@ -40,7 +42,7 @@ function direction({ size }, [face, x, y]) {
     return d.map((c) => c / Math.hypot(...d));
 }
 
-// Relative RMS of each level but the mirror.
+// Returns the relative RMS error of each level, except for level 0 of roughness 0.
 function errors(panorama, who, levels, values) {
     const chosen = levels.map(places).map((of, k) => (k ? of : []));
     const lines = levels.flatMap((level, k) => chosen[k].map((place) =>
@@ -68,7 +70,7 @@ function report(name, who, { levels, seconds, first }, rms) {
     const sorted = [...seconds].sort((a, b) => a - b), median = sorted[RUNS >> 1];
     rows.push(`${name} ${who},s,${median},${sorted[0]}`, `${name} ${who} first,s,${first},${first}`);
     console.log(`  ${name.padEnd(10)} ${who.padEnd(6)} ${median.toFixed(3)} s (first ${first.toFixed(3)})` +
-                `  worst ${Math.max(...rms).toExponential(1)}`);
+                `  worst level ${Math.max(...rms).toExponential(1)}`);
     rms.forEach((value, k) => {
         const { size, roughness } = levels[k + 1];
         rows.push(`${name} ${who} roughness ${roughness.toFixed(3)} rms,relative,${value},${value}`);
@@ -87,8 +89,8 @@ await withPage(folder, async (page, address) => {
         const kiln = await page.evaluate((runs) => window.bakeKiln(runs), RUNS);
         const other = await page.evaluate((runs) => window.bakeThree(runs), RUNS);
         if (!n)
-            console.log(`  kiln as WebAssembly (${kiln.cpu}, one thread) beside three.js r${other.version} ` +
-                        `on ${other.gpu};\n  median of ${RUNS}, relative rms of ${TEXELS} texels a level`);
+            console.log(`  kiln as WebAssembly (${kiln.cpu}, one thread) and three.js r${other.version} ` +
+                        `on ${other.gpu};\n  median time of ${RUNS} bakes, relative RMS error of ${TEXELS} texels of each level`);
         const read = (reader, { levels }) => page.evaluate(
             ([call, of]) => window[call](of), [reader, levels.map(places)]);
         report(name, 'kiln', kiln, errors(panorama, 'kiln', kiln.levels, await read('readKiln', kiln)));

@@ -12,7 +12,7 @@
 extern "C" {
 #endif
 
-// ------------------------------------------------------------------------- the textbook, by its name
+// ------------------------------------------------------------------------------ the textbook methods
 
 /// Parameters of a textbook method. {0} selects the textbook's own sizes. See
 /// docs/theory/textbook.md.
@@ -48,7 +48,7 @@ KILN_API KILN_CHECKED kiln_result kiln_textbook_brdf(kiln_context *context, int 
                                                      int sample_count, kiln_image *table,
                                                      kiln_error *error);
 
-// ----------------------------------------------------------------------- the assignment, by its name
+// ------------------------------------------------------------------------ the GAMES202 assignment
 
 /// Method by which GAMES202's fourth assignment (2021) computes E(mu), with its own sizes, samples
 /// and errors. See docs/theory/assignment.md.

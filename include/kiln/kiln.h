@@ -1,23 +1,25 @@
 // kiln: exact image-based lighting. A panorama goes in, prefiltered radiance comes out.
 //
-// Read from top to bottom this header follows the light,
-//   context -> maps -> load -> sky -> lobe -> spectrum -> prefilter -> spherical harmonics,
-// then brute force that results are compared with, files written, and what engines read of them.
-// What a surface does to the light is in <kiln/brdf.h>: reflection models, tables and closed forms
-// of them. The methods that courses teach are in <kiln/course.h>.
+// The sections of this header follow the light:
+//   context -> maps -> load -> sky -> lobe -> spectrum -> prefilter -> spherical harmonics.
+// After these come reference values by brute force, the writing of files, and the engines that read
+// the files. <kiln/brdf.h> has what surfaces do to light: reflection models, and tables and closed
+// forms of their integrals. <kiln/course.h> has the methods that courses teach.
 //
-// Conventions, the same in every function and every file written (docs/conventions.md):
-//   - linear Rec. 709 radiance in the input's own unit, 32-bit float, three channels;
-//   - right-handed, +Y up; a panorama's centre column looks along -Z, +X to its right, row 0 is +Y;
-//   - cube faces +X -X +Y -Y +Z -Z as OpenGL and KTX order and orient them: texel (x, y) of face f
-//     is the radiance that arrives from the direction that texture(cube, direction) reads there;
-//   - texel centres at (i + 0.5) / n; roughness is perceptual, alpha = roughness^2.
+// These conventions hold in every function and in every file that kiln writes (docs/conventions.md):
+//   - Texels are linear radiance with Rec. 709 primaries in the input's own unit: three channels of
+//     32-bit floats.
+//   - Directions are right-handed with +Y up. The centre column of a panorama looks along -Z and has
+//     +X to its right. Row 0 is at +Y.
+//   - Cube faces come in the order +X -X +Y -Y +Z -Z, oriented as in OpenGL and KTX: a texel is the
+//     radiance that arrives from the direction in which texture(cube, direction) reads the texel.
+//   - Texel i of n has its centre at (i + 0.5) / n. Roughness is perceptual: alpha = roughness^2.
 //
-// Functions that can fail return a kiln_result and, where `error` is not NULL, a sentence with the
-// numbers in it. Outputs are zeroed on failure. No function keeps a pointer to its arguments after
-// it returns, except kiln_context_create (callbacks) and kiln_lobe_custom (function and user data).
+// Functions that can fail return a kiln_result, and write an error message to `error` if `error` is
+// not NULL. On failure outputs are zeroed. No function keeps a pointer to its arguments after it has
+// returned, except kiln_context_create (callbacks) and kiln_lobe_custom (function and user data).
 //
-// One context may be used by one thread at a time; different contexts are independent.
+// Only one thread at a time may use a context. Different contexts are independent of each other.
 // SPDX-License-Identifier: MIT
 #ifndef KILN_H
 #define KILN_H
@@ -64,7 +66,7 @@ typedef enum kiln_result {
     KILN_ERROR_CANCELLED,   ///< the progress callback returned false
 } kiln_result;
 
-/// Filled by a function that fails. `message` is one sentence that says what happened, with the
+/// Filled in by a function that fails. `message` is one sentence that says what happened, with the
 /// numbers that matter.
 typedef struct kiln_error {
     kiln_result result;
@@ -525,8 +527,8 @@ typedef struct kiln_plan kiln_plan;
 
 /// Creates a plan for sources of one shape and size. `source_size` is the number of rows of a
 /// panorama, or the number of texels along a side of a cube face or an octahedron. `def` may be
-/// NULL. The plan uses the context. For tuned levels the creation takes as long as one execution more,
-/// which measures the memory that is needed.
+/// NULL. The plan uses the context. For tuned levels the creation takes as long as one execution
+/// more, which measures the memory that is needed.
 KILN_API KILN_CHECKED kiln_result kiln_plan_create(kiln_context *context, kiln_shape source_shape,
                                                    int source_size, const kiln_bake_def *def,
                                                    kiln_plan **plan, kiln_error *error);

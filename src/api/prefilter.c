@@ -1,11 +1,13 @@
-// The public functions for environments, plans and levels. They look up the engine for whose shader
-// levels are tuned, and pass how that shader reads levels to src/bake.
+// The public functions for environments, plans and levels. In: a source and a definition of what is
+// baked. Out: an environment, a plan, or the levels of a map. The functions here find the engine
+// for whose shader levels are tuned, and pass the description of that shader to src/bake, which
+// does the work.
 #include "bake/environment.h"
 #include "engine/engine.h"
 #include "image/image.h"
 
-// Sets *reading to how the engine that levels are tuned for reads them, stored in `room`, or to
-// NULL for exact levels.
+// Sets *reading to the description, stored in `room`, of how an engine reads the levels that are
+// tuned for this engine. Sets *reading to NULL for exact levels.
 static kiln_result find_reading(const kiln_prefilter_def *def, ki_reading *room,
                                 const ki_reading **reading, kiln_error *error)
 {

@@ -26,8 +26,8 @@ enum {
     IRRADIANCE_DEGREE = 320,
     // Smallest degree of an analysis; the harmonics need degree KILN_MAX_BANDS - 1.
     SH_DEGREE = 8,
-    // Number of suns that a plan has memory for from the beginning. A sun is a single texel that holds a
-    // thousandth of all light.
+    // Number of suns that a plan has memory for from the beginning. A sun is a single texel that
+    // holds a thousandth of all light.
     RESERVED_SUNS = 64
 };
 
@@ -37,14 +37,14 @@ typedef struct low_workspace {
     kiln_spectrum *spectrum;
 } low_workspace;
 
-// What executions of a plan work on, one execution after the other.
+// The memory that the executions of a plan use, one execution after the other.
 typedef struct plan_workspace {
-    kiln_map changed;  // the source mirrored and exposed; empty if it is neither
+    kiln_map changed;  // the mirrored and exposed source; empty if the plan does neither
     kiln_map panorama; // made from a source of another shape; empty if the source is a panorama
     ki_prefilter_workspace prefilter;
     low_workspace for_sh, for_irradiance; // empty where the plan has no such analysis
     bool has_scratch;
-    ki_scratch scratch; // memory for what lives during an execution
+    ki_scratch scratch; // memory that one execution uses and frees, see ki_scratch
 } plan_workspace;
 
 // All fields but `workspace` are constant after the plan is made.
@@ -320,8 +320,8 @@ static kiln_result check_target(const kiln_plan *p, const kiln_environment *envi
     return KILN_OK;
 }
 
-// Mirrors and exposes the source and converts it to a panorama, as far as the plan says. *source
-// then points to the changed map.
+// Mirrors and exposes the source and converts the result to a panorama, as far as the plan says.
+// *source then points to the changed map.
 static kiln_result take_source(const kiln_plan *p, plan_workspace *w, const kiln_map **source,
                                const kiln_map **panorama, kiln_error *error)
 {

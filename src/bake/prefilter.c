@@ -217,8 +217,8 @@ void ki_prefilter_workspace_free(ki_prefilter_workspace *workspace)
     *workspace = (ki_prefilter_workspace){0};
 }
 
-// Computes level `index` unless the level is tuned, which has neither a level nor a mirror in the
-// plan: tuned levels are computed after all others.
+// Computes level `index` if the level is a mirror or is filtered exactly. Tuned levels are computed
+// after these levels.
 static kiln_result execute_level(const ki_prefilter *p, ki_prefilter_workspace *w,
                                  const kiln_map *panorama, const kiln_map *source, int index,
                                  const ki_stage *stage, kiln_map *map, kiln_error *error)

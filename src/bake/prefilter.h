@@ -34,10 +34,10 @@ typedef struct ki_prefilter {
     ki_tune *tune; // plan of the tuned levels, or NULL
 } ki_prefilter;
 
-/// What executions of one prefilter work on, one execution after the other. {0} is an empty
+/// The memory that executions of one prefilter use, one execution after the other. {0} is an empty
 /// workspace.
 typedef struct ki_prefilter_workspace {
-    kiln_context *context; // whose threads execute
+    kiln_context *context; // context whose threads run the executions
     ki_analysis_workspace *analysis;
     kiln_spectrum *spectrum; // spectrum of the panorama in the last execution
     ki_level_workspace levels;

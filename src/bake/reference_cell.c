@@ -1,6 +1,7 @@
-// The mean of a lobe over one texel, for reference.c. In: the direction, and the rectangle in (theta, phi)
-// of a texel or a part of one. Out: the mean of lobe times sin theta. The rectangle is cut into four as
-// often as the lobe changes too fast across it, and each part gets 4 x 4 Gauss-Legendre nodes.
+// The mean of a lobe over one texel, for reference.c. In: the direction, and the rectangle in
+// (theta, phi) of a texel or a part of one. Out: the mean of lobe times sin theta. The rectangle is
+// cut into four as often as the lobe changes too fast across it, and each part gets 4 x 4
+// Gauss-Legendre nodes.
 #include "bake/reference_state.h"
 
 #include "sphere/lobe.h"

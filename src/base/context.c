@@ -1,6 +1,6 @@
-// The context: in goes its definition (allocator, limit, threads, progress callback), out come
-// memory blocks. Every allocation is counted against the limit with atomic operations, so that any
-// thread may allocate.
+// The context. In: its definition (allocator, limit, threads, progress callback). Out: memory
+// blocks. Every allocation is counted against the limit with atomic operations, so that any thread
+// may allocate.
 #include "base/context.h"
 #include "base/base.h"
 

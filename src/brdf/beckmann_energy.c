@@ -1,5 +1,5 @@
-// A and B of the split sum for Beckmann's distribution, by quadrature over the light's elevation and
-// azimuth: model, roughness and n.v in; the two integrals out, to 1e-8.
+// A and B of the split sum for Beckmann's distribution, by quadrature over the light's elevation
+// and azimuth: model, roughness and n.v in; the two integrals out, to 1e-8.
 #include "brdf/beckmann.h"
 
 #include "base/base.h"

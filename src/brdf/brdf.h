@@ -48,7 +48,8 @@ double ki_smith_g1_over_cosine(double alpha, double nox);
 /// the angle.
 double ki_schlick_fresnel(double voh);
 /// Fresnel term of a metal with reflectance f0 at normal incidence and f82 at voh = 1 / 7, an angle
-/// of 82 degrees: Schlick's F - edge voh (1 - voh)^6, clamped to [0, 1]. edge = ki_f82_edge(f0, f82).
+/// of 82 degrees: Schlick's F - edge voh (1 - voh)^6, clamped to [0, 1]. edge = ki_f82_edge(f0,
+/// f82).
 double ki_fresnel_f82(double f0, double f82, double voh);
 /// The coefficient `edge` of ki_fresnel_f82.
 double ki_f82_edge(double f0, double f82);

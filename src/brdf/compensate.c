@@ -1,6 +1,6 @@
 // Compensation of lost energy. The specular lobe models one bounce at a microfacet and so loses the
-// light of all further bounces; these functions return it. docs/theory/compensation.md compares
-// them.
+// light of all further bounces. The functions here return the lost light.
+// docs/theory/compensation.md compares the functions.
 #include "brdf/brdf.h"
 
 #include "brdf/arguments.h"

@@ -91,8 +91,8 @@ static double reflected_masking(const boundary *s, double nol)
     return nol * ki_visibility(&s->model, s->roughness, s->mu, nol);
 }
 
-// The integrand without its factor D, for a half vector with n.h = cos_h and v.h = c. From the
-// denser side the integrand of REFLECTED has 1 - F in place of F.
+// The integrand of R or T without its factor D, for a half vector with n.h = cos_h and v.h = c. If
+// v is in the denser medium, the integrand of R has 1 - F in place of F.
 static double facet(const boundary *s, part what, double cos_h, double c)
 {
     double contrast = (1 - s->ior) * (1 + s->ior), g2 = c * c - contrast;
@@ -174,8 +174,8 @@ static double integrate_arc(const boundary *s, part what, const double h[2], dou
     return 16 * slope / panels * sum;
 }
 
-// The inner integral: over a ring of half vectors, those at one angle to n, whose sine and cosine
-// are h[0] and h[1]. Finds the end of the arc of azimuths to which light is reflected or
+// The inner integral, over a ring of half vectors: all half vectors at one angle to n, whose sine
+// and cosine are h[0] and h[1]. Finds the end of the arc of azimuths to which light is reflected or
 // transmitted, and the singularity nearest to that end. `coarse` marks a ring with little influence
 // on the result.
 static double ring(const boundary *s, part what, const double h[2], bool coarse)

@@ -1,5 +1,5 @@
 // Rough glass: the shares of light from one direction that a rough boundary between two dielectrics
-// reflects and transmits, into all directions together. docs/theory/glass.md derives them.
+// reflects and transmits, into all directions together. docs/theory/glass.md derives the integrals.
 #ifndef KI_DIELECTRIC_H
 #define KI_DIELECTRIC_H
 

@@ -1,5 +1,5 @@
-// The kernel ki_energy_row for GGX: one roughness and `count` cosines of the view in, E or the
-// split sum's A and B for each cosine out. Files that are compiled for one instruction set each
+// The kernel ki_energy_row for GGX. In: one roughness and `count` cosines of the view. Out: E, or A
+// and B of the split sum, for each cosine. Files that are compiled for one instruction set each
 // define KI_ROW, the kernel's name, and include this file. The loops over sixteen nodes are plain C
 // that compilers vectorise.
 //

@@ -1,7 +1,9 @@
-// Fresnel reflectances of unpolarised light as functions of the cosine of incidence: Schlick's
-// approximation, its form for metals with a value at 82 degrees, the exact terms of dielectrics and
-// conductors. Their averages 2 int F(mu) mu dmu over diffuse light: in closed form for dielectrics,
-// by adaptive quadrature for conductors, and by Kulla and Conty's fits. docs/theory/fresnel.md.
+// Fresnel reflectances of unpolarised light, and their averages over diffuse light. In: indices of
+// refraction or reflectances, and the cosine of incidence. Out: the reflectance F by Schlick's
+// approximation, by its form for metals with a value at 82 degrees, and by the exact formulas for
+// dielectrics and conductors; or the average 2 int F(mu) mu dmu. Method of the averages: a closed
+// form for dielectrics, adaptive quadrature for conductors, and Kulla and Conty's fits for both.
+// docs/theory/fresnel.md derives the formulas.
 #include "brdf/brdf.h"
 
 #include "base/base.h"
@@ -179,9 +181,9 @@ double ki_fresnel_conductor_average(double n, double k)
 {
     average f = {.n = n, .k = k, .end = 1};
     ki_gauss_legendre(NODES, f.node, f.weight);
-    // The kink is at the critical angle, where g^2 is imaginary. It is sharp for small k. For small
-    // n it is at mu near 1, and the cone of directions inside it is so narrow that no node would
-    // fall into it.
+    // The kink is at the critical angle, where g^2 is imaginary. The kink is sharp for small k. For
+    // small n the kink is at mu near 1, and the cone of directions inside the critical angle is so
+    // narrow that no node would fall into the cone.
     double kink2 = (1 - n) * (1 + n) + k * k;
     f.kink = kink2 > 0 && kink2 < 1 ? sqrt(kink2) : 0;
     double sum = refine(&f, 0, 1, panel(&f, 0, 1), false, DEPTH);

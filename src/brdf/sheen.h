@@ -1,5 +1,5 @@
-// Charlie sheen, the reflection lobe of cloth: its normals lie near the surface, as those of fibres
-// that stand up from the cloth. Estevez and Kulla 2017. docs/theory/sheen.md.
+// Charlie sheen, the reflection lobe of cloth. The microfacet normals lie near the surface, like
+// the normals of fibres that stand up from the cloth. Estevez and Kulla 2017. docs/theory/sheen.md.
 #ifndef KI_SHEEN_H
 #define KI_SHEEN_H
 

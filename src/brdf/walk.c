@@ -139,7 +139,7 @@ static int lattice_bits(int path_count)
 // ------------------------------------------------------------------------------------------ albedo
 
 // Receives each bounce of a path: the index of the bounce, v.h at its microfacet, and the weight
-// that leaves the surface after it.
+// that leaves the surface after the bounce.
 typedef void visit(void *data, int bounce, double voh, double leaves);
 
 // Follows path `index` of the lattice from the view until it has left, and reports each bounce to
@@ -254,7 +254,8 @@ void ki_walk_column(double roughness, double nov, const double *f0, int count, i
     // The light of the bounces after the first is 1 - E for F = 1, which is known exactly. The walk
     // provides only the factor by which the Fresnel terms darken it.
     ki_energy_split(&(kiln_model){0}, roughness, nov, ab);
-    // Where no path had a second bounce, the factor is taken as the square of the first bounce's.
+    // If no path had a second bounce, the factor is taken as f squared, where f is the factor by
+    // which the Fresnel term darkens the first bounce.
     double e = ab[0] + ab[1], missing = e < 1 ? 1 - e : 0;
     for (int k = 0; k < count; k++) {
         double f = (f0[k] * ab[0] + ab[1]) / e;

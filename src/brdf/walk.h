@@ -1,5 +1,5 @@
-// Random walks of light between the microfacets of a GGX surface. They give the albedo with every
-// bounce, the reference for compensations that approximate it. docs/theory/walk.md.
+// Random walks of light between the microfacets of a GGX surface. The walks give the albedo with
+// every bounce, which is the reference for the methods of compensation. docs/theory/walk.md.
 #ifndef KI_WALK_H
 #define KI_WALK_H
 
@@ -21,8 +21,8 @@ ki_ray ki_walk_enter(double alpha, double nov, double xi);
 /// 1)^2.
 double ki_walk_bounce(double alpha, const double xi[2], ki_ray *ray);
 /// Moves the ray to the next microfacet. Returns the share of light that leaves the surface on the
-/// way. If less than 0.1 would stay inside, either all of the ray's light leaves or none, at
-/// random.
+/// way. If less than 0.1 would stay inside, a random number decides whether all of the ray's light
+/// leaves or none of the light leaves.
 double ki_walk_on(double alpha, double xi, ki_ray *ray);
 
 /// Greatest number of f0 in a call of ki_walk_column.

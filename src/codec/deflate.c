@@ -141,8 +141,8 @@ static void make_fixed_codes(ki_deflater *d)
     ki_huffman_assign(&d->distances, DISTANCES, with_distances, 5);
 }
 
-// The code lengths of both codes as a block stores them. Bits 0 to 4 of an item are a symbol of the
-// code of lengths, the bits from 8 on the symbol's extra bits.
+// The lengths of the literal code and of the distance code, as a block stores them. Bits 0 to 4 of
+// an item are a symbol of the code of lengths, the bits from 8 on the symbol's extra bits.
 typedef struct header {
     uint16_t items[LITERALS + DISTANCES];
     int count, literals, distances, lengths;

@@ -257,7 +257,7 @@ kiln_result ki_env_describe(const uint8_t *bytes, size_t size, const char *name,
     if (!end)
         return ki_fail(error, KILN_ERROR_FORMAT,
                        "%s: the manifest does not end within the file's %zu bytes", name, size);
-    manifest m = {.lod_scale = 0.8}; // the value that Babylon.js uses if a file states none
+    manifest m = {.lod_scale = 0.8}; // the scale that Babylon.js uses if a file states no scale
     ki_json json = ki_json_make(from, (size_t)(end - from));
     read_manifest(&json, &m);
     if (json.failed)

@@ -95,8 +95,8 @@ int ki_exr_rows(const ki_exr_box *box, const ki_exr_channel *channel);
 bool ki_exr_line_has(const ki_exr_channel *channel, int y);
 /// Returns the number of bytes of a box, or 0 if the number exceeds size_t.
 size_t ki_exr_box_size(const ki_exr_box *box);
-/// Reorders planes, in which all samples of one channel precede those of the next, to the lines of
-/// a box.
+/// Reorders planes to the lines of a box. In planes all samples of one channel precede all samples
+/// of the next channel.
 void ki_exr_lines_from_planes(const ki_exr_box *box, const uint8_t *planes, uint8_t *raw);
 
 // ----------------------------------------------------------------------------------------- methods
@@ -109,9 +109,9 @@ typedef struct ki_exr_workspace {
     const uint16_t *dwa_table; // for DWAA and DWAB, filled by ki_exr_dwa_table
 } ki_exr_workspace;
 
-/// Decompresses the `packed` bytes of a chunk into exactly `size` bytes, those of its box. Returns
-/// KILN_OK, KILN_ERROR_FORMAT or KILN_ERROR_MEMORY and writes no error message. The file exr_NAME.c
-/// has method NAME.
+/// Decompresses the `packed` bytes of a chunk into exactly `size` bytes, which is the size of the
+/// chunk's box. Returns KILN_OK, KILN_ERROR_FORMAT or KILN_ERROR_MEMORY and writes no error
+/// message. The file exr_NAME.c has method NAME.
 typedef kiln_result ki_exr_decompress(const ki_exr_workspace *work, const ki_exr_box *box,
                                       const uint8_t *packed, size_t packed_size, uint8_t *raw,
                                       size_t size);

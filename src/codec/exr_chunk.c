@@ -60,8 +60,8 @@ static grid make_grid(const ki_exr_part *p)
     return g;
 }
 
-// Returns the number of entries in a part's table of chunks; in a part with mip levels only those
-// of level 0, which come first. Returns 0 if the header is wrong.
+// Returns the number of entries in a part's table of chunks. In a part with mip levels only the
+// entries of level 0 count, which come first. Returns 0 if the header is wrong.
 static int32_t chunk_count(const ki_exr_part *part)
 {
     grid g = make_grid(part);

@@ -63,7 +63,7 @@ typedef struct dwa_rule {
 typedef struct dwa_plan {
     int scheme;
     int width, height;   // size of the channel in samples
-    const uint8_t *from; // the channel's raw bytes, if it is not stored by the transform
+    const uint8_t *from; // raw bytes of a channel that is not stored by the transform
     bool done;
 } dwa_plan;
 
@@ -429,8 +429,8 @@ static void copy_plain(dwa *d, int index, const size_t *offset)
 // The packed sections of a chunk, and the memory for their unpacked content.
 typedef struct sections {
     const uint8_t *zlib, *ac, *dc, *runs; // the packed sections
-    uint8_t *plain;                       // unpacked channels of zlib, then those of runs
-    uint8_t *run_bytes;                   // runs after the first of two steps of unpacking
+    uint8_t *plain; // unpacked channels that zlib compressed, then channels that are stored as runs
+    uint8_t *run_bytes; // runs after the first of two steps of unpacking
     uint16_t *ac_values, *dc_values, *scratch;
     size_t *offset; // byte offsets of the lines of three channels
     triple *triples;

@@ -1,7 +1,7 @@
 // Writing of EXR files. In: floats of one to four channels and the file's options. Out: a file of
-// scan lines, half or float, compressed by ZIP in chunks of 16 lines. The context's threads compress
-// several chunks at once. A chunk is compressed without regard to the others, and the chunks are
-// written in their order, which makes the file the same for any number of threads.
+// scan lines, half or float, compressed by ZIP in chunks of 16 lines. The context's threads
+// compress several chunks at once. A chunk is compressed without regard to the others, and the
+// chunks are written in their order, which makes the file the same for any number of threads.
 #include "codec/codec.h"
 #include "codec/deflate.h"
 #include "image/pack.h"
@@ -208,7 +208,7 @@ static void pack_chunk(void *data, int index)
     l->size = packed ? packed : size;
 }
 
-// Writes the chunks in their order, and the table of their positions, which precedes them.
+// Writes the table of the chunks' positions, and then the chunks in their order.
 static kiln_result write_chunks(packer *p, size_t file_start, ki_writer *w)
 {
     size_t table = w->size;

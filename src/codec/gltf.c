@@ -104,10 +104,11 @@ kiln_result ki_gltf_encode(const kiln_map *map, const kiln_sh *sh, ki_writer *w,
 typedef struct light {
     char generator[64];
     int width, level_count;
-    bool found, uneven; // `uneven`: a level has other than six images
+    bool found, uneven; // uneven: a level has more or fewer than six images
     int sh_count;
     double sh[9][3];
-    uint64_t image_bytes; // end of the last view within the buffer, in bytes
+    // number of bytes from the buffer's beginning to the end of the last image
+    uint64_t image_bytes;
 } light;
 
 static void read_asset(ki_json *j, light *l)

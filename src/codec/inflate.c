@@ -1,11 +1,11 @@
-// Decompression of zlib's format (RFC 1950, RFC 1951) into a buffer of known size, for EXR and PNG
-// files. The code here lets kiln be built with nothing but a C compiler. If kiln is built with
-// libdeflate (KILN_DEFLATE), whole buffers are decompressed by that library, which is faster and
-// gives the same bytes.
+// Decompression of zlib's format (RFC 1950, RFC 1951), for EXR and PNG files. In: zlib data that are
+// not trusted. Out: exactly as many bytes as the caller asks for. The code here lets kiln be built
+// with nothing but a C compiler. If kiln is built with libdeflate (KILN_DEFLATE), that library
+// decompresses whole buffers, which is faster and gives the same bytes.
 //
-// The next bits of the input are the index of a table, whose entry gives the symbol. Codes longer
-// than that index continue in a second table. While both input and output have room to spare, eight
-// bytes are read and copied at a time; the last bytes are handled singly.
+// Method: the next bits of the input are the index of a table, whose entry gives the symbol. Codes
+// longer than that index continue in a second table. While input and output have room to spare,
+// eight bytes are read and copied at a time. The last bytes are handled singly.
 #include "codec/deflate.h"
 #include "codec/huffman.h"
 
@@ -98,7 +98,8 @@ static inline uint32_t take(stream *s, uint32_t count)
 
 // ------------------------------------------------------------------------------------------- codes
 
-// Returns what a symbol means, as an entry without a code length.
+// A function that returns the table entry of a symbol, with 0 in place of the length of the
+// symbol's code.
 typedef uint32_t meaning(int symbol);
 
 static uint32_t plain_meaning(int symbol)

@@ -1,5 +1,5 @@
 // Makes a map from pixels in the caller's memory. Values are converted to floats and placed on the
-// sphere in the same way as those of files.
+// sphere in the same way as the texels of files.
 #include "codec/layout.h"
 #include "image/image.h"
 #include "image/pack.h"

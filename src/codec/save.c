@@ -89,8 +89,8 @@ double kiln_map_save_limit(const char *path, kiln_format format)
 
 // ------------------------------------------------------------------------------------------- names
 
-// Writes a template for the names of all files, with {face} and {level} where these belong: the
-// caller's path, with places added for what it lacks.
+// Writes a template for the names of all files: the caller's path with {face} and {level} in place
+// of the face and the level. If the path has no place for one of the two, a place is added.
 static kiln_result make_template(const char *path, const kiln_map *map, ki_writer *w,
                                  kiln_error *error)
 {

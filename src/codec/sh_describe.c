@@ -93,8 +93,8 @@ kiln_result ki_sh_json_describe(const uint8_t *bytes, size_t size, const char *n
     return finish("json", count, name, info, error);
 }
 
-// Reads three numbers from each line, whatever text surrounds them, up to the first line without
-// three numbers, at which *at then points. Returns the number of lines read.
+// Reads three numbers from each line and ignores the text around the numbers. Stops at the first
+// line without three numbers, at which *at then points. Returns the number of lines read.
 static int read_lines(const char **at, kiln_file_info *info)
 {
     int count = 0;
@@ -124,7 +124,7 @@ kiln_result ki_sh_lines_describe(const uint8_t *bytes, size_t size, const char *
     }
     const char *at = t.bytes;
     int count = read_lines(&at, info);
-    // Every line must have been read to its end.
+    // If text remains, a line had no three numbers, and the count 0 makes finish() fail.
     return finish("text", *at ? 0 : count, name, info, error);
 }
 

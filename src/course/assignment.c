@@ -119,7 +119,8 @@ static void fill_row(void *data, int index)
     }
 }
 
-// Fills an allocated image of size x size with estimates of E. No field of `def` is 0 for a default.
+// Fills an allocated image of size x size with estimates of E. No field of `def` is 0 for a
+// default.
 static kiln_result fill_energy(kiln_context *context, kiln_assignment_method method,
                                const kiln_assignment_def *def, kiln_image *table, kiln_error *error)
 {

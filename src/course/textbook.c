@@ -147,8 +147,8 @@ static void irradiance_row(void *data, int index)
     }
 }
 
-// Fills level 0 of an allocated map with irradiance / pi, from phi_count x theta_count texels of the
-// panorama for each texel.
+// Fills level 0 of an allocated map with irradiance / pi, from phi_count x theta_count texels of
+// the panorama for each texel.
 static kiln_result fill_irradiance(kiln_context *context, const kiln_map *panorama, int phi_count,
                                    int theta_count, kiln_map *map, kiln_error *error)
 {
@@ -184,8 +184,9 @@ typedef struct prefilter {
     double weight_sum;  // sum of n.l over the light directions
 } prefilter;
 
-// Computes the light directions of a level. In a frame whose z axis is a texel's normal they are
-// the same for every texel, because the method takes normal, view and reflection as equal.
+// Computes the light directions of a level. In a frame whose z axis is a texel's normal the
+// directions are the same for every texel, because the method takes normal, view and reflection as
+// equal.
 static void set_lights(prefilter *r, double roughness, int sample_count)
 {
     r->sample_count = 0;

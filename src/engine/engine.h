@@ -15,8 +15,8 @@ typedef struct ki_axes {
     int axis[3], sign[3];
 } ki_axes;
 
-/// What the function that writes an engine's files gets. The map and the harmonics (three bands of
-/// radiance) are already turned to the engine's axes.
+/// The arguments of the function that writes an engine's files. The map and the harmonics (three
+/// bands of radiance) are already turned to the engine's axes.
 typedef struct ki_export {
     kiln_context *context;
     const kiln_map *map;
@@ -40,8 +40,9 @@ typedef struct ki_recipe {
     /// Smallest number of levels that a caller may choose; 0 if the number is fixed.
     int level_count_min;
     double (*roughness)(int level, int level_count, int size);
-    /// The inverse of `roughness` as the engine's shader computes it: the level, with its fraction,
-    /// that the shader reads for a roughness. NULL if the engine reads no levels.
+    /// The inverse function of `roughness`, as the engine's shader computes it: returns the level,
+    /// with its fraction, that the shader reads for a roughness. NULL if the engine reads no
+    /// levels.
     double (*level)(double roughness, int level_count, int size);
     bool keeps_last; ///< true: the engine uses the last level as its diffuse light
     /// True: the engine reads no cube, but flat pictures into which `write` draws the levels.

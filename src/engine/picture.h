@@ -5,9 +5,9 @@
 
 #include "base/base.h"
 
-/// Sets `rgb` to the radiance wanted at (u, v). Inside the border u and v run from 0 to 1; in the
-/// border they lie slightly outside of this range. Returns the solid angle per area there, in any
-/// unit.
+/// Sets `rgb` to the radiance wanted at (u, v). Inside the border u and v run from 0 to 1. In the
+/// border u and v lie slightly outside of this range. Returns the solid angle per area at (u, v),
+/// in any unit.
 typedef double ki_picture_read(const void *data, double u, double v, double rgb[3]);
 
 typedef struct ki_picture {
@@ -23,9 +23,9 @@ typedef struct ki_picture {
 
 /// Returns the number of floats that `room` must have.
 size_t ki_picture_room(const ki_picture *picture);
-/// Draws a picture. With 0 steps every texel is the mean radiance over its area. Each step then
-/// moves all texels toward those whose bilinear interpolation has the least square error over the
-/// solid angle; 12 steps suffice. Returns false if a progress report asks to stop.
+/// Draws a picture. With 0 steps every texel is the mean radiance over its area. Each further step
+/// moves the texels toward the texels whose bilinear interpolation has the least square error over
+/// the solid angle; 12 steps suffice. Returns false if a progress report asks to stop.
 bool ki_picture_draw(kiln_context *context, const ki_picture *picture, int steps);
 
 #endif

@@ -1,7 +1,7 @@
 // Unity: a cube as .dds whose level 6 has roughness 1, whatever the size of the cube. Unity's
 // shaders read level 6 r (1.7 - 0.7 r) at roughness r (PerceptualRoughnessToMipmapLevel). Levels
-// after the sixth are never read; they are written because loaders expect a DDS cube to have all
-// its levels.
+// after the sixth are never read. The file has these levels too, because loaders expect a DDS cube
+// to have all its levels.
 //
 // Unity's world is left-handed. Its panoramas (Skybox/Panoramic) have +X in the centre and -Z to
 // the right of the centre.

@@ -1,7 +1,7 @@
-// Conversion between floats and the small number formats of textures: in and out are arrays of
-// floats, halves (16 bits), r9g9b9e5, b10g11r11 and sRGB values. The methods use integers and exact
-// float operations only, so that every machine gives the same bits. The roundings are to nearest,
-// ties to even.
+// Conversion between floats and the small number formats of textures. In and out: arrays of floats,
+// halves (16 bits), r9g9b9e5, b10g11r11 and sRGB values. Method: integers and exact float
+// operations only, so that every machine gives the same bits. The roundings are to nearest, ties to
+// even.
 #include "image/pack.h"
 #include "math/math.h"
 

@@ -1,5 +1,6 @@
-// A plan for resampling by area, and the methods that execute it. Shared by resample.c, which chooses
-// the method, resample_stencil.c (gather and scatter) and resample_texel.c (all others).
+// A plan for resampling by area, and the methods that execute the plan. Shared by resample.c, which
+// chooses the method, resample_stencil.c (the methods gather and scatter) and resample_texel.c (the
+// methods that compute the target texel by texel).
 #ifndef KI_RESAMPLE_METHOD_H
 #define KI_RESAMPLE_METHOD_H
 
@@ -18,7 +19,7 @@ typedef enum ki_resample_method {
     KI_RESAMPLE_SCATTER,   ///< cube or octahedron to panorama
     KI_RESAMPLE_SEPARABLE, ///< panorama to panorama
     KI_RESAMPLE_FACES,     ///< cube to cube of another size, by quarter turns
-    KI_RESAMPLE_SUBSAMPLE  ///< all other pairs of shapes, sizes and rotations
+    KI_RESAMPLE_SUBSAMPLE  ///< all other conversions, by samples within each texel
 } ki_resample_method;
 
 /// The range of source columns or rows that a target column or row overlaps.
@@ -32,7 +33,7 @@ struct ki_resample_plan {
     int source_size, size;
     double rotation;
 
-    // The method says which member of the union is in use.
+    // `method` decides which member of the union is in use.
     ki_resample_method method;
     union {
         struct

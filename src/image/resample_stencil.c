@@ -1,7 +1,9 @@
-// Resampling between panoramas and cubes or octahedra, by stencils (stencil.h): each texel of a cube or
-// octahedron has a list of the panorama's texels under it, with the areas they share. Gather reads the
-// panorama by the stencils and writes the cube; scatter reads the cube and adds its texels' light to the
-// panorama, band after band of rows. Exact, up to rounding of weights and sums to float.
+// Resampling between panoramas and cubes or octahedra. In: the texels of one of the two maps. Out:
+// the texels of the other map, exact up to rounding of weights and sums to float. Method: stencils
+// (stencil.h), which list for each texel of the cube or octahedron the panorama's texels under it
+// and the areas that the two share. Gather sums the panorama's texels by the stencils and writes
+// the cube. Scatter adds each texel of the cube to the panorama by its stencil, band after band of
+// rows.
 #include "image/resample_method.h"
 
 #include "base/vector.h"
@@ -16,8 +18,9 @@ enum {
     FLUSH = 64   // number of blocks of 4 texels that are summed in single precision
 };
 
-// For loops that are compiled once with `mirror` true and once with `mirror` false. The function
-// that only prefetches needs it too, because GCC removes calls to such a function.
+// Marks functions whose loops are compiled once with `mirror` true and once with `mirror` false.
+// The function that only prefetches needs the mark too, because GCC removes calls to such a
+// function.
 #define ALWAYS_INLINE __attribute__((always_inline)) static inline
 
 // -------------------------------------------------------------------------------------------- grids
@@ -127,8 +130,8 @@ kiln_result ki_resample_plan_stencils(kiln_context *context, ki_resample_plan *p
                                       kiln_error *error)
 {
     // The number of texels along a face must be even, so that the middle of the face lies between
-    // texels. It must not be too small, so that stencils stay small. A finer map is averaged
-    // afterwards.
+    // texels. The number must not be too small, so that stencils stay small. If necessary a finer
+    // map is computed and averaged afterwards.
     plan->factor = 1;
     while ((n * plan->factor) % 2 || n * plan->factor < FEWEST)
         plan->factor++;
@@ -464,7 +467,8 @@ kiln_result ki_resample_plan_fine(kiln_context *context, ki_resample_plan *plan,
     plan->fine_area = fits ? ki_alloc_raw(context, area, sizeof *plan->fine_area) : NULL;
     if (!plan->fine_area)
         return ki_fail_memory(context, error, "resampling", fits ? area * sizeof(float) : SIZE_MAX);
-    // All faces of a cube have the same solid angles, so those of +Y are used.
+    // The texels of all faces of a cube have the same solid angles, so the angles of face +Y are
+    // used.
     ptrdiff_t before = plan->shape == KILN_SHAPE_CUBE ? 2 * (ptrdiff_t)area : 0;
     for (int g = 0; g < plan->grid_count; g++) {
         const ki_stencil_grid *grid = &plan->grid[g];

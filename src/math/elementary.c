@@ -1,7 +1,7 @@
-// Sine, cosine, exponential, logarithm, power and arcus functions in double precision, made of + -
-// * / and sqrt, so that they give the same bits on every machine. Each function reduces its
-// argument to a short interval and sums a Taylor or a similar power series there. math.h states the
-// errors.
+// Sine, cosine, exponential, logarithm, power and arcus functions. In and out: doubles. Method:
+// each function reduces its argument to a short interval and sums a Taylor or a similar power
+// series there. The functions use only + - * / and sqrt, so that they give the same bits on every
+// machine. math.h states the errors.
 #include "math/math.h"
 
 #include <math.h>

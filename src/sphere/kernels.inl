@@ -1,6 +1,6 @@
 // The bodies of the inner loops that kernels.h declares: the FFT, the distribution of rows onto
 // latitude rings, the sums with associated Legendre functions (docs/theory/spectral.md), and the
-// interpolation of texels. Data are doubles in groups of eight lanes.
+// interpolation of texels. In and out: arrays of doubles in groups of eight lanes.
 //
 // The including file defines KI_WIDTH, the number of doubles in a native vector (1, 2, 4 or 8);
 // KI_BLOCK, the number of degrees that the analysis sums at once (2 or 4, as many as the registers
@@ -159,7 +159,7 @@ static void pass4(const ki_fft_pass *pass, const double *x, double *y)
     }
 }
 
-// A pass of any other radix, by the definition of the Fourier transform.
+// A pass of a radix other than 2, 3 and 4, by the definition of the Fourier transform.
 static void pass_any(const ki_fft_pass *pass, const double *x, double *y)
 {
     ptrdiff_t r = pass->radix, m = pass->length / r, s = pass->stride, apart = 16 * s * m;

@@ -37,12 +37,12 @@ struct ki_level {
     ki_rings rings;
     size_t scratch_size; // number of doubles of scratch memory that each thread needs
 
-    // The fields up to ring_start are for small levels.
+    // The fields up to ring_start are for small levels, whose texels are evaluated directly.
     place *places; // texels, sorted by the latitude ring on which they lie
     int place_count;
     int *ring_start; // index in `places` of the first texel on each ring, [lanes + 1]
 
-    // The fields up to `positions` are for other levels, which are interpolated on a grid.
+    // The fields up to `positions` are for larger levels, whose texels are interpolated on a grid.
     ki_fft fft;
     float *ring_taps, *column_taps;
     size_t pitch, plane; // the grid is [3][PAD + rings + PAD][pitch], and a plane one channel of it
@@ -51,7 +51,7 @@ struct ki_level {
     double *positions;
 };
 
-// What the tasks of one execution share.
+// The data of one execution, which all its tasks share.
 typedef struct run {
     const ki_level *level;
     const kiln_spectrum *spectrum;
@@ -118,8 +118,8 @@ static int by_theta(const void *a, const void *b)
     return x->texel - y->texel;
 }
 
-// Prepares a small level: sorts the texels by latitude. Texels that lie on one ring by symmetry have theta that differ only
-// by rounding.
+// Prepares a small level: sorts the texels by latitude. Texels that lie on one ring by symmetry
+// have theta that differ only by rounding.
 static bool plan_places(kiln_context *context, ki_level *v, const kiln_map *map)
 {
     int count = v->place_count = (int)kiln_map_texels(map, 0), ring = -1;

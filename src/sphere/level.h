@@ -5,9 +5,9 @@
 #include "sphere/spectrum.h"
 #include "sphere/zonal.h"
 
-/// Everything about a level that depends only on sizes and on the lobe. An execution changes nothing
-/// in the level, so that any number of threads may execute one level at the same time, each with a
-/// workspace of its own.
+/// Everything about a level that depends only on sizes and on the lobe. An execution changes
+/// nothing in the level, so that any number of threads may execute one level at the same time, each
+/// with a workspace of its own.
 typedef struct ki_level ki_level;
 
 /// Prepares a level of `size` in the given shape, filtered by the lobe of `zonal`. The level takes

@@ -47,7 +47,7 @@ static void divide(const ki_sun *sun, int size, int n, const double *nodes, cons
         for (int i = 0; i < n; i++, points++) {
             double s, c, turned[3];
             ki_sincos((sun->column + nodes[i]) * step, &s, &c);
-            // The signs are those of ki_panorama_direction.
+            // The signs of x, y and z are those that ki_panorama_direction defines.
             ki_turn((double[3]){-sine * s, cosine, sine * c}, -rotation, turned);
             for (int k = 0; k < 3; k++) {
                 (*points)[k] = turned[k];
@@ -243,8 +243,8 @@ void ki_surroundings_add(const kiln_map *panorama, const ki_zonal *zonal, double
     double theta = ki_atan2(sine, direction[1]), phi = ki_atan2(-direction[0], direction[2]);
     int first = (int)fmax(0, floor((theta - reach) / step));
     int last = (int)fmin(size - 1, floor((theta + reach) / step));
-    // Largest difference in longitude of a point within reach. All columns are within reach where
-    // the disc contains a pole.
+    // Largest difference in longitude between the direction and a point within the angle `reach` of
+    // the direction. If the disc of these points contains a pole, all longitudes occur.
     double span = KI_PI;
     if (theta - reach > 0 && theta + reach < KI_PI)
         span = ki_asin(fmin(1, ki_sin(reach) / sine));

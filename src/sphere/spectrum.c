@@ -69,8 +69,8 @@ static bool plan_row_weights(kiln_context *context, ki_analysis *a, const double
     double rule[2][ROW_NODES];
     ki_gauss_legendre(ROW_NODES, rule[0], rule[1]);
     const double(*nodes)[ROW_NODES] = (const double(*)[ROW_NODES])rule;
-    // A row contributes to at most as many latitude rings as its height covers, plus those of the
-    // interpolation weights at both ends.
+    // A row contributes to at most as many latitude rings as its height covers, and at each end to
+    // half as many as an interpolation has weights.
     int most = rings / size + KI_TAPS + 2;
     double *weights = ki_alloc_raw(context, (size_t)most, sizeof *weights);
     int *filled = ki_alloc(context, (size_t)rings, sizeof *filled);
@@ -265,10 +265,10 @@ void ki_analysis_workspace_destroy(ki_analysis_workspace *workspace)
 
 // ------------------------------------------------------------------------------------------ the rows
 
-// Adds the contributions of the panorama rows r->rows to one piece of a latitude ring. Both halves
-// of a row are cut at the same places, so that a ring half a turn away receives the same piece of
-// the other half. The sums are in the order of the rows, so that the result does not depend on how
-// many rows come at a time.
+// Adds the contributions of the panorama rows r->rows to one piece of a latitude ring. The two
+// halves of a row are cut at the same places, so that a ring half a turn away receives the same
+// piece of the other half. The sums are in the order of the rows, so that the result does not
+// depend on how many rows come at a time.
 static void add_to_piece(const run *r, int ring, int half, int piece, double *accumulator)
 {
     enum { MOST = 32 };

@@ -47,7 +47,7 @@ typedef struct ki_analysis {
     double *column;
     int *
         ring_start; // index in `row_weights` of the first weight of each latitude ring, [rings + 1]
-    ki_row_weight *row_weights; // sorted by latitude ring and then by row
+    ki_row_weight *row_weights; // weights of the rows, sorted by latitude ring and then by row
 } ki_analysis;
 
 /// Prepares the analysis of panoramas with `size` rows. `density` is the model of the spectrum for
@@ -61,8 +61,8 @@ void ki_analysis_destroy(ki_analysis *analysis);
 kiln_result ki_spectrum_create(kiln_context *context, const ki_analysis *analysis,
                                kiln_spectrum **spectrum, kiln_error *error);
 
-/// What executions of one analysis work on, one panorama after the other: buffers, and sums over
-/// the rows that have been added so far. The threads are those of the workspace's context.
+/// The memory that executions of one analysis use, one panorama after the other: buffers, and sums
+/// over the rows that have been added so far. The threads are those of the workspace's context.
 typedef struct ki_analysis_workspace ki_analysis_workspace;
 
 /// Creates a workspace for an analysis. With `whole`, panoramas are analysed by
@@ -85,7 +85,7 @@ kiln_result ki_analysis_finish(const ki_analysis *analysis, ki_analysis_workspac
                                kiln_spectrum *spectrum, kiln_error *error);
 
 /// Adds the harmonics of the suns (bright texels kept out of the spectrum) up to `degree` to the
-/// coefficients `a`, whose rows are those of that degree.
+/// coefficients `a`, whose rows are laid out for that degree.
 kiln_result ki_spectrum_add_suns(const kiln_spectrum *spectrum, int degree, double *a,
                                  kiln_error *error);
 

@@ -22,7 +22,7 @@ typedef struct ki_zonal_spectrum {
     double integral; // integral over the sphere of the whole lobe's weight, without the step
     // Degree at which the coefficients are cut off: where the tolerance is met, or the limit.
     int degree;
-    double rest; // L2 norm of the coefficients above `degree`, relative to that of the lobe
+    double rest; // L2 norm of the coefficients above `degree`, relative to the L2 norm of the lobe
     // Legendre coefficients k_l / integral, [limit + 1]; 0 beyond `degree`.
     double *k;
 } ki_zonal_spectrum;

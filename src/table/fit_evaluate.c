@@ -1,4 +1,5 @@
-// Evaluates closed forms in floats, operation by operation as the source code written for them does.
+// Evaluates closed forms in floats, operation by operation as the source code written for them
+// does.
 #include "table/fit.h"
 
 #include <math.h>

@@ -1,7 +1,8 @@
-// The points at which closed forms are fitted and measured, with exact values of the fitted
-// function, and the errors of forms there. The nodes of a fit are a Chebyshev grid in the part's
-// own arguments. The points of measurement are regular grids and random points in (n.v, roughness)
-// and (sqrt t, roughness), t being the argument that docs/theory/fits.md introduces.
+// The points at which closed forms are fitted and measured. In: a kind, a model and an axis. Out:
+// points with exact values of the fitted function, and the errors of a form at these points. The
+// nodes of a fit are a Chebyshev grid in the part's own arguments. The points of measurement are
+// regular grids and random points in (n.v, roughness) and in (sqrt t, roughness), t being the
+// argument that docs/theory/fits.md introduces.
 #include "brdf/brdf.h"
 #include "brdf/energy.h"
 #include "brdf/sheen.h"

@@ -16,8 +16,8 @@ typedef struct code_job {
     bool c; // true: C; false: GLSL
     int channels;
     bool nov; // true: the lookup function has the argument n.v, which only E_avg lacks
-    // Name of the lookup function's third argument, "ior" or "f0"; NULL if it has no third
-    // argument.
+    // Name of the lookup function's third argument, "ior" or "f0"; NULL if the function has no
+    // third argument.
     const char *third;
 } code_job;
 

@@ -9,7 +9,8 @@
 typedef enum ki_table_code {
     KI_TABLE_C,            ///< C that reads an array of floats
     KI_TABLE_GLSL_TEXTURE, ///< GLSL that reads a sampler2D, or a sampler3D if depth > 1
-    KI_TABLE_GLSL_ARRAY    ///< GLSL that calls NAME_number(int), which the caller writes before it
+    /// GLSL that calls NAME_number(int), a function that the caller writes before this code
+    KI_TABLE_GLSL_ARRAY
 } ki_table_code;
 
 /// Appends the code to `w`. The names of its functions begin with `name`. ki_table_complete has

@@ -135,8 +135,8 @@ kiln_result ki_table_write_header(const kiln_table *table, const char *path, con
     return result;
 }
 
-// Writes the values as 32-bit words in hexadecimal. A word holds two numbers of 16 bits or four of
-// 8 bits, the first of them in the lowest bits.
+// Writes the values as 32-bit words in hexadecimal. A word holds two numbers of 16 bits or four
+// numbers of 8 bits. The first number is in the lowest bits.
 static kiln_result write_words(const kiln_table *table, kiln_table_format format, size_t words,
                                ki_writer *w, kiln_error *error)
 {

@@ -1,7 +1,9 @@
-// Makes the tuned levels of tune.h. tune_mix.c finds the mixture of lobes of each level. A large
-// level is evaluated from its mixture at its texels. A level of a cube of at most MOST_READS texels
-// is solved for instead: its mixture is evaluated on a finer grid, and tune_read.c finds the texels
-// whose bilinear interpolation comes nearest to that. docs/theory/tuning.md.
+// Makes the tuned levels of tune.h. In: the spectrum of an environment, and how an engine reads
+// levels. Out: the texels of the tuned levels. Method: tune_mix.c finds the mixture of lobes of each
+// level. A large level is evaluated from its mixture at its texels. The texels of a cube's level
+// with faces of at most MOST_READS texels are solved for instead: the mixture is evaluated on a
+// finer grid, and tune_read.c finds the texels whose bilinear interpolation comes nearest to the
+// values on this grid. docs/theory/tuning.md derives the method.
 #include "tune/tune.h"
 
 #include "image/image.h"
@@ -32,7 +34,8 @@ struct ki_tune {
     ki_nodes nodes;
 };
 
-// One execution: the environment, and what is found for it.
+// The data of one execution: the environment, and the mixtures and levels that are computed for the
+// environment.
 typedef struct run {
     kiln_context *context;
     const ki_tune *tune;
@@ -44,7 +47,8 @@ typedef struct run {
     double (*power)[3]; // power of each degree: [degree + 1] without the suns, then with the suns
     kiln_map mirror;    // level 0 of `map`, and its means over ever larger texels (ki_make_mirrors)
     kiln_map *map;      // the levels that are written
-    // What each level solved for bilinear reads should show; empty for other levels.
+    // The goal of each level that is solved for bilinear reads; empty for levels that are not
+    // solved.
     kiln_map targets[KILN_MAX_LEVELS];
 } run;
 
@@ -232,8 +236,8 @@ static kiln_result make_target(const run *r, int level, kiln_map *map, int index
     return result;
 }
 
-// Returns true for a level that is solved for bilinear reads. `level` may be one beyond the last,
-// which is not.
+// Returns true if `level` is solved for bilinear reads. `level` may be one beyond the last level,
+// for which the function returns false.
 static bool is_read(const ki_tune *t, int level)
 {
     if (level >= t->level_count || level >= KILN_MAX_LEVELS)
@@ -246,12 +250,13 @@ static bool is_read(const ki_tune *t, int level)
 
 typedef struct correction {
     kiln_map *goal;
-    const kiln_map *map, *target; // the next level's texels, and what they should show
+    const kiln_map *map, *target; // texels of the next coarser level, and the goal of that level
     int level;
     double factor;
 } correction;
 
-// Task: subtracts from a row of the goal the error of the next level, times the factor.
+// Task of one thread: subtracts from a row of the goal the error of the next coarser level, times
+// `factor`.
 static void correct_row(void *data, int row)
 {
     const correction *a = data;

@@ -46,7 +46,7 @@ void ki_tune_destroy(ki_tune *tune);
 /// Returns the degree of spherical harmonics that ki_tune_execute needs of the spectrum.
 int ki_tune_degree(const ki_tune *tune);
 /// Returns true if `level` is tuned. Before ki_tune_execute is called, the map must hold the exact
-/// content of all other levels and, even if it is tuned, of level 0.
+/// content of all levels that are not tuned, and of level 0 in any case.
 bool ki_tune_makes(const ki_tune *tune, int level);
 /// Writes the tuned levels to `map`. `legendre` has been made for the degree ki_tune_degree or
 /// more. The environment is turned by `rotation` degrees about +Y. With `rehearses`, every level is

@@ -45,7 +45,7 @@ typedef struct adding {
     float weight;
 } adding;
 
-// Task: adds the weighted mirror to a row of a level.
+// Task of one thread: adds the weighted mirror to a row of a level.
 static void add_row(void *data, int row)
 {
     const adding *a = data;
@@ -96,7 +96,7 @@ static double solid_angle(const clearing *c, int row, int x)
     return 1;
 }
 
-// Task: sets the negative texels of a row to 0 and sums the row before and after.
+// Task of one thread: sets the negative texels of a row to 0 and sums the row before and after.
 static void clear_row(void *data, int row)
 {
     clearing *c = data;
@@ -111,7 +111,7 @@ static void clear_row(void *data, int row)
     }
 }
 
-// Task: multiplies a row by the scale of each channel.
+// Task of one thread: multiplies a row by the scale of each channel.
 static void scale_row(void *data, int row)
 {
     const clearing *c = data;

@@ -141,8 +141,8 @@ static void add_part(const ki_norms *n, size_t axis, const equations *e, int lev
     }
 }
 
-// Sets tiny weights to 0, because each weight costs the evaluation of a lobe. Scales the others to
-// sum to 1, so that a white environment stays white.
+// Sets tiny weights to 0, because each weight costs the evaluation of a lobe. Scales the remaining
+// weights to sum to 1, so that a white environment stays white.
 static void finish(const ki_nodes *nodes, ki_mixtures *mixtures)
 {
     int count = nodes->count + 2;

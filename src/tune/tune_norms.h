@@ -10,10 +10,11 @@
 /// The generalised eigenvectors, H u = ratio G u, called axes, are orthonormal in the first norm
 /// and orthogonal in the second, in which axis u has the squared length `ratio`.
 typedef struct ki_norms {
-    int count;                   // number of lobes, which is also the number of axes
-    double whole[KI_MOST_LOBES]; // squared first norm of each lobe's result, over the mean's square
-    double away[KI_MOST_LOBES];  // squared second norm of each lobe's result, over the mean's
-                                 // square
+    int count; // number of lobes, which is also the number of axes
+    // squared first norm of the environment filtered by each lobe, over the squared mean radiance
+    double whole[KI_MOST_LOBES];
+    // squared second norm of the environment filtered by each lobe, over the squared mean radiance
+    double away[KI_MOST_LOBES];
     double ratio[KI_MOST_LOBES]; // eigenvalue of each axis
     double *along;               // [axis][lobe]: the axis as a mixture of lobes
     double *across;              // [axis][lobe]: scalar product of axis and lobe in the first norm

@@ -61,8 +61,8 @@ static void add_up(const reads *r, size_t count, int which, double sum[3])
 
 // ------------------------------------------------------------------------------------------ set up
 
-// Task: sets the four taps and the solid angle of each point of a chunk. The points are the
-// directions of the goal's texels.
+// Task of one thread: sets the four taps and the solid angle of each point of a chunk. The points
+// are the directions of the goal's texels.
 static void make_taps(void *data, int index)
 {
     reads *r = data;
@@ -138,8 +138,8 @@ static void release(reads *r)
     ki_free(r->sums);
 }
 
-// Task: for a chunk of texels, sets the diagonal of the matrix, and as the first guess the weighted
-// mean of the goal over the points that read the texel.
+// Task of one thread: for a chunk of texels, sets the diagonal of the matrix, and as the first
+// guess the weighted mean of the goal over the points that read the texel.
 static void begin(void *data, int index)
 {
     reads *r = data;
@@ -169,8 +169,8 @@ typedef struct product {
     bool rest; // true: computes B' W (goal - B from); false: computes B' W B from
 } product;
 
-// Task: sets `shown` at a chunk of points to W B x or to W (goal - B x), and sums W goal and W B x
-// over the chunk.
+// Task of one thread: sets `shown` at a chunk of points to W B x or to W (goal - B x), and sums W
+// goal and W B x over the chunk.
 static void show_points(void *data, int index)
 {
     const product *a = data;
@@ -192,8 +192,8 @@ static void show_points(void *data, int index)
     }
 }
 
-// Task: sets a chunk of texels of `to` to B' shown, and sums two products over the chunk: of `to`
-// and `from`, and of `to` with itself over the diagonal.
+// Task of one thread: sets a chunk of texels of `to` to B' shown, and sums two products over the
+// chunk: of `to` and `from`, and of `to` with itself over the diagonal.
 static void gather(void *data, int index)
 {
     const product *a = data;
@@ -225,7 +225,7 @@ typedef struct step {
     double length[3], turn[3];
 } step;
 
-// Task: moves a chunk of texels along the search direction and updates the residual.
+// Task of one thread: moves a chunk of texels along the search direction and updates the residual.
 static void take_step(void *data, int index)
 {
     const step *s = data;
@@ -240,7 +240,7 @@ static void take_step(void *data, int index)
         }
 }
 
-// Task: computes the next search direction of a chunk of texels.
+// Task of one thread: computes the next search direction of a chunk of texels.
 static void turn_way(void *data, int index)
 {
     const step *s = data;
@@ -275,7 +275,8 @@ static void solve(reads *r)
     }
 }
 
-// Task: sets negative texels of a chunk to 0, fixes them there, and counts them.
+// Task of one thread: sets the negative texels of a chunk to 0, fixes them at 0 for the next round,
+// and counts them.
 static void hold(void *data, int index)
 {
     reads *r = data;

@@ -3,7 +3,7 @@
 import { CompressedCubeTexture, HalfFloatType, LinearMipmapLinearFilter, RGBAFormat } from 'three';
 import { read } from 'three/addons/libs/ktx-parse.module.js';
 
-// The bytes of the file to a texture, which is prefiltered: three makes no PMREM of it.
+// Makes a texture from the bytes of the file. The texture is prefiltered, so three.js makes no PMREM of it.
 export function parseEnvironment(bytes) {
     const { levels, pixelWidth } = read(bytes);
     const faces = Array.from({ length: 6 }, (_, face) => ({
