@@ -2,12 +2,12 @@
 # kiln.pc.
 include(CMakePackageConfigHelpers)
 
-add_library(kiln_static STATIC $<TARGET_OBJECTS:kiln_objects>)
+add_library(kiln_static STATIC ${KILN_OBJECTS})
 if(EMSCRIPTEN) # part of a page: nothing is shared, nothing installed
     target_include_directories(kiln_static INTERFACE include)
     return()
 endif()
-add_library(kiln_shared SHARED $<TARGET_OBJECTS:kiln_objects>)
+add_library(kiln_shared SHARED ${KILN_OBJECTS})
 foreach(kind static shared)
     set_target_properties(kiln_${kind} PROPERTIES OUTPUT_NAME kiln)
     target_include_directories(kiln_${kind} INTERFACE

@@ -69,8 +69,6 @@ endif()
 # kiln_kernels(NAME): NAME_scalar.c and one file an instruction set.
 function(kiln_kernels name)
     foreach(set ${kernel_sets})
-        target_sources(kiln_objects PRIVATE ${name}_${set}.c)
-        set_source_files_properties(${name}_${set}.c TARGET_DIRECTORY kiln_objects
-                                    PROPERTIES COMPILE_OPTIONS "-O3;${options_${set}}")
+        target_sources(kiln_kernels_${set} PRIVATE ${name}_${set}.c)
     endforeach()
 endfunction()
