@@ -162,36 +162,6 @@ static void a_plan_makes_the_same_of_every_shape(void **state)
     }
 }
 
-static void filtered_harmonics_are_the_spectrums(void **state)
-{
-    (void)state;
-    kiln_map source = make_source(KILN_SHAPE_PANORAMA, 8);
-    kiln_spectrum *spectrum;
-    kiln_sh all, wanted, made;
-    CHECK_OK(kiln_spectrum_analyze(context, &source, 8, &spectrum, &error));
-    CHECK_OK(kiln_map_sh(context, &source, 5, 12, &all, &error));
-    for (int bands = 1; bands <= 5; bands++)
-        for (int kind = 0; kind < 4; kind++) {
-            double window = kind & 2 ? 3.5 : 0;
-            CHECK_OK(kiln_spectrum_sh(spectrum, bands, kind & 1, window, 12, &wanted, &error));
-            CHECK_OK(kiln_sh_filter(&all, bands, kind & 1, window, &made, &error));
-            assert_int_equal(made.bands, bands);
-            assert_int_equal(made.irradiance, kind & 1);
-            for (int k = 0; k < bands * bands; k++)
-                for (int c = 0; c < 3; c++)
-                    CHECK_NEAR(made.c[k][c], wanted.c[k][c], 0);
-        }
-    // What was filtered is not filtered again, and there are no more bands than there were.
-    CHECK_OK(kiln_sh_filter(&all, 3, true, 0, &made, &error));
-    assert_int_equal(kiln_sh_filter(&made, 3, true, 0, &wanted, &error), KILN_ERROR_ARGUMENT);
-    CHECK_SAYS(error.message, "3 bands of irradiance");
-    CHECK_OK(kiln_sh_filter(&all, 2, false, 0, &made, &error));
-    assert_int_equal(kiln_sh_filter(&made, 3, false, 0, &wanted, &error), KILN_ERROR_ARGUMENT);
-    assert_int_equal(wanted.bands, 0);
-    kiln_spectrum_destroy(spectrum);
-    kiln_map_free(&source);
-}
-
 static void an_engine_decides_its_levels(void **state)
 {
     (void)state;
@@ -246,7 +216,6 @@ int main(void)
         cmocka_unit_test(white_stays_white),
         cmocka_unit_test(the_source_is_mirrored_and_exposed_first),
         cmocka_unit_test(a_plan_makes_the_same_of_every_shape),
-        cmocka_unit_test(filtered_harmonics_are_the_spectrums),
         cmocka_unit_test(an_engine_decides_its_levels),
         cmocka_unit_test(numbers_out_of_range_are_named),
     };

@@ -1,6 +1,6 @@
 // One plan on several threads at a time: a prefilter is constant, so that threads with a context and
 // a workspace each may execute it together, exact and tuned levels, and write what one thread writes.
-#include "../sphere/scenes.h"
+#include "kit/kit.h"
 
 #include "bake/prefilter.h"
 
@@ -45,22 +45,22 @@ static kiln_map execute(kiln_context *context, const ki_prefilter *prefilter, in
 static void execute_on_thread(void *data, int index)
 {
     shared *s = data;
-    kiln_context *context = scene_context(1, KILN_CPU_BEST);
+    kiln_context *context = make_context_for(1, KILN_CPU_BEST);
     s->levels[index] = execute(context, s->prefilter, index + 1);
     kiln_context_destroy(context);
 }
 
-static double read_linearly(double roughness, int level_count, int size)
+static double read_linearly(double r, int level_count, int size)
 {
     (void)size;
-    return roughness * (level_count - 1);
+    return r * (level_count - 1);
 }
 
 static void check_sharing(const kiln_prefilter_def *layout, const ki_reading *reading)
 {
     kiln_error error;
     ki_prefilter *prefilter;
-    kiln_context *context = scene_context(THREADS, KILN_CPU_BEST);
+    kiln_context *context = make_context_for(THREADS, KILN_CPU_BEST);
     CHECK_OK(ki_prefilter_create(context, SIZE, NULL, layout, reading, &prefilter, &error));
     shared s = {.prefilter = prefilter};
     ki_parallel_for(context, THREADS, execute_on_thread, &s);
@@ -94,11 +94,11 @@ static void sources_differ(void **state)
     (void)state;
     kiln_error error;
     ki_prefilter *prefilter;
-    kiln_context *context = scene_context(1, KILN_CPU_BEST);
+    kiln_context *context = make_context_for(1, KILN_CPU_BEST);
     CHECK_OK(ki_prefilter_create(context, SIZE, NULL, &exact, NULL, &prefilter, &error));
     kiln_map a = execute(context, prefilter, 1), b = execute(context, prefilter, 2);
     for (int k = 0; k < a.level_count; k++)
-        assert_true(scene_distance(&a, &b, k, 0) > 1e-3);
+        assert_true(largest_difference(&a, &b, k, 0) > 1e-3);
     kiln_map_free(&a);
     kiln_map_free(&b);
     ki_prefilter_destroy(prefilter);

@@ -468,6 +468,29 @@ static void writing_by_threads_can_be_stopped(void **state)
     ki_writer_free(&w);
 }
 
+// 8192 x 4096 half floats: the picture itself, 384 MiB, and little more.
+static void memory_is_the_picture(void **state)
+{
+    (void)state;
+    enum { WIDE = 8192, HIGH = 4096 };
+    ki_writer w = {.context = context};
+    float *pixels = ki_alloc(context, (size_t)WIDE * HIGH, 3 * sizeof(float));
+    assert_non_null(pixels);
+    ki_exr_options options = {.half = true, .roughness = -1};
+    CHECK_OK(ki_exr_encode(pixels, WIDE, HIGH, 3, &options, &w, &error));
+    ki_free(pixels);
+    kiln_context *fresh = make_context(2);
+    kiln_map map;
+    CHECK_OK(kiln_map_decode(fresh, w.bytes, w.size, "large.exr", NULL, &map, &error));
+    size_t peak;
+    kiln_context_memory(fresh, NULL, &peak);
+    size_t picture = (size_t)WIDE * HIGH * 3 * sizeof(float);
+    CHECK_BELOW((double)peak, (double)picture + (16 << 20));
+    kiln_map_free(&map);
+    kiln_context_destroy(fresh);
+    ki_writer_free(&w);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -480,6 +503,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(what_is_not_read_is_said, set_up, tear_down),
         cmocka_unit_test_setup_teardown(what_is_written_comes_back, set_up, tear_down),
         cmocka_unit_test(threads_do_not_matter),
+        cmocka_unit_test_setup_teardown(memory_is_the_picture, set_up, tear_down),
         cmocka_unit_test(a_file_is_the_same_by_any_number_of_threads),
         cmocka_unit_test(threads_ask_for_no_more_memory_than_there_is),
         cmocka_unit_test(writing_by_threads_can_be_stopped),

@@ -1,37 +1,13 @@
-// Files in memory are the files that saving writes, an environment's files appear together, and what a
-// format cannot hold is counted.
+// Files in memory are the files that saving writes, for maps and for every engine, and memory that runs out
+// leaves nothing.
 #include <unistd.h>
 
 #include "kit/context.h"
 
-// Every file of the list is on the disk, with the same bytes; they are removed.
-static void check_same_bytes(const kiln_files *files)
-{
-    for (int i = 0; i < files->count; i++) {
-        size_t size;
-        uint8_t *bytes = read_file(files->file[i].name, &size);
-        assert_int_equal(size, files->file[i].size);
-        assert_memory_equal(bytes, files->file[i].bytes, size);
-        free(bytes);
-        unlink(files->file[i].name);
-    }
-}
-
-static kiln_environment make_environment(void)
-{
-    kiln_map sky;
-    kiln_environment made;
-    kiln_bake_def def = {.levels = {.size = 16}, .irradiance_size = 4};
-    CHECK_OK(kiln_sky(context, &(kiln_sky_def){.size = 32}, &sky, &error));
-    CHECK_OK(kiln_bake(context, &sky, &def, &made, &error));
-    kiln_map_free(&sky);
-    return made;
-}
-
 static void encoded_maps_are_the_files(void **state)
 {
     (void)state;
-    kiln_environment made = make_environment();
+    kiln_environment made = make_sky_bake(context);
     static const struct {
         const char *name;
         int count;
@@ -52,7 +28,7 @@ static void encoded_maps_are_the_files(void **state)
             kiln_map_save(context, &made.levels, in_folder(ways[i].name), &def, &saved, &error));
         assert_int_equal(saved.file_count, ways[i].count);
         assert_memory_equal(&saved, &encoded, sizeof saved);
-        check_same_bytes(&files);
+        check_saved_files(&files);
         kiln_files_free(&files);
         assert_int_equal(files.count, 0);
     }
@@ -96,7 +72,7 @@ static void engines_files_are_encoded_alike(void **state)
         assert_true(files.count >= 1);
         CHECK_OK(kiln_environment_save(context, &made, in_folder(name), &save, &report, &error));
         assert_int_equal(report.file_count, files.count);
-        check_same_bytes(&files);
+        check_saved_files(&files);
         kiln_files_free(&files);
         CHECK_OK(kiln_engine_encode(context, engine, &made.levels, &made.sh, KILN_FORMAT_AUTO,
                                     in_folder(name), &files, &report.levels, &error));
@@ -105,73 +81,6 @@ static void engines_files_are_encoded_alike(void **state)
         kiln_environment_free(&made);
     }
     kiln_map_free(&white);
-}
-
-static void an_environments_files_appear_together(void **state)
-{
-    (void)state;
-    kiln_environment made = make_environment();
-    char irradiance[128], sh[128];
-    strcpy(irradiance, in_folder("i.dds"));
-    strcpy(sh, in_folder("s.json"));
-    kiln_environment_save_def def = {.irradiance_path = irradiance, .sh_path = sh};
-    kiln_environment_report report;
-    kiln_files files;
-    CHECK_OK(kiln_environment_encode(context, &made, in_folder("a.ktx2"), &def, &files, &report,
-                                     &error));
-    assert_int_equal(files.count, 3);
-    assert_int_equal(report.file_count, 3);
-    CHECK_OK(kiln_environment_save(context, &made, in_folder("a.ktx2"), &def, &report, &error));
-    check_same_bytes(&files);
-    kiln_files_free(&files);
-    // The last of them fails: none is there.
-    def.sh_path = in_folder("s.yaml");
-    assert_int_equal(
-        kiln_environment_save(context, &made, in_folder("a.ktx2"), &def, &report, &error),
-        KILN_ERROR_ARGUMENT);
-    CHECK_SAYS(error.message, "s.yaml");
-    assert_int_equal(report.file_count, 0);
-    assert_int_equal(access(in_folder("a.ktx2"), F_OK), -1);
-    assert_int_equal(access(irradiance, F_OK), -1);
-    def = (kiln_environment_save_def){.irradiance_path = irradiance};
-    kiln_map_free(&made.irradiance);
-    assert_int_equal(
-        kiln_environment_save(context, &made, in_folder("sub/"), &def, &report, &error),
-        KILN_ERROR_ARGUMENT);
-    assert_int_equal(access(in_folder("sub"), F_OK), -1); // the folder is gone too
-    kiln_environment_free(&made);
-}
-
-static void what_is_cut_off_is_counted(void **state)
-{
-    (void)state;
-    kiln_map map;
-    kiln_files files;
-    kiln_save_report report;
-    CHECK_OK(kiln_map_create(context, KILN_SHAPE_CUBE, 4, 1, &map, &error));
-    map.level[0][5] = 65505;
-    map.level[0][17] = 1e6f;
-    map.level[0][18] = 65504;
-    static const struct {
-        const char *name;
-        kiln_format format;
-        size_t cut;
-        double limit;
-    } ways[] = {{"a.ktx2", KILN_FORMAT_AUTO, 2, 65504},  {"a.ktx2", KILN_FORMAT_RGBA32F, 0, 0},
-                {"a.dds", KILN_FORMAT_RGB9E5, 3, 65408}, {"a.dds", KILN_FORMAT_B10G11R11, 3, 64512},
-                {"a.ktx2", KILN_FORMAT_BC6H, 2, 65504},  {"a.exr", KILN_FORMAT_AUTO, 2, 65504},
-                {"a.hdr", KILN_FORMAT_AUTO, 0, 0},       {"a.png", KILN_FORMAT_AUTO, 3, 1}};
-    for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
-        kiln_save_def def = {.format = ways[i].format};
-        CHECK_OK(kiln_map_encode(context, &map, ways[i].name, &def, &files, &report, &error));
-        assert_int_equal(report.cut_count, ways[i].cut);
-        assert_int_equal(report.value_count, 3 * 96);
-        CHECK_NEAR(report.share, (double)ways[i].cut / 288, 1e-15);
-        CHECK_NEAR(report.limit, ways[i].limit, 0);
-        CHECK_NEAR(report.largest, 1e6, 0);
-        kiln_files_free(&files);
-    }
-    kiln_map_free(&map);
 }
 
 static void memory_that_is_refused_leaves_nothing(void **state)
@@ -202,8 +111,6 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(encoded_maps_are_the_files),
         cmocka_unit_test(engines_files_are_encoded_alike),
-        cmocka_unit_test(an_environments_files_appear_together),
-        cmocka_unit_test(what_is_cut_off_is_counted),
         cmocka_unit_test(memory_that_is_refused_leaves_nothing),
     };
     return cmocka_run_group_tests_name("memory", tests, set_up_folder, tear_down_empty_folder);

@@ -101,6 +101,18 @@ void write_file(const char *path, const void *bytes, size_t size)
     assert_int_equal(fclose(file), 0);
 }
 
+void check_saved_files(const kiln_files *files)
+{
+    for (int i = 0; i < files->count; i++) {
+        size_t size;
+        uint8_t *bytes = read_file(files->file[i].name, &size);
+        assert_int_equal(size, files->file[i].size);
+        assert_memory_equal(bytes, files->file[i].bytes, size);
+        free(bytes);
+        assert_int_equal(remove(files->file[i].name), 0);
+    }
+}
+
 void check_same_files(const char *a, const char *b)
 {
     size_t size[2];

@@ -2,6 +2,8 @@
 #ifndef KILN_KIT_FOLDER_H
 #define KILN_KIT_FOLDER_H
 
+#include <kiln/kiln.h>
+
 #include <stddef.h>
 #include <stdint.h>
 
@@ -28,6 +30,9 @@ uint8_t *read_file(const char *path, size_t *size);
 
 /// Writes a file of these bytes, or replaces it.
 void write_file(const char *path, const void *bytes, size_t size);
+
+/// Checks that every file of a list is on the disk with the same bytes, and removes these files.
+void check_saved_files(const kiln_files *files);
 
 /// Checks that two files have the same bytes, at least one.
 void check_same_files(const char *a, const char *b);

@@ -30,6 +30,37 @@ kiln_map make_panorama(kiln_context *context, int size)
     return make_map(context, KILN_SHAPE_PANORAMA, size, 1);
 }
 
+kiln_map make_noise(kiln_context *context, kiln_shape shape, int size, uint64_t seed)
+{
+    kiln_map map = make_map(context, shape, size, 1);
+    fill_noise(&map, seed, 0, 1);
+    return map;
+}
+
+kiln_map make_steps(kiln_context *context, kiln_shape shape, int size, int level_count)
+{
+    kiln_map map = make_map(context, shape, size, level_count);
+    int last = map.level_count > 1 ? map.level_count - 1 : 1;
+    for (int k = 0; k < map.level_count; k++) {
+        map.roughness[k] = (float)k / (float)last;
+        for (size_t i = 0; i < value_count(&map, k); i++)
+            map.level[k][i] = (float)((i * 7919 + (size_t)k) % 2048) / 8;
+    }
+    return map;
+}
+
+kiln_environment make_sky_bake(kiln_context *context)
+{
+    kiln_error error = {0};
+    kiln_map sky;
+    kiln_environment made;
+    kiln_bake_def def = {.levels = {.size = 16}, .irradiance_size = 4};
+    CHECK_OK(kiln_sky(context, &(kiln_sky_def){.size = 32}, &sky, &error));
+    CHECK_OK(kiln_bake(context, &sky, &def, &made, &error));
+    kiln_map_free(&sky);
+    return made;
+}
+
 size_t value_count(const kiln_map *map, int level)
 {
     return 3 * kiln_map_texels(map, level);

@@ -20,6 +20,16 @@ kiln_map make_map(kiln_context *context, kiln_shape shape, int size, int level_c
 /// A black panorama of one level.
 kiln_map make_panorama(kiln_context *context, int size);
 
+/// A map of one level of noise, uniform in (0, 1).
+kiln_map make_noise(kiln_context *context, kiln_shape shape, int size, uint64_t seed);
+
+/// A map whose first 2048 values of a level all differ, from 0 to 256 in steps of 1/8, which half floats hold
+/// exactly. Level k has the roughness k / (level_count - 1).
+kiln_map make_steps(kiln_context *context, kiln_shape shape, int size, int level_count);
+
+/// What kiln_bake makes of a sky of 32 rows: levels of size 16, irradiance of size 4, three bands.
+kiln_environment make_sky_bake(kiln_context *context);
+
 /// Number of floats in a level.
 size_t value_count(const kiln_map *map, int level);
 
