@@ -134,7 +134,7 @@ static kiln_result draw(assignment *a)
         if (result == KILN_OK)
             snprintf(p->by, sizeof p->by, "%s", view_gl_name(renderer));
     } else {
-        cli_warn(a->work, "%s; the balls are shaded on the CPU instead", why.message);
+        cli_note(a->work, true, "%s; the balls are shaded on the CPU instead", why.message);
         p->on_cpu = true;
         result = KILN_OK;
     }

@@ -18,8 +18,9 @@ static void next_stage(bake *b)
 
 static int load(bake *b)
 {
-    int code = cli_load(&b->work, b->arguments.rest, b->arguments.rest_count,
-                        (kiln_layout)b->layout, &b->source);
+    const kiln_load_def def = {.layout = (kiln_layout)b->layout,
+                               .negative = (kiln_negative)b->negative};
+    int code = cli_load(&b->work, b->arguments.rest, b->arguments.rest_count, &def, &b->source);
     if (code != CLI_GO)
         return code;
     b->source_shape = b->source.shape;
@@ -92,13 +93,27 @@ static int bake_by_textbook(bake *b)
             ? kiln_textbook_irradiance(context, &b->source, &def, &b->made.levels, error)
             : kiln_textbook_prefilter(context, &b->source, &def, &b->made.levels, error))
         return CLI_FAILED;
+    kiln_map_cut_negative(context, &b->made.levels, &b->made.levels_cut);
     def.size = b->irradiance_size;
     if (b->irradiance_path &&
         kiln_textbook_irradiance(context, &b->source, &def, &b->made.irradiance, error))
         return CLI_FAILED;
+    kiln_map_cut_negative(context, &b->made.irradiance, &b->made.irradiance_cut);
     return kiln_map_sh(context, &b->source, most_bands(b), b->rotation, &b->made.sh, error)
                ? CLI_FAILED
                : CLI_GO;
+}
+
+// Warns of filtered values below zero. Where the source has no negative texels, such values come
+// from rounding and are no light of the source.
+static void warn_of_negatives(bake *b, const kiln_cut *cut, const char *path)
+{
+    bool rounding = !b->work.loaded.negative_count || b->negative == KILN_NEGATIVE_ZERO;
+    if (b->quiet || !cut->cut_count || rounding)
+        return;
+    cli_note(&b->work, true,
+             "%s: %zu of %zu values were negative, with %.3g %% of the light, and became 0", path,
+             cut->cut_count, cut->value_count, 100 * cut->share);
 }
 
 static void warn_of_clamping(bake *b, const kiln_save_report *report, const char *path)
@@ -115,8 +130,11 @@ static void warn_of_clamping(bake *b, const kiln_save_report *report, const char
     else
         snprintf(way_out, sizeof way_out, "; --format rgba32f or --exposure %.0f keeps them",
                  stops);
-    cli_warn(&b->work, "%s: %zu values above %g (up to %.4g), %.2g %% of all, were cut off%s", path,
-             report->cut_count, report->limit, report->largest, 100 * report->share, way_out);
+    cli_note(&b->work, true,
+             "%s: %zu values above %g (up to %.4g), %.2g %% of all, were cut off, with %.3g %% of "
+             "the light%s",
+             path, report->cut_count, report->limit, report->largest, 100 * report->share,
+             100 * report->light_share, way_out);
 }
 
 static int save(bake *b)
@@ -130,16 +148,16 @@ static int save(bake *b)
                                      .irradiance_path = b->irradiance_path,
                                      .sh_path = b->sh_path,
                                      .sh = &sh};
-    kiln_environment_report report;
     kiln_map_free(&b->source);
     if (kiln_sh_filter(&b->made.sh, b->sh_bands, b->sh_irradiance, b->sh_window, &sh, error) ||
-        kiln_environment_save(context, &b->made, b->output, &def, &report, error))
+        kiln_environment_save(context, &b->made, b->output, &def, &b->saved, error))
         return CLI_FAILED;
-    b->main_count = report.levels.file_count;
-    b->file_count = report.file_count;
-    warn_of_clamping(b, &report.levels, b->output);
-    if (b->irradiance_path)
-        warn_of_clamping(b, &report.irradiance, b->irradiance_path);
+    warn_of_negatives(b, &b->made.levels_cut, b->output);
+    warn_of_clamping(b, &b->saved.levels, b->output);
+    if (b->irradiance_path) {
+        warn_of_negatives(b, &b->made.irradiance_cut, b->irradiance_path);
+        warn_of_clamping(b, &b->saved.irradiance, b->irradiance_path);
+    }
     return CLI_GO;
 }
 

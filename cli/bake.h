@@ -18,7 +18,7 @@ typedef struct bake {
     int engine_index; ///< index of the engine; -1 without --for
     int tuning;       ///< a bake_tuning; -1 if the engine decides
     int samples, phi_steps, theta_steps;
-    int irradiance_size, sh_bands, layout, threads;
+    int irradiance_size, sh_bands, layout, negative, threads;
     double sh_window, rotation, exposure;
     bool mirror, json, quiet, verbose, sh_radiance, sh_irradiance;
     // Values that follow from several options together.
@@ -32,7 +32,8 @@ typedef struct bake {
     cli_work work;
     kiln_map source;
     kiln_environment made;
-    int source_width, source_height, file_count, main_count;
+    kiln_environment_report saved;
+    int source_width, source_height;
     kiln_shape source_shape;
     bake_stage stage;
     double seconds[BAKE_STAGES], since;

@@ -31,6 +31,7 @@ enum {
     SH_IRRADIANCE,
     SH_WINDOW,
     LAYOUT,
+    NEGATIVE,
     ROTATE,
     EXPOSURE,
     MIRROR,
@@ -138,6 +139,7 @@ const cli_option bake_options[OPTIONS + 1] = {
     [LAYOUT] =
         {"layout", CLI_CHOICE, AT(layout), .value = "LAYOUT", .words = layouts, .group = "Input",
          .help = "how a picture that is read lies on the sphere; auto decides by the proportions"},
+    [NEGATIVE] = CLI_NEGATIVE_ROW(bake),
     [ROTATE] = {"rotate", CLI_NUMBER, AT(rotation), -3600, 3600, 0, "DEGREES",
                 .help = "turn the environment about the vertical axis, after --mirror; the content "
                         "of a panorama moves to the left"},
@@ -148,8 +150,10 @@ const cli_option bake_options[OPTIONS + 1] = {
                  .help = "number of threads; the result is the same for every number",
                  .letter = 'j', .unset = "one a core", .group = "Work and report"},
     [JSON] = {"json", CLI_FLAG, AT(json),
-              .help = "report as JSON on standard output: files read and written, levels, seconds "
-                      "for each stage, and the most memory held"},
+              .help =
+                  "report as JSON on standard output: files read and written, levels, seconds "
+                  "for each stage, the most memory held, and what was found in the input and cut "
+                  "off in the output"},
     [QUIET] = CLI_QUIET_ROW(bake),
     [VERBOSE] = {"verbose", CLI_FLAG, AT(verbose), .letter = 'v',
                  .help = "print levels, times and memory"},

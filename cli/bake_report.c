@@ -35,7 +35,7 @@ static void report_output(const bake *b, json *j)
         json_text(j, "irradiance", b->irradiance_path);
     if (b->sh_path)
         json_text(j, "sh", b->sh_path);
-    json_number(j, "file_count", b->file_count);
+    json_number(j, "file_count", b->saved.file_count);
     json_text(j, "shape", bake_shapes[b->made.levels.shape]);
     json_number(j, "size", b->made.levels.size);
     json_number(j, "level_count", b->made.levels.level_count);
@@ -47,6 +47,45 @@ static void report_output(const bake *b, json *j)
         json_end(j);
     }
     json_end(j);
+    json_end(j);
+}
+
+static void report_notes(const kiln_load_report *loaded, json *j)
+{
+    kiln_note note;
+    json_array(j, "notes");
+    for (int i = 0; kiln_load_report_note(loaded, i, &note); i++)
+        json_text(j, NULL, note.text);
+    json_end(j);
+}
+
+static void report_cut(const char *key, const kiln_cut *cut, const kiln_save_report *saved, json *j)
+{
+    json_object(j, key);
+    json_number(j, "value_count", (double)cut->value_count);
+    json_number(j, "negative_count", (double)cut->cut_count);
+    json_number(j, "negative_share", cut->share);
+    json_number(j, "limit", saved->limit);
+    json_number(j, "above_count", (double)saved->cut_count);
+    json_number(j, "above_share", saved->light_share);
+    json_end(j);
+}
+
+// What was found in the input, and what was cut off in the output.
+static void report_losses(const bake *b, json *j)
+{
+    const kiln_load_report *loaded = &b->work.loaded;
+    json_object(j, "report");
+    json_number(j, "texel_count", (double)loaded->texel_count);
+    json_number(j, "infinite_count", (double)loaded->infinite_count);
+    json_number(j, "nan_count", (double)loaded->nan_count);
+    json_number(j, "negative_count", (double)loaded->negative_count);
+    json_number(j, "negative_share", loaded->negative_share);
+    json_number(j, "missing_count", (double)loaded->missing_count);
+    report_notes(loaded, j);
+    report_cut("levels", &b->made.levels_cut, &b->saved.levels, j);
+    if (b->irradiance_path)
+        report_cut("irradiance", &b->made.irradiance_cut, &b->saved.irradiance, j);
     json_end(j);
 }
 
@@ -67,6 +106,7 @@ static void report_json(const bake *b)
     json_text(&j, "kiln", kiln_version());
     report_input(b, &j);
     report_output(b, &j);
+    report_losses(b, &j);
     json_text(&j, "method", bake_methods[b->textbook]);
     json_text(&j, "lobe", bake_lobes[b->lobe]);
     if (b->engine)
@@ -87,8 +127,8 @@ static void report_json(const bake *b)
 static void print_summary(const bake *b)
 {
     char files[32] = "";
-    if (b->main_count > 1)
-        snprintf(files, sizeof files, " in %d files", b->main_count);
+    if (b->saved.levels.file_count > 1)
+        snprintf(files, sizeof files, " in %d files", b->saved.levels.file_count);
     printf("%s: %s of %d, %d level%s%s, %s %s, from %s %s of %d x %d, %.2f s\n", b->output,
            bake_shapes[b->made.levels.shape], b->made.levels.size, b->made.levels.level_count,
            b->made.levels.level_count > 1 ? "s" : "", files,

@@ -129,6 +129,8 @@ void cli_print_wrapped(const char *text, int column, int indent, int width);
 const char *cli_d_word(int index);
 const char *cli_g_word(int index);
 const char *cli_sheen_word(int index);
+/// Words for what becomes of negative texels, in the order of kiln_negative.
+const char *cli_negative_word(int index);
 /// Returns whether the option's text is a valid identifier in C and GLSL: CLI_GO or CLI_WRONG.
 int cli_check_source_name(const cli_arguments *arguments, int option);
 
@@ -143,6 +145,16 @@ int cli_check_source_name(const cli_arguments *arguments, int option);
         "threads", CLI_INTEGER, offsetof(type, threads), 1, 256, 0, "N",                           \
             "number of threads; the result is the same for every number", .letter = 'j',           \
                                                                           .unset = "one a core"    \
+    }
+#define CLI_NEGATIVE_ROW(type)                                                                     \
+    {                                                                                              \
+        "negative", CLI_CHOICE, offsetof(type, negative),                                          \
+            .value = "WHICH", .word = cli_negative_word,                                           \
+            .help = "what becomes of negative texels of the input; keep filters the numbers of "   \
+                    "the file as they stand, zero sets negative texels to 0 first",                \
+            .more = "Lossy compression leaves negative texels beside bright ones, and colours "    \
+                    "outside the gamut of Rec. 709 have negative channels. Filtered values below " \
+                    "zero are written as 0 in either case."                                        \
     }
 #define CLI_D_ROW(type, field)                                                                     \
     {                                                                                              \

@@ -1,9 +1,8 @@
-// Loads the input of a command: one file, folder or pattern, or six faces of a cube.
+// Loads the input of a command: one file, folder or pattern, or six faces of a cube; and says on
+// standard error what the loader found.
 #include "work.h"
 
 #include <ctype.h>
-#include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 enum { FACES = 6 };
@@ -77,59 +76,31 @@ int cli_check_input(const cli_command *command, const char **names, int count)
     return CLI_GO;
 }
 
-// Copies the colour of a picture into a face; negative and non-finite values become 0.
-static void copy_face(const kiln_image *image, float *face)
+// Says what the loader found and changed.
+static void say_report(cli_work *work, const char *name, const kiln_load_report *report)
 {
-    size_t count = (size_t)image->width * (size_t)image->height;
-    for (size_t i = 0; i < count; i++)
-        for (size_t c = 0; c < 3; c++) {
-            size_t channel = image->channels >= 3 ? c : 0;
-            float value = image->pixels[i * (size_t)image->channels + channel];
-            face[i * 3 + c] = value > 0 && isfinite(value) ? value : 0;
-        }
+    kiln_note note;
+    for (int i = 0; kiln_load_report_note(report, i, &note) && !work->quiet; i++)
+        cli_note(work, note.warning, "%s: %s", name, note.text);
 }
 
-static int load_faces(cli_work *work, const char **names, kiln_map *map)
+int cli_load(cli_work *work, const char **names, int count, const kiln_load_def *def, kiln_map *map)
 {
-    int code = CLI_FAILED, order[FACES];
-    kiln_image image = {0};
-    order_faces(names, order);
-    for (int face = 0; face < FACES; face++) {
-        const char *name = names[order[face]];
-        if (kiln_image_load(work->context, name, &image, &work->error) != KILN_OK)
-            goto done;
-        int size = image.width;
-        work->error.result = KILN_ERROR_FORMAT;
-        if (image.width != image.height) {
-            snprintf(work->error.message, sizeof work->error.message,
-                     "%s: is %d x %d pixels, the face of a cube must be square", name, image.width,
-                     image.height);
-            goto done;
-        }
-        if (face && size != map->size) {
-            snprintf(work->error.message, sizeof work->error.message,
-                     "%s: is %d x %d pixels, but %s is %d x %d", name, size, size, names[order[0]],
-                     map->size, map->size);
-            goto done;
-        }
-        if (!face && kiln_map_create(work->context, KILN_SHAPE_CUBE, size, 1, map, &work->error))
-            goto done;
-        copy_face(&image, map->level[0] + (size_t)face * (size_t)size * (size_t)size * 3);
-        kiln_image_free(&image);
+    kiln_load_def full = *def;
+    full.report = &work->loaded;
+    const char *faces[FACES];
+    int order[FACES];
+    kiln_result result;
+    if (count == FACES) {
+        order_faces(names, order);
+        for (int i = 0; i < FACES; i++)
+            faces[i] = names[order[i]];
+        result = kiln_map_load_faces(work->context, faces, &full, map, &work->error);
+    } else {
+        result = kiln_map_load(work->context, names[0], &full, map, &work->error);
     }
-    code = CLI_GO;
-done:
-    kiln_image_free(&image);
-    if (code != CLI_GO)
-        kiln_map_free(map);
-    return code;
-}
-
-int cli_load(cli_work *work, const char **names, int count, kiln_layout layout, kiln_map *map)
-{
-    if (count == FACES)
-        return load_faces(work, names, map);
-    kiln_load_def def = {.layout = layout};
-    return kiln_map_load(work->context, names[0], &def, map, &work->error) == KILN_OK ? CLI_GO
-                                                                                      : CLI_FAILED;
+    if (result != KILN_OK)
+        return CLI_FAILED;
+    say_report(work, count == FACES ? faces[0] : names[0], &work->loaded);
+    return CLI_GO;
 }

@@ -1,5 +1,5 @@
-// Options that the commands for the reflection model share: words of the model's choices, and the
-// check of names for generated source code.
+// Options that several commands share: words of the reflection model's choices and of what becomes
+// of negative texels, and the check of names for generated source code.
 #include "cli.h"
 
 #include <ctype.h>
@@ -18,6 +18,13 @@ const char *cli_g_word(int index)
 const char *cli_sheen_word(int index)
 {
     return kiln_sheen_names()[index];
+}
+
+const char *cli_negative_word(int index)
+{
+    static const char *const words[] = {
+        [KILN_NEGATIVE_KEEP] = "keep", [KILN_NEGATIVE_ZERO] = "zero"};
+    return index <= KILN_NEGATIVE_ZERO ? words[index] : NULL;
 }
 
 // Reserved words of C and GLSL ES 3.00 in lower case. GLSL has too many vectors, matrices and

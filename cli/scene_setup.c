@@ -75,7 +75,8 @@ int scene_load(cli_work *work, const scene_setup *s, kiln_map *source)
 {
     if (s->input) {
         const char *names[] = {s->input};
-        return cli_load(work, names, 1, KILN_LAYOUT_AUTO, source);
+        const kiln_load_def def = {.negative = (kiln_negative)s->negative};
+        return cli_load(work, names, 1, &def, source);
     }
     // Scales the sky's radiance from kcd/m2 to values near 1.
     kiln_sky_def def = {0};

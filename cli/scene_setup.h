@@ -29,6 +29,7 @@ enum {
     SCENE_STRAIGHT,
     SCENE_DIFFUSE,
     SCENE_BAKE_SIZE,
+    SCENE_NEGATIVE,
     SCENE_OPTIONS
 };
 
@@ -42,6 +43,7 @@ typedef struct scene_setup {
     bool straight;
     int width, height;
     int bake_size;     ///< edge of the environment's level 0 in texels
+    int negative;      ///< a kiln_negative
     const char *input; ///< name of the environment; NULL for a sky
 } scene_setup;
 
@@ -206,7 +208,8 @@ typedef struct scene_setup {
                          2048,                                                                     \
                          256,                                                                      \
                          "N",                                                                      \
-                         .help = "texels along the edge of a face of the baked environment"}
+                         .help = "texels along the edge of a face of the baked environment"},      \
+    [SCENE_NEGATIVE] = CLI_NEGATIVE_ROW(scene_setup)
 /// Words of the choices in the shared rows.
 const char *scene_diffuse_word(int index);
 

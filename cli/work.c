@@ -61,6 +61,7 @@ int cli_begin_work(cli_work *work, int threads, bool quiet)
 {
     *work = (cli_work){.began = os_seconds(),
                        .threads = threads,
+                       .quiet = quiet,
                        .on_terminal = !quiet && os_is_terminal(OS_ERRORS)};
     os_catch_signals();
     os_without_signals(create_context, work);
@@ -77,10 +78,10 @@ int cli_end_work(cli_work *work, int code)
     return code == CLI_FAILED && signal ? 128 + signal : code;
 }
 
-void cli_warn(cli_work *work, const char *format, ...)
+void cli_note(cli_work *work, bool warning, const char *format, ...)
 {
     cli_clear_progress(work);
-    fputs("kiln: warning: ", stderr);
+    fputs(warning ? "kiln: warning: " : "kiln: note: ", stderr);
     va_list list;
     va_start(list, format);
     vfprintf(stderr, format, list);

@@ -60,7 +60,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         add_chunk(&w, "IDAT", packed + length * i / pieces,
                   length * (i + 1) / pieces - length * i / pieces);
     kiln_image image;
-    kiln_result result = ki_png_decode(context, w.bytes, w.size, "fuzz", &image, NULL, NULL);
+    kiln_result result = ki_png_decode(context, w.bytes, w.size, "fuzz", &image, NULL, NULL, NULL);
     // The only thing that can be wrong is a filter.
     for (size_t i = 0; result == KILN_OK && i < 3 * (size_t)image.width * (size_t)image.height; i++)
         if (!(image.pixels[i] >= 0 && image.pixels[i] <= 1))

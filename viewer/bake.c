@@ -85,6 +85,8 @@ kiln_result view_bake(kiln_context *context, const kiln_map *source, int size, i
         result = samples ? textbook_levels(context, source, size, level_count, samples,
                                            &environment->levels, error)
                          : copy(context, source, &environment->levels, error);
+    if (result == KILN_OK)
+        kiln_map_cut_negative(context, &environment->levels, &environment->levels_cut);
     if (result != KILN_OK)
         kiln_environment_free(environment);
     return result;

@@ -1,6 +1,6 @@
 // The environment as a light source. In: a map of any shape and its rotation. Out: the radiance
-// from a direction, and directions drawn with a density proportional to r + g + b, by inverting the
-// cumulated power of the panorama's rows and then of one row's texels. The random numbers of
+// from a direction, and directions drawn with a density proportional to |r| + |g| + |b|, since texels
+// may be negative, by inverting the cumulated power of the panorama's rows and then of one row's texels. The random numbers of
 // view_random are here too.
 #include "internal.h"
 #include "trace.h"
@@ -37,7 +37,7 @@ double view_random_next(view_random *random)
 
 static double power(const float *texel)
 {
-    return (double)texel[0] + (double)texel[1] + (double)texel[2];
+    return fabs((double)texel[0]) + fabs((double)texel[1]) + fabs((double)texel[2]);
 }
 
 // cos(theta) at the upper border of row y minus cos(theta) at its lower border. This difference is

@@ -332,7 +332,7 @@ static double noise_of(const tally *t, double floor)
     double worst = 0;
     for (int c = 0; c < 3; c++)
         worst = fmax(worst, sqrt(t->squares[c] / (t->count - 1.0) / t->count) /
-                                (t->mean[c] + floor + 1e-30));
+                                (fabs(t->mean[c]) + floor + 1e-30));
     return worst;
 }
 

@@ -28,14 +28,15 @@ typedef struct kiln_textbook_def {
 /// Computes irradiance / pi by the textbook's uniform sum over (phi, theta), which keeps white near
 /// 1 (0.99992 with 100 x 100 steps). The texel in column i and row j of a panorama is evaluated
 /// where the textbook does, at i / (width - 1) and j / (height - 1), up to half a texel from the
-/// texel's centre.
+/// texel's centre. The result may be negative where the source is.
 KILN_API KILN_CHECKED kiln_result kiln_textbook_irradiance(kiln_context *context,
                                                            const kiln_map *panorama,
                                                            const kiln_textbook_def *def,
                                                            kiln_map *map, kiln_error *error);
 /// Computes prefiltered radiance by GGX importance sampling with Hammersley points, N = V = R,
 /// weights n.l and the nearest texel of the source. Level k has roughness k / (level_count - 1).
-/// The texels of a panorama are evaluated where kiln_textbook_irradiance evaluates them.
+/// The texels of a panorama are evaluated where kiln_textbook_irradiance evaluates them. The result
+/// may be negative where the source is.
 KILN_API KILN_CHECKED kiln_result kiln_textbook_prefilter(kiln_context *context,
                                                           const kiln_map *panorama,
                                                           const kiln_textbook_def *def,

@@ -148,7 +148,8 @@ typedef enum kiln_shape {
 ///
 /// The levels may also lie in the caller's own memory. Set shape, size, level_count and level[],
 /// and leave the other fields 0: every function then reads and writes such a map, and kiln_map_free
-/// frees nothing. Texels must be finite and not negative; kiln_map_from_pixels ensures that.
+/// frees nothing. Texels must be finite, which kiln_map_from_pixels ensures. Negative texels are
+/// data like all others: functions that filter a map are linear.
 typedef struct kiln_map {
     kiln_shape shape;
     int size;                         ///< size of level 0 in texels, 1 to KILN_MAX_SIZE
@@ -191,6 +192,18 @@ KILN_API void kiln_map_mirror(kiln_map *map);
 /// Multiplies every texel by 2^stops, in place.
 KILN_API void kiln_map_expose(kiln_map *map, double stops);
 
+/// Values of a map that were below zero and became 0. Light is a value times the solid angle of its
+/// texel, summed over channels and levels.
+typedef struct kiln_cut {
+    size_t value_count; ///< number of values in all levels: three per texel
+    size_t cut_count;   ///< number of values that were below zero
+    double share;       ///< light that was cut off, relative to the light of the values above zero
+} kiln_cut;
+/// Sets values below zero to 0 in every level, in place. `cut` receives what was cut off and may be
+/// NULL. kiln_bake, kiln_plan_execute, kiln_prefilter and kiln_spectrum_filter end with this step;
+/// kiln_map_convert and the methods in <kiln/course.h> keep negative values.
+KILN_API void kiln_map_cut_negative(kiln_context *context, kiln_map *map, kiln_cut *cut);
+
 /// Converts level 0 of a map to another shape or size. Each texel of the result is the mean of the
 /// source over the texel's solid angle. The source is first turned by `rotation` degrees about +Y,
 /// which moves the content of a panorama to the left. The result has one level.
@@ -211,16 +224,71 @@ typedef enum kiln_layout {
     KILN_LAYOUT_OCTAHEDRON
 } kiln_layout;
 
+/// What becomes of negative texels. Lossy compression leaves such texels beside bright ones, and so
+/// do colours outside the gamut of Rec. 709.
+typedef enum kiln_negative {
+    KILN_NEGATIVE_KEEP = 0, ///< negative values stay, so that sums and means are those of the file
+    KILN_NEGATIVE_ZERO      ///< negative values become 0, which makes the environment brighter
+} kiln_negative;
+
+typedef enum kiln_note_kind {
+    KILN_NOTE_INFINITE = 0, ///< infinite texels became 65504
+    KILN_NOTE_NAN,          ///< texels that are not a number became the mean of their neighbours
+    KILN_NOTE_NEGATIVE,     ///< negative texels were kept or became 0
+    KILN_NOTE_MISSING,      ///< texels are not in the file and are black
+    KILN_NOTE_CHOICE,       ///< which part, layer, channels or layout of the file are the picture
+    KILN_NOTE_CONVERSION,   ///< the numbers were converted: colours, exposure, transfer function
+    KILN_NOTE_ASSUMPTION    ///< the file leaves open what kiln needs to know, and kiln assumed it
+} kiln_note_kind;
+
+enum { KILN_MAX_NOTES = 16, KILN_NOTE_TEXT = 256 };
+
+/// One thing to know about a picture that was loaded.
+typedef struct kiln_note {
+    kiln_note_kind kind;
+    bool warning; ///< true: the environment may not be what its author meant
+    /// A sentence without the name of the file, a capital and a full stop, for example "12 of 512
+    /// texels are infinite and became 65504".
+    char text[KILN_NOTE_TEXT];
+} kiln_note;
+
+/// What a loader found in a picture, chose and changed. Counts are numbers of texels, in all faces
+/// and levels that were loaded; a texel counts once, whatever number of its channels is concerned.
+typedef struct kiln_load_report {
+    size_t texel_count;    ///< number of all texels
+    size_t infinite_count; ///< texels with an infinite channel, which became 65504
+    /// Texels with a channel that is not a number or minus infinity. Such a channel became the mean
+    /// of the neighbouring texels that have numbers.
+    size_t nan_count;
+    size_t negative_count; ///< texels with a channel below zero
+    size_t missing_count;  ///< texels outside the data window of an EXR file, which are black
+    /// Light of the values below zero relative to the light of the values above zero, where light
+    /// is a value times the solid angle of its texel.
+    double negative_share;
+    kiln_negative negative; ///< what became of the values below zero
+    int note_count;         ///< number of notes, of which `note` holds the first KILN_MAX_NOTES
+    /// Choices, conversions and assumptions. The notes about the counts above are made by
+    /// kiln_load_report_note.
+    kiln_note note[KILN_MAX_NOTES];
+} kiln_load_report;
+
+/// Puts a report into sentences: sets *note to sentence number `index`, counted from 0, and returns
+/// true. Returns false if the report has no such sentence.
+KILN_API bool kiln_load_report_note(const kiln_load_report *report, int index, kiln_note *note);
+
 /// Options for loading a map. {0} selects the default of each option.
 typedef struct kiln_load_def {
     kiln_layout layout;
+    kiln_negative negative;
+    kiln_load_report *report; ///< receives what was found in the file; may be NULL
 } kiln_load_def;
 
 /// Loads a map from an EXR, Radiance HDR or PNG file (PNG values are sRGB and are decoded to
 /// linear), from a KTX2 or DDS cube that kiln wrote, or from six face files. Six faces are given by
 /// a folder or by a path with `%s` or `{face}` in place of px nx py ny pz nz. The content of a file
-/// decides its format, never the ending of its name. Texels that are negative or not-a-number
-/// become 0, infinite texels the largest finite value of the file's format. `def` may be NULL.
+/// decides its format, never the ending of its name. Texels that are infinite or not a number are
+/// replaced as kiln_load_report says. A picture in which no texel is a number is refused. `def` may
+/// be NULL.
 KILN_API KILN_CHECKED kiln_result kiln_map_load(kiln_context *context, const char *path,
                                                 const kiln_load_def *def, kiln_map *map,
                                                 kiln_error *error);
@@ -230,6 +298,12 @@ KILN_API KILN_CHECKED kiln_result kiln_map_decode(kiln_context *context, const v
                                                   size_t size, const char *name,
                                                   const kiln_load_def *def, kiln_map *map,
                                                   kiln_error *error);
+/// Loads a cube from six files, one for each of the faces +X -X +Y -Y +Z -Z. `def->layout` is
+/// ignored. `def` may be NULL.
+KILN_API KILN_CHECKED kiln_result kiln_map_load_faces(kiln_context *context,
+                                                      const char *const paths[6],
+                                                      const kiln_load_def *def, kiln_map *map,
+                                                      kiln_error *error);
 typedef enum kiln_pixel_type {
     KILN_PIXEL_FLOAT = 0, ///< 32 bits
     KILN_PIXEL_HALF       ///< 16 bits
@@ -246,15 +320,18 @@ typedef struct kiln_pixels {
     /// Distance in bytes from a row to the row below, may be negative; 0 for no gaps.
     ptrdiff_t row_stride;
     kiln_layout layout; ///< KILN_LAYOUT_AUTO decides by the ratio of the sides, as for files
+    kiln_negative negative;
+    kiln_load_report *report; ///< receives what was found in the pixels; may be NULL
 } kiln_pixels;
 
-/// Creates a map with a copy of the pixels. Negative, infinite and not-a-number values are replaced
-/// as kiln_map_load replaces them.
+/// Creates a map with a copy of the pixels. Values are treated as kiln_map_load treats those of
+/// files.
 KILN_API KILN_CHECKED kiln_result kiln_map_from_pixels(kiln_context *context,
                                                        const kiln_pixels *pixels, kiln_map *map,
                                                        kiln_error *error);
 /// Loads a flat picture without placing it on the sphere. The result has three channels, or for a
 /// KTX2 table the table's 1, 2 or 4 channels, with the slices of a 3-D table one below the other.
+/// Infinite values and values that are not a number are replaced as in kiln_map_load.
 KILN_API KILN_CHECKED kiln_result kiln_image_load(kiln_context *context, const char *path,
                                                   kiln_image *image, kiln_error *error);
 
@@ -388,7 +465,7 @@ KILN_API KILN_CHECKED kiln_result kiln_spectrum_power(const kiln_spectrum *spect
                                                       double (*power)[3], kiln_error *error);
 
 /// Filters the environment with one lobe, turned by `rotation` degrees about +Y, and writes the
-/// result to level `level` of `map`. Fails where the lobe is too narrow for the degree of the
+/// result, with values below zero set to 0, to level `level` of `map`. Fails where the lobe is too narrow for the degree of the
 /// spectrum; kiln_prefilter filters such levels from the panorama itself.
 KILN_API KILN_CHECKED kiln_result kiln_spectrum_filter(kiln_context *context,
                                                        const kiln_spectrum *spectrum,
@@ -482,6 +559,9 @@ typedef struct kiln_environment {
     kiln_lobe_kind lobe; ///< lobe that the levels were filtered with
     /// degree of the spectrum that the levels are computed from; 0 if there is no such spectrum
     int degree;
+    /// Values of the maps that were below zero and became 0. A source without negative texels has
+    /// such values by rounding only.
+    kiln_cut levels_cut, irradiance_cut;
 } kiln_environment;
 
 enum { KILN_NO_IRRADIANCE = -1 };
@@ -514,7 +594,7 @@ typedef struct kiln_bake_def {
 
 /// Computes an environment from level 0 of a map of any shape. The source is mirrored, exposed and
 /// turned, then its spectrum is computed and filtered. The irradiance map has the shape of the
-/// levels. `def` may be NULL.
+/// levels. Levels and irradiance hold nothing negative: see levels_cut. `def` may be NULL.
 KILN_API KILN_CHECKED kiln_result kiln_bake(kiln_context *context, const kiln_map *source,
                                             const kiln_bake_def *def, kiln_environment *environment,
                                             kiln_error *error);
@@ -625,7 +705,10 @@ typedef struct kiln_save_report {
     size_t value_count; ///< number of values in all levels: three per texel
     size_t cut_count;   ///< number of values above the limit, which the files hold as the limit
     double share;       ///< cut_count / value_count
-    double largest;     ///< largest value of the map
+    /// Light above the limit relative to all light of the map, where light is a value times the
+    /// solid angle of its texel.
+    double light_share;
+    double largest; ///< largest value of the map
 } kiln_save_report;
 
 /// Writes a map to one or more files, each of which appears complete or not at all: a temporary

@@ -5,6 +5,9 @@
 //                                                       -> harmonics   (sphere/sh.c)
 //                                                       -> irradiance  (a level of the cosine lobe)
 //
+// All of these steps are linear, whatever signs the texels have. At the end, values below zero in
+// levels and irradiance become 0 and are counted; harmonics have signs and stay as they are.
+//
 // A plan holds everything that depends only on sizes, and all memory that an execution needs. A
 // source panorama is analysed once if the analysis reaches the degree that the irradiance needs. A
 // panorama made from another shape is analysed again, to a low degree, for harmonics and
@@ -12,7 +15,7 @@
 // which levels are computed.
 #include "bake/environment.h"
 
-#include "image/image.h"
+#include "image/light.h"
 #include "math/math.h"
 #include "sphere/grid.h"
 #include "sphere/sh.h"
@@ -359,6 +362,12 @@ static kiln_result execute_all(const kiln_plan *p, plan_workspace *w, const kiln
         result = ki_level_execute(p->irradiance, &w->prefilter.levels,
                                   find_spectrum(w, p->for_irradiance, &w->for_irradiance, panorama),
                                   NULL, p->rotation, &environment->irradiance, 0, NULL, error);
+    if (result == KILN_OK)
+        ki_cut_negative(p->context, &environment->levels, 0, environment->levels.level_count,
+                        &environment->levels_cut);
+    environment->irradiance_cut = (kiln_cut){0};
+    if (result == KILN_OK && p->irradiance_size)
+        ki_cut_negative(p->context, &environment->irradiance, 0, 1, &environment->irradiance_cut);
     return result;
 }
 

@@ -11,11 +11,13 @@
 
 /// The content of a decoded file: a flat picture of three channels; or a cube with its levels
 /// (KTX2, DDS); or a table in `image` (KTX2), whose slices lie one below the other and whose 1, 2
-/// or 4 channels may be negative.
+/// or 4 channels may be negative. Texels have the values of the file, of whatever kind; ki_map_mend
+/// replaces those that are no radiance.
 typedef struct ki_decoded {
     bool is_map, is_table;
     kiln_image image;
     kiln_map map;
+    kiln_load_report report; ///< notes of the reader, and its missing_count
 } ki_decoded;
 
 /// Decodes any file that kiln can read; the first bytes decide the format. `name` appears in error
@@ -24,15 +26,17 @@ kiln_result ki_decode(kiln_context *context, const uint8_t *bytes, size_t size, 
                       ki_decoded *decoded, kiln_file_info *info, kiln_error *error);
 void ki_decoded_free(ki_decoded *decoded);
 
+/// Decode a picture. `image`, `info` and `report` may be NULL; without `image` the texels are not
+/// read.
 kiln_result ki_exr_decode(kiln_context *context, const uint8_t *bytes, size_t size,
                           const char *name, kiln_image *image, kiln_file_info *info,
-                          kiln_error *error);
+                          kiln_load_report *report, kiln_error *error);
 kiln_result ki_hdr_decode(kiln_context *context, const uint8_t *bytes, size_t size,
                           const char *name, kiln_image *image, kiln_file_info *info,
-                          kiln_error *error);
+                          kiln_load_report *report, kiln_error *error);
 kiln_result ki_png_decode(kiln_context *context, const uint8_t *bytes, size_t size,
                           const char *name, kiln_image *image, kiln_file_info *info,
-                          kiln_error *error);
+                          kiln_load_report *report, kiln_error *error);
 /// Decode a KTX2 file, which is a cube or a table, and a DDS file, which is a cube. An atlas in a
 /// DDS file is only described. `decoded` may be NULL, `info` must not be.
 kiln_result ki_ktx2_decode(kiln_context *context, const uint8_t *bytes, size_t size,

@@ -299,36 +299,48 @@ static kiln_result decode_all(exr_file *f, kiln_error *error)
     return KILN_OK;
 }
 
-static bool covers(const ki_exr_window *data, const ki_exr_window *display)
+// Returns the number of pixels of the display window that lie outside the data window.
+static size_t count_missing(const ki_exr_window *data, const ki_exr_window *display)
 {
-    return data->left <= display->left && data->top <= display->top &&
-           data->right >= display->right && data->bottom >= display->bottom;
+    int width = ki_min(data->right, display->right) - ki_max(data->left, display->left) + 1;
+    int height = ki_min(data->bottom, display->bottom) - ki_max(data->top, display->top) + 1;
+    size_t covered = width > 0 && height > 0 ? (size_t)width * (size_t)height : 0;
+    return (size_t)(display->right - display->left + 1) *
+               (size_t)(display->bottom - display->top + 1) -
+           covered;
 }
 
-static kiln_result read_pixels(exr_file *f, kiln_image *image, kiln_error *error)
+static kiln_result read_pixels(exr_file *f, kiln_image *image, kiln_load_report *report,
+                               kiln_error *error)
 {
+    ki_exr_picture *p = &f->picture;
+    size_t texels = (size_t)p->width * (size_t)p->height, count = 3 * texels;
+    size_t missing = count_missing(&f->part->data, &f->part->display);
+    if (missing == texels)
+        return ki_fail(error, KILN_ERROR_FORMAT,
+                       "%s: none of the %zu pixels of its display window lies in its data window",
+                       f->name, texels);
     kiln_result result = ki_exr_find_chunks(f->context, &f->header, f->part_index, f->name,
                                             &f->chunks, &f->chunk_count, error);
     if (result != KILN_OK)
         return result;
-    ki_exr_picture *p = &f->picture;
-    size_t count = 3 * (size_t)p->width * (size_t)p->height;
-    p->pixels = covers(&f->part->data, &f->part->display)
-                    ? ki_alloc_raw(f->context, count, sizeof(float))
-                    : ki_alloc(f->context, count, sizeof(float));
+    p->pixels = missing ? ki_alloc(f->context, count, sizeof(float))
+                        : ki_alloc_raw(f->context, count, sizeof(float));
     if (!p->pixels)
         return ki_fail_memory(f->context, error, f->name, count * sizeof(float));
     result = decode_all(f, error);
     if (result == KILN_OK) {
         *image = (kiln_image){p->width, p->height, 3, p->pixels, p->pixels};
         p->pixels = NULL;
+        if (report)
+            report->missing_count = missing;
     }
     return result;
 }
 
 kiln_result ki_exr_decode(kiln_context *context, const uint8_t *bytes, size_t size,
                           const char *name, kiln_image *image, kiln_file_info *info,
-                          kiln_error *error)
+                          kiln_load_report *report, kiln_error *error)
 {
     if (image)
         *image = (kiln_image){0};
@@ -341,7 +353,7 @@ kiln_result ki_exr_decode(kiln_context *context, const uint8_t *bytes, size_t si
     if (result == KILN_OK && info)
         describe(f, info);
     if (result == KILN_OK && image)
-        result = read_pixels(f, image, error);
+        result = read_pixels(f, image, report, error);
     ki_free(f->picture.pixels);
     ki_free(f->chunks);
     ki_free(f->dwa_table);

@@ -1,6 +1,6 @@
 // Converts samples of an EXR file (half, float or unsigned integer) to the pixels of a picture,
-// three floats each. Not-a-number and negative values become 0, infinities the largest finite value
-// of the type. A channel that is not in the file is 0.
+// three floats each, which keep negative, infinite and not-a-number values. A channel that is not in
+// the file is 0.
 #include "base/vector.h"
 #include "codec/exr.h"
 #include "image/pack.h"
@@ -12,9 +12,9 @@ enum { STRETCH = 256 }; // number of samples that are converted at a time
 static void to_floats(const uint8_t *restrict samples, int type, int count, float *restrict values)
 {
     if (type == KI_EXR_HALF) {
-        ki_radiance_from_halfs(samples, (size_t)count, values);
+        ki_floats_from_half_bytes(samples, (size_t)count, values);
     } else if (type == KI_EXR_FLOAT) {
-        ki_radiance_from_floats(samples, (size_t)count, values);
+        memcpy(values, samples, (size_t)count * sizeof *values);
     } else {
         for (int i = 0; i < count; i++) {
             uint32_t integer;

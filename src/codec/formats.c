@@ -40,9 +40,9 @@ static kiln_result write_hdr(const kiln_image *image, const ki_picture_about *ab
 
 static kiln_result read_png(kiln_context *context, const uint8_t *bytes, size_t size,
                             const char *name, kiln_image *image, kiln_file_info *info,
-                            kiln_error *error)
+                            kiln_load_report *report, kiln_error *error)
 {
-    kiln_result result = ki_png_decode(context, bytes, size, name, image, info, error);
+    kiln_result result = ki_png_decode(context, bytes, size, name, image, info, report, error);
     if (result == KILN_OK)
         ki_png_read_texts(bytes, size, info);
     return result;
@@ -272,7 +272,7 @@ static kiln_result read_bytes(kiln_context *context, const uint8_t *bytes, size_
     if (format->read)
         return format->read(context, bytes, size, name, decoded, info, error);
     return format->read_picture(context, bytes, size, name, decoded ? &decoded->image : NULL, info,
-                                error);
+                                decoded ? &decoded->report : NULL, error);
 }
 
 kiln_result ki_decode(kiln_context *context, const uint8_t *bytes, size_t size, const char *name,

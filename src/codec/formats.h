@@ -27,7 +27,7 @@ typedef struct ki_picture_about {
 
 typedef kiln_result ki_read_picture(kiln_context *context, const uint8_t *bytes, size_t size,
                                     const char *name, kiln_image *image, kiln_file_info *info,
-                                    kiln_error *error);
+                                    kiln_load_report *report, kiln_error *error);
 typedef kiln_result ki_read_file(kiln_context *context, const uint8_t *bytes, size_t size,
                                  const char *name, ki_decoded *decoded, kiln_file_info *info,
                                  kiln_error *error);

@@ -238,8 +238,9 @@ static kiln_result decode_all(kiln_context *context, hdr_file *f, kiln_error *er
 
 kiln_result ki_hdr_decode(kiln_context *context, const uint8_t *bytes, size_t size,
                           const char *name, kiln_image *image, kiln_file_info *info,
-                          kiln_error *error)
+                          kiln_load_report *report, kiln_error *error)
 {
+    (void)report;
     if (image)
         *image = (kiln_image){0};
     hdr_file f = {.name = name, .bytes = bytes, .size = size};

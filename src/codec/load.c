@@ -1,12 +1,14 @@
-// Loading of maps and pictures. In: a path to a file, a folder, or a pattern for six face files; or
-// bytes in memory. Out: a map on the sphere, or a flat picture. The content of a file decides its
-// format, and the ratio of its sides its layout unless the caller names a layout.
+// Loading of maps and pictures. In: a path to a file, a folder, or a pattern for six face files; six
+// paths; or bytes in memory. Out: a map on the sphere, or a flat picture, and a report. The content
+// of a file decides its format, and the ratio of its sides its layout unless the caller names a
+// layout.
 #include "base/file.h"
 #include "base/os.h"
 #include "codec/engine_text.h"
 #include "codec/formats.h"
 #include "codec/layout.h"
-#include "image/image.h"
+#include "codec/report.h"
+#include "image/mend.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,74 +18,115 @@
 
 static kiln_result check_def(const kiln_load_def *def, kiln_error *error)
 {
-    if (def && ((int)def->layout < 0 || def->layout > KILN_LAYOUT_OCTAHEDRON))
+    if ((int)def->layout < 0 || def->layout > KILN_LAYOUT_OCTAHEDRON)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "layout is %d, it must be 0 to %d",
                        (int)def->layout, (int)KILN_LAYOUT_OCTAHEDRON);
+    if ((unsigned)def->negative > KILN_NEGATIVE_ZERO)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "negative is %d, it must be 0 or %d",
+                       (int)def->negative, (int)KILN_NEGATIVE_ZERO);
     return KILN_OK;
+}
+
+// Replaces a definition that is NULL by the defaults, checks it, and empties the outputs.
+static kiln_result begin(const kiln_load_def **def, kiln_map *map, kiln_error *error)
+{
+    static const kiln_load_def defaults = {0};
+    *map = (kiln_map){0};
+    *def = *def ? *def : &defaults;
+    if ((*def)->report)
+        *(*def)->report = (kiln_load_report){0};
+    return check_def(*def, error);
+}
+
+// Mends a map that was read, if `result` says that it was, and hands out its report. On failure
+// frees the map.
+static kiln_result finish(kiln_context *context, const char *name, const kiln_load_def *def,
+                          kiln_result result, kiln_load_report *report, kiln_map *map,
+                          kiln_error *error)
+{
+    if (result == KILN_OK)
+        result = ki_map_mend(context, name, def->negative, map, report, error);
+    if (result != KILN_OK)
+        kiln_map_free(map);
+    else if (def->report)
+        *def->report = *report;
+    return result;
+}
+
+// Makes a map from what was decoded, whose memory the map may take over.
+static kiln_result place(kiln_context *context, ki_decoded *decoded, const kiln_file_info *info,
+                         const char *name, kiln_layout layout, kiln_map *map, kiln_error *error)
+{
+    if (decoded->is_map) {
+        *map = decoded->map;
+        decoded->map = (kiln_map){0};
+        return KILN_OK;
+    }
+    if (decoded->is_table)
+        return ki_fail(error, KILN_ERROR_UNSUPPORTED, "%s: holds a table, not an environment",
+                       name);
+    if (ki_is_atlas(info))
+        return ki_fail(error, KILN_ERROR_UNSUPPORTED,
+                       "%s: is the atlas of %s, which kiln describes but does not read", name,
+                       info->engine[0] ? info->engine : "an engine");
+    if (layout == KILN_LAYOUT_AUTO && !strcmp(info->layout, "octahedron"))
+        layout = KILN_LAYOUT_OCTAHEDRON;
+    kiln_result result = ki_lay_out(context, &decoded->image, name, layout, map, error);
+    if (result == KILN_OK && info->roughness[0] >= 0)
+        map->roughness[0] = info->roughness[0];
+    return result;
 }
 
 kiln_result kiln_map_decode(kiln_context *context, const void *bytes, size_t size, const char *name,
                             const kiln_load_def *def, kiln_map *map, kiln_error *error)
 {
-    *map = (kiln_map){0};
-    kiln_result result = check_def(def, error);
-    if (result != KILN_OK)
-        return result;
     kiln_file_info info;
     ki_decoded decoded;
-    result = ki_decode(context, bytes, size, name ? name : "memory", &decoded, &info, error);
+    kiln_result result = begin(&def, map, error);
+    name = name ? name : "memory";
+    if (result == KILN_OK)
+        result = ki_decode(context, bytes, size, name, &decoded, &info, error);
     if (result != KILN_OK)
         return result;
-    if (decoded.is_map) {
-        *map = decoded.map;
-        return KILN_OK;
-    }
-    if (decoded.is_table) {
-        ki_decoded_free(&decoded);
-        return ki_fail(error, KILN_ERROR_UNSUPPORTED, "%s: holds a table, not an environment",
-                       name ? name : "memory");
-    }
-    if (ki_is_atlas(&info)) {
-        ki_decoded_free(&decoded);
-        return ki_fail(error, KILN_ERROR_UNSUPPORTED,
-                       "%s: is the atlas of %s, which kiln describes but does not read",
-                       name ? name : "memory", info.engine[0] ? info.engine : "an engine");
-    }
-    enum kiln_layout layout = def ? def->layout : KILN_LAYOUT_AUTO;
-    if (layout == KILN_LAYOUT_AUTO && !strcmp(info.layout, "octahedron"))
-        layout = KILN_LAYOUT_OCTAHEDRON;
-    result = ki_lay_out(context, &decoded.image, name ? name : "memory", layout, map, error);
-    if (result == KILN_OK && info.roughness[0] >= 0)
-        map->roughness[0] = info.roughness[0];
+    result = place(context, &decoded, &info, name, def->layout, map, error);
+    result = finish(context, name, def, result, &decoded.report, map, error);
     ki_decoded_free(&decoded);
     return result;
 }
 
-static kiln_result load_image(kiln_context *context, const char *path, kiln_image *image,
+// Reads a flat picture with the values of its file.
+static kiln_result load_image(kiln_context *context, const char *path, ki_decoded *decoded,
                               kiln_file_info *info, kiln_error *error)
 {
-    *image = (kiln_image){0};
     uint8_t *bytes;
     size_t size;
     kiln_result result = ki_file_read(context, path, &bytes, &size, error);
     if (result != KILN_OK)
         return result;
-    ki_decoded decoded;
-    result = ki_decode(context, bytes, size, path, &decoded, info, error);
+    result = ki_decode(context, bytes, size, path, decoded, info, error);
     ki_free(bytes);
-    if (result == KILN_OK && decoded.is_map) {
-        ki_decoded_free(&decoded);
+    if (result == KILN_OK && decoded->is_map) {
+        ki_decoded_free(decoded);
         return ki_fail(error, KILN_ERROR_UNSUPPORTED, "%s: holds a cube, not a flat picture", path);
     }
-    if (result == KILN_OK)
-        *image = decoded.image;
     return result;
 }
 
 kiln_result kiln_image_load(kiln_context *context, const char *path, kiln_image *image,
                             kiln_error *error)
 {
-    return load_image(context, path, image, NULL, error);
+    ki_decoded decoded;
+    *image = (kiln_image){0};
+    kiln_result result = load_image(context, path, &decoded, NULL, error);
+    if (result != KILN_OK)
+        return result;
+    if (!decoded.is_table && decoded.image.channels == 3)
+        result = ki_image_mend(context, path, &decoded.image, error);
+    if (result == KILN_OK)
+        *image = decoded.image;
+    else
+        ki_decoded_free(&decoded);
+    return result;
 }
 
 kiln_result kiln_file_describe(kiln_context *context, const char *path, kiln_file_info *info,
@@ -219,15 +262,16 @@ static kiln_result check_face(const char *path, const kiln_image *image, const k
 }
 
 static kiln_result load_face(kiln_context *context, const char *path, int face, kiln_map *map,
-                             kiln_error *error)
+                             kiln_load_report *report, kiln_error *error)
 {
-    kiln_image image;
+    ki_decoded decoded;
     kiln_file_info info;
-    kiln_result result = load_image(context, path, &image, &info, error);
+    kiln_result result = load_image(context, path, &decoded, &info, error);
     if (result != KILN_OK)
         return result;
-    result = check_face(path, &image, map, error);
-    int size = image.width;
+    const kiln_image *image = &decoded.image;
+    result = check_face(path, image, map, error);
+    int size = image->width;
     if (result == KILN_OK && !map->size) {
         *map = (kiln_map){.shape = KILN_SHAPE_CUBE, .size = size, .level_count = 1};
         result = ki_map_allocate(context, map, error);
@@ -235,35 +279,48 @@ static kiln_result load_face(kiln_context *context, const char *path, int face, 
             map->roughness[0] = info.roughness[0];
     }
     if (result == KILN_OK)
-        ki_cut_face(&image, 0, 0, size, false,
+        ki_cut_face(image, 0, 0, size, false,
                     map->level[0] + 3 * (size_t)size * (size_t)size * (size_t)face);
-    kiln_image_free(&image);
+    ki_report_add(report, &decoded.report);
+    ki_decoded_free(&decoded);
     return result;
 }
 
-static kiln_result load_faces(kiln_context *context, const face_paths *paths, kiln_map *map,
-                              kiln_error *error)
+kiln_result kiln_map_load_faces(kiln_context *context, const char *const paths[6],
+                                const kiln_load_def *def, kiln_map *map, kiln_error *error)
 {
-    size_t room = strlen(paths->before) + strlen(paths->after) + 3;
-    char *path = ki_alloc(context, room, 1);
-    if (!path)
-        return ki_fail_memory(context, error, "a path", room);
-    kiln_result result = KILN_OK;
-    for (int face = 0; face < 6 && result == KILN_OK; face++) {
-        snprintf(path, room, "%s%s%s", paths->before, ki_face_names[face], paths->after);
-        result = load_face(context, path, face, map, error);
-    }
-    ki_free(path);
+    kiln_load_report report = {0};
+    kiln_result result = begin(&def, map, error);
     if (result != KILN_OK)
-        kiln_map_free(map);
+        return result;
+    for (int face = 0; face < 6 && result == KILN_OK; face++)
+        result = load_face(context, paths[face], face, map, &report, error);
+    return finish(context, paths[0], def, result, &report, map, error);
+}
+
+// Loads six files whose paths differ only in the name of the face.
+static kiln_result load_pattern(kiln_context *context, const face_paths *parts,
+                                const kiln_load_def *def, kiln_map *map, kiln_error *error)
+{
+    const char *paths[6];
+    size_t room = strlen(parts->before) + strlen(parts->after) + 3;
+    char *text = ki_alloc(context, 6, room);
+    if (!text)
+        return ki_fail_memory(context, error, "six paths", 6 * room);
+    for (size_t face = 0; face < 6; face++) {
+        paths[face] = text + room * face;
+        snprintf(text + room * face, room, "%s%s%s", parts->before, ki_face_names[face],
+                 parts->after);
+    }
+    kiln_result result = kiln_map_load_faces(context, paths, def, map, error);
+    ki_free(text);
     return result;
 }
 
 kiln_result kiln_map_load(kiln_context *context, const char *path, const kiln_load_def *def,
                           kiln_map *map, kiln_error *error)
 {
-    *map = (kiln_map){0};
-    kiln_result result = check_def(def, error);
+    kiln_result result = begin(&def, map, error);
     if (result != KILN_OK)
         return result;
 
@@ -275,7 +332,7 @@ kiln_result kiln_map_load(kiln_context *context, const char *path, const kiln_lo
                         : split_path(context, path, braces ? braces : percent, braces ? 6 : 2,
                                      &paths, error);
         if (result == KILN_OK && paths.before && paths.after)
-            result = load_faces(context, &paths, map, error);
+            result = load_pattern(context, &paths, def, map, error);
         free_paths(&paths);
         return result;
     }

@@ -131,17 +131,6 @@ bool ki_pixels_pack(kiln_context *context, const ki_pixel_format *pixel, const f
                              &job);
 }
 
-// Unpacks a texel of b10g11r11. Infinities become the largest finite value.
-static void unpack_b10g11r11(uint32_t word, float rgb[3])
-{
-    static const float largest[3] = {65024, 65024, KI_B10G11R11_MAX};
-    ki_float_from_b10g11r11(word, rgb);
-    for (int c = 0; c < 3; c++) {
-        rgb[c] = rgb[c] > 0 ? rgb[c] : 0;
-        rgb[c] = rgb[c] < largest[c] ? rgb[c] : largest[c];
-    }
-}
-
 static void unpack(const ki_pixel_format *pixel, const uint8_t *bytes, size_t count, float *rgb)
 {
     for (size_t i = 0; i < count; i++) {
@@ -149,7 +138,7 @@ static void unpack(const ki_pixel_format *pixel, const uint8_t *bytes, size_t co
         uint32_t word;
         switch (pixel->format) {
         case KILN_FORMAT_RGBA32F:
-            ki_radiance_from_floats(from, 3, rgb + 3 * i);
+            memcpy(rgb + 3 * i, from, 3 * sizeof *rgb);
             break;
         case KILN_FORMAT_RGB9E5:
             memcpy(&word, from, sizeof word);
@@ -157,11 +146,11 @@ static void unpack(const ki_pixel_format *pixel, const uint8_t *bytes, size_t co
             break;
         case KILN_FORMAT_B10G11R11:
             memcpy(&word, from, sizeof word);
-            unpack_b10g11r11(word, rgb + 3 * i);
+            ki_float_from_b10g11r11(word, rgb + 3 * i);
             break;
         case KILN_FORMAT_RGBA16F:
         default:
-            ki_radiance_from_halfs(from, 3, rgb + 3 * i);
+            ki_floats_from_half_bytes(from, 3, rgb + 3 * i);
             break;
         }
     }

@@ -34,8 +34,8 @@ uint64_t ki_pixels_size(const ki_pixel_format *pixel, int width, int height);
 /// alignment.
 bool ki_pixels_pack(kiln_context *context, const ki_pixel_format *pixel, const float *rgb,
                     int width, int height, int count, uint8_t *bytes);
-/// Converts the texels of one picture to RGB floats. Not-a-number and negative values become 0,
-/// infinities the largest finite value.
+/// Converts the texels of one picture to RGB floats, which keep negative, infinite and not-a-number
+/// values.
 void ki_pixels_unpack(const ki_pixel_format *pixel, const uint8_t *bytes, int width, int height,
                       float *rgb);
 

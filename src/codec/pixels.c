@@ -1,7 +1,7 @@
-// Makes a map from pixels in the caller's memory. Values are converted to floats and placed on the
-// sphere in the same way as the texels of files.
+// Makes a map from pixels in the caller's memory. Values are converted to floats, placed on the
+// sphere and mended in the same way as the texels of files.
 #include "codec/layout.h"
-#include "image/image.h"
+#include "image/mend.h"
 #include "image/pack.h"
 
 #include <stdlib.h>
@@ -20,6 +20,9 @@ static kiln_result check_pixels(const kiln_pixels *p, size_t *row_bytes, kiln_er
     if ((unsigned)p->layout > KILN_LAYOUT_OCTAHEDRON)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "layout is %d, it must be 0 to %d",
                        (int)p->layout, (int)KILN_LAYOUT_OCTAHEDRON);
+    if ((unsigned)p->negative > KILN_NEGATIVE_ZERO)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "negative is %d, it must be 0 or %d",
+                       (int)p->negative, (int)KILN_NEGATIVE_ZERO);
     size_t sample = p->type == KILN_PIXEL_HALF ? 2 : 4;
     if (p->width < 0 || !ki_mul_size((size_t)p->width, sample * (size_t)p->channels, row_bytes))
         return ki_fail(error, KILN_ERROR_ARGUMENT,
@@ -56,9 +59,9 @@ static void convert_row(void *data, int row)
         const uint8_t *here = from + (size_t)x * (size_t)channels * sample;
         size_t count = (size_t)(n * channels);
         if (p->type == KILN_PIXEL_HALF)
-            ki_radiance_from_halfs(here, count, values);
+            ki_floats_from_half_bytes(here, count, values);
         else
-            ki_radiance_from_floats(here, count, values);
+            memcpy(values, here, count * sizeof *values);
         for (int i = 0; i < n; i++)
             memcpy(to + 3 * (size_t)(x + i), values + (size_t)(channels * i), 3 * sizeof *to);
     }
@@ -69,7 +72,9 @@ kiln_result kiln_map_from_pixels(kiln_context *context, const kiln_pixels *pixel
 {
     size_t row_bytes;
     kiln_image image = {.width = pixels->width, .height = pixels->height, .channels = 3};
+    kiln_load_report unused, *report = pixels->report ? pixels->report : &unused;
     *map = (kiln_map){0};
+    *report = (kiln_load_report){0};
     kiln_result result = check_pixels(pixels, &row_bytes, error);
     if (result == KILN_OK)
         result = ki_image_allocate(context, &image, error);
@@ -79,6 +84,12 @@ kiln_result kiln_map_from_pixels(kiln_context *context, const kiln_pixels *pixel
                        image.pixels};
     ki_parallel_for(context, pixels->height, convert_row, &job);
     result = ki_lay_out(context, &image, "pixels", pixels->layout, map, error);
+    if (result == KILN_OK)
+        result = ki_map_mend(context, "pixels", pixels->negative, map, report, error);
+    if (result != KILN_OK) {
+        kiln_map_free(map);
+        *report = (kiln_load_report){0};
+    }
     if (result == KILN_ERROR_FORMAT && error)
         error->result = result = KILN_ERROR_ARGUMENT;
     kiln_image_free(&image);

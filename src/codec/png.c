@@ -433,8 +433,9 @@ static void describe(const png_file *f, kiln_file_info *info)
 
 kiln_result ki_png_decode(kiln_context *context, const uint8_t *bytes, size_t size,
                           const char *name, kiln_image *image, kiln_file_info *info,
-                          kiln_error *error)
+                          kiln_load_report *report, kiln_error *error)
 {
+    (void)report;
     if (image)
         *image = (kiln_image){0};
     png_file *f = ki_alloc(context, 1, sizeof *f);

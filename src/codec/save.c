@@ -7,7 +7,7 @@
 #include "codec/formats.h"
 #include "codec/pixel_format.h"
 #include "codec/sh_text.h"
-#include "image/image.h"
+#include "image/light.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -235,6 +235,11 @@ void ki_count_cut(const kiln_map *map, double limit, kiln_save_report *report)
     report->value_count = values;
     report->cut_count = cut;
     report->share = values ? (double)cut / (double)values : 0;
+    report->light_share = 0;
+    if (cut) {
+        ki_light light = ki_map_light(map, limit);
+        report->light_share = light.above_limit / light.above_zero;
+    }
     report->largest = (double)most;
 }
 

@@ -4,9 +4,7 @@
 
 #include <math.h>
 
-// Returns the index of texel (x, y) of a face. If (x, y) lies one texel beyond the face's edge, the
-// nearest texel of the neighbouring face is returned.
-static size_t texel_at(int n, int face, int x, int y)
+size_t ki_cube_texel(int n, int face, int x, int y)
 {
     if (x < 0 || y < 0 || x >= n || y >= n) {
         double direction[3], s, t;
@@ -27,7 +25,7 @@ void ki_cube_taps(int size, const double direction[3], size_t texels[4], double 
     u -= x;
     v -= y;
     for (int i = 0; i < 4; i++) {
-        texels[i] = texel_at(size, face, x + i % 2, y + i / 2);
+        texels[i] = ki_cube_texel(size, face, x + i % 2, y + i / 2);
         weights[i] = (i % 2 ? u : 1 - u) * (i / 2 ? v : 1 - v);
     }
 }

@@ -45,6 +45,9 @@ kiln_result ki_map_check(const kiln_map *map, kiln_error *error);
 /// Fails unless ki_map_check passes and the map is a panorama.
 kiln_result ki_map_check_panorama(const kiln_map *map, kiln_error *error);
 
+/// Returns the index of texel (x, y) of a face of a cube of size n. If (x, y) lies one texel beyond
+/// the face's edge, the nearest texel of the neighbouring face is returned.
+size_t ki_cube_texel(int n, int face, int x, int y);
 /// Finds the four texels, and their weights, from which a graphics processor reads a cube of `size`
 /// bilinearly, across the edges of faces too, in a direction that is not 0.
 void ki_cube_taps(int size, const double direction[3], size_t texels[4], double weights[4]);

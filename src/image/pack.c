@@ -87,33 +87,15 @@ void ki_floats_from_halfs(const uint16_t *restrict halfs, size_t count, float *r
     }
 }
 
-void ki_radiance_from_halfs(const void *restrict samples, size_t count, float *restrict values)
+void ki_floats_from_half_bytes(const void *restrict bytes, size_t count, float *restrict values)
 {
     enum { STRETCH = 256 };
-    const uint8_t *from = samples;
+    const uint8_t *from = bytes;
     for (size_t done = 0; done < count; done += STRETCH) {
         size_t n = count - done < STRETCH ? count - done : STRETCH;
         uint16_t halfs[STRETCH];
-        for (size_t i = 0; i < n; i++) {
-            uint16_t half;
-            memcpy(&half, from + 2 * (done + i), 2);
-            int32_t h = half > 0x7c00 ? 0 : half;
-            halfs[i] = (uint16_t)(h < 0x7bff ? h : 0x7bff);
-        }
+        memcpy(halfs, from + 2 * done, 2 * n);
         ki_floats_from_halfs(halfs, n, values + done);
-    }
-}
-
-void ki_radiance_from_floats(const void *restrict samples, size_t count, float *restrict values)
-{
-    const uint8_t *from = samples;
-    for (size_t i = 0; i < count; i++) {
-        int32_t bits;
-        memcpy(&bits, from + 4 * i, 4);
-        bits = bits > 0x7f800000 ? 0 : bits;
-        bits = bits > 0 ? bits : 0;
-        bits = bits < 0x7f7fffff ? bits : 0x7f7fffff;
-        memcpy(&values[i], &bits, 4);
     }
 }
 

@@ -16,10 +16,8 @@ float ki_float_from_half(uint16_t half);
 /// Convert `count` values at once, with vector instructions.
 void ki_halfs_from_floats(const float *values, size_t count, uint16_t *halfs);
 void ki_floats_from_halfs(const uint16_t *halfs, size_t count, float *values);
-/// Convert radiance from files or callers, at any address, to the radiance that kiln computes with:
-/// not-a-number and negative values become 0, infinities the largest finite value of the type.
-void ki_radiance_from_halfs(const void *samples, size_t count, float *values);
-void ki_radiance_from_floats(const void *samples, size_t count, float *values);
+/// Converts halves that lie at any address, for example in a file.
+void ki_floats_from_half_bytes(const void *bytes, size_t count, float *values);
 /// The format with a shared exponent and 9 bits for each channel (VK_FORMAT_E5B9G9R9_UFLOAT_PACK32,
 /// EXT_texture_shared_exponent).
 uint32_t ki_rgb9e5_from_float(const float rgb[3]);

@@ -1,5 +1,5 @@
 // kiln_spectrum_filter: computes one level of a map from a spectrum and a lobe.
-#include "image/image.h"
+#include "image/light.h"
 #include "sphere/level.h"
 #include "sphere/lobe.h"
 
@@ -50,6 +50,9 @@ kiln_result kiln_spectrum_filter(kiln_context *context, const kiln_spectrum *spe
         result =
             ki_level_execute(plan, &workspace, spectrum, NULL, rotation, map, level, NULL, error);
     ki_level_workspace_free(&workspace);
+    kiln_cut unused;
+    if (result == KILN_OK)
+        ki_cut_negative(context, map, level, 1, &unused);
     ki_level_destroy(plan);
     ki_legendre_destroy(&legendre);
     return result;

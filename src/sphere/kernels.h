@@ -63,7 +63,8 @@ typedef struct ki_kernels {
     void (*add_weighted)(double *accumulator, const float *rows, const ptrdiff_t *offsets,
                          const double *weights, int row_count, int count);
 
-    /// Sums a row of `count` RGB texels by channel and returns the largest value of the row.
+    /// Sums the magnitudes of a row of `count` RGB texels by channel and returns the largest
+    /// magnitude of the row.
     float (*sum_row)(const float *row, int count, double sum[3]);
 
     /// Sums one order m of the analysis: out[l - m][6] is the sum, over the lanes of the vectors

@@ -7,6 +7,7 @@
 // hold); and KI_TABLE, the name of the table of kernels.
 #include "sphere/kernels.h"
 
+#include <math.h>
 #include <string.h>
 
 enum { PARTS = KI_LANES / KI_WIDTH };
@@ -245,12 +246,14 @@ static float sum_row(const float *row, int count, double sum[3])
     int i = 0;
     for (; i + KI_LANES <= count; i += KI_LANES, row += AT_ONCE)
         for (int j = 0; j < AT_ONCE; j++) {
-            sums[j] += (double)row[j];
-            peaks[j] = row[j] > peaks[j] ? row[j] : peaks[j];
+            float value = fabsf(row[j]);
+            sums[j] += (double)value;
+            peaks[j] = value > peaks[j] ? value : peaks[j];
         }
     for (int j = 0; j < 3 * (count - i); j++) {
-        sums[j] += (double)row[j];
-        peaks[j] = row[j] > peaks[j] ? row[j] : peaks[j];
+        float value = fabsf(row[j]);
+        sums[j] += (double)value;
+        peaks[j] = value > peaks[j] ? value : peaks[j];
     }
     float peak = 0;
     for (int c = 0; c < 3; c++)

@@ -508,9 +508,7 @@ static void fill_row(void *data, int index)
             add_suns(r, first, count, rgb);
         if (v->zonal.outer > 0)
             add_surroundings(r, first, count, rgb);
-        // Only a mixture of lobes may be negative.
-        for (int i = 0; i < 3 * count; i++)
-            out[i] = rgb[i] < 0 && !v->zonal.mixture ? 0 : rgb[i];
+        memcpy(out, rgb, 3 * (size_t)count * sizeof *rgb);
     }
 }
 

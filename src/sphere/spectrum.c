@@ -190,11 +190,12 @@ int kiln_spectrum_degree(const kiln_spectrum *spectrum)
 
 struct ki_analysis_workspace {
     kiln_context *context;
-    int row_count;      // number of panorama rows added by earlier calls of ki_analysis_add_rows
-    double *rings;      // sums of each latitude ring, [ring][2 size][3]; NULL for whole panoramas
-    double *row_sums;   // radiance summed over each row, [size][3]
-    float *row_peaks;   // largest value of each row, [size]
-    double total[3];    // radiance times solid angle, summed over the rows so far
+    int row_count; // number of panorama rows added by earlier calls of ki_analysis_add_rows
+    double *rings; // sums of each latitude ring, [ring][2 size][3]; NULL for whole panoramas
+    // Which texels are suns is decided by magnitudes, because texels may be negative.
+    double *row_sums;   // magnitudes of the radiance summed over each row, [size][3]
+    float *row_peaks;   // largest magnitude of each row, [size]
+    double total[3];    // magnitudes times solid angle, summed over the rows so far
     ki_sun *candidates; // texels bright enough to be suns relative to the light of the rows so far
     int candidate_count;
 
@@ -325,7 +326,7 @@ static double row_solid_angle(int row, int size)
 static bool is_candidate(const float rgb[3], double solid, const double total[3])
 {
     for (int c = 0; c < 3; c++)
-        if ((double)rgb[c] * solid > sun_share * total[c] && total[c] > 0)
+        if (fabs((double)rgb[c]) * solid > sun_share * total[c] && total[c] > 0)
             return true;
     return false;
 }
@@ -392,7 +393,7 @@ static void select_suns(ki_analysis_workspace *w, kiln_spectrum *spectrum)
         const ki_sun *sun = &w->candidates[i];
         bool bright = false;
         for (int c = 0; c < 3; c++)
-            bright |= (double)sun->radiance[c] * 4 * KI_PI > sun_contrast * w->total[c] &&
+            bright |= fabs((double)sun->radiance[c]) * 4 * KI_PI > sun_contrast * w->total[c] &&
                       w->total[c] > 0;
         if (bright)
             spectrum->suns[count++] = *sun;

@@ -1,9 +1,7 @@
 #include "tune/tune_level.h"
 
-#include "image/image.h"
-#include "math/math.h"
+#include "image/light.h"
 
-#include <math.h>
 #include <string.h>
 
 // -------------------------------------------------------------------------------------- the mirror
@@ -81,28 +79,13 @@ typedef struct clearing {
     float scale[3];
 } clearing;
 
-// A texel's solid angle up to a factor.
-static double solid_angle(const clearing *c, int row, int x)
-{
-    double n = c->size, s = (2 * x + 1) / n - 1, t = (2 * (row % c->size) + 1) / n - 1;
-    if (c->shape == KILN_SHAPE_CUBE) {
-        double square = 1 + s * s + t * t;
-        return 1 / (square * sqrt(square));
-    }
-    // The solid angle in a row of a panorama is proportional to sin theta. The solid angles of an
-    // octahedron's texels are taken as equal.
-    if (c->shape == KILN_SHAPE_PANORAMA)
-        return ki_sin((row + 0.5) * KI_PI / n);
-    return 1;
-}
-
 // Task of one thread: sets the negative texels of a row to 0 and sums the row before and after.
 static void clear_row(void *data, int row)
 {
     clearing *c = data;
     float *texel = c->level + 3 * (size_t)c->width * (size_t)row;
     for (int x = 0; x < c->width; x++, texel += 3) {
-        double weight = solid_angle(c, row, x);
+        double weight = ki_texel_weight(c->shape, c->size, row, x);
         for (int k = 0; k < 3; k++) {
             c->sums[row][0][k] += weight * (double)texel[k];
             texel[k] = texel[k] < 0 ? 0 : texel[k];

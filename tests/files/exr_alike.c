@@ -15,7 +15,7 @@ static bool check_alike(const uint8_t *bytes, size_t size, const char *name)
     kiln_image got;
     float *wanted;
     int width = 0, height = 0;
-    kiln_result result = ki_exr_decode(context, bytes, size, name, &got, NULL, &error);
+    kiln_result result = ki_exr_decode(context, bytes, size, name, &got, NULL, NULL, &error);
     bool read = exr_witness_read(bytes, size, &width, &height, &wanted);
     if (read != (result == KILN_OK))
         fail_msg("%s: OpenEXRCore %s, kiln %s", name, read ? "reads" : "refuses",
@@ -24,7 +24,7 @@ static bool check_alike(const uint8_t *bytes, size_t size, const char *name)
         assert_int_equal(got.width, width);
         assert_int_equal(got.height, height);
         for (int i = 0; i < 3 * width * height; i++)
-            if (got.pixels[i] != wanted[i])
+            if (got.pixels[i] != wanted[i] && !(isnan(got.pixels[i]) && isnan(wanted[i])))
                 fail_msg("%s: value %d is %g, not %g", name, i, (double)got.pixels[i],
                          (double)wanted[i]);
         kiln_image_free(&got);
@@ -139,7 +139,7 @@ static void check_folder(const char *folder, bool good)
         uint8_t *bytes = read_file(path, &size);
         kiln_image image;
         kiln_result result =
-            ki_exr_decode(context, bytes, size, entry->d_name, &image, NULL, &error);
+            ki_exr_decode(context, bytes, size, entry->d_name, &image, NULL, NULL, &error);
         assert_true((result == KILN_OK) == good);
         kiln_image_free(&image);
         free(bytes);

@@ -4,7 +4,6 @@
 #include "image/pack.h"
 #include "kit/check.h"
 
-#include <float.h>
 #include <openexr.h>
 
 typedef struct memory {
@@ -62,11 +61,10 @@ static float *ask_for_plane(exr_coding_channel_info_t *channel, const exr_chunk_
     return plane;
 }
 
-// The plane's values, limited as kiln limits them, into the picture at (x, y).
+// Writes the plane's values into the picture at (x, y).
 static void take_plane(const target *t, const exr_coding_channel_info_t *channel,
                        const exr_chunk_info_t *info, const float *plane, int x, int y)
 {
-    float most = channel->data_type == EXR_PIXEL_HALF ? 65504.0F : FLT_MAX;
     ptrdiff_t place = strchr("RGB", channel->channel_name[0]) - "RGB";
     for (int i = 0; i < info->width * info->height; i++) {
         float value = plane[i];
@@ -74,7 +72,6 @@ static void take_plane(const target *t, const exr_coding_channel_info_t *channel
         memcpy(&integer, &value, sizeof integer);
         if (channel->data_type == EXR_PIXEL_UINT)
             value = (float)integer;
-        value = value > most ? most : value > 0 ? value : 0;
         t->pixels[3 * ((y + i / info->width) * t->width + x + i % info->width) + place] = value;
     }
 }

@@ -350,7 +350,7 @@ static void what_is_damaged_is_said(void **state)
     refused(&w, "bad.png: the PNG is damaged: it has a critical chunk that PNG does not define");
     w.bytes[gamma] = 'g'; // whose sum is wrong now, which is nobody's loss
     kiln_image image;
-    CHECK_OK(ki_png_decode(context, w.bytes, w.size, "good.png", &image, NULL, &error));
+    CHECK_OK(ki_png_decode(context, w.bytes, w.size, "good.png", &image, NULL, NULL, &error));
     kiln_image_free(&image);
     size_t head = find(&w, "IHDR");
     w.bytes[head + 12] = 3;
@@ -372,7 +372,7 @@ static void more_data_than_pixels_is_read(void **state)
     w.bytes[head + 11] = 7; // rows
     set_sum(&w, head);
     kiln_image image;
-    CHECK_OK(ki_png_decode(context, w.bytes, w.size, "more.png", &image, NULL, &error));
+    CHECK_OK(ki_png_decode(context, w.bytes, w.size, "more.png", &image, NULL, NULL, &error));
     assert_int_equal(image.height, 7);
     for (int i = 0; i < 9 * 7; i++) {
         float v = (float)sample(i % 9, i / 9, 0, 8) / 255;
@@ -397,7 +397,7 @@ static void a_short_palette_is_filled_with_black(void **state)
     ki_write(&cut, w.bytes + palette + 4 + 16 * 3 + 4, w.size - palette - 4 - 16 * 3 - 4);
     set_sum(&cut, find(&cut, "PLTE"));
     kiln_image image;
-    CHECK_OK(ki_png_decode(context, cut.bytes, cut.size, "cut.png", &image, NULL, &error));
+    CHECK_OK(ki_png_decode(context, cut.bytes, cut.size, "cut.png", &image, NULL, NULL, &error));
     for (int i = 0; i < 16 * 4; i++) {
         int index = sample(i % 16, i / 16, 0, 4);
         float green = index < LEFT ? ki_linear_from_srgb((float)(255 - index) / 255) : 0;

@@ -1,0 +1,15 @@
+// Notes about a picture that is being read.
+#ifndef KI_REPORT_H
+#define KI_REPORT_H
+
+#include "base/base.h"
+
+/// Adds a note to a report, unless the report has a note of the same kind and text. `report` may be
+/// NULL.
+void ki_note(kiln_load_report *report, kiln_note_kind kind, bool warning, const char *format, ...)
+    KI_PRINTF(4, 5);
+/// Adds the counts that readers fill in (missing_count) and the notes of one file to those of a set
+/// of files.
+void ki_report_add(kiln_load_report *sum, const kiln_load_report *report);
+
+#endif

@@ -1,0 +1,297 @@
+// Replaces values that are no radiance. In: maps or pictures as decoders leave them, with values of
+// every kind. Out: finite values, and counts of what was replaced. Method: a first pass over all
+// texels replaces infinite values and finds the texels that are not a number. Those are filled from
+// the border of each hole inwards, one ring of texels in each round, so that the result does not
+// depend on an order within a ring and each texel is visited once.
+#include "image/mend.h"
+
+#include "image/light.h"
+#include "image/pack.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+// A level of a map, or a flat picture, whose shape is KILN_SHAPE_AUTO.
+typedef struct plane {
+    kiln_shape shape;
+    int size, width, height; // rows of a face, and texels of all faces
+    float *rgb;
+} plane;
+
+// ---------------------------------------------------------------------------------- the first pass
+
+enum { STRIPS = 64 }; // number of strips of rows, each of which is a task
+
+typedef struct counts {
+    size_t infinite, nan, negative;
+    size_t bad; // texels that are infinite or not a number
+} counts;
+
+typedef struct survey {
+    plane plane;
+    kiln_negative negative;
+    counts counts[STRIPS];
+    ki_light light[STRIPS];
+} survey;
+
+static int first_row(const survey *s, int strip)
+{
+    return (int)((int64_t)s->plane.height * strip / STRIPS);
+}
+
+static float *row_of(const survey *s, int row)
+{
+    return s->plane.rgb + 3 * (size_t)s->plane.width * (size_t)row;
+}
+
+// Returns whether all values are finite and have no sign. The bits of such a float are an integer
+// below those of infinity.
+static bool is_plain(const float *values, size_t count)
+{
+    uint32_t any = 0;
+    for (size_t i = 0; i < count; i++) {
+        uint32_t bits;
+        memcpy(&bits, &values[i], sizeof bits);
+        any |= bits | (bits + (1U << 23)); // infinity and not-a-number carry into the sign
+    }
+    return !(any >> 31);
+}
+
+static void survey_texel(float rgb[3], counts *found)
+{
+    bool infinite = false, nan = false, negative = false;
+    for (int c = 0; c < 3; c++) {
+        if (rgb[c] > FLT_MAX) {
+            rgb[c] = KI_HALF_MAX;
+            infinite = true;
+        } else if (!(rgb[c] >= -FLT_MAX)) {
+            rgb[c] = NAN;
+            nan = true;
+        } else if (rgb[c] == 0) {
+            rgb[c] = 0; // which may have been minus zero
+        }
+        negative |= rgb[c] < 0;
+    }
+    found->infinite += infinite;
+    found->nan += nan;
+    found->negative += negative;
+    found->bad += infinite || nan;
+}
+
+// Task of one thread: counts the texels of a strip and replaces infinite values.
+static void survey_strip(void *data, int index)
+{
+    survey *s = data;
+    counts found = {0};
+    for (int row = first_row(s, index); row < first_row(s, index + 1); row++) {
+        float *rgb = row_of(s, row);
+        if (is_plain(rgb, 3 * (size_t)s->plane.width))
+            continue;
+        for (int x = 0; x < s->plane.width; x++)
+            survey_texel(rgb + 3 * (size_t)x, &found);
+    }
+    s->counts[index] = found;
+}
+
+// ------------------------------------------------------------------------------------------- holes
+
+// What is known about a texel while holes are filled.
+enum { GOOD, BAD, LISTED };
+
+typedef struct holes {
+    const plane *plane;
+    uint8_t *state;
+    size_t *list, count; // bad texels in the order in which they are filled
+} holes;
+
+// Finds the texels around a texel, at most eight, and returns their number. The columns of a
+// panorama and the faces of a cube are joined where they meet on the sphere.
+static int find_neighbours(const plane *p, size_t index, size_t found[8])
+{
+    int x = (int)(index % (size_t)p->width), row = (int)(index / (size_t)p->width), count = 0;
+    for (int i = 0; i < 9; i++) {
+        int u = x + i % 3 - 1, v = row + i / 3 - 1;
+        if (i == 4)
+            continue;
+        if (p->shape == KILN_SHAPE_CUBE) {
+            found[count++] = ki_cube_texel(p->size, row / p->size, u, row % p->size + i / 3 - 1);
+            continue;
+        }
+        if (p->shape == KILN_SHAPE_PANORAMA)
+            u = (u + p->width) % p->width;
+        if (u >= 0 && u < p->width && v >= 0 && v < p->height)
+            found[count++] = (size_t)v * (size_t)p->width + (size_t)u;
+    }
+    return count;
+}
+
+static int find_good(const holes *h, size_t index, size_t found[8])
+{
+    size_t all[8];
+    int count = 0, all_count = find_neighbours(h->plane, index, all);
+    for (int i = 0; i < all_count; i++)
+        if (h->state[all[i]] == GOOD)
+            found[count++] = all[i];
+    return count;
+}
+
+// Lists a texel if it is bad, not listed yet, and has a neighbour to take a value from.
+static void list(holes *h, size_t index)
+{
+    size_t good[8];
+    if (h->state[index] != BAD || !find_good(h, index, good))
+        return;
+    h->state[index] = LISTED;
+    h->list[h->count++] = index;
+}
+
+static bool is_nan(const float rgb[3])
+{
+    return isnan(rgb[0]) || isnan(rgb[1]) || isnan(rgb[2]);
+}
+
+// Sets the channels that are not a number to the mean of the good neighbours.
+static void fill(const holes *h, size_t index)
+{
+    size_t good[8];
+    int count = find_good(h, index, good);
+    float *rgb = h->plane->rgb + 3 * index;
+    for (size_t c = 0; c < 3; c++) {
+        double sum = 0;
+        for (int i = 0; i < count; i++)
+            sum += (double)h->plane->rgb[3 * good[i] + c];
+        if (isnan(rgb[c]))
+            rgb[c] = (float)(sum / count);
+    }
+}
+
+// Fills the listed texels from `begin` on, makes them good, and lists the texels around them.
+static void fill_ring(holes *h, size_t begin)
+{
+    size_t end = h->count, around[8];
+    for (size_t i = begin; i < end; i++)
+        fill(h, h->list[i]);
+    for (size_t i = begin; i < end; i++)
+        h->state[h->list[i]] = GOOD;
+    for (size_t i = begin; i < end; i++) {
+        int count = find_neighbours(h->plane, h->list[i], around);
+        for (int k = 0; k < count; k++)
+            list(h, around[k]);
+    }
+}
+
+static kiln_result fill_holes(kiln_context *context, const plane *p, size_t bad_count,
+                              kiln_error *error)
+{
+    size_t texels = (size_t)p->width * (size_t)p->height;
+    holes h = {.plane = p,
+               .state = ki_alloc(context, texels, 1),
+               .list = ki_alloc_raw(context, bad_count, sizeof(size_t))};
+    kiln_result result = KILN_OK;
+    if (!h.state || !h.list) {
+        result = ki_fail_memory(context, error, "the texels that are not a number",
+                                texels + bad_count * sizeof(size_t));
+        goto done;
+    }
+    for (size_t i = 0; i < texels; i++)
+        h.state[i] = is_nan(p->rgb + 3 * i) ? BAD : GOOD;
+    for (size_t i = 0; i < texels; i++)
+        list(&h, i);
+    for (size_t begin = 0, end; begin < h.count; begin = end) {
+        end = h.count;
+        fill_ring(&h, begin);
+        if (!ki_go_on(context)) {
+            result = ki_fail_cancelled(error, "reading");
+            break;
+        }
+    }
+done:
+    ki_free(h.state);
+    ki_free(h.list);
+    return result;
+}
+
+// --------------------------------------------------------------------------------- negative values
+
+// Task of one thread: sums the light of a strip and, if so wanted, sets its values below zero to 0.
+static void weigh_strip(void *data, int index)
+{
+    survey *s = data;
+    s->light[index] = (ki_light){0};
+    for (int row = first_row(s, index); row < first_row(s, index + 1); row++) {
+        float *rgb = row_of(s, row);
+        ki_add_light(s->plane.shape, s->plane.size, row, s->plane.width, rgb, INFINITY,
+                     &s->light[index]);
+        for (int i = 0; i < 3 * s->plane.width && s->negative == KILN_NEGATIVE_ZERO; i++)
+            rgb[i] = rgb[i] < 0 ? 0 : rgb[i];
+    }
+}
+
+// ------------------------------------------------------------------------------- the whole picture
+
+static counts add_counts(const survey *s)
+{
+    counts sum = {0};
+    for (int i = 0; i < STRIPS; i++) {
+        sum.infinite += s->counts[i].infinite;
+        sum.nan += s->counts[i].nan;
+        sum.negative += s->counts[i].negative;
+        sum.bad += s->counts[i].bad;
+    }
+    return sum;
+}
+
+// Mends a plane. Adds its counts to *report, and its light to *light if values are below zero.
+static kiln_result mend_plane(kiln_context *context, const char *name, const plane *p,
+                              kiln_negative negative, kiln_load_report *report, ki_light *light,
+                              kiln_error *error)
+{
+    survey s = {.plane = *p, .negative = negative};
+    size_t texels = (size_t)p->width * (size_t)p->height;
+    if (!ki_parallel_steps(context, NULL, STRIPS, survey_strip, &s))
+        return ki_fail_cancelled(error, "reading");
+    counts sum = add_counts(&s);
+    report->texel_count += texels;
+    report->infinite_count += sum.infinite;
+    report->nan_count += sum.nan;
+    report->negative_count += sum.negative;
+    if (sum.bad == texels)
+        return ki_fail(error, KILN_ERROR_FORMAT,
+                       "%s: all of its %zu texels are infinite or not a number", name, texels);
+    kiln_result result = sum.nan ? fill_holes(context, p, sum.nan, error) : KILN_OK;
+    if (result != KILN_OK || !sum.negative)
+        return result;
+    if (!ki_parallel_steps(context, NULL, STRIPS, weigh_strip, &s))
+        return ki_fail_cancelled(error, "reading");
+    for (int i = 0; i < STRIPS; i++) {
+        light->above_zero += s.light[i].above_zero;
+        light->below_zero += s.light[i].below_zero;
+    }
+    return KILN_OK;
+}
+
+kiln_result ki_map_mend(kiln_context *context, const char *name, kiln_negative negative,
+                        kiln_map *map, kiln_load_report *report, kiln_error *error)
+{
+    kiln_result result = KILN_OK;
+    ki_light light = {0};
+    for (int level = 0; level < map->level_count && result == KILN_OK; level++) {
+        plane p = {.shape = map->shape, .rgb = map->level[level]};
+        p.size = kiln_map_level_size(map, level);
+        ki_level_extent(map, level, &p.width, &p.height);
+        result = mend_plane(context, name, &p, negative, report, &light, error);
+    }
+    report->negative = negative;
+    report->negative_share = ki_share_below(&light);
+    return result;
+}
+
+kiln_result ki_image_mend(kiln_context *context, const char *name, kiln_image *image,
+                          kiln_error *error)
+{
+    plane p = {KILN_SHAPE_AUTO, image->height, image->width, image->height, image->pixels};
+    kiln_load_report unused = {0};
+    ki_light light = {0};
+    return mend_plane(context, name, &p, KILN_NEGATIVE_KEEP, &unused, &light, error);
+}
