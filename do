@@ -161,16 +161,22 @@ web)
 demo)
     need build
     panoramas || echo "No real panorama can be had: the demo shows the sky alone."
-    build_release EXAMPLES
-    set -- build/data/blender/city.exr
-    [ -e "$1" ] || shift
     mkdir -p build/demo
-    if [ $# -gt 0 ]; then
+    set -- build/data/blender/city.exr
+    if [ -e "$1" ]; then
+        # The command is compiled while the browser and the engines are installed.
+        build_release EXAMPLES >build/compiling.log 2>&1 &
+        compiling=$!
         need demo
         npm_packages tests/web tests/engines
+        wait $compiling || { cat build/compiling.log; exit 1; }
+        cat build/compiling.log
         say "drawing in the engines"
         node examples/gallery.mjs build/release/bin build/gallery build/demo/gallery.part \
-            build/data/blender/courtyard.exr build/data/blender/sunrise.exr
+            build/data/blender/courtyard.exr
+    else
+        shift
+        build_release EXAMPLES
     fi
     say "baking"
     build/release/bin/demo build/demo "$@"

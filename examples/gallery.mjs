@@ -10,10 +10,11 @@ import path from 'node:path';
 import { engineOf, makePanorama, makeWays } from '../bench/engines/ways.mjs';
 import * as models from '../tests/engines/models.mjs';
 import { baked, makeSite, openEngine, predict, readCube } from '../tests/engines/rig.mjs';
-import { withPage } from '../tests/web/browser.mjs';
+import { HIDDEN, withBrowser } from '../tests/web/browser.mjs';
 
 const [bin, folder, fragment, ...panoramas] = process.argv.slice(2).map((name) => path.resolve(name));
 const ROUGHNESS = [0.1, 0.25, 0.4, 0.6, 0.8, 1], PIXELS = 56, LOUDER = 8;
+const ENGINES = [models.three, models.babylon, models.filament, models.playcanvas];
 const TITLES = { three: 'three.js', babylon: 'Babylon.js', filament: 'Filament', playcanvas: 'PlayCanvas' };
 
 // A ball with a diameter of PIXELS, seen from direction toEye: the pixels inside it and their
@@ -64,64 +65,74 @@ const rms = (shown, wanted) => {
 
 // Draws a row of balls as a PNG: radiance c through c / (c + 1) and the power 1 / 2.2; with `grey`,
 // signed differences around middle grey.
-const drawRow = (page, inside, balls, exposure, grey) => page.evaluate(([pixels, at, all, scale, middle]) => {
-    const canvas = document.createElement('canvas');
-    canvas.width = all.length * (pixels + 4);
-    canvas.height = pixels;
-    const context = canvas.getContext('2d'), image = context.createImageData(canvas.width, pixels);
-    all.forEach((ball, k) => ball.forEach((pixel, i) => {
-        const to = 4 * (Math.floor(at[i] / pixels) * canvas.width + k * (pixels + 4) + at[i] % pixels);
+function drawRow(page, inside, balls, exposure, grey) {
+    const width = balls.length * (PIXELS + 4), bytes = new Uint8ClampedArray(4 * width * PIXELS);
+    balls.forEach((ball, k) => ball.forEach((pixel, i) => {
+        const to = 4 * (Math.floor(inside[i] / PIXELS) * width + k * (PIXELS + 4) + inside[i] % PIXELS);
         pixel.forEach((x, c) => {
-            const light = Math.max(0, x * scale);
-            image.data[to + c] = middle ? 128 + 127 * x * scale : 255 * (light / (1 + light)) ** (1 / 2.2);
+            const light = Math.max(0, x * exposure);
+            bytes[to + c] = grey ? 128 + 127 * x * exposure : 255 * (light / (1 + light)) ** (1 / 2.2);
         });
-        image.data[to + 3] = 255;
+        bytes[to + 3] = 255;
     }));
-    context.putImageData(image, 0, 0);
-    return canvas.toDataURL('image/png');
-}, [PIXELS, inside, balls, exposure, grey]);
+    return page.evaluate(([base64, columns, rows]) => {
+        const canvas = document.createElement('canvas');
+        canvas.width = columns;
+        canvas.height = rows;
+        const data = Uint8ClampedArray.from(atob(base64), (c) => c.charCodeAt(0));
+        canvas.getContext('2d').putImageData(new ImageData(data, columns, rows), 0, 0);
+        return canvas.toDataURL('image/png');
+    }, [Buffer.from(bytes).toString('base64'), width, PIXELS]);
+}
 
 const percent = (x) => `${(100 * x).toPrecision(2)}`;
-const html = [];
 const figure = (source, caption) =>
-    html.push(`<figure><img class="wide" src="${source}" alt="Six balls"><figcaption>${caption}</figcaption></figure>`);
+    `<figure><img class="wide" src="${source}" alt="Six balls"><figcaption>${caption}</figcaption></figure>`;
+
+// The rows of one engine as HTML: two pictures for each maker of its files.
+async function showEngine(browser, address, engine, file, levels) {
+    // The axes of all engines are converted to kiln's axes, so that every engine shows the
+    // same side.
+    const { toKiln } = engine.model(6, 256);
+    const axis = (d) => [0, 1, 2].map((i) => [0, 1, 2].reduce((sum, c) =>
+        sum + d[c] * toKiln([0, 1, 2].map((k) => Number(k === i)))[c], 0));
+    const { inside, view } = makeBall(axis([0, 0, 1]), axis([1, 0, 0]), axis([0, 1, 0]));
+    const wanted = truth(engine, view, levels);
+    const mean = wanted.at(-1).flat().reduce((sum, x) => sum + x, 0) / wanted.at(-1).length / 3;
+    const draw = await openEngine(browser, address, engine.page);
+    const html = [`<div class="rows"><h3>${TITLES[engine.name]}</h3>`];
+    for (const { maker, make } of ways(engine)) {
+        const [rows] = await draw(await make(file), [view], ROUGHNESS, 2);
+        const errors = rows.map((row, k) => percent(rms(row, wanted[k]))).join(' &nbsp; ');
+        const title = maker === 'kiln' ? '<b>kiln\'s file</b>' : maker === 'cmgen' ? 'cmgen\'s bake' : 'its own bake';
+        html.push(figure(await drawRow(browser, inside, rows, 0.6 / mean, false), title));
+        const off = rows.map((row, k) => row.map((p, i) => p.map((x, c) => x - wanted[k][i][c])));
+        html.push(figure(await drawRow(browser, inside, off, LOUDER / mean / 2, true),
+                         `error, ${LOUDER} times louder: ${errors} %`));
+    }
+    console.log(`  ${TITLES[engine.name]}`);
+    return `${html.join('\n')}\n</div>`;
+}
 
 makeSite(folder);
 const ways = makeWays(bin, folder);
-await withPage(folder, async (browser, address) => {
-    browser.setDefaultTimeout(300000);
+const html = [];
+await withBrowser(folder, async (visit, address) => {
     for (const from of panoramas) {
         const { name } = path.parse(from), file = `${name}.hdr`;
         makePanorama(bin, folder, from, file);
         const levels = exactLevels(file);
-        html.push(`<h2>${name}</h2>`);
-        for (const engine of [models.three, models.babylon, models.filament, models.playcanvas]) {
-            console.log(`  ${name} in ${TITLES[engine.name]}`);
-            // The axes of all engines are converted to kiln's axes, so that every engine shows the
-            // same side.
-            const { toKiln } = engine.model(6, 256);
-            const axis = (d) => [0, 1, 2].map((i) => [0, 1, 2].reduce((sum, c) =>
-                sum + d[c] * toKiln([0, 1, 2].map((k) => Number(k === i)))[c], 0));
-            const { inside, view } = makeBall(axis([0, 0, 1]), axis([1, 0, 0]), axis([0, 1, 0]));
-            const wanted = truth(engine, view, levels);
-            const mean = wanted.at(-1).flat().reduce((sum, x) => sum + x, 0) / wanted.at(-1).length / 3;
-            const draw = await openEngine(browser, address, engine.page), shown = [];
-            for (const { maker, make } of ways(engine)) {
-                const [rows] = await draw(make(file), [view], ROUGHNESS, 2);
-                shown.push({ maker, rows, errors: rows.map((row, k) => rms(row, wanted[k])) });
-            }
-            html.push(`<div class="rows"><h3>${TITLES[engine.name]}</h3>`);
-            const cell = (values) => values.map(percent).join(' &nbsp; ');
-            for (const { maker, rows, errors } of shown) {
-                const title = maker === 'kiln' ? '<b>kiln\'s file</b>' : maker === 'cmgen' ? 'cmgen\'s bake' : 'its own bake';
-                figure(await drawRow(browser, inside, rows, 0.6 / mean, false), title);
-                figure(await drawRow(browser, inside,
-                                     rows.map((row, k) => row.map((p, i) => p.map((x, c) => x - wanted[k][i][c]))),
-                                     LOUDER / mean / 2, true),
-                       `error, ${LOUDER} times louder: ${cell(errors)} %`);
-            }
-            html.push('</div>');
-        }
+        console.log(`${name} in`);
+        // Side by side, since one engine alone does not keep all cores busy.
+        const engines = await Promise.all(ENGINES.map(async (engine) => {
+            let rows = '';
+            await visit(async (browser) => {
+                browser.setDefaultTimeout(300000);
+                rows = await showEngine(browser, address, engine, file, levels);
+            }, () => `${engine.name}: `);
+            return rows;
+        }));
+        html.push(`<h2>${name}</h2>`, ...engines);
     }
-});
+}, HIDDEN);
 fs.writeFileSync(fragment, `${html.join('\n')}\n`);

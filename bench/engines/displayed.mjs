@@ -69,7 +69,7 @@ await withPage(folder, async (browser, address) => {
         for (const name of NAMES) {
             const wanted = truth(engine, `${name}.hdr`);
             for (const { maker, make } of ways(engine)) {
-                const file = make(`${name}.hdr`);
+                const file = await make(`${name}.hdr`);
                 const draw = await openEngine(browser, address, engine.page);
                 const rms = errors(await draw(file, VIEWS, ROUGHNESS, CELL), wanted);
                 const all = Math.sqrt(rms.reduce((sum, x) => sum + x * x, 0) / rms.length);

@@ -2,27 +2,27 @@
 // the browser), and kiln's file.
 //   const ways = makeWays(BIN, FOLDER, ['--tune=none']);
 // ways(engine) returns [{ maker, make }] for an engine of models.mjs. make(panorama) writes the file that the
-// engine's page loads into FOLDER, and returns its name.
-import { execFileSync } from 'node:child_process';
+// engine's page loads into FOLDER, and promises its name.
+import { execFile, execFileSync } from 'node:child_process';
 import path from 'node:path';
+import { promisify } from 'node:util';
 
 export function makeWays(bin, folder, more = []) {
-    const run = (program, ...args) =>
-        execFileSync(program, args, { cwd: folder, encoding: 'utf8', maxBuffer: 1 << 26 });
-    const own = { maker: 'its own', make: (panorama) => panorama };
+    const run = (program, ...args) => promisify(execFile)(program, args, { cwd: folder, maxBuffer: 1 << 26 });
+    const own = { maker: 'its own', make: async (panorama) => panorama };
     const cmgen = {
         maker: 'cmgen',
-        make: (panorama) => {
+        make: async (panorama) => {
             const { name } = path.parse(panorama);
-            run('cmgen', '-q', '--format=ktx', '--size=256', `--deploy=cmgen-${name}`, panorama);
+            await run('cmgen', '-q', '--format=ktx', '--size=256', `--deploy=cmgen-${name}`, panorama);
             return `cmgen-${name}/cmgen-${name}_ibl.ktx`;
         },
     };
     const byKiln = (engine, maker, ...options) => ({
         maker,
-        make: (panorama) => {
+        make: async (panorama) => {
             const name = `${path.parse(panorama).name}-${engine.name}${options.join('').replace(/\W/g, '')}`;
-            run(path.join(bin, 'kiln'), 'bake', panorama, '--for', engine.name, '-q',
+            await run(path.join(bin, 'kiln'), 'bake', panorama, '--for', engine.name, '-q',
                 '-o', `${name}${engine.ending}`, ...options);
             return `${name}${engine.loads}`;
         },

@@ -5,11 +5,8 @@
 // All are drawn in one browser, each page visited once for all its proofs, pages side by side, while kiln
 // bakes. A fault names its engine and keeps no other from being proven.
 import path from 'node:path';
-import { withBrowser } from '../web/browser.mjs';
+import { HIDDEN, withBrowser } from '../web/browser.mjs';
 import { makeFiles, makeSite, openEngine, prove } from './rig.mjs';
-
-// Nobody sees the pages, and they run no faster in processes of their own.
-const FLAGS = ['--renderer-process-limit=1', '--disable-gpu-compositing'];
 
 // A page that hangs is told by name, before ctest ends all.
 const PATIENCE = 120000;
@@ -50,4 +47,4 @@ await withBrowser(folder, (visit, address) => Promise.all([...pages].map(([page,
             }
         }
     }, () => `${title}: `);
-})), FLAGS);
+})), HIDDEN);

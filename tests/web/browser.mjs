@@ -7,6 +7,9 @@ const FLAGS = ['--no-sandbox', '--disable-quic', '--no-first-run', '--disable-ba
                '--disable-component-update', '--disable-sync', '--ignore-gpu-blocklist',
                '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'];
 
+// For pages that nobody sees: they run no faster in processes of their own.
+export const HIDDEN = ['--renderer-process-limit=1', '--disable-gpu-compositing'];
+
 // work(visit, address): with a browser and a served folder. visit(show, of) has show(page, fault) on a page of
 // its own, which must say nothing on the console and ask nobody but its own server for anything. Every fault
 // is reported, `of()` before it. All pages share what can be shared.
