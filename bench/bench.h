@@ -53,10 +53,12 @@ bench_times bench_sum_up(double *seconds, int count);
 /// Writes a row of the case's CSV file: name, unit, median and minimum.
 void bench_row(bench *b, const char *name, const char *unit, bench_times times);
 void bench_value(bench *b, const char *name, const char *unit, double value);
-/// Prints a value and the bar that it must reach, and notes in `missed` if it does not.
+/// Prints a value and the bar that the value must reach. Notes in `missed` if the value does not
+/// reach the bar.
 void bench_bar(bench *b, const char *what, double value, const char *unit, double bar,
                bool at_least);
-/// Prints a value and its ratio to `aim`, which it should not exceed. Nothing fails if it does.
+/// Prints a value and its ratio to `aim`, which the value should not exceed. A value above the aim
+/// is no failure.
 void bench_aim(const char *what, double value, const char *unit, double aim);
 
 /// Sets b->error to a formatted message and returns false.

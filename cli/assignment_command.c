@@ -27,14 +27,15 @@ static const cli_option options[] = {
 
 typedef struct pictures {
     char by[128]; ///< name of the OpenGL renderer, or of the CPU's integrator
-    bool on_cpu;  ///< there is no OpenGL: the CPU shaded the balls
+    bool on_cpu;  ///< true: OpenGL is not available, and the CPU shaded the balls
     /// largest difference, in steps of 255, between balls drawn with the 8-bit tables and with
     /// exact tables
     double largest;
     double rms;
 } pictures;
 
-// Quantizes a table to bytes, as the framework reads it from its PNG.
+// Makes a table of the values that the assignment's framework reads from the PNG of this table,
+// which are truncated to bytes.
 static kiln_result load_bytes(const assignment *a, int table, kiln_table *to)
 {
     const kiln_image *from = &a->table[table];

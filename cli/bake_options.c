@@ -148,7 +148,7 @@ const cli_option bake_options[OPTIONS + 1] = {
     [MIRROR] = {"mirror", CLI_FLAG, AT(mirror), .help = "swap left and right, before --rotate"},
     [THREADS] = {"threads", CLI_INTEGER, AT(threads), 1, 256, 0, "N",
                  .help = "number of threads; the result is the same for every number",
-                 .letter = 'j', .unset = "one a core", .group = "Work and report"},
+                 .letter = 'j', .unset = "one per core", .group = "Work and report"},
     [JSON] = {"json", CLI_FLAG, AT(json),
               .help =
                   "report as JSON on standard output: files read and written, levels, seconds "

@@ -144,7 +144,7 @@ int cli_check_source_name(const cli_arguments *arguments, int option);
     {                                                                                              \
         "threads", CLI_INTEGER, offsetof(type, threads), 1, 256, 0, "N",                           \
             "number of threads; the result is the same for every number", .letter = 'j',           \
-                                                                          .unset = "one a core"    \
+                                                                          .unset = "one per core"  \
     }
 #define CLI_NEGATIVE_ROW(type)                                                                     \
     {                                                                                              \

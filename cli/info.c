@@ -154,17 +154,17 @@ static int run(const cli_call *call)
 
 static const cli_example examples[] = {
     {"kiln info city.exr city.ktx2",
-     "format, layout, size, roughness of the levels, spherical harmonics"},
-    {"kiln info --json city.ktx2", "the same for a program"},
+     "prints format, layout, size, roughness of the levels and spherical harmonics"},
+    {"kiln info --json city.ktx2", "prints the same as JSON for a program"},
     {NULL, NULL}};
 
 const cli_command cli_info = {
     .name = "info",
     .arguments = "FILE... [OPTION...]",
     .summary = "Describes files that kiln reads or writes.",
-    .about = "Format, encoding, layout, size, roughness of the levels, spherical harmonics and the "
-             "engine, of files "
-             "that kiln writes for an engine too.",
+    .about = "For each file kiln prints the format, encoding, layout, size, the roughness of the "
+             "levels, the spherical harmonics, and the engine that the file is for. Files that "
+             "kiln writes only, such as .env and .glb, are described too.",
     .examples = examples,
     .options = options,
     .run = run,

@@ -9,7 +9,8 @@ enum { JSON_DEPTH = 16 };
 
 typedef struct json {
     int depth;
-    /// for each depth: whether an array is open, whether it has a member
+    /// array: whether an array is open at each depth; filled: whether that array or object has a
+    /// member
     bool array[JSON_DEPTH + 1], filled[JSON_DEPTH + 1];
 } json;
 

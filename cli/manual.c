@@ -208,29 +208,30 @@ static const char description[] =
     "turns a panorama into the lighting that renderers look up: the environment seen\n"
     "through the lobe of a surface, a mip level for each roughness, with diffuse\n"
     "irradiance and spherical harmonics.\n"
-    "The levels are computed in spherical harmonics, not by sampling; there is no\n"
-    "noise, and the same input gives the same bits on every machine and for every\n"
-    "number of threads.\n"
+    "The levels are computed in spherical harmonics and not by sampling.\n"
+    "The result has no noise, and the same input gives the same bits on every machine\n"
+    "and for every number of threads.\n"
     ".Pp\n"
-    "A long option takes its value as the next word or behind\n.Sq = ,\n"
-    "a short one also without a space;\n.Sq --\n"
-    "ends the options.\n"
+    "The value of a long option is the next word, or follows after\n.Sq = .\n"
+    "The value of a short option is the next word, or follows without a space.\n"
+    "Words after\n.Sq --\n"
+    "are not options.\n"
     "Every command has\n.Fl h , -help .\n";
 
 static const char foot[] =
     ".Sh EXIT STATUS\n.Bl -tag -width Ds\n"
     ".It 0\nThe work is done.\n"
-    ".It 1\nThe input is not usable or the work failed; a sentence on standard error says\nwhy.\n"
-    ".It 2\nThe command line makes no sense; a sentence says what.\n"
+    ".It 1\nThe input is not usable or the work failed.\nA message on standard error says why.\n"
+    ".It 2\nThe command line is wrong.\nA message on standard error says why.\n"
     ".It 129 , 130 , 143\nStopped by a hangup, an interrupt or a request to terminate; no "
     "unfinished file\n"
     "is left.\n.El\n";
 
 static const char see_also[] =
     ".Sh SEE ALSO\n"
-    "The conventions, of directions, faces, texels and harmonics, are in\n"
-    ".Pa docs/conventions.md\n"
-    "of the sources; the library's header is\n"
+    "The file\n.Pa docs/conventions.md\n"
+    "of the sources has the conventions for directions, faces, texels and harmonics.\n"
+    "The library's header is\n"
     ".In kiln/kiln.h .\n";
 
 void cli_print_manual(const cli_command *const *commands)

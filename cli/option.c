@@ -64,7 +64,7 @@ const char *cli_option_range(const cli_option *option, char text[CLI_RANGE_TEXT]
     else if (option->kind == CLI_CHOICE)
         cli_list(option, text);
     if (option->alone) {
-        snprintf(alone, sizeof alone, "%s alone", option->alone);
+        snprintf(alone, sizeof alone, "%s without %s", option->alone, option->value);
         add(text, ", ", alone);
     }
     add_default(option, text);

@@ -1,5 +1,6 @@
 // What the command needs from the operating system: terminals, signals, memory, folders, a clock.
-// os_posix.c and os_windows.c implement it; the command's other files do not depend on the system.
+// os_posix.c and os_windows.c implement these functions. The command's other files do not depend on
+// the system.
 #ifndef KILN_CLI_OS_H
 #define KILN_CLI_OS_H
 
@@ -7,8 +8,9 @@
 #include <stddef.h>
 #include <stdio.h>
 
-/// Must be called first. On Windows it makes the arguments UTF-8, replaces backslashes by slashes,
-/// and makes standard output binary. Returns false if memory runs out.
+/// Prepares the process, and must be called first. On Windows it converts the arguments to UTF-8,
+/// replaces backslashes by slashes, and makes standard output binary. Returns false if memory runs
+/// out.
 bool os_begin(int *argc, char ***argv);
 
 typedef enum os_stream { OS_INPUT, OS_OUTPUT, OS_ERRORS } os_stream;

@@ -22,7 +22,8 @@ enum {
 };
 
 typedef struct render {
-    scene_setup setup; // must be the first member: the shared option rows write to it
+    // must be the first member, because the shared option rows write to this address
+    scene_setup setup;
     cli_arguments arguments;
     const char *output;
     int threads, bounces;

@@ -13,8 +13,8 @@ typedef struct cli_suggestion {
 
 /// Compares one more known word with the typed word; NULL is ignored.
 void cli_suggest(cli_suggestion *suggestion, const char *word);
-/// Text for an error message: `between` and "did you mean --size?" with `dashes` before the word;
-/// "" if no word is similar enough.
+/// Writes a text for an error message: `between` and "did you mean --size?" with `dashes` before
+/// the word, or "" if no word is similar enough. Returns `text`.
 const char *cli_suggestion_text(const cli_suggestion *suggestion, const char *between,
                                 const char *dashes, char text[96]);
 

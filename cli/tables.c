@@ -254,12 +254,12 @@ const cli_command cli_tables = {
         "Carlo integration, by importance sampling and by the split sum, the average E_avg, the "
         "exact tables, maps of the errors, and report.md. --method textbook writes A and B as "
         "courses sample them. In these tables the first row has roughness 1.",
-    .more =
-        "With --assignment, pictures have the names and the orientation of the fourth assignment "
-        "of GAMES202 (2021): Emu_MC.png, Emu_IS.png, Emu_split_sum.png with 1 - E(mu) not flipped, "
-        "and Eavg.png. kiln adds the same integrals without sampling, maps of the errors, and "
-        "report.md with all numbers and with the contradictions in the assignment's text. Bytes "
-        "are truncated as the assignment's framework truncates them, and not rounded.",
+    .more = "With --assignment, the pictures Emu_MC.png, Emu_IS.png and Eavg.png have the names "
+            "and the orientation of the fourth assignment of GAMES202 (2021). kiln adds "
+            "Emu_split_sum.png, a picture of 1 - E(mu) that is not flipped, the same integrals "
+            "without sampling, maps of the errors, and report.md with all numbers and with the "
+            "contradictions in the assignment's text. Bytes are truncated as the assignment's "
+            "framework truncates them, and not rounded.",
     .examples = examples,
     .options = options,
     .run = run,

@@ -14,7 +14,8 @@
 enum { SCREENSHOT = SCENE_OPTIONS, THREADS, OPTIONS };
 
 typedef struct view {
-    scene_setup setup; // must be the first member: the shared option rows write to it
+    // must be the first member, because the shared option rows write to this address
+    scene_setup setup;
     const char *screenshot;
     int threads;
 } view;

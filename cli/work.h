@@ -9,7 +9,7 @@ typedef struct cli_work {
     kiln_context *context;
     kiln_error error;
     int threads;
-    double began; ///< start of the work, os_seconds
+    double began; ///< time at which the work began, by os_seconds
     /// time of the last drawing of the progress line, by os_seconds; 0 before the first
     double drawn;
     bool quiet;        ///< nothing but errors is printed

@@ -11,7 +11,7 @@
 
 #include <math.h>
 
-// ACROSS x DOWN nodes on half the cap: the other half is its mirror image
+// ACROSS x DOWN: nodes on one half of the cap, whose other half is the mirror image
 enum { SIZE = 48, ACROSS = 16, DOWN = 32 };
 
 static double root(double alpha, double x)
@@ -25,7 +25,8 @@ double view_edge(double roughness, double nov)
     double sine = sqrt((1 - nov) * (1 + nov)), root_v = root(alpha, nov);
     if (alpha < 1e-6 || root_v <= 0)
         return nov * pow(1 - nov, 6);
-    // v in the space where the surface is a hemisphere
+    // the view v, stretched such that the visible normals of the surface become those of a
+    // hemisphere
     double sx = alpha * sine / root_v, sz = nov / root_v;
     for (int i = 0; i < DOWN; i++) {
         double z = (i + 0.5) / DOWN * (1 + sz) - sz, around = sqrt(fmax(0, (1 - z) * (1 + z)));

@@ -31,7 +31,7 @@ typedef struct job {
     double noise;
     int batch_limit, bounces;
     bool alone;
-    // the ball's bounces after the first one are computed by view_walk_add
+    // true: view_walk_add computes the ball's bounces after the first
     bool walks[VIEW_MAX_BALLS];
     double eye[3], right[3], up[3], back[3], slope;
     view_ball balls[VIEW_MAX_BALLS];
@@ -92,7 +92,7 @@ static void tangents(const double n[3], double t[3], double b[3])
 }
 
 // Finds the nearest ball that a ray from `from` along d meets, except ball `leaves`, on which the
-// ray starts (VIEW_MAX_BALLS: the ray starts on no ball). p->ball is -1 where there is none.
+// ray starts (VIEW_MAX_BALLS: the ray starts on no ball). p->ball is -1 if the ray meets no ball.
 static void find_point(const job *j, const double from[3], const double d[3], int leaves,
                        view_point *p)
 {
@@ -184,7 +184,8 @@ typedef struct vertex {
     const job *j;
     const view_point *p;
     int depth;
-    double share; // weight of one draw: 1 where all three kinds are drawn, 3 where one kind is
+    // weight of one draw: 1 if all three kinds of draw are made, 3 if only one kind is drawn
+    double share;
 } vertex;
 
 // Adds the light that arrives from l, divided by the sum of the three densities with which the

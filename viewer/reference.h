@@ -17,7 +17,8 @@ typedef struct view_reference_def {
     /// balls do not reflect one another, as in the real-time picture; with view_options.occlusion
     /// they look black to one another. The furnace scene always does this
     bool alone;
-    /// 1 to 256 threads; 0 for one thread a core. The picture does not depend on it
+    /// number of threads, 1 to 256; 0 for one thread per core. The picture is the same for every
+    /// number of threads
     int thread_count;
     /// Called now and then from the calling thread with the finished fraction, 0 to 1. Returning
     /// false cancels. May be NULL.

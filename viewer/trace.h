@@ -81,7 +81,8 @@ void view_reflect(const view_ball *ball, const view_energy *energy, const view_p
 typedef struct view_walk {
     const view_ball *ball;
     const view_light *light;
-    const view_energy *energy; ///< holds a measured metal's F
+    /// directional albedo data of the view, with the F of a measured metal
+    const view_energy *energy;
     /// Returns the radiance that arrives from direction d. NULL: the radiance is that of the
     /// environment `light`.
     void (*incoming)(void *user, const double d[3], view_random *random, double radiance[3]);

@@ -29,7 +29,7 @@ typedef enum view_scene {
 
 /// How the light that bounces more than once between microfacets is approximated.
 typedef enum view_method {
-    VIEW_METHOD_SINGLE, ///< leaves that light out: one bounce only
+    VIEW_METHOD_SINGLE, ///< leaves out the light of more than one bounce
     /// Kulla and Conty 2017; their Fresnel factor sums the bounces from the second one on
     VIEW_METHOD_KULLA_CONTY,
     /// Kulla and Conty 2017 with the Fresnel factor F E / (1 - F (1 - E)) of the GAMES202
@@ -56,7 +56,7 @@ typedef enum view_material {
     VIEW_METAL_COUNT = VIEW_MATERIAL_WHITE
 } view_material;
 
-/// What is shown in place of the shaded balls.
+/// The views that can be shown in place of the shaded balls, for debugging.
 typedef enum view_debug {
     VIEW_DEBUG_NONE,
     VIEW_DEBUG_LEVEL,           ///< one mip level of the environment, unrolled as a panorama
@@ -99,7 +99,7 @@ typedef struct view_options {
     /// E_avg
     bool as_printed;
     bool one_row;   ///< leaves the upper row of balls out, as in the GAMES202 handout's figure 5
-    bool occlusion; ///< balls block the environment's light from one another
+    bool occlusion; ///< true: balls block the environment's light from one another
     bool bent;      ///< looks a rough ball's reflection up nearer to its normal
     /// diffuse light comes from the irradiance cube instead of the spherical harmonics
     bool cube_diffuse;
@@ -127,7 +127,7 @@ typedef struct view_ball {
     double f_average[3]; ///< cosine-weighted mean reflectance, 2 int F(mu) mu dmu
     double albedo[3];    ///< albedo of the diffuse base; 0 for metals
     view_method method;
-    /// takes the share `metallic` of F from the metal's measured indices of refraction
+    /// the share `metallic` of F comes from the metal's measured indices of refraction
     bool measured;
 } view_ball;
 

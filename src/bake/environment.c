@@ -42,7 +42,8 @@ typedef struct low_workspace {
 
 // The memory that the executions of a plan use, one execution after the other.
 typedef struct plan_workspace {
-    kiln_map changed;  // the mirrored and exposed source; empty if the plan does neither
+    // the mirrored and exposed source; empty if the plan neither mirrors nor exposes
+    kiln_map changed;
     kiln_map panorama; // made from a source of another shape; empty if the source is a panorama
     ki_prefilter_workspace prefilter;
     low_workspace for_sh, for_irradiance; // empty where the plan has no such analysis

@@ -202,8 +202,8 @@ static void fill_pairs(const ki_reference *r, const ray_sums *ray, const ki_row_
     }
 }
 
-// Sets weight[x] to the lobe at the mean direction of the texel in column x. This equals the lobe's
-// mean over the texel if the lobe is linear in the cosine of the angle to its axis.
+// Sets weight[x] to the lobe at the mean direction of the texel in column x. This value equals the
+// lobe's mean over the texel if the lobe is linear in the cosine of the angle to the lobe's axis.
 static void fill_means(const ki_reference *r, const ray_sums *ray, const ki_row_geometry *row,
                        int first, int last, double *restrict weight)
 {

@@ -17,10 +17,10 @@
 //
 //     reflected       n.l = 2 c cos theta - n.v > 0
 //     transmitted     c > 0 and -n.l = eta n.v - (eta c - g) cos theta > 0
-//     either, from the denser side    c > critical, beyond which reflection is total
+//     both, for v in the denser medium    c > critical, beyond which reflection is total
 //
-// Under total reflection F = 1. So from the denser side R is E minus the integral of 1 - F over c >
-// critical.
+// Under total reflection F = 1. For v in the denser medium R is therefore E minus the integral of
+// 1 - F over c > critical.
 #include "brdf/dielectric.h"
 
 #include "base/base.h"

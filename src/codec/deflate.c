@@ -557,7 +557,8 @@ size_t ki_deflate_part(ki_deflater *d, const uint8_t *plain, size_t history, siz
     d->out_end = packed + room;
     d->full = room < 2;
     if (place & KI_DEFLATE_FIRST && !d->full) {
-        d->bits = 0x9c78; // zlib's header: deflate, a window of 32768 bytes, default compression
+        // zlib's header, which states deflate, a window of 32768 bytes and default compression
+        d->bits = 0x9c78;
         d->held = 16;
         d->sum = 1;
         flush(d);

@@ -12,7 +12,8 @@
 /// further words between the engine and the roughness, each with a space before it.
 void ki_engine_text_write(ki_writer *writer, const char *engine, const char *words,
                           const kiln_map *map);
-/// Fills in `info` from a line that ends in NUL. The format is that of the texels in a PNG file.
+/// Fills in `info` from a line that ends in NUL. The word `format` of the line becomes the encoding
+/// of the texels, which a PNG file does not state.
 void ki_engine_text_read(const char *text, kiln_file_info *info);
 /// Returns whether a file's description says that the file is an atlas. kiln cannot lay an atlas
 /// out on the sphere.

@@ -47,7 +47,7 @@ typedef struct ki_exr_part {
     ki_exr_channel *channels;
     int channel_count;
     ki_exr_window data, display;
-    int compression; // number in the file, which may be that of no known method
+    int compression; // number of the compression method in the file; the method may be unknown
     bool tiled, deep;
     uint32_t tile_width, tile_height; // size of a tile; 0 if the header does not state it
     int32_t stated_chunks;            // stated number of chunks; -1 if the header does not state it

@@ -195,7 +195,7 @@ static const char *read_part(kiln_context *context, ki_reader *r, uint32_t flags
 static bool grow(kiln_context *context, ki_exr_header *h)
 {
     size_t count = (size_t)h->part_count;
-    if (count & (count - 1)) // there is room up to the next power of two
+    if (count & (count - 1)) // there is room for one more part until the count is a power of two
         return true;
     ki_exr_part *parts = ki_alloc(context, count ? 2 * count : 1, sizeof *parts);
     if (!parts)

@@ -201,8 +201,8 @@ static void pack_chunk(void *data, int index)
     gather(p->pixels + (size_t)y * (size_t)p->width * (size_t)p->channels, p->width, lines,
            p->channels, p->half, l->plane, l->raw);
     predict(l->raw, size, l->sorted);
-    // The room is less than `size`, because a chunk that does not become smaller is stored
-    // uncompressed.
+    // The compressed data get less room than `size` bytes, because a chunk that does not become
+    // smaller is stored uncompressed.
     size_t packed = ki_deflate(l->deflater, l->sorted, size, l->other, size - 1);
     l->bytes = packed ? l->other : l->raw;
     l->size = packed ? packed : size;
@@ -260,7 +260,7 @@ kiln_result ki_exr_encode(const float *pixels, int width, int height, int channe
                 .chunks = ((size_t)height + LINES - 1) / LINES};
     int lanes = most_lanes(writer->context, p.chunks);
     if (writer->failed)
-        lanes = 0; // an earlier write failed, and nothing is added
+        lanes = 0; // a write has failed, so no more chunks are added
     kiln_result result = lanes ? write_by(&p, lanes, options, writer) : KILN_ERROR_MEMORY;
     // Where memory is too short for the file and all lanes, the file is begun again with fewer.
     for (; result == KILN_ERROR_MEMORY && lanes > 1;

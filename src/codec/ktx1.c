@@ -46,8 +46,9 @@ static void write_header(ki_writer *w, const uint32_t types[5], int size, int le
 
 // ----------------------------------------------------------------------------------------- writing
 
-// A pair is its size, its key and value, each with a terminating NUL, and zeros up to a multiple of
-// 4 bytes. The value is what the caller writes after begin_pair.
+// Begins a key-value pair, and returns its position. A pair is its size, its key and value, each
+// with a terminating NUL, and zeros up to a multiple of 4 bytes. The caller writes the value after
+// begin_pair.
 static size_t begin_pair(ki_writer *w, const char *key)
 {
     size_t pair = w->size;

@@ -59,7 +59,8 @@ static void write_head(png_writer *p, int width, int height, int channels, ki_pn
     write_u32_high_first(p->out, (uint32_t)height);
     ki_write_u8(p->out, coding == KI_PNG_PLAIN16 ? 16 : 8);
     ki_write_u8(p->out, colors[channels - 1]);
-    ki_write(p->out, "\0\0", 3); // compression deflate, the five filters, not interlaced
+    // the fields compression (deflate), filters (the five filters) and interlacing (none)
+    ki_write(p->out, "\0\0", 3);
     end_chunk(p, start);
     if (coding == KI_PNG_SRGB8) {
         start = begin_chunk(p->out, "sRGB");
@@ -158,7 +159,7 @@ static void add_row(png_writer *p)
 
 // ----------------------------------------------------------------------------------------- samples
 
-// The linear values from which on each 8-bit sRGB value is the nearest one.
+// Sets thresholds[k] to the linear value from which on the 8-bit sRGB value k + 1 is nearer than k.
 static void make_thresholds(float thresholds[255])
 {
     for (int i = 0; i < 255; i++)

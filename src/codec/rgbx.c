@@ -36,8 +36,8 @@ void ki_rgbp_from_float(const float rgb[3], float rgbp[4])
     rgbp[3] = (float)(steps / 255);
 }
 
-// The alpha of RGBD is an integer of 1 to 255, over 255, with which the largest channel is at most
-// 1.
+// RGBD divides colours by alpha. The alpha is the greatest of the numbers 1/255, 2/255, ..., 1 for
+// which the largest channel times alpha is at most 1.
 void ki_rgbd_from_float(const float rgb[3], float rgbd[4])
 {
     float largest = largest_of(rgb);

@@ -115,8 +115,8 @@ static kiln_result write_files(ki_export *to, kiln_error *error)
     kiln_result result = KILN_OK;
     s.pixels = ki_alloc(to->context, count, 3 * sizeof *s.pixels);
     s.texels = ki_alloc_raw(to->context, face_count, 3 * sizeof *s.texels);
-    // Of the faces that are refined, the largest has a quarter of face_count texels, with 4 samples
-    // for each texel. Faces of 16 texels have 16 samples for each texel.
+    // The room for the refinement of a face: the largest refined face has a quarter of face_count
+    // texels and 4 samples for each texel. A face of 16 x 16 texels has 16 samples for each texel.
     s.room = ki_alloc_raw(to->context, face_count + (size_t)16 * LAST * LAST, 7 * sizeof *s.room);
     bool good = s.pixels && s.texels && s.room;
     if (!good)

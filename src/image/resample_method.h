@@ -15,7 +15,8 @@ enum {
 };
 
 typedef enum ki_resample_method {
-    KI_RESAMPLE_GATHER,    ///< panorama to cube or octahedron
+    /// from a panorama to a cube or octahedron: sums the texels under each stencil
+    KI_RESAMPLE_GATHER,
     KI_RESAMPLE_SCATTER,   ///< cube or octahedron to panorama
     KI_RESAMPLE_SEPARABLE, ///< panorama to panorama
     KI_RESAMPLE_FACES,     ///< cube to cube of another size, by quarter turns

@@ -95,8 +95,8 @@ static kiln_result add_grids(kiln_context *context, ki_resample_plan *plan, ki_s
         for (int k = 0; k < plan->grid_count; k++)
             if (plan->grid[k].kind == kind && fabs(plan->grid[k].offset - offset) < 1e-9)
                 grid = &plan->grid[k];
-        // Mirroring at the middle of a cube's side, or of a quarter of the map, maps panorama
-        // column c to column `about` - c.
+        // Mirroring a map at the middle of a cube's side, or at the diagonal of a quarter, maps
+        // panorama column c to column `about` - c.
         double about = kind == KI_STENCIL_SIDE ? 2 * offset : 2 * offset + width / 4;
         if (!grid) {
             grid = &plan->grid[plan->grid_count++];

@@ -40,9 +40,10 @@ typedef struct ki_stencil_place {
 
 typedef enum ki_stencil_kind {
     KI_STENCIL_SIDE, ///< a side of the cube: i runs to the east, j upwards from the horizon
-    /// The cube's +Y face: i runs along the first direction, j along the second.
+    /// The cube's +Y face: i runs along the first direction, j along the second direction.
     KI_STENCIL_TOP,
-    /// An octahedron above the horizon: i runs along the first direction, j along the second.
+    /// The part of an octahedron above the horizon: i runs along the first direction, j along the
+    /// second direction.
     KI_STENCIL_OCTAHEDRON,
     KI_STENCIL_RIM, ///< the texels of the octahedron that the horizon cuts in two
 } ki_stencil_kind;

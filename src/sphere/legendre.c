@@ -80,8 +80,8 @@ bool ki_rings_create(kiln_context *context, const double *theta, int pair_count,
         for (int m = 0; m <= degree; m++) {
             rings->start[(size_t)m * (size_t)lanes + (size_t)k] = power;
             power = power > 1e-280 ? power * sine : 0;
-            // The lane nearest the equator has the largest sin theta: it decides whether the vector
-            // contributes to order m.
+            // The last lane is the nearest to the equator and has the largest sin theta. This lane
+            // decides whether the vector contributes to order m.
             if (k % KI_LANES == KI_LANES - 1 && m > reach)
                 rings->first[m] = k / KI_LANES + 1;
         }

@@ -18,8 +18,8 @@ double ki_zonal_step(const ki_zonal *zonal, double one_minus_cos)
 {
     if (zonal->outer <= 0)
         return 1;
-    // theta = 2 asin(sqrt((1 - cos theta) / 2)). The step is a polynomial with six continuous
-    // derivatives.
+    // By theta = 2 asin(sqrt((1 - cos theta) / 2)). The step that leaves out the lobe's centre is a
+    // polynomial with six continuous derivatives.
     double theta = 2 * ki_asin(sqrt(ki_clamp(0.5 * one_minus_cos, 0, 1)));
     double t = ki_clamp((theta - zonal->inner) / (zonal->outer - zonal->inner), 0, 1);
     double t2 = t * t, t4 = t2 * t2;

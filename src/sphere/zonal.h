@@ -8,7 +8,8 @@
 /// below `inner` and 1 above `outer` (radians). If both are 0, the lobe is whole.
 typedef struct ki_zonal {
     kiln_lobe lobe;
-    /// If not NULL, the mixture is the weight, and `lobe` is the narrowest lobe of the mixture.
+    /// NULL, or a mixture of lobes whose weight is used in place of the weight of `lobe`. `lobe` is
+    /// then the narrowest lobe of the mixture.
     const ki_mixture *mixture;
     double inner, outer;
 } ki_zonal;

@@ -152,9 +152,10 @@ static double uniform(uint64_t *state)
     return ((double)(*state >> 32) + 0.5) / 4294967296.0;
 }
 
-// A quarter of the points is a regular grid over (n.v, roughness), a quarter one over (sqrt t,
-// roughness), and two quarters are random, uniform in the same two pairs. n.v and roughness are
-// rounded to floats, because a form receives floats.
+// A quarter of the points is a regular grid over (n.v, roughness), and a quarter is a regular grid
+// over (sqrt t, roughness). A quarter is random and uniform over (n.v, roughness), and a quarter is
+// random and uniform over (sqrt t, roughness). n.v and roughness are rounded to floats, because a
+// form receives floats.
 kiln_result ki_fit_checks(kiln_context *context, const kiln_fit_def *def, ki_fit_target target,
                           ki_fit_points *points, kiln_error *error)
 {

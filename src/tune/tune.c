@@ -1,8 +1,8 @@
 // Makes the tuned levels of tune.h. In: the spectrum of an environment, and how an engine reads
-// levels. Out: the texels of the tuned levels. Method: tune_mix.c finds the mixture of lobes of each
-// level. A large level is evaluated from its mixture at its texels. The texels of a cube's level
-// with faces of at most MOST_READS texels are solved for instead: the mixture is evaluated on a
-// finer grid, and tune_read.c finds the texels whose bilinear interpolation comes nearest to the
+// levels. Out: the texels of the tuned levels. Method: tune_mix.c finds the mixture of lobes of
+// each level. A large level is evaluated from its mixture at its texels. The texels of a cube's
+// level with faces of at most MOST_READS texels are solved for instead: the mixture is evaluated on
+// a finer grid, and tune_read.c finds the texels whose bilinear interpolation comes nearest to the
 // values on this grid. docs/theory/tuning.md derives the method.
 #include "tune/tune.h"
 

@@ -60,9 +60,10 @@ void ki_nodes_place(ki_nodes *nodes, double (*level)(double, int, int), int leve
 // --------------------------------------------------------------------------------------- equations
 
 typedef struct equations {
-    double diagonal[KILN_MAX_LEVELS];               // A_ii of the normal equations
-    double next[KILN_MAX_LEVELS];                   // A_i,i+1 of the normal equations
-    double right[KILN_MAX_LEVELS][KI_MOST_LOBES];   // right-hand side of each level, as a mixture
+    double diagonal[KILN_MAX_LEVELS]; // A_ii of the matrix A of the normal equations (tune.h)
+    double next[KILN_MAX_LEVELS];     // A_i,i+1 of the matrix A of the normal equations (tune.h)
+    // right-hand side of the equation of each level, as a mixture of lobes
+    double right[KILN_MAX_LEVELS][KI_MOST_LOBES];
     double weights[KILN_MAX_LEVELS][KI_MOST_LOBES]; // the solution: each level as a mixture
 } equations;
 

@@ -18,9 +18,9 @@ static const double ridge = 1e-8;
 // sphere).
 static const double aside = 0.1415;
 
-// Adds to products[i][j] the sum over degrees l of power_l k_i,l k_j,l, over `mean`, for all pairs
-// of lobes. k_i,l is the spectrum of lobe i; the last lobe is a mirror, with k = 1. `power` is NULL
-// for a black environment, for which the products are those of uniform light.
+// Adds to products[i][j] the sum over degrees l of power_l k_i,l k_j,l, divided by `mean`, for all
+// pairs of lobes. k_i,l is the spectrum of lobe i. The last lobe is a mirror, with k = 1. `power`
+// is NULL for a black environment, for which the products are those of uniform light.
 static void add_power(const ki_nodes *nodes, const double (*power)[3], int degree, double mean,
                       double *products)
 {

@@ -19,7 +19,7 @@ has() { grep -q -F -- "$1" log/flat || die "the help does not say: $1"; }
 has '--size N texels along the edge of a face, or rows of a panorama (1 to 32768, default 256)'
 has '--levels N mip levels to write (1 to 16, default all, down to 1 texel)'
 has '(ggx, lambert, charlie or phong; default ggx)'
-has '--zstd[=LEVEL] compress KTX2 files by Zstandard (1 to 22, 3 alone)'
+has '--zstd[=LEVEL] compress KTX2 files by Zstandard (1 to 22, 3 without LEVEL)'
 has '--exposure STOPS multiply the radiance by 2^STOPS (-64 to 64, default 0)'
 has '--irradiance FILE write a map of the irradiance divided by pi'
 has '-q, --quiet print nothing but errors'
