@@ -12,11 +12,12 @@ typedef struct cli_work {
     double began; ///< time at which the work began, by os_seconds
     /// time of the last drawing of the progress line, by os_seconds; 0 before the first
     double drawn;
-    bool quiet;        ///< nothing but errors is printed
-    bool on_terminal;  ///< progress is drawn: standard error is a terminal and --quiet is absent
-    const char *stage; ///< name of the last reported stage, a string constant
-    double furthest;   ///< largest fraction reported of that stage, 0 to 1
-    kiln_load_report loaded; ///< what cli_load found in the input
+    bool quiet; ///< true: nothing but errors is printed
+    /// true: progress is drawn, because standard error is a terminal and --quiet is absent
+    bool on_terminal;
+    const char *stage;       ///< name of the last reported stage, a string constant
+    double furthest;         ///< largest fraction reported of that stage, 0 to 1
+    kiln_load_report loaded; ///< counts of what cli_load found and changed in the input
 } cli_work;
 
 /// Creates the context. `threads`: 0 for one thread a core. `quiet`: no progress line. Returns
@@ -40,11 +41,12 @@ void cli_note(cli_work *work, bool warning, const char *format, ...) CLI_PRINTF(
 
 /// Loads an environment. One name is a file, a folder, a pattern, or "-" for standard input. Six
 /// names are the cube's faces: px nx py ny pz nz (or right left top bottom front back) in the names
-/// tell the faces, else the names are in that order. What the loader found is told on standard error
-/// and stays in work->loaded. Returns CLI_GO or CLI_FAILED.
+/// tell the faces, else the names are in that order. What the loader found is told on standard
+/// error and stays in work->loaded. Returns CLI_GO or CLI_FAILED.
 int cli_load(cli_work *work, const char **names, int count, const kiln_load_def *def,
              kiln_map *map);
-/// Checks the number and form of the names: CLI_GO, or CLI_WRONG if they cannot be an input.
+/// Checks the number and form of the names. Returns CLI_GO, or CLI_WRONG if the names cannot be an
+/// input.
 int cli_check_input(const cli_command *command, const char **names, int count);
 
 #endif

@@ -8,7 +8,7 @@
 
 #include <math.h>
 
-// Integrals of a Gaussian exp(-x^2) stop at x^2 = CUT2, where it is 2e-12.
+// Integrals of a Gaussian exp(-x^2) stop at x^2 = CUT2, where the Gaussian is 2e-12.
 #define CUT2 27.0
 
 // Integrates over the azimuth phi of the light at fixed elevations of view and light. phi is 0 in

@@ -40,7 +40,8 @@ double ki_turquin(double f0, double e)
 // diffuse light. Fdez-Aguera 2019, section 3.
 void ki_fdez_aguera(double f0, double a, double b, double *single, double *multiple)
 {
-    double f = (1 + 20 * f0) / 21, e = a + b, rest = (1 - f) + f * e; // rest = 1 - f m
+    // rest is 1 - f m, written as a sum that does not cancel
+    double f = (1 + 20 * f0) / 21, e = a + b, rest = (1 - f) + f * e;
     *single = f0 * a + b;
     *multiple = rest > 0 ? *single * f * (1 - e) / rest : 1;
 }

@@ -42,7 +42,8 @@ typedef struct boundary {
     kiln_model model;
     double roughness, alpha, ior, eta; // eta = 1 / ior
     double mu, sin_v, theta_v;         // n.v, and the sine and angle of v to n
-    double critical; // cosine c at which total reflection begins; 0 for v on the thinner side
+    // cosine c = v.h at which total reflection begins; 0 for v in the thinner medium
+    double critical;
     double lambda_v; // Smith's Lambda(v), for masking in transmission
     double root_v;   // n.v (1 + 2 Lambda(v)) for GGX with KILN_G_SMITH, 0 for other models
     double pole;     // the pole of G nearest to 0 is at about n.l = -pole
@@ -276,7 +277,7 @@ static double integrate_part(const boundary *s, part what)
         }
     }
     double sum = 0, from = fmax(0, start);
-    for (;;) { // visits the cuts in increasing order
+    for (;;) { // finds the next cut of the range of theta, in increasing order
         double to = end;
         for (int i = 0; i < count; i++)
             if (cuts[i] > from && cuts[i] < to)

@@ -44,10 +44,10 @@ typedef struct view {
     kiln_g g;
     double alpha, alpha2, s; // roughness^2, alpha^2 and 1 - alpha^2
     double mu, sin2, sine;   // cosine of the view, 1 - mu^2 and its square root
-    double k;                // k of Schlick's masking
+    double k;                // k of Schlick's masking G1(x) = x / (x (1 - k) + k)
     double root;             // sqrt(alpha^2 + s mu^2)
     double front;            // factor of G / mu that depends on the view only
-    double split;            // mu_i at which the second interval begins
+    double split;            // mu_i at which the second of the two intervals of mu_i begins
     double pole;             // c: the integrand's pole nearest to mu_i = 0 is at mu_i = -c
 } view;
 
@@ -86,7 +86,8 @@ static void view_set(view *v, const kiln_model *model, double roughness, double 
     if (split && v->pole > nov)
         v->pole = nov;
     v->split = (nov > v->alpha ? nov : v->alpha) / 2;
-    // How near the pole is does not matter below 1e-12 of the first interval's length.
+    // A pole nearer to 0 than 1e-12 of the first interval's length has the same effect as one at
+    // that distance.
     v->pole = ki_clamp(v->pole, 1e-12 * v->split, 1);
 }
 
@@ -188,7 +189,7 @@ static void sinh_nodes(const view *v, const stretch *x, double h, double centre,
         double low_c = x->d * (even_c - odd_c), high_c = x->d * (even_c + odd_c);
         p->mu[j] = m + low;
         p->mu[j + HALF] = m + high;
-        // Rounding can bring the difference 1 - mu_i below 0.
+        // Rounding can make the difference 1 - mu_i negative.
         double rest_low = x->m_rest - low, rest_high = x->m_rest - high;
         p->rest[j] = rest_low > 0 ? rest_low : 0;
         p->rest[j + HALF] = rest_high > 0 ? rest_high : 0;
@@ -381,7 +382,7 @@ static void add(const view *v, const panel *p, double e[HALF], double b[HALF], b
 typedef struct tiling {
     double from;     // e^x at the interval's lower end, where x is the integration variable
     double ratio;    // e^x at the interval's upper end over e^x at the lower end
-    double h, ahead; // half the length of a panel, and e^h
+    double h, ahead; // h: half the length of a panel; ahead: e^h
     int count;
 } tiling;
 
@@ -399,7 +400,7 @@ static void entry_set(entry *n, const kiln_model *model, double roughness, doubl
     n->near = (tiling){.from = 1, .ratio = 1 + v->split / v->pole};
     n->far = (tiling){.from = 1, .ratio = 1};
     if (v->alpha > 0.7)
-        return; // even_nodes covers the second interval
+        return; // the function even_nodes computes the second interval for this alpha
     n->x.m_rest = ((1 - nov) - v->alpha2 * (1 + nov)) / v->s;
     n->x.ahead = 2 * v->alpha2 * nov / v->s;
     double d = 2 * v->alpha * v->sine / v->s;
@@ -457,8 +458,8 @@ static void mirror(const view *v, double out[2])
     out[1] = out[0] * (c * c) * (c * c) * c;
 }
 
-// The entries are prepared in blocks, so that the processor overlaps their logarithms and
-// exponentials.
+// The entries (cosines of the view) are prepared in blocks, so that the processor overlaps the
+// computation of their logarithms and exponentials.
 void KI_ROW(const kiln_model *model, double roughness, const double *nov, int count, bool split,
             double *out)
 {

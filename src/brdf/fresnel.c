@@ -28,7 +28,7 @@ double ki_fresnel_dielectric(double ior, double c)
     double contrast = (1 - ior) * (1 + ior), s2 = (1 - c) * (1 + c);
     double g2 = c * c - contrast;
     if (!(g2 > 0))
-        return contrast > 0; // 1 for total reflection; 0 for ior = 1 at c = 0
+        return contrast > 0; // F is 1 for total reflection, and 0 for ior = 1 at c = 0
     double g = sqrt(g2), r = contrast / ((c + g) * (c + g)), p = (c * g - s2) / (c * g + s2);
     double f = r * r * (1 + p * p) / 2;
     return f < 1 ? f : 1;
@@ -153,7 +153,8 @@ typedef struct average {
     double n, k, kink, end, node[NODES], weight[NODES];
 } average;
 
-// The part of the integral between two values of t, by one Gauss-Legendre rule.
+// Returns the part of the integral between two values of the substitution's variable t, by one
+// Gauss-Legendre rule.
 static double panel(const average *f, double from, double to)
 {
     double sum = 0, half = (to - from) / 2, length = f->end - f->kink;

@@ -15,8 +15,8 @@ double ki_brdf_d(kiln_d d, double roughness, double noh)
         return ki_ggx_d(alpha, noh);
     if (!(alpha > 0))
         return noh < 1 ? 0 : HUGE_VAL;
-    // At smaller cosines the denominator's cos^4 underflows. D is 0 there: its exponential
-    // underflows at far larger cosines.
+    // At smaller cosines the denominator of D, which contains cos^4, underflows. D is 0 there,
+    // since its exponential underflows at far larger cosines already.
     return noh > 1e-70 ? ki_beckmann_d(alpha, noh) : 0;
 }
 

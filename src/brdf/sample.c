@@ -38,8 +38,8 @@ void ki_sample_visible(double alpha, const double v[3], const double xi[2], doub
 {
     double x = alpha * v[0], y = alpha * v[1], z = v[2];
     double flat = x * x + y * y, length = sqrt(flat + z * z);
-    double one = z >= 0 ? 1 + z / length : flat / (length * (length - z)); // 1 + v.z of the
-                                                                           // stretched v
+    // 1 + z, where z is the component of the stretched unit vector v along the normal
+    double one = z >= 0 ? 1 + z / length : flat / (length * (length - z));
     double t = xi[1] * one, sine = sqrt(t * (2 - t)), sin_phi, cos_phi;
     ki_sincos(2 * KI_PI * xi[0], &sin_phi, &cos_phi);
     h[0] = alpha * (sine * cos_phi + x / length);

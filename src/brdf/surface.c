@@ -73,7 +73,8 @@ static void build_row(void *data, int row)
 static void choose_degrees(ki_surface *surface)
 {
     surface->quartic = surface->model.g == KILN_G_SMITH;
-    surface->columns = surface->quartic ? 46 : 34; // even, as surface.inl requires
+    // the number of columns is even, as surface.inl requires
+    surface->columns = surface->quartic ? 46 : 34;
     surface->rows = 18;
     if (surface->model.g == KILN_G_SCHLICK_TEXT) {
         surface->columns = 20;

@@ -13,7 +13,8 @@ void KI_SURFACE_ROW(const ki_surface *surface, const double *coefficient, double
 {
     for (int from = 0; from < count; from += BLOCK) {
         double x[BLOCK] = {0}, b1[BLOCK], b2[BLOCK] = {0}, sum[BLOCK];
-        int n = ki_min(BLOCK, count - from), top = surface->columns - 1; // the highest degree, odd
+        // top: the highest degree of the series, which is odd
+        int n = ki_min(BLOCK, count - from), top = surface->columns - 1;
         memcpy(x, nov + from, (size_t)n * sizeof *x);
         for (int i = 0; i < BLOCK; i++)
             x[i] = sqrt(x[i] * (1 + scale) / (x[i] + scale));
@@ -21,7 +22,7 @@ void KI_SURFACE_ROW(const ki_surface *surface, const double *coefficient, double
             for (int i = 0; i < BLOCK; i++)
                 x[i] = sqrt(x[i]);
         for (int i = 0; i < BLOCK; i++) {
-            x[i] = 4 * x[i] - 2; // twice the Chebyshev argument 2 u - 1
+            x[i] = 4 * x[i] - 2; // twice the argument 2 u - 1 of the Chebyshev polynomials
             b1[i] = coefficient[top];
         }
         for (int k = top - 1; k > 1; k -= 2) {

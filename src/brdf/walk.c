@@ -40,7 +40,7 @@ static double stretched(double alpha, double sine, double c)
 ki_ray ki_walk_enter(double alpha, double nov, double xi)
 {
     ki_ray ray = {.sine = sqrt((1 - nov) * (1 + nov)), .cosine = -nov, .inside = 1};
-    // 1 / (1 + Lambda) = 2 nov / (nov + stretched).
+    // The mean depth of the first microfacet is 1 / (1 + Lambda) = 2 nov / (nov + stretched).
     ray.depth = -ki_log(1 - xi) * (2 * nov / (nov + stretched(alpha, ray.sine, nov)));
     return ray;
 }
@@ -67,7 +67,8 @@ double ki_walk_on(double alpha, double xi, ki_ray *ray)
     double lambda = alpha * alpha * (ray->sine * ray->sine) / (2 * c * (root + c));
     double share = ki_exp(-lambda * ray->depth), leaves = ray->inside * share;
     if (ray->inside - leaves > TAIL) {
-        // The depth of the ray's next microfacet, under the condition that the ray does not leave.
+        // Moves the ray to the depth of its next microfacet, under the condition that the ray does
+        // not leave.
         ray->depth += ki_log(1 - xi * (1 - share)) / lambda;
         ray->inside -= leaves;
     } else if (xi < 1 - share) {
@@ -188,7 +189,7 @@ void ki_walk_albedo(const kiln_walk_def *def, double roughness, double nov, kiln
 {
     *walk = (kiln_walk){0};
     double alpha = roughness * roughness, squares = 0, sums[REPLICATES];
-    if (!(alpha > 1e-100)) { // a mirror reflects once
+    if (!(alpha > 1e-100)) { // a surface so smooth is a mirror, which reflects light once
         walk->albedo = walk->bounce[0] = fresnel(def, nov);
         return;
     }

@@ -125,7 +125,7 @@ kiln_result ki_map_allocate(kiln_context *context, kiln_map *map, kiln_error *er
 
 kiln_result ki_image_allocate(kiln_context *context, kiln_image *image, kiln_error *error)
 {
-    // Longest side: six faces of the largest cube, one below the other.
+    // Greatest length of a side in texels: six faces of the largest cube, one below the other.
     enum { LIMIT = 6 * KILN_MAX_SIZE };
     kiln_image made = *image;
     *image = (kiln_image){0};
@@ -232,7 +232,7 @@ void kiln_map_mirror(kiln_map *map)
         size_t row = (size_t)width * 3;
         int done = 0;
         if (map->shape == KILN_SHAPE_CUBE) {
-            // +X and -X change places, and each is mirrored left to right.
+            // The faces +X and -X change places, and each of the two is mirrored left to right.
             float *other = texel + (size_t)n * row;
             for (int y = 0; y < n; y++)
                 for (int x = 0; x < n; x++)

@@ -25,7 +25,7 @@ enum { STRIPS = 64 }; // number of strips of rows, each of which is a task
 
 typedef struct counts {
     size_t infinite, nan, negative;
-    size_t bad; // texels that are infinite or not a number
+    size_t bad; // number of texels that are infinite or not a number
 } counts;
 
 typedef struct survey {
@@ -53,7 +53,8 @@ static bool is_plain(const float *values, size_t count)
     for (size_t i = 0; i < count; i++) {
         uint32_t bits;
         memcpy(&bits, &values[i], sizeof bits);
-        any |= bits | (bits + (1U << 23)); // infinity and not-a-number carry into the sign
+        // the sum's sign bit is set for infinity and not-a-number
+        any |= bits | (bits + (1U << 23));
     }
     return !(any >> 31);
 }
@@ -69,7 +70,7 @@ static void survey_texel(float rgb[3], counts *found)
             rgb[c] = NAN;
             nan = true;
         } else if (rgb[c] == 0) {
-            rgb[c] = 0; // which may have been minus zero
+            rgb[c] = 0; // the value may have been minus zero
         }
         negative |= rgb[c] < 0;
     }
@@ -96,7 +97,8 @@ static void survey_strip(void *data, int index)
 
 // ------------------------------------------------------------------------------------------- holes
 
-// What is known about a texel while holes are filled.
+// State of a texel while holes are filled: its value is known, is unknown, or is unknown and the
+// texel is listed.
 enum { GOOD, BAD, LISTED };
 
 typedef struct holes {

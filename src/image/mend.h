@@ -6,11 +6,13 @@
 
 /// Replaces in all levels of a map infinite values by 65504, values that are not a number or minus
 /// infinity by the mean of the neighbouring texels that have numbers, and minus zero by zero; and
-/// does with values below zero what `negative` says. Adds to the counts of *report. Fails if a level
-/// has no texel whose values are all finite. `name` appears in error messages. The time is proportional to the number of texels.
+/// does with values below zero what `negative` says. Adds to the counts of *report. Fails if a
+/// level has no texel whose values are all finite. `name` appears in error messages. The time is
+/// proportional to the number of texels.
 kiln_result ki_map_mend(kiln_context *context, const char *name, kiln_negative negative,
                         kiln_map *map, kiln_load_report *report, kiln_error *error);
-/// Does the same for a flat picture of three channels, and keeps its values below zero.
+/// Mends a flat picture of three channels as ki_map_mend mends a map, and keeps its values below
+/// zero.
 kiln_result ki_image_mend(kiln_context *context, const char *name, kiln_image *image,
                           kiln_error *error);
 

@@ -45,7 +45,8 @@ static inline int32_t small_float(int32_t bits, int m)
 // Converts a small float without sign, of 5 exponent bits and `m` mantissa bits, to a float.
 static inline float large_float(int32_t bits, int m)
 {
-    int32_t unit = (127 + 9 - m) << 23; // float whose unit in the last place is 2^(-14-m)
+    // bits of the float whose unit in the last place is 2^(-14-m)
+    int32_t unit = (127 + 9 - m) << 23;
     float low = float_of(bits + unit) - float_of(unit);
     int32_t high = (bits << (23 - m)) + (bits >> m == 31 ? 224 << 23 : 112 << 23);
     return bits >> m == 0 ? low : float_of(high);
@@ -157,7 +158,7 @@ void ki_pack_rgba16f(const float *rgb, size_t count, uint16_t *rgba)
         for (size_t i = 0; i < n; i++) {
             uint16_t texel[4];
             memcpy(texel, half + 3 * i, sizeof texel);
-            texel[3] = 0x3c00; // 1 as a half
+            texel[3] = 0x3c00; // the half with the value 1
             memcpy(rgba + 4 * i, texel, sizeof texel);
         }
         rgb += 3 * n;
@@ -166,7 +167,8 @@ void ki_pack_rgba16f(const float *rgb, size_t count, uint16_t *rgba)
     }
 }
 
-// The transfer functions of sRGB, IEC 61966-2-1.
+// The next two functions convert between sRGB values and linear values by the transfer functions of
+// IEC 61966-2-1.
 float ki_linear_from_srgb(float value)
 {
     double v = (double)value;

@@ -17,16 +17,18 @@ enum {
 typedef enum ki_resample_method {
     /// from a panorama to a cube or octahedron: sums the texels under each stencil
     KI_RESAMPLE_GATHER,
-    KI_RESAMPLE_SCATTER,   ///< cube or octahedron to panorama
-    KI_RESAMPLE_SEPARABLE, ///< panorama to panorama
-    KI_RESAMPLE_FACES,     ///< cube to cube of another size, by quarter turns
-    KI_RESAMPLE_SUBSAMPLE  ///< all other conversions, by samples within each texel
+    /// from a cube or octahedron to a panorama: adds each texel to the texels under its stencil
+    KI_RESAMPLE_SCATTER,
+    KI_RESAMPLE_SEPARABLE, ///< from a panorama to a panorama: separable weights of columns and rows
+    /// from a cube to a cube of another size, turned by quarter turns: rectangles on faces
+    KI_RESAMPLE_FACES,
+    KI_RESAMPLE_SUBSAMPLE ///< all other conversions, by samples within each texel
 } ki_resample_method;
 
 /// The range of source columns or rows that a target column or row overlaps.
 typedef struct ki_resample_span {
     int first, count;
-    size_t weight; // index of the first weight
+    size_t weight; // index in `weights` of the weight of the first column or row
 } ki_resample_span;
 
 struct ki_resample_plan {

@@ -38,7 +38,8 @@ static int from_middle(int sign, int k, int half)
 static ptrdiff_t quarter_texel(ki_stencil_kind kind, int quarter, bool flip, int p, int q, int half)
 {
     if (flip && kind != KI_STENCIL_TOP) {
-        // The lower half of an octahedron is folded outwards.
+        // The lower half of an octahedron is folded outwards, which swaps p and q and counts them
+        // from the border.
         int swap = p;
         p = half - 1 - q;
         q = half - 1 - swap;

@@ -73,7 +73,7 @@ typedef struct builder {
     // Cosine and sine of phi at the borders between columns, from first_border on.
     const double *cosine, *sine;
     int first_border, end_border;
-    bool small; // columns are at most 45 degrees wide
+    bool small; // true: the columns of the panorama are at most 45 degrees wide
     ki_stencil_chunk *chunk;
     double *area, *width; // areas and widths of the box of texels that is being filled
     size_t box_room;
@@ -196,7 +196,7 @@ static void trace_rows(const builder *b, trace *arc, const circle *on, const nod
     for (int j = north; j <= south; j++) {
         double next = 0;
         if (j < south) {
-            // The node where the arc crosses the row's southern border.
+            // Computes the node at which the arc crosses the southern border of row j.
             double c = b->cotangent[j + 1], s2 = on->kappa2 - c * c;
             double s = copysign(s2 > 0 ? sqrt(s2) : 0, side);
             node cut = {(a_ * c - b_ * s) / on->kappa2, (b_ * c + a_ * s) / on->kappa2, s,
@@ -257,7 +257,9 @@ static void trace_arc(const builder *b, const corner *from, const corner *to, tr
     for (;;) {
         bool last = column >= to->column;
         if (last && column > from->column && to->sine * at.cosine - to->cosine * at.sine < 1e-14) {
-            column--; // the corner lies on the border of its column
+            // the corner lies on the border of its column, so that the arc ends in the column
+            // before
+            column--;
             break;
         }
         int border = column + 1 - b->first_border;

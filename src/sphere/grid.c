@@ -4,7 +4,8 @@
 
 #include <math.h>
 
-// Unknowns of the linear system: the interpolation weights and the multiplier of the constraint.
+// Number of unknowns of the linear system: the interpolation weights, and the Lagrange multiplier
+// of the constraint that the weights sum to 1.
 enum { UNKNOWNS = KI_TAPS + 1 };
 
 // Solves a x = b in place by elimination with partial pivoting.
@@ -42,7 +43,8 @@ static void solve(double a[UNKNOWNS][UNKNOWNS], double b[UNKNOWNS])
 // sum_j r(x_i - x_j) w_j = r(x_i - x) (Wiener's filter). Here the constraint sum w = 1 is added.
 void ki_taps_design(double step, const double *density, int degree, double *taps)
 {
-    // The density is smooth in l, so that every stride-th degree represents its neighbours.
+    // The spectral density is smooth in the degree l, so that every stride-th degree represents its
+    // neighbours.
     int stride = 1 + degree / 64;
     double total = 0, apart[KI_TAPS] = {0};
     for (int l = 0; l <= degree; l += stride) {
@@ -58,8 +60,8 @@ void ki_taps_design(double step, const double *density, int degree, double *taps
             a[i][KI_TAPS] = a[KI_TAPS][i] = 1;
         }
         a[KI_TAPS][KI_TAPS] = 0;
-        // cos(l x) by its recurrence in l. The recurrence errs by about 1e-13, far less than the
-        // interpolation itself.
+        // Computes cos(l x) by its recurrence in l, whose error is about 1e-13, far below the error
+        // of the interpolation itself.
         double twice[KI_TAPS], now[KI_TAPS], before[KI_TAPS];
         for (int i = 0; i < KI_TAPS; i++) {
             double c = ki_cos((fraction - (i - 3)) * step * stride);
@@ -81,7 +83,7 @@ void ki_taps_design(double step, const double *density, int degree, double *taps
         double sum = 0;
         for (int i = 0; i < KI_TAPS; i++)
             sum += b[i];
-        // The weights for the fraction 1 - t are those for t in reverse order.
+        // The interpolation weights for the fraction 1 - t are the weights for t in reverse order.
         for (int i = 0; i < KI_TAPS; i++)
             taps[(KI_TAP_STEPS - n) * KI_TAPS + KI_TAPS - 1 - i] = b[i] / sum;
         for (int i = 0; i < KI_TAPS; i++)

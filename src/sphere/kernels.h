@@ -17,14 +17,17 @@ enum {
     // Number of weights of the interpolation between latitude rings, and between the points of a
     // ring.
     KI_TAPS = 8,
-    KI_TAP_STEPS = 256, // number of intervals of the fraction in a table of interpolation weights
-    // Number of doubles in a table of interpolation weights, which has entries for both ends.
+    // number of intervals into which a table of interpolation weights divides the fraction 0 to 1
+    KI_TAP_STEPS = 256,
+    // Number of doubles in a table of interpolation weights, which has entries for the fractions 0
+    // and 1 too.
     KI_TAP_TABLE = KI_TAPS * (KI_TAP_STEPS + 1)
 };
 
 /// One pass of a Stockham FFT of mixed radix.
 typedef struct ki_fft_pass {
-    // `length` of a pass is its radix times the `length` of the next pass.
+    // The passes follow one another: `length` of a pass is its radix times the `length` of the next
+    // pass.
     int radix, length, stride;
     const double *twiddles; // twiddle factors, [length / radix][radix - 1][2]
     const double *roots;    // roots of unity, [radix][2], read by radices other than 2, 3, 4

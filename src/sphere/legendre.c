@@ -5,7 +5,8 @@
 
 #include <math.h>
 
-// Entries after the last degree, which the kernels read when they handle several degrees at once.
+// Number of entries after the last degree of a row, which the kernels read when they handle several
+// degrees at once.
 enum { ROW_PADDING = 8 };
 
 size_t ki_legendre_row(const ki_legendre *legendre, int m)
@@ -113,7 +114,8 @@ void ki_rings_destroy(ki_rings *rings)
 
 size_t ki_coefficient_row(int degree, int m)
 {
-    // Row k holds degree - k + 1 degrees, and one entry of padding if that number is odd.
+    // Row k of the coefficients holds degree - k + 1 degrees, and one entry of padding if that
+    // number is odd.
     size_t row = (size_t)m, length = (size_t)degree + 1;
     size_t full = row * length - row * (row - (row > 0)) / 2;
     size_t odd_rows = length % 2 ? (row + 1) / 2 : row / 2;

@@ -58,7 +58,7 @@ typedef struct run {
     const kiln_map *panorama;
     double rotation;
     ki_points points;
-    kiln_map *map; // level `index` of the map is written
+    kiln_map *map; // map whose level `index` is written
     int index;
     double *coefficients; // product of the spectrum and the lobe, rows as ki_coefficient_row says
     float *grid;
@@ -69,7 +69,8 @@ static bool design_taps(kiln_context *context, ki_level *level)
 {
     double *density = ki_alloc_raw(context, (size_t)level->degree + 1, sizeof *density);
     double *taps = ki_alloc_raw(context, KI_TAP_TABLE, sizeof *taps);
-    size_t count = KI_TAP_TABLE + KI_TAPS; // one entry more, since a fraction may round up to 1
+    // the table has one entry more than the fractions need, since a fraction may round up to 1
+    size_t count = KI_TAP_TABLE + KI_TAPS;
     level->ring_taps = ki_alloc(context, count, sizeof(float));
     level->column_taps = ki_alloc(context, count, sizeof(float));
     bool good = density && taps && level->ring_taps && level->column_taps;
@@ -133,7 +134,7 @@ static bool plan_places(kiln_context *context, ki_level *v, const kiln_map *map)
         sine = sqrt(d[0] * d[0] + d[2] * d[2]);
         p->theta = ki_atan2(sine, fabs(d[1]));
         p->sign = d[1] < 0 ? -1 : 1;
-        // Cosine and sine of phi, the azimuth as ki_panorama_direction defines it.
+        // Sets the cosine and sine of the azimuth phi, which ki_panorama_direction defines.
         p->cosine = sine > 0 ? d[2] / sine : 1;
         p->sine = sine > 0 ? -d[0] / sine : 0;
         p->texel = i;
@@ -298,7 +299,8 @@ static void place_orders(const ki_level *v, const double *orders, int vector, in
     }
 }
 
-// Synthesises all orders of the vectors 2 index and 2 index + 1, as [m][2][12][8].
+// Synthesises all orders of the two vectors of latitude rings 2 * index and 2 * index + 1, as
+// [m][2][12][8].
 static const double *synthesize_orders(const run *r, int worker, int index)
 {
     const ki_level *v = r->level;
@@ -333,7 +335,8 @@ static void fill_grid(void *data, int worker, int index)
             int vector = 2 * index + half;
             place_orders(v, orders + 96 * (size_t)half, vector, c, buffer);
             const double *z = v->kernels->fft(&v->fft, buffer, buffer + 16 * (size_t)length);
-            // The values are transposed in blocks that fit in the first-level cache.
+            // The rings' values are transposed to rows of the grid in blocks that fit in the
+            // first-level cache.
             float *plane = r->grid + (size_t)c * v->plane + TAP_OFFSET;
             for (int from = 0; from < length; from += 32)
                 for (int j = 0; j < KI_LANES; j++) {
@@ -421,8 +424,8 @@ static void find_positions(const ki_level *v, size_t first, int count, double *p
         memcpy(positions, v->positions + 2 * first, 2 * (size_t)count * sizeof *positions);
         return;
     }
-    // Quarter turns for +X -X +Y -Y +Z -Z: every side face is +X turned, and -Y is +Y turned upside
-    // down.
+    // Number of quarter turns for each of the faces +X -X +Y -Y +Z -Z: every side face is +X
+    // turned, and -Y is +Y turned upside down.
     static const int quarters[6] = {0, 2, 0, 0, 1, 3};
     bool side = face < 2 || face > 3, bottom = face == 3;
     size_t y = at / n, x = at % n, from = (bottom ? n - 1 - y : y) * n + x + (side ? 0 : n * n);

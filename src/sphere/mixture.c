@@ -31,7 +31,8 @@ void ki_mixture_create(ki_mixture *mixture, const double *alphas, const double *
             double part = (i % KI_MIXTURE_STEPS + k / 3.0) / KI_MIXTURE_STEPS;
             f[k] = exact(alphas, weights, integrals, count, start * (1 + part) - offset);
         }
-        // The coefficients of the cubic with the values f at t = 0, 1/3, 2/3, 1.
+        // Sets c to the coefficients of the cubic in t that has the values f at t = 0, 1/3, 2/3 and
+        // 1.
         c[0] = f[0];
         c[1] = -5.5 * f[0] + 9 * f[1] - 4.5 * f[2] + f[3];
         c[2] = 9 * f[0] - 22.5 * f[1] + 18 * f[2] - 4.5 * f[3];
@@ -46,8 +47,8 @@ double ki_mixture_weight(const ki_mixture *mixture, double one_minus_cos)
     double x = (one_minus_cos > 0 ? one_minus_cos : 0) + offset;
     uint64_t bits;
     memcpy(&bits, &x, sizeof bits);
-    // The exponent and the first bits of the mantissa choose the cubic; the remaining bits are its
-    // argument t.
+    // The exponent of the number and the first bits of its mantissa choose the cubic. The remaining
+    // bits of the mantissa are the cubic's argument t.
     uint64_t first = (uint64_t)(1023 + FIRST_OCTAVE) << STEP_BITS;
     const double *c = mixture->cubic[(bits >> (52 - STEP_BITS)) - first];
     double t = (double)(bits & ((UINT64_C(1) << (52 - STEP_BITS)) - 1)) * 0x1p-47;

@@ -64,7 +64,8 @@ static void divide(const ki_sun *sun, int size, int n, const double *nodes, cons
 static void lay_suns(const ki_zonal *zonal, int size, ki_sun_points *suns)
 {
     double texel = KI_PI / size, width = ki_lobe_width(&zonal->lobe);
-    // The Charlie lobe is steep where the horizon cuts through a texel, hence at least 4 cells.
+    // The Charlie lobe is steep where its horizon cuts through a texel. A sun's texel is therefore
+    // divided into at least 4 cells along each side.
     int least = zonal->lobe.kind == KILN_LOBE_CHARLIE ? 4 : 1;
     int n = 4 * (int)ki_clamp(ceil(texel / width / 0.5), least, MOST_CELLS);
     suns->near_count = n * n;

@@ -97,7 +97,8 @@ kiln_result ki_sh_project(const kiln_spectrum *spectrum, int bands, double rotat
                     q = next;
                 }
             }
-            // Direction of (u, theta) as in ki_panorama_direction, with cos theta given.
+            // Direction of the point at (u, theta) of a panorama, as ki_panorama_direction defines
+            // it, from cos theta.
             double y[25], s, c;
             ki_sincos(2 * KI_PI * u, &s, &c);
             ki_sh_basis((double[3]){-sine * s, nodes[j], sine * c}, y);

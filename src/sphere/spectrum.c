@@ -32,7 +32,8 @@ enum { ROW_NODES = 6 };
 static int weigh_row(double theta0, double theta1, int ring_count, const double *taps,
                      const double rule[2][ROW_NODES], int *first, double *weights)
 {
-    double scale = ring_count / KI_PI; // latitude ring k lies at scale * theta = k + 1/2
+    // in units in which latitude ring k lies at scale * theta = k + 1/2
+    double scale = ring_count / KI_PI;
     int low = (int)floor(theta0 * scale - 0.5), high = (int)floor(theta1 * scale - 0.5);
     *first = low - 3;
     int count = high - low + KI_TAPS;
@@ -192,7 +193,7 @@ struct ki_analysis_workspace {
     kiln_context *context;
     int row_count; // number of panorama rows added by earlier calls of ki_analysis_add_rows
     double *rings; // sums of each latitude ring, [ring][2 size][3]; NULL for whole panoramas
-    // Which texels are suns is decided by magnitudes, because texels may be negative.
+    // The magnitudes of texels decide which texels are suns, because texels may be negative.
     double *row_sums;   // magnitudes of the radiance summed over each row, [size][3]
     float *row_peaks;   // largest magnitude of each row, [size]
     double total[3];    // magnitudes times solid angle, summed over the rows so far
@@ -206,7 +207,7 @@ struct ki_analysis_workspace {
     size_t scratch_size;
 };
 
-// What the tasks of one call share.
+// The data of one call, which all its tasks share.
 typedef struct run {
     const ki_analysis *analysis;
     ki_analysis_workspace *work;
@@ -537,8 +538,8 @@ void ki_analysis_execute(const ki_analysis *analysis, ki_analysis_workspace *w, 
 kiln_result ki_spectrum_add_suns(const kiln_spectrum *spectrum, int degree, double *a,
                                  kiln_error *error)
 {
-    // Quadrature with Gauss nodes over the height of the sun's texel, and the exact integral over
-    // its width.
+    // The harmonics of a sun are integrated by Gauss quadrature over the height of the sun's texel,
+    // and exactly over its width.
     kiln_context *context = spectrum->context;
     ki_legendre legendre;
     if (!ki_legendre_create(context, degree, &legendre))

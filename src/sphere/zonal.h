@@ -14,14 +14,17 @@ typedef struct ki_zonal {
     double inner, outer;
 } ki_zonal;
 
-/// Returns the weight, including the step, at 1 - cos theta. See ki_lobe_weight.
+/// Returns the weight of the lobe times the step that leaves out the lobe's centre, at 1 - cos
+/// theta. See ki_lobe_weight.
 double ki_zonal_weight(const ki_zonal *zonal, double one_minus_cos);
-/// Returns the step's value alone at 1 - cos theta.
+/// Returns the value at 1 - cos theta of the step that leaves out the lobe's centre.
 double ki_zonal_step(const ki_zonal *zonal, double one_minus_cos);
 
 typedef struct ki_zonal_spectrum {
-    double integral; // integral over the sphere of the whole lobe's weight, without the step
-    // Degree at which the coefficients are cut off: where the tolerance is met, or the limit.
+    // integral over the sphere of the weight of the whole lobe, whose centre is not left out
+    double integral;
+    // Degree at which the coefficients are cut off: the degree at which the tolerance is met, or
+    // the greatest allowed degree.
     int degree;
     double rest; // L2 norm of the coefficients above `degree`, relative to the L2 norm of the lobe
     // Legendre coefficients k_l / integral, [limit + 1]; 0 beyond `degree`.

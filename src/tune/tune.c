@@ -44,11 +44,12 @@ typedef struct run {
     double rotation;
     bool rehearses; // see ki_tune_execute
     ki_mixtures mixtures;
-    double (*power)[3]; // power of each degree: [degree + 1] without the suns, then with the suns
-    kiln_map mirror;    // level 0 of `map`, and its means over ever larger texels (ki_make_mirrors)
-    kiln_map *map;      // the levels that are written
-    // The goal of each level that is solved for bilinear reads; empty for levels that are not
-    // solved.
+    // power of each degree of the spectrum: [degree + 1] without the suns, then with the suns
+    double (*power)[3];
+    kiln_map mirror; // level 0 of `map`, and its means over ever larger texels (ki_make_mirrors)
+    kiln_map *map;   // the levels that are written
+    // For each level that is solved for bilinear reads, the radiance that the level should show;
+    // empty for levels that are not solved.
     kiln_map targets[KILN_MAX_LEVELS];
 } run;
 
@@ -198,7 +199,7 @@ static kiln_result make_kernel(const run *r, int level, ki_zonal *zonal, ki_mixt
             spectrum->k[i] = 0;
     spectrum->degree = l;
     ki_mixture_create(mixture, alphas, weights, integrals, count);
-    // The kernel's width is that of its narrowest lobe with a considerable weight.
+    // The width of a level's kernel is taken from its narrowest lobe with a considerable weight.
     double narrowest = 1;
     for (int n = 0; n < count; n++)
         if (fabs(weights[n]) > 0.01)
@@ -250,7 +251,8 @@ static bool is_read(const ki_tune *t, int level)
 
 typedef struct correction {
     kiln_map *goal;
-    const kiln_map *map, *target; // texels of the next coarser level, and the goal of that level
+    // texels of the next coarser level, and the radiance that the level should show
+    const kiln_map *map, *target;
     int level;
     double factor;
 } correction;

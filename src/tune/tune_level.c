@@ -43,7 +43,8 @@ typedef struct adding {
     float weight;
 } adding;
 
-// Task of one thread: adds the weighted mirror to a row of a level.
+// Task of one thread: adds the unfiltered environment (the mirror), times its weight, to a row of a
+// level.
 static void add_row(void *data, int row)
 {
     const adding *a = data;

@@ -10,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-// Errors at roughnesses below this are not counted.
+// Smallest roughness at which errors count for the tuning.
 static const double least_roughness = 0.05;
 // Regularisation: the weight of the equation that a level equals its exact content, relative to the
 // weight of the roughnesses that read the level. Without that equation, a level that hardly any
@@ -21,7 +21,8 @@ static const double prior = 1e-3;
 static const double mirror_weight = 1e-3;
 // Weights of lobes smaller than this in absolute value are set to 0.
 static const double least_weight = 1e-5;
-// The weight of the second norm (away from suns) relative to the first norm (whole sphere).
+// The weight of errors away from suns (second norm) relative to errors on the whole sphere (first
+// norm).
 static const double far_weight = 30;
 // Errors away from suns are relative to the light there. This constant is added to the square of
 // that light, in units of the squared mean radiance. Without it, the errors of a black sky around a
@@ -62,9 +63,10 @@ void ki_nodes_place(ki_nodes *nodes, double (*level)(double, int, int), int leve
 typedef struct equations {
     double diagonal[KILN_MAX_LEVELS]; // A_ii of the matrix A of the normal equations (tune.h)
     double next[KILN_MAX_LEVELS];     // A_i,i+1 of the matrix A of the normal equations (tune.h)
-    // right-hand side of the equation of each level, as a mixture of lobes
+    // right-hand side of the equation of each level: the weight of each lobe in a mixture
     double right[KILN_MAX_LEVELS][KI_MOST_LOBES];
-    double weights[KILN_MAX_LEVELS][KI_MOST_LOBES]; // the solution: each level as a mixture
+    // the solution: the weight of each lobe in the mixture of each level
+    double weights[KILN_MAX_LEVELS][KI_MOST_LOBES];
 } equations;
 
 // Fills the normal equations. They are tridiagonal, because a roughness reads two neighbouring
@@ -94,7 +96,8 @@ static void set_up_equations(const ki_nodes *nodes, const double *w, double *cou
     }
     for (int i = 0; i <= last && coupling; i++)
         coupling[i] = e->diagonal[i] > 0 ? e->next[i] / e->diagonal[i] : 0;
-    // Levels that are not tuned are known, and their terms are moved to the right-hand sides.
+    // Levels that are not tuned are known, and their terms move to the right-hand sides of the
+    // equations.
     for (int i = 0; i <= last; i++) {
         if (nodes->tuned[i])
             continue;
@@ -127,7 +130,7 @@ static void solve_equations(const ki_nodes *nodes, equations *e)
         }
 }
 
-// Adds the component of a solution along one axis to `to`.
+// Adds the component of a solution along one eigenvector of the two norms (axis) to `to`.
 static void add_part(const ki_norms *n, size_t axis, const equations *e, int level_count,
                      ki_mixtures *to)
 {
@@ -169,7 +172,8 @@ kiln_result ki_mixtures_find(kiln_context *context, const ki_nodes *nodes,
         return result;
     memset(mixtures, 0, sizeof *mixtures);
     for (int k = 0; k < n.count; k++) {
-        // The weight of a roughness is 1 / |T_r|^2 in each norm, which makes errors relative.
+        // The weight of a roughness r is 1 / |T_r|^2 in each norm, where T_r is the exact result.
+        // The errors that are minimised are therefore relative errors.
         double w[KI_MOST_LOBES] = {0};
         equations e;
         for (int i = 0; i < n.count; i++)

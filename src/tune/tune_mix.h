@@ -19,7 +19,7 @@ enum { KI_LOBES = 4, KI_MOST_LOBES = KI_LOBES * KILN_MAX_LEVELS + 2 };
 typedef struct ki_nodes {
     int count, level_count;
     double roughness[KI_MOST_LOBES];
-    double width[KI_MOST_LOBES]; // weight of the node in the Gauss rule over roughness
+    double width[KI_MOST_LOBES]; // weight of the node in the Gauss quadrature over roughness
     double level[KI_MOST_LOBES]; // fractional level that the engine reads at the node's roughness
     ki_zonal_spectrum spectra[KI_MOST_LOBES];
     int nearest[KILN_MAX_LEVELS]; // node whose roughness is nearest to that of the exact level
@@ -27,7 +27,8 @@ typedef struct ki_nodes {
 } ki_nodes;
 
 typedef struct ki_mixtures {
-    double weights[KILN_MAX_LEVELS][KI_MOST_LOBES]; // weight of each lobe in each level
+    // weight of each lobe in the mixture of each level
+    double weights[KILN_MAX_LEVELS][KI_MOST_LOBES];
     /// A_i,i+1 / A_ii of the normal equations: the factor by which level i makes up for an error of
     /// level i + 1.
     double coupling[KILN_MAX_LEVELS];

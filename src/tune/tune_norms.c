@@ -14,8 +14,8 @@
 // The relative amount that is added to the diagonals of both matrices. The lobes are nearly
 // linearly dependent, and rounding could make the matrices indefinite.
 static const double ridge = 1e-8;
-// The angle around each sun that the second norm leaves out, in radians (8 degrees, a 200th of the
-// sphere).
+// The angle around each sun within which errors do not count in the second norm, in radians (8
+// degrees, a 200th of the sphere).
 static const double aside = 0.1415;
 
 // Adds to products[i][j] the sum over degrees l of power_l k_i,l k_j,l, divided by `mean`, for all
@@ -55,8 +55,8 @@ static kiln_result square_suns(kiln_context *context, const kiln_spectrum *spect
     kiln_result result = ki_points_create(spectrum, &any, 1, 0, &points, error);
     if (result != KILN_OK)
         return result;
-    // Each sun is added to the first group that is near enough. A group keeps the direction of its
-    // first sun.
+    // Suns near to each other form a group: each sun joins the first group that is near enough. A
+    // group keeps the direction of its first sun.
     double(*suns)[6] = ki_alloc(context, (size_t)spectrum->sun_count, sizeof *suns);
     int count = 0;
     for (int i = 0; i < spectrum->sun_count && suns; i++) {
@@ -117,7 +117,7 @@ static void factor(int count, double *a)
         }
 }
 
-// Replaces a symmetric matrix a by L^-1 a L^-T, where `lower` is L.
+// Replaces a symmetric matrix a by L^-1 a L^-T, where L is the lower triangular matrix `lower`.
 static void divide(int count, const double *lower, double *a)
 {
     for (int side = 0; side < 2; side++) {

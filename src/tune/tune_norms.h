@@ -11,16 +11,19 @@
 /// and orthogonal in the second, in which axis u has the squared length `ratio`.
 typedef struct ki_norms {
     int count; // number of lobes, which is also the number of axes
-    // squared first norm of the environment filtered by each lobe, over the squared mean radiance
+    // squared norm over the whole sphere of the environment filtered by each lobe, over the squared
+    // mean radiance
     double whole[KI_MOST_LOBES];
-    // squared second norm of the environment filtered by each lobe, over the squared mean radiance
+    // squared norm away from suns of the environment filtered by each lobe, over the squared mean
+    // radiance
     double away[KI_MOST_LOBES];
-    double ratio[KI_MOST_LOBES]; // eigenvalue of each axis
-    double *along;               // [axis][lobe]: the axis as a mixture of lobes
-    double *across;              // [axis][lobe]: scalar product of axis and lobe in the first norm
+    double ratio[KI_MOST_LOBES]; // generalised eigenvalue that belongs to each axis (eigenvector)
+    double *along; // [axis][lobe]: weight of each lobe in the mixture that an axis (eigenvector) is
+    // [axis][lobe]: scalar product over the whole sphere of an axis and a filtered environment
+    double *across;
 } ki_norms;
 
-/// Computes the norms for an environment. `power` is that of ki_mixtures_find.
+/// Computes the norms for an environment. `power` is described at ki_mixtures_find.
 kiln_result ki_norms_create(kiln_context *context, const ki_nodes *nodes,
                             const kiln_spectrum *spectrum, const double (*power)[3],
                             ki_norms *norms, kiln_error *error);

@@ -26,11 +26,14 @@ typedef struct reads {
     kiln_context *context;
     const kiln_map *goal;
     size_t texel_count, point_count;
-    tap (*taps)[4];     // the four taps of each point: the matrix B
-    uint32_t *start;    // [texels + 1], offsets into `reverse`
-    tap *reverse;       // the taps of each texel: the transpose of B
-    float *solid;       // solid angle of each point of a face, up to a factor
-    double (*shown)[3]; // W B x, or W times the residual, at each point
+    // the four texels that a bilinear read at each point uses, with their weights: the matrix B
+    tap (*taps)[4];
+    uint32_t *start; // [texels + 1], index in `reverse` of the first point that reads each texel
+    tap *reverse;    // the points that read each texel, with their weights: the transpose of B
+    float *solid;    // solid angle of each point of a face, up to a factor
+    // at each point, the interpolated value B x or the residual goal - B x, times the point's solid
+    // angle
+    double (*shown)[3];
     // For each texel: the solution, the residual, the search direction, the matrix times that
     // direction, the diagonal of the matrix, and whether the texel is fixed at 0.
     double (*x)[3], (*rest)[3], (*way)[3], (*product)[3], *diagonal;
@@ -164,9 +167,10 @@ static void begin(void *data, int index)
 
 typedef struct product {
     reads *r;
-    const double (*from)[3]; // a value for each texel
+    const double (*from)[3]; // one RGB value for each texel
     double (*to)[3];
-    bool rest; // true: computes B' W (goal - B from); false: computes B' W B from
+    // true: the residual B' W (goal - B from) is computed; false: the product B' W B from
+    bool rest;
 } product;
 
 // Task of one thread: sets `shown` at a chunk of points to W B x or to W (goal - B x), and sums W
@@ -225,7 +229,8 @@ typedef struct step {
     double length[3], turn[3];
 } step;
 
-// Task of one thread: moves a chunk of texels along the search direction and updates the residual.
+// Task of one thread: moves a chunk of texels along the search direction of the conjugate-gradient
+// method and updates their residual.
 static void take_step(void *data, int index)
 {
     const step *s = data;
@@ -240,7 +245,8 @@ static void take_step(void *data, int index)
         }
 }
 
-// Task of one thread: computes the next search direction of a chunk of texels.
+// Task of one thread: computes the next search direction of the conjugate-gradient method for a
+// chunk of texels.
 static void turn_way(void *data, int index)
 {
     const step *s = data;
