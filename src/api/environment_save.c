@@ -46,37 +46,40 @@ static kiln_result write_irradiance(ki_file_set *set, kiln_context *context,
                         error);
 }
 
-static kiln_result write_all(ki_file_set *set, kiln_context *context,
-                             const kiln_environment *environment, const char *path,
-                             const kiln_environment_save_def *def, kiln_environment_report *report,
-                             kiln_error *error)
+typedef struct environment_files {
+    kiln_context *context;
+    const kiln_environment *environment;
+    const char *path;
+    const kiln_environment_save_def *def;
+    kiln_environment_report report; // filled in by add_files
+} environment_files;
+
+static kiln_result add_files(ki_file_set *set, void *data, kiln_error *error)
 {
-    kiln_result result = write_levels(set, context, environment, path, def, &report->levels, error);
+    static const kiln_environment_save_def defaults = {0};
+    environment_files *e = data;
+    const kiln_environment *environment = e->environment;
+    const kiln_environment_save_def *def = e->def ? e->def : &defaults;
+    kiln_environment_report *report = &e->report;
+    kiln_result result =
+        write_levels(set, e->context, environment, e->path, def, &report->levels, error);
     if (result == KILN_OK && def->irradiance_path)
-        result = write_irradiance(set, context, environment, def, &report->irradiance, error);
+        result = write_irradiance(set, e->context, environment, def, &report->irradiance, error);
     if (result == KILN_OK && def->sh_path)
         result =
-            ki_sh_write(set, context, def->sh ? def->sh : &environment->sh, def->sh_path, error);
+            ki_sh_write(set, e->context, def->sh ? def->sh : &environment->sh, def->sh_path, error);
     report->file_count =
         report->levels.file_count + report->irradiance.file_count + (def->sh_path ? 1 : 0);
     return result;
 }
 
 // Writes an environment to files, or to memory if `files` is not NULL.
-static kiln_result write_environment(kiln_context *context, const kiln_environment *environment,
-                                     const char *path, const kiln_environment_save_def *def,
-                                     kiln_files *files, kiln_environment_report *report,
-                                     kiln_error *error)
+static kiln_result write_environment(environment_files *e, kiln_files *files,
+                                     kiln_environment_report *report, kiln_error *error)
 {
-    static const kiln_environment_save_def defaults = {0};
-    kiln_environment_report made = {0};
-    kiln_result result = KILN_OK;
-    ki_file_set *set = files ? ki_file_set_begin_in_memory(context) : ki_file_set_begin(context);
-    if (set)
-        result = write_all(set, context, environment, path, def ? def : &defaults, &made, error);
-    result = ki_file_set_end(context, set, result, files, error);
+    kiln_result result = ki_file_set_make(e->context, add_files, e, files, error);
     if (report)
-        *report = result == KILN_OK ? made : (kiln_environment_report){0};
+        *report = result == KILN_OK ? e->report : (kiln_environment_report){0};
     return result;
 }
 
@@ -84,7 +87,8 @@ kiln_result kiln_environment_save(kiln_context *context, const kiln_environment 
                                   const char *path, const kiln_environment_save_def *def,
                                   kiln_environment_report *report, kiln_error *error)
 {
-    return write_environment(context, environment, path, def, NULL, report, error);
+    environment_files e = {context, environment, path, def, {0}};
+    return write_environment(&e, NULL, report, error);
 }
 
 kiln_result kiln_environment_encode(kiln_context *context, const kiln_environment *environment,
@@ -92,6 +96,6 @@ kiln_result kiln_environment_encode(kiln_context *context, const kiln_environmen
                                     kiln_files *files, kiln_environment_report *report,
                                     kiln_error *error)
 {
-    *files = (kiln_files){0};
-    return write_environment(context, environment, name, def, files, report, error);
+    environment_files e = {context, environment, name, def, {0}};
+    return write_environment(&e, files, report, error);
 }

@@ -103,24 +103,6 @@ struct ki_file_set {
     set_entry *first, **last;
 };
 
-ki_file_set *ki_file_set_begin(kiln_context *context)
-{
-    ki_file_set *set = ki_alloc(context, 1, sizeof *set);
-    if (set) {
-        set->context = context;
-        set->last = &set->first;
-    }
-    return set;
-}
-
-ki_file_set *ki_file_set_begin_in_memory(kiln_context *context)
-{
-    ki_file_set *set = ki_file_set_begin(context);
-    if (set)
-        set->in_memory = true;
-    return set;
-}
-
 // Creates an entry that holds a copy of its path and `room` more bytes after the path.
 static set_entry *create_entry(ki_file_set *set, const char *path, size_t room, kiln_error *error)
 {
@@ -270,7 +252,8 @@ static void remove_folders(const ki_file_set *set)
             ki_os_remove_folder(entry->path);
 }
 
-kiln_result ki_file_set_commit(ki_file_set *set, kiln_error *error)
+// Renames all files of a set and frees the set, on failure too.
+static kiln_result commit(ki_file_set *set, kiln_error *error)
 {
     // The last report at which the caller can stop before any file is renamed.
     kiln_result result = KILN_OK;
@@ -292,10 +275,9 @@ kiln_result ki_file_set_commit(ki_file_set *set, kiln_error *error)
     return result;
 }
 
-void ki_file_set_abandon(ki_file_set *set)
+// Removes all temporary files and frees the set.
+static void abandon(ki_file_set *set)
 {
-    if (!set)
-        return;
     for (set_entry *entry = set->first; entry; entry = entry->next)
         if (entry->temporary)
             ki_os_remove(entry->temporary);
@@ -303,11 +285,11 @@ void ki_file_set_abandon(ki_file_set *set)
     free_entries(set);
 }
 
-// The entries of the set become the owners of the files; the list is a separate block.
-kiln_result ki_file_set_take(ki_file_set *set, kiln_files *files, kiln_error *error)
+// Moves the files of a set in memory to `files` and frees the set, on failure too. The entries of
+// the set become the owners of the files; the list is a separate block.
+static kiln_result take(ki_file_set *set, kiln_files *files, kiln_error *error)
 {
     size_t count = 0, at = 0;
-    *files = (kiln_files){0};
     for (const set_entry *entry = set->first; entry; entry = entry->next)
         count++;
     kiln_file *list = ki_alloc(set->context, count, sizeof *list);
@@ -323,16 +305,22 @@ kiln_result ki_file_set_take(ki_file_set *set, kiln_files *files, kiln_error *er
     return KILN_OK;
 }
 
-kiln_result ki_file_set_end(kiln_context *context, ki_file_set *set, kiln_result result,
-                            kiln_files *files, kiln_error *error)
+kiln_result ki_file_set_make(kiln_context *context, ki_add_files *add, void *data,
+                             kiln_files *files, kiln_error *error)
 {
+    ki_file_set *set = ki_alloc(context, 1, sizeof *set);
+    if (files)
+        *files = (kiln_files){0};
     if (!set)
         return ki_fail_memory(context, error, "a set of files", sizeof *set);
-    if (result != KILN_OK) {
-        ki_file_set_abandon(set);
-        return result;
-    }
-    return files ? ki_file_set_take(set, files, error) : ki_file_set_commit(set, error);
+    set->context = context;
+    set->in_memory = files != NULL;
+    set->last = &set->first;
+    kiln_result result = add(set, data, error);
+    if (result == KILN_OK)
+        return files ? take(set, files, error) : commit(set, error);
+    abandon(set);
+    return result;
 }
 
 void kiln_files_free(kiln_files *files)
@@ -345,16 +333,21 @@ void kiln_files_free(kiln_files *files)
     *files = (kiln_files){0};
 }
 
+typedef struct one_file {
+    const char *path;
+    const void *bytes;
+    size_t size;
+} one_file;
+
+static kiln_result add_one(ki_file_set *set, void *data, kiln_error *error)
+{
+    const one_file *file = data;
+    return ki_file_set_add(set, file->path, file->bytes, file->size, error);
+}
+
 kiln_result ki_file_write(kiln_context *context, const char *path, const void *bytes, size_t size,
                           kiln_error *error)
 {
-    ki_file_set *set = ki_file_set_begin(context);
-    if (!set)
-        return ki_fail_memory(context, error, path, sizeof *set);
-    kiln_result result = ki_file_set_add(set, path, bytes, size, error);
-    if (result != KILN_OK) {
-        ki_file_set_abandon(set);
-        return result;
-    }
-    return ki_file_set_commit(set, error);
+    one_file file = {path, bytes, size};
+    return ki_file_set_make(context, add_one, &file, NULL, error);
 }

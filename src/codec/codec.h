@@ -24,6 +24,9 @@ typedef struct ki_decoded {
 /// messages. `info`, if not NULL, is filled in. If `decoded` is NULL, the texels are not read.
 kiln_result ki_decode(kiln_context *context, const uint8_t *bytes, size_t size, const char *name,
                       ki_decoded *decoded, kiln_file_info *info, kiln_error *error);
+/// Reads a whole file and decodes it as ki_decode does.
+kiln_result ki_decode_file(kiln_context *context, const char *path, ki_decoded *decoded,
+                           kiln_file_info *info, kiln_error *error);
 void ki_decoded_free(ki_decoded *decoded);
 
 /// Decode a picture. `image`, `info` and `report` may be NULL; without `image` the texels are not

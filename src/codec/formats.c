@@ -301,6 +301,19 @@ kiln_result ki_decode(kiln_context *context, const uint8_t *bytes, size_t size, 
     return KILN_OK;
 }
 
+kiln_result ki_decode_file(kiln_context *context, const char *path, ki_decoded *decoded,
+                           kiln_file_info *info, kiln_error *error)
+{
+    uint8_t *bytes;
+    size_t size;
+    kiln_result result = ki_file_read(context, path, &bytes, &size, error);
+    if (result != KILN_OK)
+        return result;
+    result = ki_decode(context, bytes, size, path, decoded, info, error);
+    ki_free(bytes);
+    return result;
+}
+
 void ki_decoded_free(ki_decoded *decoded)
 {
     kiln_image_free(&decoded->image);

@@ -77,6 +77,17 @@ static kiln_result place(kiln_context *context, ki_decoded *decoded, const kiln_
     return result;
 }
 
+// Makes a map from a decoded file, mends the map, and frees what was decoded.
+static kiln_result take_map(kiln_context *context, ki_decoded *decoded, const kiln_file_info *info,
+                            const char *name, const kiln_load_def *def, kiln_map *map,
+                            kiln_error *error)
+{
+    kiln_result result = place(context, decoded, info, name, def->layout, map, error);
+    result = finish(context, name, def, result, &decoded->report, map, error);
+    ki_decoded_free(decoded);
+    return result;
+}
+
 kiln_result kiln_map_decode(kiln_context *context, const void *bytes, size_t size, const char *name,
                             const kiln_load_def *def, kiln_map *map, kiln_error *error)
 {
@@ -86,11 +97,8 @@ kiln_result kiln_map_decode(kiln_context *context, const void *bytes, size_t siz
     name = name ? name : "memory";
     if (result == KILN_OK)
         result = ki_decode(context, bytes, size, name, &decoded, &info, error);
-    if (result != KILN_OK)
-        return result;
-    result = place(context, &decoded, &info, name, def->layout, map, error);
-    result = finish(context, name, def, result, &decoded.report, map, error);
-    ki_decoded_free(&decoded);
+    if (result == KILN_OK)
+        result = take_map(context, &decoded, &info, name, def, map, error);
     return result;
 }
 
@@ -98,13 +106,7 @@ kiln_result kiln_map_decode(kiln_context *context, const void *bytes, size_t siz
 static kiln_result load_image(kiln_context *context, const char *path, ki_decoded *decoded,
                               kiln_file_info *info, kiln_error *error)
 {
-    uint8_t *bytes;
-    size_t size;
-    kiln_result result = ki_file_read(context, path, &bytes, &size, error);
-    if (result != KILN_OK)
-        return result;
-    result = ki_decode(context, bytes, size, path, decoded, info, error);
-    ki_free(bytes);
+    kiln_result result = ki_decode_file(context, path, decoded, info, error);
     if (result == KILN_OK && decoded->is_map) {
         ki_decoded_free(decoded);
         return ki_fail(error, KILN_ERROR_UNSUPPORTED, "%s: holds a cube, not a flat picture", path);
@@ -133,14 +135,7 @@ kiln_result kiln_file_describe(kiln_context *context, const char *path, kiln_fil
                                kiln_error *error)
 {
     memset(info, 0, sizeof *info);
-    uint8_t *bytes;
-    size_t size;
-    kiln_result result = ki_file_read(context, path, &bytes, &size, error);
-    if (result != KILN_OK)
-        return result;
-    result = ki_decode(context, bytes, size, path, NULL, info, error);
-    ki_free(bytes);
-    return result;
+    return ki_decode_file(context, path, NULL, info, error);
 }
 
 // -------------------------------------------------------------------------------------- six files
@@ -336,12 +331,10 @@ kiln_result kiln_map_load(kiln_context *context, const char *path, const kiln_lo
         free_paths(&paths);
         return result;
     }
-    uint8_t *bytes;
-    size_t size;
-    result = ki_file_read(context, path, &bytes, &size, error);
-    if (result != KILN_OK)
-        return result;
-    result = kiln_map_decode(context, bytes, size, path, def, map, error);
-    ki_free(bytes);
+    kiln_file_info info;
+    ki_decoded decoded;
+    result = ki_decode_file(context, path, &decoded, &info, error);
+    if (result == KILN_OK)
+        result = take_map(context, &decoded, &info, path, def, map, error);
     return result;
 }

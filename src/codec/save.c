@@ -263,35 +263,44 @@ kiln_result ki_map_write(ki_file_set *set, kiln_context *context, const kiln_map
                : write_pictures(set, context, map, path, def, &report->file_count, error);
 }
 
-// Writes a map to files, or to memory if `files` is not NULL.
-static kiln_result write_map(kiln_context *context, const kiln_map *map, const char *path,
-                             const kiln_save_def *def, kiln_files *files, kiln_save_report *report,
-                             kiln_error *error)
+kiln_result ki_save_files(kiln_context *context, ki_add_files *add, void *data, kiln_files *files,
+                          kiln_save_report *report, kiln_error *error)
 {
-    kiln_result result = KILN_OK;
-    ki_file_set *set = files ? ki_file_set_begin_in_memory(context) : ki_file_set_begin(context);
     if (report)
         *report = (kiln_save_report){0};
-    if (set)
-        result = ki_map_write(set, context, map, path, def, report, error);
-    result = ki_file_set_end(context, set, result, files, error);
+    kiln_result result = ki_file_set_make(context, add, data, files, error);
     if (report && result != KILN_OK)
         *report = (kiln_save_report){0};
     return result;
 }
 
+typedef struct map_files {
+    kiln_context *context;
+    const kiln_map *map;
+    const char *path;
+    const kiln_save_def *def;
+    kiln_save_report *report;
+} map_files;
+
+static kiln_result add_map(ki_file_set *set, void *data, kiln_error *error)
+{
+    const map_files *m = data;
+    return ki_map_write(set, m->context, m->map, m->path, m->def, m->report, error);
+}
+
 kiln_result kiln_map_save(kiln_context *context, const kiln_map *map, const char *path,
                           const kiln_save_def *def, kiln_save_report *report, kiln_error *error)
 {
-    return write_map(context, map, path, def, NULL, report, error);
+    map_files m = {context, map, path, def, report};
+    return ki_save_files(context, add_map, &m, NULL, report, error);
 }
 
 kiln_result kiln_map_encode(kiln_context *context, const kiln_map *map, const char *name,
                             const kiln_save_def *def, kiln_files *files, kiln_save_report *report,
                             kiln_error *error)
 {
-    *files = (kiln_files){0};
-    return write_map(context, map, name, def, files, report, error);
+    map_files m = {context, map, name, def, report};
+    return ki_save_files(context, add_map, &m, files, report, error);
 }
 
 kiln_result kiln_image_save(kiln_context *context, const kiln_image *image, const char *path,

@@ -99,12 +99,21 @@ kiln_result ki_sh_write(ki_file_set *set, kiln_context *context, const kiln_sh *
     return result;
 }
 
+typedef struct sh_file {
+    kiln_context *context;
+    const kiln_sh *sh;
+    const char *path;
+} sh_file;
+
+static kiln_result add_file(ki_file_set *set, void *data, kiln_error *error)
+{
+    const sh_file *file = data;
+    return ki_sh_write(set, file->context, file->sh, file->path, error);
+}
+
 kiln_result kiln_sh_save(kiln_context *context, const kiln_sh *sh, const char *path,
                          kiln_error *error)
 {
-    kiln_result result = KILN_OK;
-    ki_file_set *set = ki_file_set_begin(context);
-    if (set)
-        result = ki_sh_write(set, context, sh, path, error);
-    return ki_file_set_end(context, set, result, NULL, error);
+    sh_file file = {context, sh, path};
+    return ki_file_set_make(context, add_file, &file, NULL, error);
 }

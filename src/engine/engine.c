@@ -273,29 +273,29 @@ kiln_result ki_engine_write(ki_file_set *set, kiln_context *context, const kiln_
     return result;
 }
 
-// Writes an engine's files to disk, or to memory if `files` is not NULL.
-static kiln_result write_engine(kiln_context *context, const kiln_engine *engine,
-                                const kiln_map *map, const kiln_sh *sh, kiln_format format,
-                                const char *path, kiln_files *files, kiln_save_report *report,
-                                kiln_error *error)
+typedef struct engine_files {
+    kiln_context *context;
+    const kiln_engine *engine;
+    const kiln_map *map;
+    const kiln_sh *sh;
+    kiln_format format;
+    const char *path;
+    kiln_save_report *report;
+} engine_files;
+
+static kiln_result add_files(ki_file_set *set, void *data, kiln_error *error)
 {
-    kiln_result result = KILN_OK;
-    ki_file_set *set = files ? ki_file_set_begin_in_memory(context) : ki_file_set_begin(context);
-    if (report)
-        *report = (kiln_save_report){0};
-    if (set)
-        result = ki_engine_write(set, context, engine, map, sh, format, path, report, error);
-    result = ki_file_set_end(context, set, result, files, error);
-    if (report && result != KILN_OK)
-        *report = (kiln_save_report){0};
-    return result;
+    const engine_files *e = data;
+    return ki_engine_write(set, e->context, e->engine, e->map, e->sh, e->format, e->path, e->report,
+                           error);
 }
 
 kiln_result kiln_engine_save(kiln_context *context, const kiln_engine *engine, const kiln_map *map,
                              const kiln_sh *sh, kiln_format format, const char *path,
                              kiln_save_report *report, kiln_error *error)
 {
-    return write_engine(context, engine, map, sh, format, path, NULL, report, error);
+    engine_files e = {context, engine, map, sh, format, path, report};
+    return ki_save_files(context, add_files, &e, NULL, report, error);
 }
 
 kiln_result kiln_engine_encode(kiln_context *context, const kiln_engine *engine,
@@ -303,6 +303,6 @@ kiln_result kiln_engine_encode(kiln_context *context, const kiln_engine *engine,
                                const char *name, kiln_files *files, kiln_save_report *report,
                                kiln_error *error)
 {
-    *files = (kiln_files){0};
-    return write_engine(context, engine, map, sh, format, name, files, report, error);
+    engine_files e = {context, engine, map, sh, format, name, report};
+    return ki_save_files(context, add_files, &e, files, report, error);
 }

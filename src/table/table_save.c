@@ -319,15 +319,9 @@ kiln_result kiln_table_load(kiln_context *context, const char *path, kiln_table 
                             kiln_error *error)
 {
     *table = (kiln_table){0};
-    uint8_t *bytes;
-    size_t size;
-    kiln_result result = ki_file_read(context, path, &bytes, &size, error);
-    if (result != KILN_OK)
-        return result;
     ki_decoded decoded;
     kiln_file_info info;
-    result = ki_decode(context, bytes, size, path, &decoded, &info, error);
-    ki_free(bytes);
+    kiln_result result = ki_decode_file(context, path, &decoded, &info, error);
     if (result != KILN_OK)
         return result;
     result = take(path, &decoded, &info, table, error);

@@ -7,9 +7,9 @@
 enum { THREADS = 4, SIZE = 32, EXECUTIONS = 2 };
 
 // A mirror, a level that is interpolated on a grid, and a level that is evaluated at its texels.
-static const float roughness[] = {0, 0.6f, 0.9f};
+static const float exact_roughness[] = {0, 0.6f, 0.9f};
 static const kiln_prefilter_def exact = {
-    .size = 64, .level_count = 3, .roughness = roughness, .rotation = 20};
+    .size = 64, .level_count = 3, .roughness = exact_roughness, .rotation = 20};
 static const kiln_prefilter_def tuned = {.size = 4, .rotation = 20};
 
 typedef struct shared {
