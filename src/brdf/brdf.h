@@ -1,9 +1,10 @@
-// Microfacet theory as functions of plain numbers: normal distributions D, masking G, Fresnel
-// reflectances F and their averages, samplers, and compensations of the energy that the specular
-// lobe loses. Vectors are unit vectors in a frame whose +z axis is the surface normal n. The
-// arguments nov, nol, noh and voh are the cosines n.v, n.l, n.h and v.h of the view v, the light l
-// and the half vector h, each in [0, 1]. alpha is roughness squared. No function checks its
-// arguments.
+// Microfacet theory as functions of plain numbers, for the inner loops of integrals, tables and
+// random walks: normal distributions D, masking G, Fresnel reflectances F, and samplers. Vectors
+// are unit vectors in a frame whose +z axis is the surface normal n. The arguments nov, nol, noh
+// and voh are the cosines n.v, n.l, n.h and v.h of the view v, the light l and the half vector h,
+// each in [0, 1]. alpha is roughness squared. No function checks its arguments, which its callers
+// keep in range. Where a public function kiln_X computes the same as ki_X, all that kiln_X adds is
+// to clamp its arguments (arguments.h).
 #ifndef KI_BRDF_H
 #define KI_BRDF_H
 
@@ -47,11 +48,7 @@ double ki_smith_g1_over_cosine(double alpha, double nox);
 /// (1 - voh)^5, the factor of Schlick's Fresnel term F = f0 + (1 - f0) (1 - voh)^5 that depends on
 /// the angle.
 double ki_schlick_fresnel(double voh);
-/// Fresnel term of a metal with reflectance f0 at normal incidence and f82 at voh = 1 / 7, an angle
-/// of 82 degrees: Schlick's F - edge voh (1 - voh)^6, clamped to [0, 1]. edge = ki_f82_edge(f0,
-/// f82).
-double ki_fresnel_f82(double f0, double f82, double voh);
-/// The coefficient `edge` of ki_fresnel_f82.
+/// The coefficient `edge` of kiln_fresnel_f82, whose F is Schlick's F - edge voh (1 - voh)^6.
 double ki_f82_edge(double f0, double f82);
 /// Exact reflectance of a dielectric for unpolarised light. ior is n_transmitted / n_incident, and
 /// c is the cosine of the angle of incidence. Total reflection returns 1.
@@ -59,17 +56,6 @@ double ki_fresnel_dielectric(double ior, double c);
 /// Exact reflectance of a conductor of complex index n + i k for unpolarised light; c is the cosine
 /// of the angle of incidence.
 double ki_fresnel_conductor(double n, double k, double c);
-/// Sets n and k to the complex index of a metal with this reflectivity at normal incidence, below
-/// 1, and this edge tint in [0, 1]. Gulbrandsen 2014.
-void ki_gulbrandsen(double reflectivity, double edge_tint, double *n, double *k);
-/// The average F_avg = 2 int_0^1 F(mu) mu dmu of ki_fresnel_dielectric, to 1e-14.
-double ki_fresnel_dielectric_average(double ior);
-/// The average F_avg = 2 int_0^1 F(mu) mu dmu of ki_fresnel_conductor, to 1e-12.
-double ki_fresnel_conductor_average(double n, double k);
-/// Kulla and Conty's fit (2017) to ki_fresnel_dielectric_average.
-double ki_fresnel_dielectric_average_fit(double ior);
-/// Kulla and Conty's fit (2017) to F_avg of a conductor, in the parameters of ki_gulbrandsen.
-double ki_fresnel_conductor_average_fit(double reflectivity, double edge_tint);
 
 /// Maps xi, uniform in [0, 1)^2, to a direction l with the density (n.l) / pi per steradian.
 void ki_sample_cosine(const double xi[2], double l[3]);
@@ -79,17 +65,5 @@ void ki_beckmann_half_vector(double alpha, const double xi[2], double h[3]);
 /// Maps xi, uniform in [0, 1)^2, to a half vector h that v sees: its density per steradian is
 /// max(v.h, 0) D(h) / int max(v.h, 0) D(h) dh for GGX's D. v is any unit vector except (0, 0, -1).
 void ki_sample_visible(double alpha, const double v[3], const double xi[2], double h[3]);
-
-/// The lobe of Kulla and Conty 2017 that returns the light that the specular lobe loses for F = 1:
-/// (1 - e_o) (1 - e_i) / (pi (1 - e_average)), where e_o and e_i are the albedo E at the cosines of
-/// the view and of the light. The lobe is 0 where e_average is 1.
-double ki_kulla_conty(double e_o, double e_i, double e_average);
-/// The factor that colours ki_kulla_conty for a material whose average reflectance F_avg is f.
-double ki_kulla_conty_fresnel(kiln_f_add form, double f, double e_average);
-/// Turquin 2019: the factor 1 + f0 (1 - e) / e to the specular lobe, where e is the albedo E(nov).
-double ki_turquin(double f0, double e);
-/// Fdez-Aguera 2019, for image-based light: the factor `single` to prefiltered radiance and the
-/// factor `multiple` to irradiance / pi. a and b are A and B of the split sum at nov.
-void ki_fdez_aguera(double f0, double a, double b, double *single, double *multiple);
 
 #endif

@@ -64,11 +64,11 @@ double ki_fresnel_conductor(double n, double k, double c)
 // factored form
 //
 //     k^2 = (n_max - n) (n - 1 / n_max).
-void ki_gulbrandsen(double reflectivity, double edge_tint, double *n, double *k)
+void kiln_gulbrandsen(double reflectivity, double edge_tint, double *n, double *k)
 {
-    double root = sqrt(reflectivity);
-    double n_max = (1 + root) / (1 - root), n_min = (1 - reflectivity) / (1 + reflectivity);
-    double less = edge_tint * (n_max - n_min);
+    double r = ki_clamp(reflectivity, 0, 0.9999), root = sqrt(r);
+    double n_max = (1 + root) / (1 - root), n_min = (1 - r) / (1 + r);
+    double less = ki_unit(edge_tint) * (n_max - n_min);
     *n = n_max - less;
     double k2 = less * (*n - 1 / n_max);
     *k = sqrt(k2 > 0 ? k2 : 0);
@@ -82,14 +82,44 @@ double ki_f82_edge(double f0, double f82)
     return (f0 + (1 - f0) * power - f82) * 7 / (power * edge);
 }
 
-double ki_fresnel_f82(double f0, double f82, double voh)
+double kiln_fresnel_f82(double f0, double f82, double voh)
 {
+    f0 = ki_unit(f0);
+    f82 = ki_unit(f82);
+    voh = ki_unit(voh);
     double power = ki_schlick_fresnel(voh);
     double f = f0 + (1 - f0) * power - ki_f82_edge(f0, f82) * voh * (power * (1 - voh));
     return ki_clamp(f, 0, 1);
 }
 
+double kiln_fresnel_schlick(double f0, double voh)
+{
+    double f = ki_unit(f0);
+    return f + (1 - f) * ki_schlick_fresnel(ki_unit(voh));
+}
+
+double kiln_fresnel_dielectric(double ior, double voh)
+{
+    return ki_fresnel_dielectric(ki_index(ior), ki_unit(voh));
+}
+
+double kiln_fresnel_conductor(double n, double k, double voh)
+{
+    return ki_fresnel_conductor(ki_index(n), ki_index(k), ki_unit(voh));
+}
+
 // ---------------------------------------------------------------------------------------- averages
+
+double kiln_fresnel_f82_average(double f0, double f82)
+{
+    double f = ki_unit(f0);
+    return (1 + 20 * f) / 21 - ki_f82_edge(f, ki_unit(f82)) / 126;
+}
+
+double kiln_fresnel_schlick_average(double f0)
+{
+    return (1 + 20 * ki_unit(f0)) / 21;
+}
 
 // The term R(q) of Walsh's closed form (1926) for the average 2 int F mu dmu of a dielectric. For n
 // > 1 and q = (n - 1) / (n + 1) the average is
@@ -100,7 +130,7 @@ double ki_fresnel_f82(double f0, double f82, double voh)
 //
 // The terms of R have poles at q = 0 that cancel each other. For q < 0.1 the code therefore uses
 // R's Taylor series, whose first omitted term is 120 q^18. The argument p is 1 - q.
-static double walsh_rest(double n, double q, double p)
+static double walsh_term(double n, double q, double p)
 {
     static const double series[] = {1.0 / 3,
                                     11.0 / 3,
@@ -131,17 +161,18 @@ static double walsh_rest(double n, double q, double p)
            p * p * (u3 * u) * (1 + 6 * q2 + q2 * q2) * ki_log(n) / (8 * q2 * (d * d * d));
 }
 
-double ki_fresnel_dielectric_average(double ior)
+double kiln_fresnel_dielectric_average(double ior)
 {
+    ior = ki_index(ior);
     // By reciprocity the transmitted averages of the two sides are related: 1 - F_avg(ior) = ior^2
     // (1 - F_avg(1 / ior)).
     if (ior < 1)
-        return ior > 0 ? 1 - ior * ior * (1 - ki_fresnel_dielectric_average(1 / ior)) : 1;
+        return ior > 0 ? 1 - ior * ior * (1 - kiln_fresnel_dielectric_average(1 / ior)) : 1;
     double q = (ior - 1) / (ior + 1), p = 2 / (ior + 1), d = 1 + q * q; // p = 1 - q
     if (!(q > 0))
         return 0;
     double middle = 2 * (q * q) * ((1 + q) * (1 + q)) * ki_log(q) / (d * d * d);
-    return q * (2 + q) / 6 + middle + walsh_rest(ior, q, p);
+    return q * (2 + q) / 6 + middle + walsh_term(ior, q, p);
 }
 
 enum { NODES = 16, DEPTH = 40 };
@@ -178,8 +209,10 @@ static double refine(const average *f, double from, double to, double whole, boo
            refine(f, middle, to, right, agree, depth - 1);
 }
 
-double ki_fresnel_conductor_average(double n, double k)
+double kiln_fresnel_conductor_average(double n, double k)
 {
+    n = ki_index(n);
+    k = ki_index(k);
     average f = {.n = n, .k = k, .end = 1};
     ki_gauss_legendre(NODES, f.node, f.weight);
     // The kink is at the critical angle, where g^2 is imaginary. The kink is sharp for small k. For
@@ -195,75 +228,19 @@ double ki_fresnel_conductor_average(double n, double k)
 }
 
 // The two fits of Kulla and Conty 2017, one for ior > 1 and one for ior <= 1.
-double ki_fresnel_dielectric_average_fit(double ior)
+double kiln_fresnel_dielectric_average_fit(double ior)
 {
+    ior = ki_clamp(ior, 0, 400);
     if (ior > 1)
         return (ior - 1) / (4.08567 + 1.00071 * ior);
     return 0.997118 + ior * (0.1014 + ior * (-0.965241 - 0.130607 * ior));
 }
 
 // The polynomial of Kulla and Conty 2017, page 26, where r is the reflectivity and g the edge tint.
-double ki_fresnel_conductor_average_fit(double r, double g)
+double kiln_fresnel_conductor_average_fit(double reflectivity, double edge_tint)
 {
-    double r2 = r * r, g2 = g * g;
+    double r = ki_unit(reflectivity), g = ki_unit(edge_tint), r2 = r * r, g2 = g * g;
     return 0.087237 + 0.0230685 * g - 0.0864902 * g2 + 0.0774594 * (g2 * g) + 0.782654 * r -
            0.136432 * r2 + 0.278708 * (r2 * r) + 0.19744 * (r * g) + 0.0360605 * (g2 * r) -
            0.2586 * (g * r2);
-}
-
-double kiln_fresnel_schlick(double f0, double voh)
-{
-    double f = ki_unit(f0);
-    return f + (1 - f) * ki_schlick_fresnel(ki_unit(voh));
-}
-
-double kiln_fresnel_dielectric(double ior, double voh)
-{
-    return ki_fresnel_dielectric(ki_index(ior), ki_unit(voh));
-}
-
-double kiln_fresnel_conductor(double n, double k, double voh)
-{
-    return ki_fresnel_conductor(ki_index(n), ki_index(k), ki_unit(voh));
-}
-
-void kiln_gulbrandsen(double reflectivity, double edge_tint, double *n, double *k)
-{
-    ki_gulbrandsen(ki_clamp(reflectivity, 0, 0.9999), ki_unit(edge_tint), n, k);
-}
-
-double kiln_fresnel_f82(double f0, double f82, double voh)
-{
-    return ki_fresnel_f82(ki_unit(f0), ki_unit(f82), ki_unit(voh));
-}
-
-double kiln_fresnel_f82_average(double f0, double f82)
-{
-    double f = ki_unit(f0);
-    return (1 + 20 * f) / 21 - ki_f82_edge(f, ki_unit(f82)) / 126;
-}
-
-double kiln_fresnel_schlick_average(double f0)
-{
-    return (1 + 20 * ki_unit(f0)) / 21;
-}
-
-double kiln_fresnel_dielectric_average(double ior)
-{
-    return ki_fresnel_dielectric_average(ki_index(ior));
-}
-
-double kiln_fresnel_conductor_average(double n, double k)
-{
-    return ki_fresnel_conductor_average(ki_index(n), ki_index(k));
-}
-
-double kiln_fresnel_dielectric_average_fit(double ior)
-{
-    return ki_fresnel_dielectric_average_fit(ki_clamp(ior, 0, 400));
-}
-
-double kiln_fresnel_conductor_average_fit(double reflectivity, double edge_tint)
-{
-    return ki_fresnel_conductor_average_fit(ki_unit(reflectivity), ki_unit(edge_tint));
 }

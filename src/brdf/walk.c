@@ -185,20 +185,26 @@ static void add_bounce(void *data, int bounce, double voh, double leaves)
         s->throughput * leaves;
 }
 
-void ki_walk_albedo(const kiln_walk_def *def, double roughness, double nov, kiln_walk *walk)
+void kiln_walk_albedo(const kiln_walk_def *def, double roughness, double nov, kiln_walk *walk)
 {
+    kiln_walk_def d = *def;
+    d.f0 = ki_unit(d.f0);
+    d.n = ki_index(d.n);
+    d.k = ki_index(d.k);
+    nov = ki_unit(nov);
+    double clamped = ki_roughness(roughness), alpha = clamped * clamped, squares = 0,
+           sums[REPLICATES];
     *walk = (kiln_walk){0};
-    double alpha = roughness * roughness, squares = 0, sums[REPLICATES];
     if (!(alpha > 1e-100)) { // a surface so smooth is a mirror, which reflects light once
-        walk->albedo = walk->bounce[0] = fresnel(def, nov);
+        walk->albedo = walk->bounce[0] = fresnel(&d, nov);
         return;
     }
-    int bits = lattice_bits(def->path_count ? def->path_count : 65536);
+    int bits = lattice_bits(d.path_count ? d.path_count : 65536);
     double scale = 1.0 / (1 << bits);
     for (int r = 0; r < REPLICATES; r++) {
         lattice l;
-        series s = {.def = def};
-        make_lattice(def->seed, r, bits, &l);
+        series s = {.def = &d};
+        make_lattice(d.seed, r, bits, &l);
         for (uint32_t i = 0; i < 1u << bits; i++)
             walk_path(alpha, nov, &l, i, add_bounce, &s);
         sums[r] = 0;
@@ -262,13 +268,4 @@ void ki_walk_column(double roughness, double nov, const double *f0, int count, i
         double f = (f0[k] * ab[0] + ab[1]) / e;
         added[k] = missing * (c.weight > 0 ? c.sum[k] / c.weight : f * f);
     }
-}
-
-void kiln_walk_albedo(const kiln_walk_def *def, double roughness, double nov, kiln_walk *walk)
-{
-    kiln_walk_def d = *def;
-    d.f0 = ki_unit(d.f0);
-    d.n = ki_index(d.n);
-    d.k = ki_index(d.k);
-    ki_walk_albedo(&d, ki_roughness(roughness), ki_unit(nov), walk);
 }

@@ -38,7 +38,4 @@ enum { KI_WALK_COLUMN = 64 };
 void ki_walk_column(double roughness, double nov, const double *f0, int count, int path_count,
                     uint32_t seed, double *added);
 
-/// Implements kiln_walk_albedo for arguments in range: the albedo with every bounce of one surface.
-void ki_walk_albedo(const kiln_walk_def *def, double roughness, double nov, kiln_walk *walk);
-
 #endif

@@ -171,7 +171,7 @@ static void c_f82_edge(const double x[ARGUMENTS], double r[3])
 static void c_fresnel_f82(const double x[ARGUMENTS], double r[3])
 {
     for (int c = 0; c < 3; c++)
-        r[c] = ki_fresnel_f82(x[c], x[3 + c], x[6]);
+        r[c] = kiln_fresnel_f82(x[c], x[3 + c], x[6]);
 }
 
 static void c_fresnel_dielectric(const double x[ARGUMENTS], double r[3])
@@ -182,39 +182,39 @@ static void c_fresnel_dielectric(const double x[ARGUMENTS], double r[3])
 static void c_fresnel_conductor_average_fit(const double x[ARGUMENTS], double r[3])
 {
     for (int c = 0; c < 3; c++)
-        r[c] = ki_fresnel_conductor_average_fit(x[c], x[3 + c]);
+        r[c] = kiln_fresnel_conductor_average_fit(x[c], x[3 + c]);
 }
 
 static void c_kulla_conty(const double x[ARGUMENTS], double r[3])
 {
-    r[0] = ki_kulla_conty(x[0], x[1], x[2]);
-    r[1] = ki_kulla_conty(1 - x[0], 1 - x[1], 1 - x[2]);
+    r[0] = kiln_kulla_conty(x[0], x[1], x[2]);
+    r[1] = kiln_kulla_conty(1 - x[0], 1 - x[1], 1 - x[2]);
 }
 
 static void c_kulla_conty_fresnel(const double x[ARGUMENTS], double r[3])
 {
     for (int c = 0; c < 3; c++)
-        r[c] = ki_kulla_conty_fresnel((kiln_f_add)(int)x[6], x[c], x[3 + c]);
+        r[c] = kiln_kulla_conty_fresnel((kiln_f_add)(int)x[6], x[c], x[3 + c]);
 }
 
 static void c_turquin(const double x[ARGUMENTS], double r[3])
 {
     for (int c = 0; c < 3; c++)
-        r[c] = ki_turquin(x[c], x[3]);
+        r[c] = kiln_turquin(x[c], x[3]);
 }
 
 static void c_fdez_aguera_single(const double x[ARGUMENTS], double r[3])
 {
     double multiple;
     for (int c = 0; c < 3; c++)
-        ki_fdez_aguera(x[c], x[3], x[4], &r[c], &multiple);
+        kiln_fdez_aguera(x[c], x[3], x[4], &r[c], &multiple);
 }
 
 static void c_fdez_aguera_multiple(const double x[ARGUMENTS], double r[3])
 {
     double single;
     for (int c = 0; c < 3; c++)
-        ki_fdez_aguera(x[c], x[3], x[4], &single, &r[c]);
+        kiln_fdez_aguera(x[c], x[3], x[4], &single, &r[c]);
 }
 
 static void c_table_axis(const double x[ARGUMENTS], double r[3])
