@@ -25,7 +25,7 @@ plant src/sphere/a.inl '"brdf/ggx.h"'
 plant src/tune/a.c '"bake/prefilter.h"'
 plant src/table/a.c '"tune/tune.h"'
 plant src/course/a.c '"table/table.h"'
-plant src/bake/a.c '"api/x.h"'
+plant src/bake/a.c '"engine/x.h"'
 plant src/math/a.c '"math.h"'
 plant src/new/a.c '"base/base.h"'
 plant cli/a.c '"../src/base/base.h"'
@@ -34,7 +34,7 @@ plant examples/a.c '"base/base.h"'
 plant viewer/a.c '"brdf/brdf.h"'
 
 # And what is allowed passes.
-mkdir -p "$work/tree/src/api" "$work/tree/cli"
-printf '#include "codec/codec.h"\n#include <kiln/kiln.h>\n#include <stdio.h>\n' >"$work/tree/src/api/a.c"
+mkdir -p "$work/tree/src/engine" "$work/tree/cli"
+printf '#include "codec/codec.h"\n#include <kiln/kiln.h>\n#include <stdio.h>\n' >"$work/tree/src/engine/a.c"
 printf '#include "cli.h"\n#include <kiln/kiln.h>\n#include <kiln/brdf.h>\n#include <kiln/course.h>\n#include <sys/stat.h>\n' >"$work/tree/cli/a.c"
 "$root/scripts/layers.sh" "$work/tree"
