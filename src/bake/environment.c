@@ -329,7 +329,7 @@ static kiln_result check_target(const kiln_plan *p, const kiln_environment *envi
 static kiln_result take_source(const kiln_plan *p, plan_workspace *w, const kiln_map **source,
                                const kiln_map **panorama, kiln_error *error)
 {
-    static const ki_stage stage = {"converting", 0, 1};
+    static const ki_progress_range range = {"converting", 0, 1};
     if (w->changed.size) {
         memcpy(w->changed.level[0], (*source)->level[0],
                3 * sizeof(float) * kiln_map_texels(*source, 0));
@@ -343,9 +343,9 @@ static kiln_result take_source(const kiln_plan *p, plan_workspace *w, const kiln
         return KILN_OK;
     *panorama = &w->panorama;
     return ki_resample_execute(p->context, p->to_panorama, &w->prefilter.resampling,
-                               (*source)->level[0], w->panorama.level[0], &stage)
+                               (*source)->level[0], w->panorama.level[0], &range)
                ? KILN_OK
-               : ki_fail_cancelled(error, stage.name);
+               : ki_fail_cancelled(error, range.name);
 }
 
 static kiln_result execute_all(const kiln_plan *p, plan_workspace *w, const kiln_map *source,

@@ -221,16 +221,16 @@ void ki_prefilter_workspace_free(ki_prefilter_workspace *workspace)
 // after these levels.
 static kiln_result execute_level(const ki_prefilter *p, ki_prefilter_workspace *w,
                                  const kiln_map *panorama, const kiln_map *source, int index,
-                                 const ki_stage *stage, kiln_map *map, kiln_error *error)
+                                 const ki_progress_range *range, kiln_map *map, kiln_error *error)
 {
     const ki_resample_plan *mirror = p->mirrors[index];
     if (p->levels[index])
         return ki_level_execute(p->levels[index], &w->levels, w->spectrum, panorama,
-                                p->def.rotation, map, index, stage, error);
+                                p->def.rotation, map, index, range, error);
     const kiln_map *from = p->direct[index] ? source : panorama;
     if (mirror && !ki_resample_execute(w->context, mirror, &w->resampling, from->level[0],
-                                       map->level[index], stage))
-        return ki_fail_cancelled(error, stage->name);
+                                       map->level[index], range))
+        return ki_fail_cancelled(error, range->name);
     return KILN_OK;
 }
 
@@ -249,7 +249,7 @@ kiln_result ki_prefilter_execute(const ki_prefilter *p, ki_prefilter_workspace *
     for (int i = 0; i < p->def.level_count && result == KILN_OK; i++) {
         if (!ki_progress(w->context, stage, done))
             return ki_fail_cancelled(error, stage);
-        ki_stage part = {stage, done, done + (1 - done) / 2};
+        ki_progress_range part = {stage, done, done + (1 - done) / 2};
         result = execute_level(p, w, panorama, source, i, &part, map, error);
         map->roughness[i] = p->roughness[i];
         done = part.to;

@@ -191,9 +191,9 @@ static void fill_pairs(const ki_reference *r, const ray_sums *ray, const ki_row_
         double cc = p1 + q1 * ea[x], cd = p1 + q1 * eb[x];
         double da = high - slope * ca, db = high - slope * cb;
         double dc = high - slope * cc, dd = high - slope * cd;
-        double rest = a2 / ((da * db) * (dc * dd)); // one division for four quotients
-        double ra = rest * db * (dc * dd), rb = rest * da * (dc * dd);
-        double rc = rest * (da * db) * dd, rd = rest * (da * db) * dc;
+        double scale = a2 / ((da * db) * (dc * dd)); // one division for four quotients
+        double ra = scale * db * (dc * dd), rb = scale * da * (dc * dd);
+        double rc = scale * (da * db) * dd, rd = scale * (da * db) * dc;
         ca = ca > 0 ? ca : 0;
         cb = cb > 0 ? cb : 0;
         cc = cc > 0 ? cc : 0;
@@ -283,9 +283,9 @@ static bool means_suffice(const ki_reference *r, const ray_sums *ray, const ki_r
     double length = size / r->rule.pairs;
     *near = 2;
     if (r->rational) {
-        double rest = length * length - r->lobe_width * r->lobe_width;
-        if (rest > 0)
-            *near = ki_cos(ki_clamp(sqrt(rest) + size, 0, KI_PI));
+        double reach2 = length * length - r->lobe_width * r->lobe_width;
+        if (reach2 > 0)
+            *near = ki_cos(ki_clamp(sqrt(reach2) + size, 0, KI_PI));
     } else if (r->lobe.kind == KILN_LOBE_CUSTOM) {
         if (length > r->lobe_width)
             *near = ki_cos(ki_clamp(4 * length + size, 0, KI_PI));

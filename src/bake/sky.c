@@ -99,11 +99,11 @@ static void sun_radiance(double theta, double turbidity, double rgb[3])
 // zenith.
 static double disc_half_width(double sun_theta, double theta)
 {
-    double s = ki_sin(theta) * ki_sin(sun_theta), rest;
-    rest = ki_cos(ki_sun_radius) - ki_cos(theta) * ki_cos(sun_theta);
+    double s = ki_sin(theta) * ki_sin(sun_theta), numerator;
+    numerator = ki_cos(ki_sun_radius) - ki_cos(theta) * ki_cos(sun_theta);
     if (!(s > 1e-12))
-        return rest < 0 ? KI_PI : 0;
-    return ki_acos(ki_clamp(rest / s, -1, 1));
+        return numerator < 0 ? KI_PI : 0;
+    return ki_acos(ki_clamp(numerator / s, -1, 1));
 }
 
 // Circles of constant theta across the part of the disc between two angles from the zenith. They
@@ -232,8 +232,8 @@ static void radiance(const ki_sky *sky, const double height[3], const double dir
     for (int k = 0; k < 3; k++)
         value[k] = sky->zenith[k] * height[k] * perez_sun(sky->perez[k], gamma, cos_gamma);
     double luminance = value[0] * sky->fade, y = value[2] > 1e-3 ? value[2] : 1e-3;
-    double rest = 1 - value[1] - value[2];
-    double xyz[3] = {value[1] / y * luminance, luminance, rest > 0 ? rest / y * luminance : 0};
+    double z = 1 - value[1] - value[2];
+    double xyz[3] = {value[1] / y * luminance, luminance, z > 0 ? z / y * luminance : 0};
     rgb_from_xyz(xyz, rgb);
     into_gamut(luminance, rgb);
 }

@@ -111,15 +111,15 @@ bool ki_progress(kiln_context *context, const char *stage, double fraction);
 /// Returns false if the caller wants to stop.
 bool ki_go_on(kiln_context *context);
 /// The range of fractions that a part of the work covers in progress reports.
-typedef struct ki_stage {
+typedef struct ki_progress_range {
     const char *name;
     double from, to;
-} ki_stage;
-/// Runs tasks as ki_parallel_for does and reports progress meanwhile: within `stage`, or as
-/// ki_go_on if `stage` is NULL. Returns false if a report asked to stop; some tasks have then not
+} ki_progress_range;
+/// Runs tasks as ki_parallel_for does and reports progress meanwhile: within `range`, or as
+/// ki_go_on if `range` is NULL. Returns false if a report asked to stop; some tasks have then not
 /// run.
-bool ki_parallel_steps(kiln_context *context, const ki_stage *stage, int count, ki_task *task,
-                       void *data);
+bool ki_parallel_steps(kiln_context *context, const ki_progress_range *range, int count,
+                       ki_task *task, void *data);
 /// Fails with KILN_ERROR_CANCELLED and a message that names the stage.
 kiln_result ki_fail_cancelled(kiln_error *error, const char *stage);
 

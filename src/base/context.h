@@ -39,8 +39,8 @@ typedef struct ki_heap {
 struct kiln_context {
     kiln_context_def def;
     ki_heap *heap;
-    ki_scratch *scratch; // scratch of the plan execution that runs; NULL if no execution runs
-    ki_stage said;       // the last progress report, repeated by ki_go_on
+    ki_scratch *scratch;    // scratch of the plan execution that runs; NULL if no execution runs
+    ki_progress_range said; // the last progress report, repeated by ki_go_on
     ki_pool pool;
 };
 

@@ -3,7 +3,7 @@
 
 bool ki_progress(kiln_context *context, const char *stage, double fraction)
 {
-    context->said = (ki_stage){stage, fraction, fraction};
+    context->said = (ki_progress_range){stage, fraction, fraction};
     if (!context->def.progress)
         return true;
     // The callback may allocate from this context. Its memory must not come from the scratch of the
@@ -17,7 +17,7 @@ bool ki_progress(kiln_context *context, const char *stage, double fraction)
 
 bool ki_go_on(kiln_context *context)
 {
-    const ki_stage *said = &context->said;
+    const ki_progress_range *said = &context->said;
     return ki_progress(context, said->name ? said->name : "working", said->from);
 }
 

@@ -130,7 +130,7 @@ typedef struct steps {
     kiln_context *context;
     ki_task *task;
     void *data;
-    const ki_stage *stage;
+    const ki_progress_range *range;
     uintptr_t caller;
     int count, told;
     double asked; // time of the last report, in seconds
@@ -156,15 +156,15 @@ static void step(void *data, int index)
         return;
     s->told = (int)(part * REPORTS);
     s->asked = ki_os_seconds();
-    const ki_stage *at = s->stage;
+    const ki_progress_range *at = s->range;
     bool go_on = at ? ki_progress(s->context, at->name, at->from + part * (at->to - at->from))
                     : ki_go_on(s->context);
     if (!go_on)
         atomic_store(&s->stopped, true);
 }
 
-bool ki_parallel_steps(kiln_context *context, const ki_stage *stage, int count, ki_task *task,
-                       void *data)
+bool ki_parallel_steps(kiln_context *context, const ki_progress_range *range, int count,
+                       ki_task *task, void *data)
 {
     if (!context->def.progress || count < 2) {
         ki_parallel_for(context, count, task, data);
@@ -173,7 +173,7 @@ bool ki_parallel_steps(kiln_context *context, const ki_stage *stage, int count, 
     steps s = {.context = context,
                .task = task,
                .data = data,
-               .stage = stage,
+               .range = range,
                .caller = ki_os_this_thread(),
                .count = count,
                .asked = ki_os_seconds()};

@@ -12,28 +12,28 @@ size_t ki_bc6h_size(int width, int height)
     return columns * rows * KI_BC6H_BYTES;
 }
 
-typedef struct job {
+typedef struct block_rows {
     ki_bc6h_row *row;
     const float *rgb;
     int width, height, rows;
     uint8_t *bytes;
-} job;
+} block_rows;
 
 static void encode_row(void *data, int index)
 {
-    const job *j = data;
-    size_t picture = (size_t)(index / j->rows), y = (size_t)(index % j->rows);
-    size_t texels = (size_t)j->width * (size_t)j->height;
-    size_t size = ki_bc6h_size(j->width, j->height);
-    j->row(j->rgb + 3 * texels * picture, j->width, j->height, (int)y,
-           j->bytes + size * picture + size / (size_t)j->rows * y);
+    const block_rows *r = data;
+    size_t picture = (size_t)(index / r->rows), y = (size_t)(index % r->rows);
+    size_t texels = (size_t)r->width * (size_t)r->height;
+    size_t size = ki_bc6h_size(r->width, r->height);
+    r->row(r->rgb + 3 * texels * picture, r->width, r->height, (int)y,
+           r->bytes + size * picture + size / (size_t)r->rows * y);
 }
 
 bool ki_bc6h_encode(kiln_context *context, const float *rgb, int width, int height,
                     int picture_count, uint8_t *bytes)
 {
-    job j = {KI_FASTEST(context, ki_bc6h_row), rgb, width, height, (height + 3) / 4, bytes};
-    return ki_parallel_steps(context, NULL, j.rows * picture_count, encode_row, &j);
+    block_rows r = {KI_FASTEST(context, ki_bc6h_row), rgb, width, height, (height + 3) / 4, bytes};
+    return ki_parallel_steps(context, NULL, r.rows * picture_count, encode_row, &r);
 }
 
 // Decodes a block to 16 texels. Blocks of a reserved mode are black.

@@ -433,11 +433,11 @@ static void encode(const texels *t, uint8_t bytes[KI_BC6H_BYTES])
     static const uint8_t ones_modes[4] = {13, 12, 11, 10};
     static const uint8_t twos_modes[10] = {2, 3, 4, 0, 5, 6, 7, 8, 1, 9};
     candidate best = {.error = INFINITY};
-    float mask[TEXELS] = {0}, rest[TEXELS], left[PARTITIONS];
+    float mask[TEXELS] = {0}, unmasked[TEXELS], left[PARTITIONS];
     lines ends = {0};
     for (int i = 0; i < TEXELS; i++)
-        rest[i] = 1;
-    find_line(t, rest, ends.end[0]);
+        unmasked[i] = 1;
+    find_line(t, unmasked, ends.end[0]);
     try_modes(t, mask, &ends, ones_modes, 4, 0, &best);
     if (best.error > 0)
         rank(t, left);
@@ -450,8 +450,8 @@ static void encode(const texels *t, uint8_t bytes[KI_BC6H_BYTES])
         left[p] = INFINITY;
         read_mask(p, mask);
         for (int i = 0; i < TEXELS; i++)
-            rest[i] = 1 - mask[i];
-        find_line(t, rest, ends.end[0]);
+            unmasked[i] = 1 - mask[i];
+        find_line(t, unmasked, ends.end[0]);
         find_line(t, mask, ends.end[1]);
         try_modes(t, mask, &ends, twos_modes, 10, p, &best);
     }

@@ -53,12 +53,12 @@ void ki_components_pack(kiln_table_format format, const float *texels, size_t co
                     c < channels ? texels[(done + i) * (size_t)channels + (size_t)c]
                     : c == 3     ? 1
                                  : 0;
-        size_t numbers = n * (size_t)stored;
+        size_t value_count = n * (size_t)stored;
         if (format == KILN_TABLE_FORMAT_F32)
-            memcpy(bytes, values, numbers * sizeof *values);
+            memcpy(bytes, values, value_count * sizeof *values);
         else
-            pack(format, values, numbers, bytes);
-        bytes += numbers * (size_t)ki_component_bytes(format);
+            pack(format, values, value_count, bytes);
+        bytes += value_count * (size_t)ki_component_bytes(format);
     }
 }
 

@@ -357,7 +357,7 @@ static bool is_new_kind(const ki_deflater *d)
 
 // Compares the statistics, after every LOOK items. If the latest items are of a new kind, a block
 // ends before them.
-static void look(ki_deflater *d, int32_t before_recent)
+static void compare_statistics(ki_deflater *d, int32_t before_recent)
 {
     if (d->looked >= 4 * LOOK && is_new_kind(d))
         write_block(d, d->looked, before_recent, false);
@@ -507,7 +507,7 @@ static void compress(ki_deflater *d)
         else
             add(d, d->bytes[d->at], 1);
         if (d->count - d->looked >= LOOK) {
-            look(d, look_at);
+            compare_statistics(d, look_at);
             look_at = d->at;
         }
     }

@@ -58,9 +58,9 @@ static kiln_result read_resolution(hdr_file *f, const char *line, kiln_error *er
 {
     char sign[2], axis[2];
     int count[2];
-    char rest;
+    char trailing;
     if (sscanf(line, "%c%c %9d %c%c %9d%c", &sign[0], &axis[0], &count[0], &sign[1], &axis[1],
-               &count[1], &rest) != 6 ||
+               &count[1], &trailing) != 6 ||
         !((axis[0] == 'Y' && axis[1] == 'X') || (axis[0] == 'X' && axis[1] == 'Y')) ||
         (sign[0] != '-' && sign[0] != '+') || (sign[1] != '-' && sign[1] != '+'))
         return ki_fail(

@@ -114,7 +114,7 @@ typedef struct header {
 
 static kiln_result read_header(ki_reader *r, const char *name, header *h, kiln_error *error)
 {
-    uint32_t types[5], rest[4];
+    uint32_t types[5], counts[4];
     ki_read_bytes(r, sizeof magic);
     uint32_t order = ki_read_u32(r);
     for (int i = 0; i < 5; i++)
@@ -122,7 +122,7 @@ static kiln_result read_header(ki_reader *r, const char *name, header *h, kiln_e
     h->width = ki_read_u32(r);
     h->height = ki_read_u32(r);
     for (int i = 0; i < 3; i++) // the fields depth, array elements and faces
-        rest[i] = ki_read_u32(r);
+        counts[i] = ki_read_u32(r);
     h->level_count = ki_read_u32(r);
     h->pair_bytes = ki_read_u32(r);
     if (r->failed || order != ORDER)
@@ -131,11 +131,11 @@ static kiln_result read_header(ki_reader *r, const char *name, header *h, kiln_e
                : !memcmp(types, packed_types, sizeof types)
                    ? ki_pixel_format_of(KILN_FORMAT_B10G11R11)
                    : NULL;
-    if (!h->pixel || rest[0] || rest[1] || rest[2] != 6)
+    if (!h->pixel || counts[0] || counts[1] || counts[2] != 6)
         return ki_fail(error, KILN_ERROR_UNSUPPORTED,
                        "%s: is a KTX 1 file of type 0x%x, internal format 0x%x and %u faces; kiln "
                        "describes cubes of 16-bit floats and of floats with 11, 11 and 10 bits",
-                       name, types[0], types[3], rest[2]);
+                       name, types[0], types[3], counts[2]);
     h->level_count = h->level_count ? h->level_count : 1;
     if (h->width < 1 || h->width != h->height || h->width > KILN_MAX_SIZE ||
         h->level_count > KILN_MAX_LEVELS || h->width >> (h->level_count - 1) == 0)

@@ -138,8 +138,8 @@ static kiln_result fill_energy(kiln_context *context, kiln_assignment_method met
                               count * sizeof *r.cos_phi);
     for (size_t i = 0; i < count; i++)
         r.cos_phi[i] = ki_cos(2 * KI_PI * ki_radical_inverse((uint32_t)i));
-    ki_stage stage = {names[method], 0, 1};
-    bool whole = ki_parallel_steps(context, &stage, def->size, fill_row, &r);
+    ki_progress_range range = {names[method], 0, 1};
+    bool whole = ki_parallel_steps(context, &range, def->size, fill_row, &r);
     ki_free(r.cos_phi);
     return whole ? KILN_OK : ki_fail_cancelled(error, names[method]);
 }

@@ -5,9 +5,9 @@
 
 #include <math.h>
 
-// WANTED: floats of a sample in the first array, the wanted RGB and the weight. REST: floats of a
+// WANTED: floats of a sample in the first array, the wanted RGB and the weight. REMAINDER: floats of a
 // sample in the second array, the remainder of RGB.
-enum { WANTED = 4, REST = 3 };
+enum { WANTED = 4, REMAINDER = 3 };
 
 static ptrdiff_t samples_across(const ki_picture *p)
 {
@@ -21,10 +21,10 @@ static ptrdiff_t samples_down(const ki_picture *p)
 
 size_t ki_picture_room(const ki_picture *picture)
 {
-    return (size_t)(samples_across(picture) * samples_down(picture)) * (WANTED + REST);
+    return (size_t)(samples_across(picture) * samples_down(picture)) * (WANTED + REMAINDER);
 }
 
-static float *rest_of(const ki_picture *p)
+static float *remainders_of(const ki_picture *p)
 {
     return p->room + WANTED * samples_across(p) * samples_down(p);
 }
@@ -77,16 +77,16 @@ static void compare_row(void *data, int row)
     const ki_picture *p = data;
     ptrdiff_t across = samples_across(p);
     const float *wanted = p->room + (ptrdiff_t)WANTED * row * across;
-    float *rest = rest_of(p) + (ptrdiff_t)REST * row * across;
+    float *remainder = remainders_of(p) + (ptrdiff_t)REMAINDER * row * across;
     double y = p->border + (row + 0.5) / p->times - 0.5, v = y - floor(y);
-    for (ptrdiff_t i = 0; i < across; i++, wanted += WANTED, rest += REST) {
+    for (ptrdiff_t i = 0; i < across; i++, wanted += WANTED, remainder += REMAINDER) {
         double x = p->border + ((double)i + 0.5) / p->times - 0.5, u = x - floor(x);
         const float *at = p->texels + 3 * ((ptrdiff_t)floor(y) * p->width + (ptrdiff_t)floor(x));
         const float *below = at + 3 * (ptrdiff_t)p->width;
         for (int c = 0; c < 3; c++) {
             double shown = (1 - v) * ((1 - u) * (double)at[c] + u * (double)at[3 + c]) +
                            v * ((1 - u) * (double)below[c] + u * (double)below[3 + c]);
-            rest[c] = (float)((double)wanted[3] * ((double)wanted[c] - shown));
+            remainder[c] = (float)((double)wanted[3] * ((double)wanted[c] - shown));
         }
     }
 }
@@ -98,7 +98,7 @@ static void correct_row(void *data, int row)
     const ki_picture *p = data;
     int times = p->times;
     ptrdiff_t across = samples_across(p), down = samples_down(p);
-    const float *rests = rest_of(p);
+    const float *remainders = remainders_of(p);
     float *to = p->texels + 3 * (ptrdiff_t)row * p->width;
     ptrdiff_t top = (ptrdiff_t)(row - p->border) * times - times / 2;
     for (int x = 0; x < p->width; x++, to += 3) {
@@ -111,9 +111,9 @@ static void correct_row(void *data, int row)
                 continue;
             double weight =
                 (1 - fabs((column + 0.5) / times - 1)) * (1 - fabs((line + 0.5) / times - 1));
-            const float *rest = rests + REST * (fy * across + fx);
+            const float *remainder = remainders + REMAINDER * (fy * across + fx);
             for (int c = 0; c < 3; c++)
-                sum[c] += weight * (double)rest[c];
+                sum[c] += weight * (double)remainder[c];
             total += weight * (double)p->room[WANTED * (fy * across + fx) + 3];
         }
         for (int c = 0; c < 3 && total > 0; c++)

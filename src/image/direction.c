@@ -111,9 +111,9 @@ void ki_direction_octahedron(const double direction[3], double *u, double *v)
 // Quarter turns are exact.
 void ki_turn(const double direction[3], double degrees, double turned[3])
 {
-    double rest = fmod(degrees, 360), sine, cosine;
-    double quarter = floor(rest / 90);
-    ki_sincos((rest - 90 * quarter) * (KI_PI / 180), &sine, &cosine);
+    double turn = fmod(degrees, 360), sine, cosine;
+    double quarter = floor(turn / 90);
+    ki_sincos((turn - 90 * quarter) * (KI_PI / 180), &sine, &cosine);
     for (int k = (int)quarter & 3; k > 0; k--) {
         double swap = sine;
         sine = cosine;

@@ -106,12 +106,13 @@ kiln_result ki_resample_reserve(kiln_context *context, const ki_resample_plan *p
 
 // Computes each texel from the source texels under it: directly, or on the finer map, whose texels
 // are then averaged.
-static bool gather(kiln_context *context, ki_resample_run *r, int rows, const ki_stage *stage)
+static bool gather(kiln_context *context, ki_resample_run *r, int rows,
+                   const ki_progress_range *range)
 {
     int count = 0;
     for (int k = 0; k < r->plan->grid_count; k++)
         count += r->plan->grid[k].chunk_count;
-    if (!ki_parallel_steps(context, stage, count, ki_resample_gather, r))
+    if (!ki_parallel_steps(context, range, count, ki_resample_gather, r))
         return false;
     if (r->fine != r->target)
         ki_parallel_for(context, rows, ki_resample_coarsen, r);
@@ -127,23 +128,23 @@ static bool scatter(kiln_context *context, ki_resample_run *r)
 }
 
 bool ki_resample_execute(kiln_context *context, const ki_resample_plan *plan, ki_buffer *buffer,
-                         const float *source, float *target, const ki_stage *stage)
+                         const float *source, float *target, const ki_progress_range *range)
 {
     ki_resample_run r = {.plan = plan, .source = source, .target = target};
     int rows = plan->size * (plan->shape == KILN_SHAPE_CUBE ? 6 : 1);
     switch (plan->method) {
     case KI_RESAMPLE_GATHER:
         r.fine = plan->factor > 1 ? buffer->memory : target;
-        return gather(context, &r, rows, stage);
+        return gather(context, &r, rows, range);
     case KI_RESAMPLE_SCATTER:
         r.bands = buffer->memory;
         return scatter(context, &r);
     case KI_RESAMPLE_SEPARABLE:
-        return ki_parallel_steps(context, stage, rows, ki_resample_separable, &r);
+        return ki_parallel_steps(context, range, rows, ki_resample_separable, &r);
     case KI_RESAMPLE_FACES:
-        return ki_parallel_steps(context, stage, rows, ki_resample_faces, &r);
+        return ki_parallel_steps(context, range, rows, ki_resample_faces, &r);
     default:
-        return ki_parallel_steps(context, stage, rows, ki_resample_subsample, &r);
+        return ki_parallel_steps(context, range, rows, ki_resample_subsample, &r);
     }
 }
 
@@ -177,11 +178,11 @@ kiln_result ki_map_resample(kiln_context *context, const kiln_map *source, doubl
                                 kiln_map_level_size(target, level), rotation, &plan, error);
     if (result || !plan)
         return result;
-    static const ki_stage stage = {"converting", 0, 1};
+    static const ki_progress_range range = {"converting", 0, 1};
     result = ki_resample_reserve(context, plan, &buffer, error);
     if (!result && !ki_resample_execute(context, plan, &buffer, source->level[0],
-                                        target->level[level], &stage))
-        result = ki_fail_cancelled(error, stage.name);
+                                        target->level[level], &range))
+        result = ki_fail_cancelled(error, range.name);
     ki_buffer_free(&buffer);
     ki_resample_plan_destroy(plan);
     return result;

@@ -18,10 +18,10 @@ kiln_result ki_resample_reserve(kiln_context *context, const ki_resample_plan *p
                                 ki_buffer *buffer, kiln_error *error);
 /// Resamples one level. `source` and `target` are RGB texels in the plan's shapes and sizes and
 /// must not overlap. `buffer` was reserved for the plan and is overwritten. The function allocates
-/// nothing. It returns false only if a progress report asks it to stop; `stage` is described at
+/// nothing. It returns false only if a progress report asks it to stop; `range` is described at
 /// ki_parallel_steps.
 bool ki_resample_execute(kiln_context *context, const ki_resample_plan *plan, ki_buffer *buffer,
-                         const float *source, float *target, const ki_stage *stage);
+                         const float *source, float *target, const ki_progress_range *range);
 /// Frees a plan. `plan` may be NULL.
 void ki_resample_plan_destroy(ki_resample_plan *plan);
 

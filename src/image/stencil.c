@@ -187,10 +187,10 @@ static inline void add_entry(trace *arc, int column, int row, double area, doubl
     arc->entries[arc->count++] = (entry){column, row, area, width};
 }
 
-// Adds the areas of one column's piece of an arc that crosses the rows `north` to `south`. `rest`
+// Adds the areas of one column's piece of an arc that crosses the rows `north` to `south`. `area_left`
 // is G at the upper border of row `north`, and `low` is the lower end of the piece.
 static void trace_rows(const builder *b, trace *arc, const circle *on, const node *low, double side,
-                       int column, int north, int south, double rest, double width)
+                       int column, int north, int south, double area_left, double width)
 {
     double a_ = on->a, b_ = on->b;
     for (int j = north; j <= south; j++) {
@@ -205,8 +205,8 @@ static void trace_rows(const builder *b, trace *arc, const circle *on, const nod
             double i = integral_between(b, &cut, low, on->inverse_k2);
             next = fabs(b->height[j + 1] * w - i);
         }
-        add_entry(arc, column, j, on->sign * (rest - next), j == north ? on->sign * width : 0);
-        rest = next;
+        add_entry(arc, column, j, on->sign * (area_left - next), j == north ? on->sign * width : 0);
+        area_left = next;
     }
 }
 
@@ -218,12 +218,12 @@ static inline int trace_piece(const builder *b, trace *arc, const circle *on, co
     double width = angle_between(b, start, end);
     double integral = integral_between(b, start, end, on->inverse_k2);
     int last = find_row(b, end->z, row), north = ki_min(row, last), south = ki_max(row, last);
-    double rest = b->height[north] * width - integral;
+    double area_left = b->height[north] * width - integral;
     if (row == last)
-        add_entry(arc, column, row, on->sign * rest, on->sign * width);
+        add_entry(arc, column, row, on->sign * area_left, on->sign * width);
     else
         trace_rows(b, arc, on, row < last ? end : start, start->s + end->s, column, north, south,
-                   rest, width);
+                   area_left, width);
     arc->first_row = ki_min(arc->first_row, north);
     arc->end_row = ki_max(arc->end_row, south + 1);
     return last;
@@ -536,10 +536,10 @@ kiln_result ki_stencil_grid_build(kiln_context *context, ki_stencil_grid *grid, 
     double step = 2 * KI_PI / width, eighth = width / 8.0;
     double low = grid->kind == KI_STENCIL_SIDE ? -eighth : 0;
     double high = grid->kind == KI_STENCIL_SIDE ? eighth : 2 * eighth;
-    builder job = {.context = context, .grid = grid, .small = rows >= 4};
-    job.first_border = (int)floor(low + grid->offset) - 1;
-    job.end_border = (int)floor(high + grid->offset) + 3;
-    size_t borders = (size_t)(job.end_border - job.first_border), edges = (size_t)rows + 1;
+    builder build = {.context = context, .grid = grid, .small = rows >= 4};
+    build.first_border = (int)floor(low + grid->offset) - 1;
+    build.end_border = (int)floor(high + grid->offset) + 3;
+    size_t borders = (size_t)(build.end_border - build.first_border), edges = (size_t)rows + 1;
     double *table = ki_alloc_raw(context, 2 * (borders + edges), sizeof *table);
     grid->chunk_count = (ki_stencil_grid_rows(grid) + KI_STENCIL_ROWS - 1) / KI_STENCIL_ROWS;
     grid->chunks = ki_alloc(context, (size_t)grid->chunk_count, sizeof *grid->chunks);
@@ -561,12 +561,12 @@ kiln_result ki_stencil_grid_build(kiln_context *context, ki_stencil_grid *grid, 
         cotangent[rows - j] = -cotangent[j];
     }
     for (size_t k = 0; k < borders; k++)
-        ki_sincos((job.first_border + (double)k - grid->offset) * step, &sine[k], &cosine[k]);
-    job.height = height;
-    job.cotangent = cotangent;
-    job.cosine = cosine;
-    job.sine = sine;
-    if (!ki_parallel_steps(context, NULL, grid->chunk_count, build_chunk, &job))
+        ki_sincos((build.first_border + (double)k - grid->offset) * step, &sine[k], &cosine[k]);
+    build.height = height;
+    build.cotangent = cotangent;
+    build.cosine = cosine;
+    build.sine = sine;
+    if (!ki_parallel_steps(context, NULL, grid->chunk_count, build_chunk, &build))
         result = ki_fail_cancelled(error, "planning");
     for (int k = 0; k < grid->chunk_count; k++)
         if (grid->chunks[k].failed && !result)

@@ -201,12 +201,12 @@ double ki_atan2(double y, double x)
 
 double ki_asin(double x)
 {
-    double rest = (1 - x) * (1 + x);
-    return ki_atan2(x, rest > 0 ? sqrt(rest) : 0);
+    double cosine2 = (1 - x) * (1 + x);
+    return ki_atan2(x, cosine2 > 0 ? sqrt(cosine2) : 0);
 }
 
 double ki_acos(double x)
 {
-    double rest = (1 - x) * (1 + x);
-    return ki_atan2(rest > 0 ? sqrt(rest) : 0, x);
+    double sine2 = (1 - x) * (1 + x);
+    return ki_atan2(sine2 > 0 ? sqrt(sine2) : 0, x);
 }

@@ -40,6 +40,6 @@ double ki_erf(double x)
         }
         return 1.12837916709551257390 * (x + x * sum);
     }
-    double rest = a < 6 ? ki_exp(-y) * ki_erfcx(a) : 0;
-    return x < 0 ? rest - 1 : 1 - rest;
+    double complement = a < 6 ? ki_exp(-y) * ki_erfcx(a) : 0;
+    return x < 0 ? complement - 1 : 1 - complement;
 }

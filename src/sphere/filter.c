@@ -28,11 +28,11 @@ kiln_result kiln_spectrum_filter(kiln_context *context, const kiln_spectrum *spe
         ki_lobe_spectrum(context, lobe, ki_lobe_tolerance, false, &zonal, &zonal_spectrum, error);
     if (result != KILN_OK)
         return result;
-    double rest = zonal_spectrum.rest;
-    if (zonal_spectrum.degree > spectrum->degree || rest > 10 * ki_lobe_tolerance) {
+    double truncation = zonal_spectrum.truncation;
+    if (zonal_spectrum.degree > spectrum->degree || truncation > 10 * ki_lobe_tolerance) {
         result = ki_fail(error, KILN_ERROR_ARGUMENT,
                          "the lobe needs a spectrum of degree %s%d, but the spectrum has degree %d",
-                         rest > 10 * ki_lobe_tolerance ? "above " : "", zonal_spectrum.degree,
+                         truncation > 10 * ki_lobe_tolerance ? "above " : "", zonal_spectrum.degree,
                          spectrum->degree);
         ki_zonal_free(&zonal_spectrum);
         return result;

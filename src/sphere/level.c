@@ -517,8 +517,8 @@ static void fill_row(void *data, int index)
 
 kiln_result ki_level_execute(const ki_level *level, const ki_level_workspace *workspace,
                              const kiln_spectrum *spectrum, const kiln_map *panorama,
-                             double rotation, kiln_map *map, int index, const ki_stage *stage,
-                             kiln_error *error)
+                             double rotation, kiln_map *map, int index,
+                             const ki_progress_range *range, kiln_error *error)
 {
     kiln_context *context = workspace->context;
     run r = {.level = level,
@@ -541,8 +541,8 @@ kiln_result ki_level_execute(const ki_level *level, const ki_level_workspace *wo
                         level->places ? fill_places : fill_grid, &r);
     if (!level->places)
         pad_grid(&r);
-    if (!ki_parallel_steps(context, stage, height, fill_row, &r))
-        result = ki_fail_cancelled(error, stage ? stage->name : "filtering");
+    if (!ki_parallel_steps(context, range, height, fill_row, &r))
+        result = ki_fail_cancelled(error, range ? range->name : "filtering");
     ki_points_destroy(&r.points);
     return result;
 }

@@ -32,12 +32,12 @@ kiln_result ki_level_reserve(kiln_context *context, const ki_level *level,
 void ki_level_workspace_free(ki_level_workspace *workspace);
 
 /// Writes level `index` of `map`, in a workspace that was reserved for the level. `panorama` is
-/// needed if the zonal has an outer angle > 0. `stage` is described at ki_parallel_steps. Only the
+/// needed if the zonal has an outer angle > 0. `range` is described at ki_parallel_steps. Only the
 /// suns take memory, ki_level_suns_size.
 kiln_result ki_level_execute(const ki_level *level, const ki_level_workspace *workspace,
                              const kiln_spectrum *spectrum, const kiln_map *panorama,
-                             double rotation, kiln_map *map, int index, const ki_stage *stage,
-                             kiln_error *error);
+                             double rotation, kiln_map *map, int index,
+                             const ki_progress_range *range, kiln_error *error);
 
 /// Returns the number of bytes that an execution takes in all for `count` suns of a panorama of
 /// `source_size` rows.

@@ -61,7 +61,7 @@ static void divide(const ki_sun *sun, int size, int n, const double *nodes, cons
 // be the size of the texel and s the distance from the sun or the width of the lobe k. The relative
 // error of one point is about (h/s)^2 / 24 times k'' s^2 / k, which is 20 in the tail of GGX. Two
 // by two Gauss nodes err by (h/s)^4 / 4320 times 840, four by four by 1e-4 (h/s)^8.
-static void lay_suns(const ki_zonal *zonal, int size, ki_sun_points *suns)
+static void choose_point_counts(const ki_zonal *zonal, int size, ki_sun_points *suns)
 {
     double texel = KI_PI / size, width = ki_lobe_width(&zonal->lobe);
     // The Charlie lobe is steep where its horizon cuts through a texel. A sun's texel is therefore
@@ -77,7 +77,7 @@ static void lay_suns(const ki_zonal *zonal, int size, ki_sun_points *suns)
 size_t ki_points_size(const ki_zonal *zonal, int size, size_t count)
 {
     ki_sun_points suns = {0};
-    lay_suns(zonal, size, &suns);
+    choose_point_counts(zonal, size, &suns);
     return ki_block_size(count, sizeof *suns.centre) +
            ki_block_size(count, 4 * sizeof *suns.pairs) +
            ki_block_size(count, (size_t)suns.near_count * sizeof *suns.near);
@@ -95,7 +95,7 @@ kiln_result ki_points_create(const kiln_spectrum *spectrum, const ki_zonal *zona
     ki_sun_points *suns = &points->suns;
     if (!suns->count)
         return KILN_OK;
-    lay_suns(zonal, spectrum->size, suns);
+    choose_point_counts(zonal, spectrum->size, suns);
     size_t count = (size_t)suns->count, near_count = (size_t)suns->near_count;
     suns->centre = ki_alloc_raw(context, count, sizeof *suns->centre);
     suns->pairs = ki_alloc_raw(context, count * 4, sizeof *suns->pairs);

@@ -55,7 +55,7 @@ static void add_panels(panels *p, double from, double to)
     }
 }
 
-static void lay_panels(panels *p, const ki_zonal *zonal, double width)
+static void make_panels(panels *p, const ki_zonal *zonal, double width)
 {
     double cuts[] = {zonal->inner, zonal->outer, KI_PI / 2, KI_PI};
     if (p->edges)
@@ -86,7 +86,7 @@ kiln_result ki_zonal_analyze(kiln_context *context, const ki_zonal *zonal, doubl
     if (zonal->outer > 0 && p.longest > (zonal->outer - zonal->inner) / 2)
         p.longest = (zonal->outer - zonal->inner) / 2;
     double width = ki_clamp(ki_lobe_width(&zonal->lobe), 1e-7, 1);
-    lay_panels(&p, zonal, width);
+    make_panels(&p, zonal, width);
     size_t count = (size_t)(p.count - 1) * PANEL_NODES;
     double *nodes = ki_alloc_raw(context, count, 4 * sizeof *nodes);
     p.edges = ki_alloc_raw(context, (size_t)p.count, sizeof *p.edges);
@@ -95,7 +95,7 @@ kiln_result ki_zonal_analyze(kiln_context *context, const ki_zonal *zonal, doubl
         result = ki_fail_memory(context, error, "a lobe's spectrum", 4 * count * sizeof *nodes);
         goto done;
     }
-    lay_panels(&p, zonal, width);
+    make_panels(&p, zonal, width);
 
     // Arrays over the nodes: x = cos theta, w = weight(theta) dOmega, and the Legendre polynomials
     // of x of the last two degrees.
@@ -153,7 +153,7 @@ kiln_result ki_zonal_analyze(kiln_context *context, const ki_zonal *zonal, doubl
         left -= (2 * l + 1) * k * k;
     }
     spectrum->degree = l - 1;
-    spectrum->rest = left > 0 ? sqrt(left / (squares * 4 * KI_PI)) : 0;
+    spectrum->truncation = left > 0 ? sqrt(left / (squares * 4 * KI_PI)) : 0;
 done:
     ki_free(nodes);
     ki_free(p.edges);
@@ -182,7 +182,7 @@ kiln_result ki_lobe_spectrum(kiln_context *context, const kiln_lobe *lobe, doubl
     int limit = guess < KILN_MAX_DEGREE ? (int)guess : KILN_MAX_DEGREE;
     if (guess < 2 * KILN_MAX_DEGREE || !split) {
         kiln_result result = ki_zonal_analyze(context, zonal, tolerance, limit, spectrum, error);
-        if (result != KILN_OK || spectrum->rest <= tolerance)
+        if (result != KILN_OK || spectrum->truncation <= tolerance)
             return result;
         if (limit < KILN_MAX_DEGREE) {
             ki_zonal_free(spectrum);
@@ -190,7 +190,7 @@ kiln_result ki_lobe_spectrum(kiln_context *context, const kiln_lobe *lobe, doubl
         }
         // A kink of the lobe at the horizon makes coefficients that fall slowly but are small.
         // Leaving the centre of the lobe out of the spectrum would not shorten that tail.
-        if (result != KILN_OK || spectrum->rest <= 10 * tolerance || !split)
+        if (result != KILN_OK || spectrum->truncation <= 10 * tolerance || !split)
             return result;
         ki_zonal_free(spectrum);
     }

@@ -26,7 +26,8 @@ typedef struct ki_zonal_spectrum {
     // Degree at which the coefficients are cut off: the degree at which the tolerance is met, or
     // the greatest allowed degree.
     int degree;
-    double rest; // L2 norm of the coefficients above `degree`, relative to the L2 norm of the lobe
+    double
+        truncation; // L2 norm of the coefficients above `degree`, relative to the L2 norm of the lobe
     // Legendre coefficients k_l / integral, [limit + 1]; 0 beyond `degree`.
     double *k;
 } ki_zonal_spectrum;

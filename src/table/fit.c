@@ -138,11 +138,11 @@ static kiln_result begin(kiln_context *context, const kiln_fit *fit, ki_fit_targ
 {
     kiln_fit_axis axes[AXES];
     int axis_count = axes_of(target, axes);
-    size_t numbers = (size_t)(KI_FIT_GRID * KI_FIT_GRID) * (2 * KILN_MAX_FIT + 4) +
-                     (size_t)KILN_MAX_FIT * (KILN_MAX_FIT + 1);
-    s->scratch = ki_alloc_raw(context, numbers, sizeof *s->scratch);
+    size_t count = (size_t)(KI_FIT_GRID * KI_FIT_GRID) * (2 * KILN_MAX_FIT + 4) +
+                   (size_t)KILN_MAX_FIT * (KILN_MAX_FIT + 1);
+    s->scratch = ki_alloc_raw(context, count, sizeof *s->scratch);
     if (!s->scratch)
-        return ki_fail_memory(context, error, "fit", numbers * sizeof *s->scratch);
+        return ki_fail_memory(context, error, "fit", count * sizeof *s->scratch);
     kiln_result result = KILN_OK;
     for (int i = 0; i < axis_count && !result; i++)
         result = ki_fit_nodes(context, &fit->def, target, axes[i], &s->nodes[i], error);

@@ -72,16 +72,16 @@ static kiln_result allocate(kiln_context *context, int count, ki_fit_points *poi
                             kiln_error *error)
 {
     size_t n = (size_t)count;
-    double *numbers = ki_alloc(context, 5 * n, sizeof *numbers);
+    double *values = ki_alloc(context, 5 * n, sizeof *values);
     *points = (ki_fit_points){0};
-    if (!numbers)
-        return ki_fail_memory(context, error, "fit", 5 * n * sizeof *numbers);
+    if (!values)
+        return ki_fail_memory(context, error, "fit", 5 * n * sizeof *values);
     *points = (ki_fit_points){.count = count,
-                              .x = numbers,
-                              .y = numbers + count,
-                              .nov = numbers + 2 * n,
-                              .roughness = numbers + 3 * n,
-                              .value = numbers + 4 * n};
+                              .x = values,
+                              .y = values + count,
+                              .nov = values + 2 * n,
+                              .roughness = values + 3 * n,
+                              .value = values + 4 * n};
     return KILN_OK;
 }
 

@@ -277,9 +277,9 @@ static kiln_result fill_table(kiln_context *context, kiln_table *table, kiln_err
         ki_surface_build(context, &def->model, surface);
     }
     job.surface = surface;
-    ki_stage stage = {"table", 0, 1};
+    ki_progress_range range = {"table", 0, 1};
     bool walks = def->kind == KILN_TABLE_E_WALK;
-    bool whole = ki_parallel_steps(context, &stage, walks ? def->height : def->height * def->depth,
+    bool whole = ki_parallel_steps(context, &range, walks ? def->height : def->height * def->depth,
                                    walks ? fill_walk_row : fill_row, &job);
     ki_free(surface);
     return whole ? KILN_OK : ki_fail_cancelled(error, "table");

@@ -43,8 +43,8 @@ static kiln_result fill_averages(kiln_context *context, const kiln_table *table,
                                  kiln_table *average, kiln_error *error)
 {
     average_job job = {table, average};
-    ki_stage stage = {"average", 0, 1};
-    bool whole = ki_parallel_steps(context, &stage, average->def.height, average_task, &job);
+    ki_progress_range range = {"average", 0, 1};
+    bool whole = ki_parallel_steps(context, &range, average->def.height, average_task, &job);
     return whole ? KILN_OK : ki_fail_cancelled(error, "average");
 }
 

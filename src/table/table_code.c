@@ -9,7 +9,7 @@
 
 #include <string.h>
 
-typedef struct code_job {
+typedef struct code_writer {
     const kiln_table_def *def;
     ki_writer *w;
     const char *name;
@@ -19,16 +19,16 @@ typedef struct code_job {
     // Name of the lookup function's third argument, "ior" or "f0"; NULL if the function has no
     // third argument.
     const char *third;
-} code_job;
+} code_writer;
 
-static const char *real(const code_job *j)
+static const char *real(const code_writer *j)
 {
     return j->c ? "double" : "float";
 }
 
 // ---------------------------------------------------------------------------------------- comments
 
-static void write_arguments_comment(const code_job *j)
+static void write_arguments_comment(const code_writer *j)
 {
     ki_write_text(j->w, "// %sroughness is perceptual%s%s. Arguments out of range are clamped.\n",
                   j->nov ? "nov is n.v, " : "", j->third ? ", " : "",
@@ -37,7 +37,7 @@ static void write_arguments_comment(const code_job *j)
                                                                  : "f0 is F0");
 }
 
-static void write_result_comment(const code_job *j)
+static void write_result_comment(const code_writer *j)
 {
     static const char *const results[] = {
         [KILN_TABLE_E] = "E, the albedo of the specular lobe with F = 1",
@@ -58,7 +58,7 @@ static void write_result_comment(const code_job *j)
 
 // Writes the code that sets u, v and w, places in [0, 1], from the arguments n.v, roughness and F0
 // or ior.
-static void write_places(const code_job *j)
+static void write_places(const code_writer *j)
 {
     ki_writer *w = j->w;
     const kiln_table_def *def = j->def;
@@ -90,7 +90,7 @@ static void write_places(const code_job *j)
                       end);
 }
 
-static void write_parameters(const code_job *j, const char *first)
+static void write_parameters(const code_writer *j, const char *first)
 {
     const char *type = real(j);
     ki_write_text(j->w, "%s%s%s%s roughness%s%s%s%s", first, j->nov ? type : "",
@@ -101,7 +101,7 @@ static void write_parameters(const code_job *j, const char *first)
 // ----------------------------------------------------------------------------------------------- C
 
 // Writes the functions that clamp, find the two nearest texels and interpolate.
-static void write_c_parts(const code_job *j)
+static void write_c_parts(const code_writer *j)
 {
     ki_write_text(
         j->w,
@@ -135,7 +135,7 @@ static void write_c_parts(const code_job *j)
                   j->name);
 }
 
-static void write_c_head(const code_job *j)
+static void write_c_head(const code_writer *j)
 {
     const char *result = j->channels > 1 ? "void" : "double";
     ki_write_text(j->w, "static inline %s %s_lookup(", result, j->name);
@@ -147,7 +147,7 @@ static void write_c_head(const code_job *j)
 
 // Writes the code that interpolates between four texels of a slice, the first at t, into a variable
 // `name`.
-static void write_c_slice(const code_job *j, const char *name)
+static void write_c_slice(const code_writer *j, const char *name)
 {
     ki_writer *w = j->w;
     const char *n = j->name;
@@ -160,7 +160,7 @@ static void write_c_slice(const code_job *j, const char *name)
         ki_write_text(w, "        double %s = %s_mix((double)t[0], (double)t[dy], fy);\n", name, n);
 }
 
-static void write_c(const code_job *j)
+static void write_c(const code_writer *j)
 {
     ki_writer *w = j->w;
     const kiln_table_def *def = j->def;
@@ -207,7 +207,7 @@ static void write_c(const code_job *j)
 
 static const char *const vectors[4] = {"float", "vec2", "vec3", "vec4"};
 
-static void write_glsl_texture(const code_job *j)
+static void write_glsl_texture(const code_writer *j)
 {
     static const char *const swizzles[4] = {"r", "rg", "rgb", "rgba"};
     ki_writer *w = j->w;
@@ -239,7 +239,7 @@ static void write_glsl_texture(const code_job *j)
                   def->complement ? "1.0 - " : "", swizzles[j->channels - 1]);
 }
 
-static void write_glsl_place(const code_job *j, char axis, int n)
+static void write_glsl_place(const code_writer *j, char axis, int n)
 {
     ki_writer *w = j->w;
     if (j->def->corners)
@@ -257,7 +257,7 @@ static void write_glsl_place(const code_job *j, char axis, int n)
     ki_write_text(w, "    int %c = int(f%c);\n    f%c -= float(%c);\n", axis, axis, axis, axis);
 }
 
-static void write_glsl_array(const code_job *j)
+static void write_glsl_array(const code_writer *j)
 {
     ki_writer *w = j->w;
     const kiln_table_def *def = j->def;
@@ -304,15 +304,15 @@ static void write_glsl_array(const code_job *j)
 void ki_table_write_code(const kiln_table_def *def, ki_table_code code, const char *name,
                          ki_writer *w)
 {
-    code_job j = {.def = def,
-                  .w = w,
-                  .name = name,
-                  .c = code == KI_TABLE_C,
-                  .channels = ki_table_channels(def->kind),
-                  .nov = def->kind != KILN_TABLE_E_AVERAGE,
-                  .third = def->depth <= 1                             ? NULL
-                           : ki_table_third(def->kind) == KI_THIRD_IOR ? "ior"
-                                                                       : "f0"};
+    code_writer j = {.def = def,
+                     .w = w,
+                     .name = name,
+                     .c = code == KI_TABLE_C,
+                     .channels = ki_table_channels(def->kind),
+                     .nov = def->kind != KILN_TABLE_E_AVERAGE,
+                     .third = def->depth <= 1                             ? NULL
+                              : ki_table_third(def->kind) == KI_THIRD_IOR ? "ior"
+                                                                          : "f0"};
     if (code == KI_TABLE_C)
         write_c(&j);
     else if (code == KI_TABLE_GLSL_TEXTURE)

@@ -157,13 +157,13 @@ static kiln_result encode_raw(const kiln_table *table, kiln_table_format format,
                               kiln_error *error)
 {
     const kiln_image *image = &table->image;
-    size_t numbers = (size_t)image->width * (size_t)image->channels;
-    size_t row = numbers * (size_t)ki_component_bytes(format);
+    size_t row_values = (size_t)image->width * (size_t)image->channels;
+    size_t row = row_values * (size_t)ki_component_bytes(format);
     uint8_t *room = ki_write_room(w, row * (size_t)image->height);
     for (int y = 0; room && y < image->height; y++) {
         if (y % 64 == 0 && !ki_go_on(w->context))
             return ki_fail_cancelled(error, "writing");
-        ki_components_pack(format, image->pixels + (size_t)y * numbers, numbers, 1, 1,
+        ki_components_pack(format, image->pixels + (size_t)y * row_values, row_values, 1, 1,
                            room + (size_t)y * row);
     }
     return KILN_OK;

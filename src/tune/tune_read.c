@@ -36,7 +36,7 @@ typedef struct reads {
     double (*shown)[3];
     // For each texel: the solution, the residual, the search direction, the matrix times that
     // direction, the diagonal of the matrix, and whether the texel is fixed at 0.
-    double (*x)[3], (*rest)[3], (*way)[3], (*product)[3], *diagonal;
+    double (*x)[3], (*residual)[3], (*direction)[3], (*product)[3], *diagonal;
     bool (*held)[3];
     double (*sums)[2][3]; // two partial sums of each chunk of texels or points
     double scale[3];
@@ -115,14 +115,14 @@ static bool allocate(reads *r)
     r->solid = ki_alloc(k, points / 6, sizeof *r->solid);
     r->shown = ki_alloc(k, points, sizeof *r->shown);
     r->x = ki_alloc(k, texels, sizeof *r->x);
-    r->rest = ki_alloc(k, texels, sizeof *r->rest);
-    r->way = ki_alloc(k, texels, sizeof *r->way);
+    r->residual = ki_alloc(k, texels, sizeof *r->residual);
+    r->direction = ki_alloc(k, texels, sizeof *r->direction);
     r->product = ki_alloc(k, texels, sizeof *r->product);
     r->diagonal = ki_alloc(k, texels, sizeof *r->diagonal);
     r->held = ki_alloc(k, texels, sizeof *r->held);
     r->sums = ki_alloc(k, (size_t)chunks(points), sizeof *r->sums);
-    return r->taps && r->start && r->reverse && r->solid && r->shown && r->x && r->rest && r->way &&
-           r->product && r->diagonal && r->held && r->sums;
+    return r->taps && r->start && r->reverse && r->solid && r->shown && r->x && r->residual &&
+           r->direction && r->product && r->diagonal && r->held && r->sums;
 }
 
 static void release(reads *r)
@@ -133,8 +133,8 @@ static void release(reads *r)
     ki_free(r->solid);
     ki_free(r->shown);
     ki_free(r->x);
-    ki_free(r->rest);
-    ki_free(r->way);
+    ki_free(r->residual);
+    ki_free(r->direction);
     ki_free(r->product);
     ki_free(r->diagonal);
     ki_free(r->held);
@@ -170,7 +170,7 @@ typedef struct product {
     const double (*from)[3]; // one RGB value for each texel
     double (*to)[3];
     // true: the residual B' W (goal - B from) is computed; false: the product B' W B from
-    bool rest;
+    bool residual;
 } product;
 
 // Task of one thread: sets `shown` at a chunk of points to W B x or to W (goal - B x), and sums W
@@ -191,7 +191,7 @@ static void show_points(void *data, int index)
                 shown += (double)taps[i].weight * a->from[taps[i].at][c];
             sums[0][c] += solid * goal;
             sums[1][c] += solid * shown;
-            r->shown[p][c] = solid * (a->rest ? goal - shown : shown);
+            r->shown[p][c] = solid * (a->residual ? goal - shown : shown);
         }
     }
 }
@@ -217,9 +217,9 @@ static void gather(void *data, int index)
     }
 }
 
-static void multiply(reads *r, const double (*from)[3], double (*to)[3], bool rest)
+static void multiply(reads *r, const double (*from)[3], double (*to)[3], bool residual)
 {
-    product a = {r, from, to, rest};
+    product a = {r, from, to, residual};
     ki_parallel_for(r->context, chunks(r->point_count), show_points, &a);
     ki_parallel_for(r->context, chunks(r->texel_count), gather, &a);
 }
@@ -239,21 +239,22 @@ static void take_step(void *data, int index)
     memset(sums, 0, sizeof r->sums[index]);
     for (size_t t = (size_t)index * CHUNK; t < chunk_end(index, r->texel_count); t++)
         for (int c = 0; c < 3; c++) {
-            r->x[t][c] += s->length[c] * r->way[t][c];
-            r->rest[t][c] -= s->length[c] * r->product[t][c];
-            sums[1][c] += r->rest[t][c] * r->rest[t][c] / r->diagonal[t];
+            r->x[t][c] += s->length[c] * r->direction[t][c];
+            r->residual[t][c] -= s->length[c] * r->product[t][c];
+            sums[1][c] += r->residual[t][c] * r->residual[t][c] / r->diagonal[t];
         }
 }
 
 // Task of one thread: computes the next search direction of the conjugate-gradient method for a
 // chunk of texels.
-static void turn_way(void *data, int index)
+static void turn_direction(void *data, int index)
 {
     const step *s = data;
     reads *r = s->r;
     for (size_t t = (size_t)index * CHUNK; t < chunk_end(index, r->texel_count); t++)
         for (int c = 0; c < 3; c++)
-            r->way[t][c] = r->rest[t][c] / r->diagonal[t] + s->turn[c] * r->way[t][c];
+            r->direction[t][c] =
+                r->residual[t][c] / r->diagonal[t] + s->turn[c] * r->direction[t][c];
 }
 
 // Solves for the texels that are not fixed, by STEPS steps of conjugate gradients in each colour
@@ -261,23 +262,23 @@ static void turn_way(void *data, int index)
 static void solve(reads *r)
 {
     int texel_chunks = chunks(r->texel_count);
-    double rest[3], next[3], along[3];
+    double norm[3], next[3], along[3];
     step s = {.r = r};
-    multiply(r, (const double(*)[3])r->x, r->rest, true);
-    add_up(r, r->texel_count, 1, rest);
-    ki_parallel_for(r->context, texel_chunks, turn_way, &s);
+    multiply(r, (const double(*)[3])r->x, r->residual, true);
+    add_up(r, r->texel_count, 1, norm);
+    ki_parallel_for(r->context, texel_chunks, turn_direction, &s);
     for (int i = 0; i < STEPS; i++) {
-        multiply(r, (const double(*)[3])r->way, r->product, false);
+        multiply(r, (const double(*)[3])r->direction, r->product, false);
         add_up(r, r->texel_count, 0, along);
         for (int c = 0; c < 3; c++)
-            s.length[c] = along[c] > 0 ? rest[c] / along[c] : 0;
+            s.length[c] = along[c] > 0 ? norm[c] / along[c] : 0;
         ki_parallel_for(r->context, texel_chunks, take_step, &s);
         add_up(r, r->texel_count, 1, next);
         for (int c = 0; c < 3; c++) {
-            s.turn[c] = rest[c] > 0 ? next[c] / rest[c] : 0;
-            rest[c] = next[c];
+            s.turn[c] = norm[c] > 0 ? next[c] / norm[c] : 0;
+            norm[c] = next[c];
         }
-        ki_parallel_for(r->context, texel_chunks, turn_way, &s);
+        ki_parallel_for(r->context, texel_chunks, turn_direction, &s);
     }
 }
 
@@ -289,7 +290,7 @@ static void hold(void *data, int index)
     r->sums[index][0][0] = 0;
     for (size_t t = (size_t)index * CHUNK; t < chunk_end(index, r->texel_count); t++)
         for (int c = 0; c < 3; c++) {
-            r->way[t][c] = 0;
+            r->direction[t][c] = 0;
             if (r->x[t][c] >= 0)
                 continue;
             r->x[t][c] = 0;

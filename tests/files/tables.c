@@ -86,7 +86,7 @@ static void exr_there_and_back(void **state)
         CHECK_OK(lookup_table(context, i, &table, &error));
         table.image.pixels[0] = 0.7F; // not to lose a sign
         kiln_table_save_def def = {.format = (kiln_table_format)(i % 3)};
-        kiln_table_format kept =
+        kiln_table_format stored =
             def.format == KILN_TABLE_FORMAT_F16 ? KILN_TABLE_FORMAT_F16 : KILN_TABLE_FORMAT_F32;
         CHECK_OK(kiln_table_save(context, &table, path, &def, &error));
         CHECK_OK(kiln_image_load(context, path, &image, &error));
@@ -96,7 +96,7 @@ static void exr_there_and_back(void **state)
         for (size_t k = 0; k < (size_t)image.width * (size_t)image.height; k++)
             for (size_t c = 0; c < 3 && c < (size_t)channels; c++)
                 assert_true(image.pixels[3 * k + c] ==
-                            store(kept, table.image.pixels[k * (size_t)channels + c]));
+                            store(stored, table.image.pixels[k * (size_t)channels + c]));
         kiln_file_info info;
         char text[KI_TABLE_TEXT];
         CHECK_OK(kiln_file_describe(context, path, &info, &error));
@@ -169,8 +169,8 @@ static void hdr_and_raw_hold_the_numbers(void **state)
                 value = ki_float_from_half(word);
             else if (i % 5 >= KILN_TABLE_FORMAT_U16)
                 value = (float)word / (i % 5 == KILN_TABLE_FORMAT_U8 ? 255 : 65535);
-            kiln_table_format kept = def.format ? def.format : KILN_TABLE_FORMAT_F32;
-            assert_true(value == store(kept, table.image.pixels[k]));
+            kiln_table_format stored = def.format ? def.format : KILN_TABLE_FORMAT_F32;
+            assert_true(value == store(stored, table.image.pixels[k]));
         }
         free(bytes);
         int channels = table.image.channels;
@@ -224,10 +224,10 @@ static void what_cannot_be_saved_is_said(void **state)
     static const char *const names[] = {"", "9a", "a-b", "_a", "a__b", "gl_a"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         refused(&table, "a.h", &(kiln_table_save_def){.name = names[i]}, "the name is \"");
-    float kept = table.image.pixels[3];
+    float alpha = table.image.pixels[3];
     table.image.pixels[3] = INFINITY;
     refused(&table, "a.exr", NULL, "number 3 of the table is not finite");
-    table.image.pixels[3] = kept;
+    table.image.pixels[3] = alpha;
     table.def.kind = KILN_TABLE_DFG;
     refused(&table, "a.exr", NULL, "is 7 x 5 with 1 channels, it must be 7 x 5 with 2");
     table.def.kind = (kiln_table_kind)9;

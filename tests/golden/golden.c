@@ -195,8 +195,8 @@ static uint64_t one_table(kiln_context *context, const kiln_table_def *def)
     kiln_table table;
     CHECK(kiln_table_create(context, def, &table, &error));
     const kiln_image *image = &table.image;
-    size_t numbers = (size_t)image->width * (size_t)image->height * (size_t)image->channels;
-    uint64_t hash = hash_bytes(fnv_begin, image->pixels, numbers * sizeof(float));
+    size_t value_count = (size_t)image->width * (size_t)image->height * (size_t)image->channels;
+    uint64_t hash = hash_bytes(fnv_begin, image->pixels, value_count * sizeof(float));
     kiln_table_free(&table);
     return hash;
 }

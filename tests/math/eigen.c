@@ -11,7 +11,7 @@ static void axes_of_symmetric_matrices(void **unused)
 {
     (void)unused;
     enum { COUNT = 34 };
-    static double a[COUNT][COUNT], kept[COUNT][COUNT], axes[COUNT][COUNT], values[COUNT];
+    static double a[COUNT][COUNT], original[COUNT][COUNT], axes[COUNT][COUNT], values[COUNT];
     // The eigenvalues fall from 1 to 1e-8.
     for (int i = 0; i < COUNT; i++)
         a[i][i] = pow(10, -8.0 * i / (COUNT - 1));
@@ -30,7 +30,7 @@ static void axes_of_symmetric_matrices(void **unused)
                     *(side ? &a[i][k] : &a[k][i]) -= dot * v[k];
             }
     }
-    memcpy(kept, a, sizeof a);
+    memcpy(original, a, sizeof a);
     ki_symmetric_axes(COUNT, &a[0][0], &axes[0][0], values);
     for (int i = 0; i < COUNT; i++) {
         double nearest = 1;
@@ -38,7 +38,7 @@ static void axes_of_symmetric_matrices(void **unused)
             double dot = 0, product = 0;
             for (int j = 0; j < COUNT; j++) {
                 dot += axes[i][j] * axes[k][j];
-                product += kept[k][j] * axes[i][j];
+                product += original[k][j] * axes[i][j];
             }
             CHECK_NEAR(dot, i == k, 1e-13);
             CHECK_NEAR(product, values[i] * axes[i][k], 1e-14);

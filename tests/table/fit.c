@@ -36,7 +36,7 @@ static void least_squares_are_least(void **state)
 }
 
 // q = 1 + b x + c x^2 with its least value at x = 0.3, where no coarse grid looks.
-static kiln_fit_part dip(double least)
+static kiln_fit_part denominator_with_minimum(double least)
 {
     double c = (1 - least) / 0.09;
     return (kiln_fit_part){
@@ -46,7 +46,8 @@ static kiln_fit_part dip(double least)
 static void poles_are_found(void **state)
 {
     (void)state;
-    kiln_fit_part touching = dip(0), low = dip(0.005), high = dip(0.02), below = dip(-0.1);
+    kiln_fit_part touching = denominator_with_minimum(0), low = denominator_with_minimum(0.005),
+                  high = denominator_with_minimum(0.02), below = denominator_with_minimum(-0.1);
     assert_false(ki_fit_positive(&touching));
     assert_false(ki_fit_positive(&low));
     assert_false(ki_fit_positive(&below));
