@@ -13,6 +13,7 @@
 #include "codec/png_text.h"
 #include "codec/rgbx_png.h"
 #include "codec/sh_describe.h"
+#include "codec/zstd.h"
 #include "image/pack.h"
 
 #include <stdio.h>
@@ -191,6 +192,17 @@ const ki_file_format *ki_file_format_of_path(const char *path)
 {
     const char *ending;
     return find(path, &ending);
+}
+
+kiln_result ki_check_zstd(const char *path, const ki_file_format *file, int level,
+                          kiln_error *error)
+{
+    if (level < 0 || level > 22)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "zstd is %d, it must be 0 to 22", level);
+    if (level && !file->zstd)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: only .ktx2 files are compressed by zstd",
+                       path);
+    return level ? ki_zstd_known(path, error) : KILN_OK;
 }
 
 const char *kiln_path_ending(const char *path)

@@ -70,6 +70,11 @@ static inline bool ki_file_holds(const ki_file_format *format, unsigned holds)
     return format && (format->holds & holds);
 }
 
+/// Checks the compression level of a file of this format: 0 for none, or 1 to 22 for KTX2 in a build
+/// with zstd.
+kiln_result ki_check_zstd(const char *path, const ki_file_format *file, int level,
+                          kiln_error *error);
+
 enum { KI_ENDINGS_TEXT = 96 };
 /// Writes the endings of all formats that hold one of the things in `holds` to `text`, for example
 /// ".exr .hdr or .png", and returns `text`. `more`, which may be NULL, is a further ending at the

@@ -44,8 +44,7 @@ typedef struct ki_ktx2_writer {
 
 /// Writes the header and the descriptor. The caller then writes the metadata entries in the byte
 /// order of their keys, the end of the metadata, and the levels, smallest first.
-kiln_result ki_ktx2_begin(ki_writer *writer, const ki_ktx2_file *file, ki_ktx2_writer *k,
-                          kiln_error *error);
+void ki_ktx2_begin(ki_writer *writer, const ki_ktx2_file *file, ki_ktx2_writer *k);
 /// Begin and end a metadata entry. Its value is the text that the caller writes in between.
 size_t ki_ktx2_begin_entry(ki_writer *w, const char *key);
 void ki_ktx2_end_entry(ki_writer *w, size_t entry);

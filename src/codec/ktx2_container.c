@@ -44,14 +44,8 @@ static void write_format(ki_writer *w, const ki_ktx2_file *file)
     }
 }
 
-kiln_result ki_ktx2_begin(ki_writer *w, const ki_ktx2_file *file, ki_ktx2_writer *k,
-                          kiln_error *error)
+void ki_ktx2_begin(ki_writer *w, const ki_ktx2_file *file, ki_ktx2_writer *k)
 {
-    if (file->zstd < 0 || file->zstd > 22)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "zstd is %d, it must be 0 to 22", file->zstd);
-    kiln_result known = file->zstd ? ki_zstd_known("a KTX2 file", error) : KILN_OK;
-    if (known != KILN_OK)
-        return known;
     *k = (ki_ktx2_writer){.w = w, .file = file, .start = w->size};
     ki_write(w, identifier, sizeof identifier);
     ki_write_u32(w, file->vk);
@@ -76,7 +70,6 @@ kiln_result ki_ktx2_begin(ki_writer *w, const ki_ktx2_file *file, ki_ktx2_writer
     k->metadata = w->size;
     ki_patch_u32(w, k->index, (uint32_t)(begin - k->start));
     ki_patch_u32(w, k->index + 4, (uint32_t)(k->metadata - begin));
-    return KILN_OK;
 }
 
 // Begins a metadata entry. The returned position is where ki_ktx2_end_entry stores the entry's

@@ -108,11 +108,9 @@ kiln_result ki_ktx2_encode(const kiln_map *map, const kiln_save_def *def, ki_wri
                          .zstd = def->zstd};
     file.sample_count = find_samples(pixel, file.samples);
     ki_ktx2_writer k;
-    kiln_result result = ki_ktx2_begin(writer, &file, &k, error);
-    if (result != KILN_OK)
-        return result;
+    ki_ktx2_begin(writer, &file, &k);
     write_metadata(writer, map, def);
-    result = ki_ktx2_end_metadata(&k, error);
+    kiln_result result = ki_ktx2_end_metadata(&k, error);
     pack_job job = {map, pixel};
     for (int level = map->level_count - 1; level >= 0 && result == KILN_OK; level--) {
         int n = kiln_map_level_size(map, level);

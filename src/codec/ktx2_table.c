@@ -94,14 +94,12 @@ kiln_result ki_ktx2_encode_table(const kiln_image *image, int depth, const char 
                          .zstd = zstd};
     find_samples(texel, &file);
     ki_ktx2_writer k;
-    kiln_result result = ki_ktx2_begin(writer, &file, &k, error);
-    if (result != KILN_OK)
-        return result;
+    ki_ktx2_begin(writer, &file, &k);
     ki_ktx2_write_common(writer, depth > 1 ? "rdi" : "rd");
     size_t entry = ki_ktx2_begin_entry(writer, "kiln:table");
     ki_write_text(writer, "%s", text);
     ki_ktx2_end_entry(writer, entry);
-    result = ki_ktx2_end_metadata(&k, error);
+    kiln_result result = ki_ktx2_end_metadata(&k, error);
     if (result != KILN_OK)
         return result;
     pack_job job = {image, texel};

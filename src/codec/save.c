@@ -26,8 +26,6 @@ static kiln_result check_def(kiln_shape shape, const kiln_save_def *def, kiln_er
     if (!ki_pixel_format_of(def->format))
         return ki_fail(error, KILN_ERROR_ARGUMENT, "format is %d, it must be 0 to %d",
                        (int)def->format, (int)KILN_FORMAT_RGBP);
-    if (def->zstd < 0 || def->zstd > 22)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "zstd is %d, it must be 0 to 22", def->zstd);
     return ki_sh_check(def->sh, error);
 }
 
@@ -75,10 +73,8 @@ kiln_result kiln_map_save_check(const char *path, kiln_shape shape, const kiln_s
     if (shape != KILN_SHAPE_CUBE && has_face(path))
         return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: the path names a face, but %s has no faces",
                        path, shape_names[shape]);
-    if (def->zstd && !file->zstd)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: only .ktx2 files are compressed by zstd",
-                       path);
-    return check_format(path, file, def->format, error);
+    result = check_format(path, file, def->format, error);
+    return result == KILN_OK ? ki_check_zstd(path, file, def->zstd, error) : result;
 }
 
 double kiln_map_save_limit(const char *path, kiln_format format)

@@ -75,11 +75,8 @@ static kiln_result find_format(const char *path, const kiln_table_save_def *def,
     if (def->format && !((*file)->table_formats & 1U << def->format))
         return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: a %s file has no format %s", path,
                        kiln_path_ending(path), names[def->format]);
-    if (def->zstd && !(*file)->zstd)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: only .ktx2 files are compressed by zstd",
-                       path);
     *format = def->format ? def->format : (*file)->table_format;
-    return KILN_OK;
+    return ki_check_zstd(path, *file, def->zstd, error);
 }
 
 // ---------------------------------------------------------------------------------------- pictures

@@ -30,7 +30,8 @@ static void saving_does_what_the_check_says(void **state)
                     kiln_result save = kiln_map_save(context, &map, path, &def, NULL, &done);
                     assert_int_equal(check, save);
                     if (save != KILN_OK) {
-                        assert_int_equal(save, KILN_ERROR_ARGUMENT);
+                        bool lacks_zstd = zstd && !KILN_TEST_ZSTD && save == KILN_ERROR_UNSUPPORTED;
+                        assert_true(save == KILN_ERROR_ARGUMENT || lacks_zstd);
                         assert_string_equal(asked.message, done.message);
                     }
                     good += save == KILN_OK;
@@ -38,9 +39,9 @@ static void saving_does_what_the_check_says(void **state)
                 }
             kiln_map_free(&map);
         }
-    // A cube: KTX2 6 formats with zstd and without, DDS 6, EXR, folder and pattern 3 each, HDR 1, PNG 4.
+    // A cube: KTX2 6 formats without zstd, and with zstd if the build has it, DDS 6, EXR, folder and pattern 3 each, HDR 1, PNG 4.
     // Another shape: EXR and folder 3 each, HDR 1, PNG 4.
-    assert_int_equal(good, 12 + 6 + 3 * 3 + 1 + 4 + 2 * (2 * 3 + 1 + 4));
+    assert_int_equal(good, 6 * (1 + KILN_TEST_ZSTD) + 6 + 3 * 3 + 1 + 4 + 2 * (2 * 3 + 1 + 4));
     assert_int_equal(good + bad, 12 * 3 * 10 * 2);
 }
 

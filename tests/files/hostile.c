@@ -60,7 +60,7 @@ static int make_samples(void **state)
         kiln_save_def def = {.format = (kiln_format)(1 + i % 4), .sh = &sh, .lobe = "ggx"};
         if (i > 6)
             def.format = KILN_FORMAT_BC6H;
-        def.zstd = i == 1 ? 3 : 0;
+        def.zstd = i == 1 ? 3 * KILN_TEST_ZSTD : 0;
         static const char *const names[] = {"dds", "ktx2 zstd", "ktx2",
                                             "hdr", "png grey",  "png rgb",
                                             "exr", "dds bc6h",  "ktx2 bc6h"};
@@ -80,7 +80,7 @@ static int make_samples(void **state)
     for (int i = 0; i < 2; i++) {
         w.size = 0;
         CHECK_OK(ki_ktx2_encode_table(&image, i ? 4 : 1, "kind=dfg", (kiln_table_format)(1 + 2 * i),
-                                      i ? 3 : 0, &w, &error));
+                                      i ? 3 * KILN_TEST_ZSTD : 0, &w, &error));
         add_good(i ? "ktx2 table zstd" : "ktx2 table", &w);
     }
     ki_writer_free(&w);
@@ -130,7 +130,10 @@ static void bad_files_are_refused(void **state)
     kiln_context *context = failing_context(&f);
     for (int i = 0; i < count; i++) {
         kiln_result result = decode(context, &f, bad[i].bytes, bad[i].size, bad[i].name);
-        if (result != KILN_ERROR_FORMAT)
+        // Without zstd, what is compressed by it (scheme 2 at byte 44 of a KTX2 file) may be refused as such.
+        bool lacks_zstd = !KILN_TEST_ZSTD && strstr(bad[i].name, ".ktx2") && bad[i].size > 44 &&
+                          bad[i].bytes[44] == 2 && result == KILN_ERROR_UNSUPPORTED;
+        if (result != KILN_ERROR_FORMAT && !lacks_zstd)
             fail_msg("%s gives %d: %s", bad[i].name, (int)result, error.message);
         free(bad[i].bytes);
     }
@@ -241,7 +244,8 @@ static kiln_result save(kiln_context *context, const char *path)
     kiln_context *other = make_context(1);
     kiln_map map = make_map(other, KILN_SHAPE_CUBE, 4, 1);
     kiln_sh sh = {.bands = 3};
-    kiln_save_def def = {.zstd = strstr(path, "zstd") ? 3 : 0, .sh = &sh, .lobe = "ggx"};
+    kiln_save_def def = {
+        .zstd = strstr(path, "zstd") ? 3 * KILN_TEST_ZSTD : 0, .sh = &sh, .lobe = "ggx"};
     kiln_result result = kiln_map_save(context, &map, path, &def, NULL, &error);
     kiln_map_free(&map);
     kiln_context_destroy(other);
@@ -266,7 +270,7 @@ static kiln_result save_table(kiln_context *context, const char *path)
     float pixels[24] = {0};
     kiln_table table = {{.kind = KILN_TABLE_DFG, .width = 4, .height = 3, .depth = 1},
                         {4, 3, 2, pixels, NULL}};
-    kiln_table_save_def def = {.zstd = strstr(path, "zstd") ? 3 : 0};
+    kiln_table_save_def def = {.zstd = strstr(path, "zstd") ? 3 * KILN_TEST_ZSTD : 0};
     return kiln_table_save(context, &table, path, &def, &error);
 }
 
