@@ -143,7 +143,7 @@ build)
 test)
     need build render web test
     panoramas
-    npm_packages web tests/web tests/files/ktx tests/brdf/witness tests/engines
+    npm_packages web tests/web tests/files/assets tests/files/ktx tests/brdf/witness tests/engines
     build_release TESTS GOLDEN BENCH EXAMPLES
     build wasm
     run_tests release

@@ -103,6 +103,32 @@ export small="--size 16 --exposure -8"
     expect 0 "" bake sky.exr -o t.ktx2 --size 16 --exposure 10 --quiet
     expect 0 "" bake sky.exr -o t.ktx2 --size 16 --exposure 10 --format rgba32f
     rm t.ktx2
+
+    # Texels that are negative, infinite or not a number, behind the 148 bytes of the header of a cube
+    # of floats.
+    expect 0 "" bake sky.exr -o odd.dds --format rgba32f --size 2 --levels 1
+    put() { printf "$2" | dd of=odd.dds bs=1 seek=$((148 + 16 * $1)) conv=notrunc 2>/dev/null; }
+    put 0 '\000\000\172\304' # -1000
+    put 5 '\000\000\200\177' # infinity
+    put 9 '\000\000\300\177' # not a number
+    expect 0 "^kiln: warning: odd.dds: 1 of 24 texels is infinite and became 65504$" \
+        bake odd.dds -o t.ktx2 --size 4 --json
+    for line in "warning: odd.dds: 1 of 24 texels is not a number and became the mean of the texels around" \
+        "note: odd.dds: 1 of 24 texels is negative and kept, with 1.[0-9]* % of the light" \
+        "warning: t.ktx2: [0-9]* of 378 values were negative, with [0-9.]* % of the light, and became 0"; do
+        grep -q "^kiln: $line$" log/err || die "no line of standard error says: $line"
+    done
+    for member in '"texel_count":	24' '"infinite_count":	1' '"nan_count":	1' '"negative_count":	1'; do
+        grep -q "$member" log/out || die "--json has no $member"
+    done
+    grep -q '"notes":.*infinite.*not a number.*negative and kept' log/out || die "--json has the notes"
+    expect 0 "is negative and became 0" bake odd.dds -o z.ktx2 --size 4 --negative zero
+    if grep -q "z.ktx2" log/err; then die "nothing is cut off of a source without negative texels"; fi
+    expect 0 "" bake odd.dds -o q.ktx2 --size 4 --quiet
+    same t.ktx2 q.ktx2
+    if cmp -s t.ktx2 z.ktx2; then die "--negative has no effect"; fi
+    expect 2 "--negative is 'drop', it must be" bake odd.dds -o t.ktx2 --negative drop
+    rm odd.dds ./*.ktx2
 }
 
 expect 0 "" tables --method textbook -o t.exr --size 16 --samples 16

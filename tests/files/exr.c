@@ -198,6 +198,35 @@ static void the_display_window_is_the_picture(void **state)
                   "made.exr: none of the 8 pixels of its display window lies in its data window");
 }
 
+static void pixels_outside_the_data_window_are_counted(void **state)
+{
+    (void)state;
+    exr_make make = {.width = 20,
+                     .height = 8,
+                     .x = 6,
+                     .y = 4,
+                     .display = {{{{0, 0}}}, {{{31, 15}}}},
+                     .compression = EXR_COMPRESSION_ZIP,
+                     .channels = half_rgb,
+                     .channel_count = 3,
+                     .value = ramp};
+    size_t size;
+    uint8_t *bytes = exr_make_file(&make, &size);
+    kiln_load_report report;
+    kiln_load_def def = {.report = &report};
+    kiln_note note;
+    kiln_map map;
+    CHECK_OK(kiln_map_decode(context, bytes, size, "made.exr", &def, &map, &error));
+    assert_int_equal(report.missing_count, 32 * 16 - 20 * 8);
+    assert_true(kiln_load_report_note(&report, 0, &note));
+    assert_true(note.warning);
+    assert_string_equal(note.text,
+                        "352 of 512 texels are outside the file's data window and black");
+    assert_false(kiln_load_report_note(&report, 1, &note));
+    kiln_map_free(&map);
+    free(bytes);
+}
+
 static void missing_and_extra_channels(void **state)
 {
     (void)state;
@@ -499,6 +528,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(lossy_compressions_come_back_near, set_up, tear_down),
         cmocka_unit_test_setup_teardown(dwa_is_what_the_reference_decodes, set_up, tear_down),
         cmocka_unit_test_setup_teardown(the_display_window_is_the_picture, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(pixels_outside_the_data_window_are_counted, set_up,
+                                        tear_down),
         cmocka_unit_test_setup_teardown(missing_and_extra_channels, set_up, tear_down),
         cmocka_unit_test_setup_teardown(strange_values_are_kept, set_up, tear_down),
         cmocka_unit_test_setup_teardown(what_is_not_read_is_said, set_up, tear_down),

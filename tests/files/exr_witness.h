@@ -6,8 +6,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/// The channels R, G and B of level 0 of the last part, over the data window, three floats a pixel:
-/// not-a-number and negatives are 0, infinities the largest value of the type, missing channels 0.
+/// The channels R, G and B of level 0 of the last part, over the data window, three floats a pixel,
+/// with the values of the file; missing channels are 0.
 /// `pixels` is to be released by free(). False where OpenEXRCore refuses the file.
 bool exr_witness_read(const uint8_t *bytes, size_t size, int *width, int *height, float **pixels);
 
