@@ -54,7 +54,7 @@ bool os_begin(int *argc, char ***argv)
     code_page_before = GetConsoleOutputCP();
     if (code_page_before && SetConsoleOutputCP(CP_UTF8))
         atexit(restore_code_page);
-    _setmode(_fileno(stdout), _O_BINARY); // binary mode: lines end in \n as on other systems
+    _setmode(_fileno(stdout), _O_BINARY); // in binary mode lines end in \n as on other systems
     wchar_t **wide = CommandLineToArgvW(GetCommandLineW(), argc);
     char **words = wide ? calloc((size_t)*argc + 1, sizeof *words) : NULL;
     bool good = words != NULL;

@@ -44,7 +44,8 @@ typedef struct low_workspace {
 typedef struct plan_workspace {
     // the mirrored and exposed source; empty if the plan neither mirrors nor exposes
     kiln_map changed;
-    kiln_map panorama; // made from a source of another shape; empty if the source is a panorama
+    // the panorama that is made from a source of another shape; empty if the source is a panorama
+    kiln_map panorama;
     ki_prefilter_workspace prefilter;
     low_workspace for_sh, for_irradiance; // empty where the plan has no such analysis
     bool has_scratch;

@@ -279,7 +279,7 @@ static bool means_suffice(const ki_reference *r, const ray_sums *ray, const ki_r
     double c = ray->d[1] * row->cos_centre + ray->sin_theta * row->sin_centre;
     double nearest = ki_acos(ki_clamp(c, -1, 1)) - 0.5 * theta_size;
 
-    // length over which the lobe must change at least for 2 x 2 nodes to suffice
+    // 2 x 2 nodes suffice where the lobe changes little over this length
     double length = size / r->rule.pairs;
     *near = 2;
     if (r->rational) {

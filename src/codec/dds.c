@@ -171,10 +171,10 @@ static kiln_result read_header(ki_reader *r, const char *name, dds_header *h, ki
 {
     ki_read_bytes(r, 4);
     uint32_t header_size = ki_read_u32(r);
-    ki_read_u32(r); // flags, which many writers set wrongly
+    ki_read_u32(r); // skips the flags, which many writers set wrongly
     h->height = ki_read_u32(r);
     h->width = ki_read_u32(r);
-    ki_read_u32(r); // pitch of a row or face
+    ki_read_u32(r); // skips the pitch of a row or face
     ki_read_u32(r); // depth of a volume
     h->levels = ki_read_u32(r);
     const uint8_t *said = ki_read_bytes(r, sizeof h->said - 1);

@@ -41,7 +41,8 @@ struct ki_deflater {
     int32_t first[1 << HASH_BITS], threes[1 << NEAR_BITS], next[WINDOW];
     // Items: a literal byte, or the length of a match << 16 | its distance.
     uint32_t items[ITEMS];
-    int count, looked; // number of items, and number of items whose classes are counted in `before`
+    // number of items of the block, and number of items whose classes are counted in `before`
+    int count, looked;
     int32_t start, at; // first position of the block, and the position after its last item
     uint32_t before[CLASSES], recent[CLASSES];
     uint8_t literal_cost[256]; // estimated cost of each literal in eighths of a bit
@@ -548,7 +549,7 @@ size_t ki_deflate_part(ki_deflater *d, const uint8_t *plain, size_t history, siz
     d->count = d->looked = 0;
     memset(d->before, 0, sizeof d->before);
     memset(d->recent, 0, sizeof d->recent);
-    d->hash_bits = 10; // a small hash table for a short input, since the table must be cleared
+    d->hash_bits = 10; // a short input gets a small hash table, since the table must be cleared
     while (d->hash_bits < HASH_BITS && d->end >> d->hash_bits)
         d->hash_bits++;
     memset(d->first, 0xff, sizeof *d->first << d->hash_bits);

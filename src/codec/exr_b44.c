@@ -80,7 +80,7 @@ static bool undo_plane(ki_reader *r, bool linear, int width, int height, uint8_t
                 block[i] = logarithm(block[i]);
             uint8_t *to = plane + 2 * ((size_t)y * (size_t)width + (size_t)x);
             for (int j = 0; j < ki_min(4, height - y); j++, to += 2 * (size_t)width) {
-                if (width - x >= 4) // a copy of constant size, which compilers make fast
+                if (width - x >= 4) // compilers make a copy of constant size fast
                     memcpy(to, block + (ptrdiff_t)4 * j, 8);
                 else
                     memcpy(to, block + (ptrdiff_t)4 * j, 2 * (size_t)(width - x));

@@ -101,7 +101,8 @@ static ki_reader open_chunk(const search *s, int64_t index, int column, int row)
         return nowhere;
     r = ki_reader_make(h->bytes + offset, h->size - (size_t)offset);
     bool same = !h->multipart || ki_read_u32(&r) == (uint32_t)s->part_index;
-    if (s->part->tiled) { // column, row, and the mip level in x and y
+    // a tile's chunk begins with its column, its row, and its mip level in x and y
+    if (s->part->tiled) {
         same = same && ki_read_u32(&r) == (uint32_t)column && ki_read_u32(&r) == (uint32_t)row &&
                ki_read_u32(&r) == 0 && ki_read_u32(&r) == 0;
     } else {

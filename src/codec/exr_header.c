@@ -64,7 +64,8 @@ static bool read_channel(ki_reader *r, ki_exr_channel *c)
 {
     *c = (ki_exr_channel){.name = read_text(r)};
     uint32_t type = ki_read_u32(r);
-    c->linear = (ki_read_u32(r) & 0xff) != 0; // one byte, and three reserved bytes
+    // the field is one byte, which three reserved bytes follow
+    c->linear = (ki_read_u32(r) & 0xff) != 0;
     uint32_t x = ki_read_u32(r), y = ki_read_u32(r);
     if (!c->name || !c->name[0] || r->failed || type >= KI_EXR_TYPES || x < 1 || y < 1 ||
         x > KILN_MAX_SIZE || y > KILN_MAX_SIZE)

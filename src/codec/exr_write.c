@@ -54,8 +54,8 @@ static void header(ki_writer *w, int width, int height, int channels, const ki_e
     for (int c = 0; c < channels; c++) {
         text(w, names[channels - 1][c]);
         ki_write_u32(w, options->half ? 1 : 2);
-        ki_write_u32(w, 0); // not "perceptually linear"
-        ki_write_u32(w, 1); // no subsampling
+        ki_write_u32(w, 0); // the channel is marked as not "perceptually linear"
+        ki_write_u32(w, 1); // the channel is not subsampled: 1 in x, and 1 in y
         ki_write_u32(w, 1);
     }
     ki_write_u8(w, 0);

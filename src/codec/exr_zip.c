@@ -69,7 +69,7 @@ size_t ki_exr_unpack_runs(const uint8_t *packed, size_t packed_size, uint8_t *ra
     size_t in = 0, out = 0;
     while (in < packed_size) {
         size_t code = packed[in++];
-        if (code > 127) { // 256 - code literal bytes follow
+        if (code > 127) { // the next 256 - code bytes are literals
             size_t count = 256 - code;
             if (packed_size - in < count || size - out < count)
                 return SIZE_MAX;

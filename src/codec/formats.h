@@ -64,7 +64,8 @@ typedef struct ki_file_format {
 /// Returns the row for the ending of a path, in lower or upper case, or NULL if no format has the
 /// ending.
 const ki_file_format *ki_file_format_of_path(const char *path);
-/// Returns whether `format` is not NULL and its files can hold one of the things in `holds`.
+/// Returns whether `format` is not NULL and its files can hold one of the contents in `holds`, a
+/// sum of KI_HOLDS constants.
 static inline bool ki_file_holds(const ki_file_format *format, unsigned holds)
 {
     return format && (format->holds & holds);

@@ -137,11 +137,11 @@ void ki_json_triple(ki_json *j, double triple[3])
     ki_json_enter_array(j);
     for (int c = 0; c < 3; c++) {
         if (!j->failed && !ki_json_item(j))
-            j->failed = true; // too few numbers
+            j->failed = true; // the array has too few numbers
         triple[c] = ki_json_number(j);
     }
     if (!j->failed && ki_json_item(j))
-        j->failed = true; // too many numbers
+        j->failed = true; // the array has too many numbers
 }
 
 // Skips a number, or a word such as null.

@@ -23,12 +23,13 @@ static void write_format(ki_writer *w, const ki_ktx2_file *file)
     enum { MODEL_RGBSDA = 1, MODEL_BC6H = 133, PRIMARIES_BT709 = 1, TRANSFER_LINEAR = 1 };
     uint32_t block = 24 + 16 * (uint32_t)file->sample_count;
     ki_write_u32(w, 4 + block);
-    ki_write_u32(w, 0);               // vendor Khronos, type basic format
-    ki_write_u32(w, 2 | block << 16); // version 1.3, and size of the block
+    ki_write_u32(w, 0); // the descriptor's vendor is Khronos, its type the basic format
+    // version 1.3 of the descriptor, and size of its block in bytes
+    ki_write_u32(w, 2 | block << 16);
     ki_write_u8(w, file->block > 1 ? MODEL_BC6H : MODEL_RGBSDA);
     ki_write_u8(w, PRIMARIES_BT709);
     ki_write_u8(w, TRANSFER_LINEAR);
-    ki_write_u8(w, 0); // straight alpha
+    ki_write_u8(w, 0); // flags: alpha is straight
     uint32_t less = (uint32_t)ki_max(file->block, 1) - 1;
     // Dimensions of a texel block, each less 1: `less` x `less` x 0 x 0.
     ki_write_u32(w, less | less << 8);
@@ -38,7 +39,7 @@ static void write_format(ki_writer *w, const ki_ktx2_file *file)
         const ki_ktx2_sample *s = &file->samples[i];
         ki_write_u32(w, (uint32_t)s->offset | (uint32_t)(s->bits - 1) << 16 |
                             (uint32_t)s->channel << 24);
-        ki_write_u32(w, 0); // sample position
+        ki_write_u32(w, 0); // position of the sample within a texel
         ki_write_u32(w, s->lower);
         ki_write_u32(w, s->upper);
     }
@@ -60,7 +61,7 @@ void ki_ktx2_begin(ki_writer *w, const ki_ktx2_file *file, ki_ktx2_writer *k)
     k->index = w->size;
     for (int i = 0; i < 4; i++) // offsets and lengths of descriptor and metadata, filled in later
         ki_write_u32(w, 0);
-    ki_write_u64(w, 0); // no global data for the compression scheme
+    ki_write_u64(w, 0); // offset and length of global data, which these compression schemes lack
     ki_write_u64(w, 0);
     k->levels = w->size;
     for (int i = 0; i < 3 * file->level_count; i++)
@@ -243,7 +244,7 @@ static void read_sh(const char *text, kiln_file_info *info)
         text = text ? ki_parse_number(text + (*text == '\n'), &value) : NULL;
         info->sh[i / 3][i % 3] = ki_info_number(value);
     }
-    if (text) // all coefficients were present
+    if (text) // true if all coefficients were present
         info->sh_bands = (int)bands;
     else
         memset(info->sh, 0, sizeof info->sh);

@@ -60,7 +60,7 @@ typedef struct chunk {
     char type[5];
     const uint8_t *bytes;
     size_t size;
-    bool intact; // true: its CRC is right
+    bool intact; // true: the chunk's CRC is right
 } chunk;
 
 static bool next_chunk(png_file *f, chunk *c)

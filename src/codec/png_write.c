@@ -59,12 +59,12 @@ static void write_head(png_writer *p, int width, int height, int channels, ki_pn
     write_u32_high_first(p->out, (uint32_t)height);
     ki_write_u8(p->out, coding == KI_PNG_PLAIN16 ? 16 : 8);
     ki_write_u8(p->out, colors[channels - 1]);
-    // the fields compression (deflate), filters (the five filters) and interlacing (none)
+    // the fields compression, filters and interlacing are 0: deflate, the five filters, and none
     ki_write(p->out, "\0\0", 3);
     end_chunk(p, start);
     if (coding == KI_PNG_SRGB8) {
         start = begin_chunk(p->out, "sRGB");
-        ki_write_u8(p->out, 1); // rendering intent "relative colorimetric"
+        ki_write_u8(p->out, 1); // the rendering intent is "relative colorimetric"
         end_chunk(p, start);
     }
 }

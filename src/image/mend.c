@@ -104,7 +104,7 @@ enum { GOOD, BAD, LISTED };
 typedef struct holes {
     const plane *plane;
     uint8_t *state;
-    size_t *list, count; // bad texels in the order in which they are filled
+    size_t *list, count; // the listed texels, in the order in which they are filled
 } holes;
 
 // Finds the texels around a texel, at most eight, and returns their number. The columns of a
@@ -138,7 +138,8 @@ static int find_good(const holes *h, size_t index, size_t found[8])
     return count;
 }
 
-// Lists a texel if it is bad, not listed yet, and has a neighbour to take a value from.
+// Lists a texel if it has a channel that is not a number, is not listed yet, and has a neighbour to
+// take a value from.
 static void list(holes *h, size_t index)
 {
     size_t good[8];

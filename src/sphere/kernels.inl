@@ -267,8 +267,9 @@ static float sum_row(const float *row, int count, double sum[3])
 
 // ---------------------------------------------------------------------------------------- Legendre
 
-// Evaluates q_l = 2 x q_{l-1} - f_l q_{l-2}, the associated Legendre functions up to a factor that
-// depends only on l and m (legendre.h).
+// The kernel `analyze` of kernels.h. Sums products of data and q_l, which are the associated
+// Legendre functions up to a factor that depends only on l and m. The recurrence q_l = 2 x q_{l-1}
+// - f_l q_{l-2} (legendre.h) computes them.
 static void analyze(const double *f, int count, const double *twice_cos, const double *start,
                     const double *data, int first, int last, double *state, double *out)
 {

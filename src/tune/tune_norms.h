@@ -18,7 +18,7 @@ typedef struct ki_norms {
     // radiance
     double away[KI_MOST_LOBES];
     double ratio[KI_MOST_LOBES]; // generalised eigenvalue that belongs to each axis (eigenvector)
-    double *along; // [axis][lobe]: weight of each lobe in the mixture that an axis (eigenvector) is
+    double *along;               // [axis][lobe]: each axis is a mixture of lobes with these weights
     // [axis][lobe]: scalar product over the whole sphere of an axis and a filtered environment
     double *across;
 } ki_norms;

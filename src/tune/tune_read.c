@@ -196,8 +196,9 @@ static void show_points(void *data, int index)
     }
 }
 
-// Task of one thread: sets a chunk of texels of `to` to B' shown, and sums two products over the
-// chunk: of `to` and `from`, and of `to` with itself over the diagonal.
+// Task of one thread: multiplies r->shown by the transpose of B, and writes a chunk of texels of
+// `to`. Sums two products over the chunk: of `to` and `from`, and of `to` with itself over the
+// diagonal of the matrix.
 static void gather(void *data, int index)
 {
     const product *a = data;
