@@ -34,31 +34,11 @@ static void looked(const kiln_map *map, int level, size_t index, double d[3])
     panorama_direction(size, u * width, v * size, d);
 }
 
-// The picture as the textbook reads it, size - 1 rows of 2 size - 1 columns stretched over the
-// sphere, seen through GGX: n x n equal areas a texel.
-static double stretched_sum(const kiln_map *map, double alpha, const double d[3], int n)
+// The mean through GGX of the picture as the textbook reads it: size - 1 rows of 2 size - 1 columns stretched over
+// the sphere.
+static double stretched_mean(const kiln_map *map, double alpha, const double d[3], int n)
 {
-    double sum = 0, all = 0, a2 = alpha * alpha;
-    int rows = map->size - 1, columns = 2 * map->size - 1;
-    for (int y = 0; y < rows; y++) {
-        double top = cos(pi * y / rows), bottom = cos(pi * (y + 1) / rows);
-        for (int x = 0; x < columns; x++) {
-            double weight = 0;
-            for (int j = 0; j < n; j++) {
-                double z = top + (bottom - top) * (j + 0.5) / n, s = sqrt(1 - z * z);
-                for (int i = 0; i < n; i++) {
-                    double phi = 2 * pi * (x + (i + 0.5) / n) / columns - pi;
-                    double c = d[0] * s * sin(phi) + d[1] * z - d[2] * s * cos(phi);
-                    double q = a2 + (1 - a2) * 0.5 * (1 - c);
-                    weight += c > 0 ? c * (a2 / q) * (a2 / q) : 0;
-                }
-            }
-            weight *= top - bottom;
-            sum += weight * (double)texel_at(map, x, y)[0];
-            all += weight;
-        }
-    }
-    return sum / all;
+    return ggx_mean(map, 2 * map->size - 1, map->size - 1, alpha, d, n);
 }
 
 // The sum over theta is a trapezoid rule: white becomes (pi / 2n) cot(pi / 2n), 0.99992 for 100.
@@ -156,7 +136,7 @@ static void irradiance_converges(void **state)
         for (size_t i = 0; i < kiln_map_texels(&map, 0); i++) {
             double d[3];
             looked(&map, 0, i, d);
-            double wanted = stretched_sum(&source, 1, d, 32);
+            double wanted = stretched_mean(&source, 1, d, 32);
             worst[k] = fmax(worst[k], fabs((double)map.level[0][3 * i] / wanted - 1));
         }
         CHECK_BELOW(worst[k], bounds[k]);
@@ -185,7 +165,7 @@ static void prefilter_converges(void **state)
             for (size_t i = 0; i < kiln_map_texels(&map, level); i += 3, count++) {
                 double d[3];
                 looked(&map, level, i, d);
-                double wanted = stretched_sum(&source, alpha, d, 24);
+                double wanted = stretched_mean(&source, alpha, d, 24);
                 double off = (double)map.level[level][3 * i] / wanted - 1;
                 rms[k] += off * off;
                 CHECK_BELOW(fabs(off), 2 * bounds[k]);

@@ -145,19 +145,11 @@ static uint64_t irradiance(kiln_context *context)
     return hash;
 }
 
-// Made of whole numbers: `size` rows.
 static kiln_map make_checks(kiln_context *context, int size)
 {
     kiln_map map;
     CHECK(kiln_map_create(context, KILN_SHAPE_PANORAMA, size, 1, &map, &error));
-    float *rgb = map.level[0];
-    for (int y = 0; y < size; y++)
-        for (int x = 0; x < 2 * size; x++)
-            for (int c = 0; c < 3; c++)
-                rgb[(y * 2 * size + x) * 3 + c] =
-                    (float)((7 * (x / 3) + 13 * (y / 2) + 5 * c) % 17);
-    for (int c = 0; c < 3; c++)
-        rgb[(9 * 2 * size + 20) * 3 + c] = (float)(5000 - 700 * c);
+    scene_checks(&map);
     return map;
 }
 

@@ -9,6 +9,37 @@ kiln_map scene_panorama(kiln_context *context, int size, uint32_t seed)
     return map;
 }
 
+// The lobe's integral over the texel in column x between the cosines `top` and `bottom`, in n x n equal areas.
+static double ggx_weight(double alpha, const double d[3], int n, double top, double bottom,
+                         double x, double columns)
+{
+    double sum = 0, a2 = alpha * alpha;
+    for (int j = 0; j < n; j++) {
+        double z = top + (bottom - top) * (j + 0.5) / n, s = sqrt(1 - z * z);
+        for (int i = 0; i < n; i++) {
+            double phi = 2 * pi * (x + (i + 0.5) / n) / columns - pi;
+            double c = d[0] * s * sin(phi) + d[1] * z - d[2] * s * cos(phi);
+            double q = a2 + (1 - a2) * 0.5 * (1 - c);
+            sum += c > 0 ? c * (a2 / q) * (a2 / q) : 0;
+        }
+    }
+    return sum * (top - bottom);
+}
+
+double ggx_mean(const kiln_map *map, int columns, int rows, double alpha, const double d[3], int n)
+{
+    double sum = 0, all = 0;
+    for (int y = 0; y < rows; y++) {
+        double top = cos(pi * y / rows), bottom = cos(pi * (y + 1) / rows);
+        for (int x = 0; x < columns; x++) {
+            double weight = ggx_weight(alpha, d, n, top, bottom, x, columns);
+            sum += weight * (double)texel_at(map, x, y)[0];
+            all += weight;
+        }
+    }
+    return sum / all;
+}
+
 scene_errors scene_compare(kiln_context *context, const kiln_map *panorama, const kiln_map *result,
                            int level, const kiln_lobe *lobe, double rotation, int count)
 {

@@ -9,6 +9,11 @@
 /// A panorama with the scene of scene.h.
 kiln_map scene_panorama(kiln_context *context, int size, uint32_t seed);
 
+/// The mean of channel 0 of a picture laid over the whole sphere, seen through the GGX lobe of width alpha around
+/// the direction d: each texel is cut into n x n equal areas, by libm and without the library. The picture is the first
+/// `columns` x `rows` texels of a panorama.
+double ggx_mean(const kiln_map *map, int columns, int rows, double alpha, const double d[3], int n);
+
 typedef struct scene_errors {
     double rms, most; // both relative: to the root mean square of the reference, and to each value
 } scene_errors;

@@ -29,4 +29,18 @@ static inline void scene_fill(kiln_map *map, uint32_t seed)
         map->level[0][3 * sun + (size_t)c] = 5000;
 }
 
+/// Fills a panorama of more than 9 rows with whole numbers from 0 to 16, and one texel of sun with radiance 5000,
+/// 4300 and 3600.
+static inline void scene_checks(kiln_map *map)
+{
+    int width = 2 * map->size;
+    float *rgb = map->level[0];
+    for (int y = 0; y < map->size; y++)
+        for (int x = 0; x < width; x++)
+            for (int c = 0; c < 3; c++)
+                *rgb++ = (float)((7 * (x / 3) + 13 * (y / 2) + 5 * c) % 17);
+    for (int c = 0; c < 3; c++)
+        map->level[0][(9 * width + 20) * 3 + c] = (float)(5000 - 700 * c);
+}
+
 #endif

@@ -46,16 +46,16 @@ static void light_is_drawn_where_it_is(void **unused)
     enum { FINE = 512 };
     for (int y = 0; y < FINE; y++)
         for (int x = 0; x < 2 * FINE; x++) {
-            double theta = 3.14159265358979 * (y + 0.5) / FINE;
-            double phi = 3.14159265358979 * (x + 0.5) / FINE;
+            double theta = pi * (y + 0.5) / FINE;
+            double phi = pi * (x + 0.5) / FINE;
             double seen = fmod(phi / 6.28318530717959 + 0.5 + 30.0 / 360, 1);
             int texel = y * ROWS / FINE * 2 * ROWS + (int)(seen * 2 * ROWS);
-            double w = sin(theta) * pow(3.14159265358979 / FINE, 2);
+            double w = sin(theta) * pow(pi / FINE, 2);
             double c = (double)map.level[0][3 * texel + 2];
             texels += w * c;
             first += w * c * sin(theta) * sin(phi);
         }
-    CHECK_NEAR(sphere, 4 * 3.14159265358979, 0.03);
+    CHECK_NEAR(sphere, 4 * pi, 0.03);
     CHECK_NEAR(blue, texels, 0.003 * texels);
     CHECK_NEAR(moment, first, 0.01 * texels);
     view_light_free(&light);
@@ -146,8 +146,8 @@ static void sum_all(const kiln_map *map, const view_ball *ball, const double n[3
     }
     for (int y = 0; y < FINE; y++)
         for (int x = 0; x < 2 * FINE; x++) {
-            double theta = 3.14159265358979 * (y + 0.5) / FINE;
-            double phi = 3.14159265358979 * ((x + 0.5) / FINE - 1);
+            double theta = pi * (y + 0.5) / FINE;
+            double phi = pi * ((x + 0.5) / FINE - 1);
             double l[3] = {sin(theta) * sin(phi), cos(theta), -sin(theta) * cos(phi)};
             double nol = dot(n, l), h[3];
             int texel = y * ROWS / FINE * 2 * ROWS + x * ROWS / FINE;
@@ -156,7 +156,7 @@ static void sum_all(const kiln_map *map, const view_ball *ball, const double n[3
             for (int c = 0; c < 3; c++)
                 h[c] = l[c] + v[c];
             normalize(h);
-            double w = sin(theta) * pow(3.14159265358979 / FINE, 2) * nol;
+            double w = sin(theta) * pow(pi / FINE, 2) * nol;
             double lobe = kiln_brdf_specular(&model, r, nov, nol, fmin(dot(n, h), 1));
             int i = (int)(nol * FINE) < FINE ? (int)(nol * FINE) : FINE - 1;
             double e_i = e[i] + (e[i + 1] - e[i]) * (nol * FINE - i);
@@ -179,7 +179,7 @@ static void the_integral_is_the_sum(void **unused)
     kiln_map map;
     kiln_image image;
     view_ball balls[VIEW_MAX_BALLS];
-    double eye[3], right[3], up[3], back[3], slope = tan(o.camera.fov / 2 * 3.14159265358979 / 180);
+    double eye[3], right[3], up[3], back[3], slope = tan(o.camera.fov / 2 * pi / 180);
     int count = view_balls(&o, balls), seen = 0;
     o.samples = 1;
     make_environment(&map);
@@ -311,7 +311,7 @@ static void balls_light_one_another(void **unused)
     }
     view_random_start(&random, 3);
     double eye[3], right[3], up[3], back[3], sum[3] = {0}, got[3] = {0};
-    double slope = tan(o.camera.fov / 2 * 3.14159265358979 / 180);
+    double slope = tan(o.camera.fov / 2 * pi / 180);
     view_camera_axes(&o.camera, eye, right, up, back);
     for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++) {
         int x = (int)(i % WIDTH), y = (int)(i / WIDTH);

@@ -40,7 +40,7 @@ static void project(const view_options *o, const double p[3], int *x, int *y)
         b += (p[i] - eye[i]) * up[i];
         c -= (p[i] - eye[i]) * back[i];
     }
-    double slope = tan(o->camera.fov / 2 * 3.14159265358979 / 180);
+    double slope = tan(o->camera.fov / 2 * pi / 180);
     *x = (int)((a / (c * slope) * HEIGHT / WIDTH + 1) / 2 * WIDTH);
     *y = (int)((1 - b / (c * slope)) / 2 * HEIGHT);
 }
