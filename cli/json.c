@@ -121,7 +121,8 @@ void json_bool(json *j, const char *key, bool value)
 static int sequence(const unsigned char *at)
 {
     static const struct {
-        // for a range of first bytes: the allowed range of the second byte
+        // range of first bytes, and the range of second bytes that UTF-8 allows after these first
+        // bytes
         unsigned char first, last, low, high;
         int length;
     } forms[] = {

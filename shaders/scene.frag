@@ -27,7 +27,7 @@ layout(std140) uniform View
     vec4 turn;                // cosine and sine of the environment's rotation; place of the handle
                               // between two compared halves, 0 to 1; roughness of the background
     vec4 screen;              // width, height; z: 1 to bend reflections towards the normal
-    vec4 handout_average;     // E_avg as figure 6 of the GAMES202 handout reads it
+    vec4 handout_average; // copper's albedo, which figure 6 of the GAMES202 handout uses as E_avg
     ivec4 mode;               // scene, debug view, rays along a pixel's side, number of balls
     ivec4 flags;              // tone curve; 1 to draw figure 6 as printed; 1 with occlusion; 1 to
                               // take diffuse light from a cubemap instead of harmonics
@@ -143,9 +143,9 @@ vec3 lit_by_light(Ball ball, vec3 n, vec3 v, float nov)
 }
 
 // Radiance towards v from the environment. The specular part is the split sum: prefiltered radiance
-// times the lobe's albedo f0 A + B - edge C, whose last term is for metals. Light of further bounces
-// is added as diffuse light. Light that the specular part does not reflect reaches the diffuse
-// base. `open` is the share of diffuse light that other balls leave.
+// times the lobe's albedo f0 A + B - edge C, whose last term is for metals. Light of further
+// bounces is added as diffuse light. Light that the specular part does not reflect reaches the
+// diffuse base. `open` is the share of diffuse light that other balls leave.
 vec3 lit_by_environment(int slot, Ball ball, vec3 n, vec3 v, float nov, float open)
 {
     vec3 r = 2.0 * nov * n - v;

@@ -191,7 +191,8 @@ static void fill_pairs(const ki_reference *r, const ray_sums *ray, const ki_row_
         double cc = p1 + q1 * ea[x], cd = p1 + q1 * eb[x];
         double da = high - slope * ca, db = high - slope * cb;
         double dc = high - slope * cc, dd = high - slope * cd;
-        double scale = a2 / ((da * db) * (dc * dd)); // one division for four quotients
+        // the four quotients a2 / (d d) below share one division, which takes longer than products
+        double scale = a2 / ((da * db) * (dc * dd));
         double ra = scale * db * (dc * dd), rb = scale * da * (dc * dd);
         double rc = scale * (da * db) * dd, rd = scale * (da * db) * dc;
         ca = ca > 0 ? ca : 0;

@@ -115,12 +115,12 @@ typedef struct ki_progress_range {
     const char *name;
     double from, to;
 } ki_progress_range;
-/// Runs tasks as ki_parallel_for does and reports progress meanwhile: within `range`, or as
-/// ki_go_on if `range` is NULL. Returns false if a report asked to stop; some tasks have then not
-/// run.
+/// Runs tasks as ki_parallel_for does and meanwhile reports progress within `range`. If `range` is
+/// NULL, repeats the last report as ki_go_on does. Returns false if a report asked to stop; some
+/// tasks have then not run.
 bool ki_parallel_steps(kiln_context *context, const ki_progress_range *range, int count,
                        ki_task *task, void *data);
-/// Fails with KILN_ERROR_CANCELLED and a message that names the stage.
+/// Returns KILN_ERROR_CANCELLED, with a message that names the stage in *error.
 kiln_result ki_fail_cancelled(kiln_error *error, const char *stage);
 
 // --------------------------------------------------------------------------------------- processor

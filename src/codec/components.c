@@ -13,7 +13,7 @@ int ki_component_bytes(kiln_table_format format)
 }
 
 // Converts a value in [0, 1] to an integer of 0 to `most`. The product is exact in double
-// precision, so that only ties depend on the direction of rounding.
+// precision. Halves are rounded up.
 static uint32_t whole(float value, double most)
 {
     if (!(value > 0))
