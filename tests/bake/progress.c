@@ -1,19 +1,6 @@
 // Progress: work stops wherever it reports and leaves nothing behind, and a callback may call kiln.
 #include "kit/context.h"
 
-typedef struct countdown {
-    int left, calls;
-} countdown;
-
-static bool count_down(void *user, const char *stage, double fraction)
-{
-    countdown *c = user;
-    assert_non_null(stage);
-    assert_true(fraction >= 0 && fraction <= 1);
-    c->calls++;
-    return c->left-- > 0;
-}
-
 // Stops at each report in turn: all memory comes back, no file is left, and the sentence says so.
 // Returns how many reports there are.
 static int stop_everywhere(const kiln_map *source, kiln_shape shape, const char *ending)

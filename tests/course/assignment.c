@@ -272,12 +272,6 @@ static void wrong_arguments_are_sentences(void **state)
     kiln_image_free(&b);
 }
 
-static bool stop(void *user, const char *stage, double fraction)
-{
-    (void)user, (void)stage;
-    return fraction < 0.3;
-}
-
 // Memory that runs out and work that is stopped leave nothing.
 static void failing_leaves_nothing(void **state)
 {
@@ -307,10 +301,12 @@ static void failing_leaves_nothing(void **state)
     }
     assert_true(refused >= 2);
 
+    countdown c = {.left = 2};
     kiln_context *stopped = NULL;
     kiln_image table;
-    CHECK_OK(kiln_context_create(&(kiln_context_def){.progress = stop, .thread_count = 1}, &stopped,
-                                 &error));
+    CHECK_OK(kiln_context_create(
+        &(kiln_context_def){.progress = count_down, .progress_user = &c, .thread_count = 1},
+        &stopped, &error));
     assert_int_equal(
         kiln_assignment_energy(stopped, KILN_ASSIGNMENT_IMPORTANCE, &def, &table, &error),
         KILN_ERROR_CANCELLED);

@@ -103,28 +103,20 @@ static void threads_ask_for_no_more_memory_than_there_is(void **state)
     }
     def.memory_limit = peak - 1;
     assert_int_equal(encode_by(&def, true, &none, NULL), KILN_ERROR_MEMORY);
-    assert_non_null(strstr(error.message, "out of memory: an EXR file needs "));
+    CHECK_SAYS(error.message, "out of memory: an EXR file needs ");
     ki_writer_free(&none);
     ki_writer_free(&one);
-}
-
-static bool stop_at_second_call(void *user, const char *stage, double fraction)
-{
-    (void)stage;
-    (void)fraction;
-    return ++*(int *)user < 2;
 }
 
 static void writing_by_threads_can_be_stopped(void **state)
 {
     (void)state;
-    int calls = 0;
-    kiln_context_def def = {
-        .thread_count = 3, .progress = stop_at_second_call, .progress_user = &calls};
+    countdown c = {.left = 1};
+    kiln_context_def def = {.thread_count = 3, .progress = count_down, .progress_user = &c};
     ki_writer w;
     assert_int_equal(encode_by(&def, true, &w, NULL), KILN_ERROR_CANCELLED);
     assert_string_equal(error.message, "stopped while writing");
-    assert_int_equal(calls, 2);
+    assert_int_equal(c.calls, 2);
     ki_writer_free(&w);
 }
 

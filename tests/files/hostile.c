@@ -2,36 +2,13 @@
 #include "codec/codec.h"
 #include "kit/kit.h"
 
-#include <dirent.h>
-
 static kiln_error error;
 
-typedef struct sample {
-    char name[64];
-    uint8_t *bytes;
-    size_t size;
-} sample;
+typedef folder_file sample;
 
 enum { MAX_SAMPLES = 128 };
 static sample good[MAX_SAMPLES];
 static int good_count;
-
-static void read_folder(const char *path, sample *samples, int *count)
-{
-    DIR *folder = opendir(path);
-    assert_non_null(folder);
-    for (struct dirent *entry; (entry = readdir(folder));) {
-        if (entry->d_name[0] == '.')
-            continue;
-        char full[512];
-        snprintf(full, sizeof full, "%s/%s", path, entry->d_name);
-        assert_true(*count < MAX_SAMPLES);
-        sample *s = &samples[(*count)++];
-        snprintf(s->name, sizeof s->name, "%.63s", entry->d_name);
-        s->bytes = read_file(full, &s->size);
-    }
-    closedir(folder);
-}
 
 static void add_good(const char *name, const ki_writer *w)
 {
@@ -47,7 +24,7 @@ static int make_samples(void **state)
 {
     (void)state;
     kiln_context *context = make_context(1);
-    read_folder(KILN_GOOD_FILES, good, &good_count);
+    good_count = read_folder(KILN_GOOD_FILES, good, MAX_SAMPLES);
     kiln_map map;
     CHECK_OK(kiln_map_create(context, KILN_SHAPE_CUBE, 16, 0, &map, &error));
     for (size_t i = 0; i < kiln_map_texels(&map, 0) * 3; i++)
@@ -123,8 +100,7 @@ static void bad_files_are_refused(void **state)
 {
     (void)state;
     static sample bad[MAX_SAMPLES];
-    int count = 0;
-    read_folder(KILN_BAD_FILES, bad, &count);
+    int count = read_folder(KILN_BAD_FILES, bad, MAX_SAMPLES);
     assert_true(count > 60);
     failing f;
     kiln_context *context = failing_context(&f);

@@ -92,6 +92,25 @@ uint8_t *read_file(const char *path, size_t *size)
     return bytes;
 }
 
+int read_folder(const char *path, folder_file *files, int most)
+{
+    int count = 0;
+    DIR *entries = opendir(path);
+    assert_non_null(entries);
+    for (struct dirent *entry; (entry = readdir(entries));) {
+        char name[ROOM];
+        if (entry->d_name[0] == '.')
+            continue;
+        assert_true(count < most);
+        folder_file *file = &files[count++];
+        assert_true(snprintf(name, sizeof name, "%s/%s", path, entry->d_name) < ROOM);
+        snprintf(file->name, sizeof file->name, "%.63s", entry->d_name);
+        file->bytes = read_file(name, &file->size);
+    }
+    closedir(entries);
+    return count;
+}
+
 void write_file(const char *path, const void *bytes, size_t size)
 {
     FILE *file = fopen(path, "wb");

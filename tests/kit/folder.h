@@ -28,6 +28,15 @@ int file_count(const char *path);
 /// The bytes of a file and a 0 behind them, to be released by free(). Fails if the file cannot be read.
 uint8_t *read_file(const char *path, size_t *size);
 
+typedef struct folder_file {
+    char name[64];
+    uint8_t *bytes; // to be released by free()
+    size_t size;
+} folder_file;
+
+/// Reads all files of a folder that are not hidden, in any order, at most `most`. Returns their number.
+int read_folder(const char *path, folder_file *files, int most);
+
 /// Writes a file of these bytes, or replaces it.
 void write_file(const char *path, const void *bytes, size_t size);
 

@@ -10,5 +10,6 @@
 #include "random.h"
 #include "reference.h"
 #include "scene.h"
+#include "stopping.h"
 
 #endif

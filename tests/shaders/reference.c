@@ -364,19 +364,12 @@ static void threads_do_not_matter(void **unused)
     kiln_map_free(&map);
 }
 
-static bool stop_at_once(void *user, const char *stage, double fraction)
-{
-    (void)user;
-    (void)stage;
-    (void)fraction;
-    return false;
-}
-
 static void it_can_be_stopped(void **unused)
 {
     (void)unused;
     view_options o = view_defaults(VIEW_SCENE_FURNACE);
-    view_reference_def def = {.noise = 1e-4, .progress = stop_at_once};
+    countdown c = {0};
+    view_reference_def def = {.noise = 1e-4, .progress = count_down, .progress_user = &c};
     kiln_image image;
     assert_int_equal(view_reference(context, &o, NULL, 640, 360, &def, &image, NULL, &error),
                      KILN_ERROR_CANCELLED);
