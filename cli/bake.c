@@ -104,16 +104,11 @@ static int bake_by_textbook(bake *b)
                : CLI_GO;
 }
 
-// Warns of filtered values below zero. Where the source has no negative texels, such values come
-// from rounding and are no light of the source.
 static void warn_of_negatives(bake *b, const kiln_cut *cut, const char *path)
 {
-    bool rounding = !b->work.loaded.negative_count || b->negative == KILN_NEGATIVE_ZERO;
-    if (b->quiet || !cut->cut_count || rounding)
-        return;
-    cli_note(&b->work, true,
-             "%s: %zu of %zu values were negative, with %.3g %% of the light, and became 0", path,
-             cut->cut_count, cut->value_count, 100 * cut->share);
+    kiln_note note;
+    if (!b->quiet && kiln_cut_note(&b->work.loaded, cut, &note))
+        cli_note(&b->work, note.warning, "%s: %s", path, note.text);
 }
 
 static void warn_of_clamping(bake *b, const kiln_save_report *report, const char *path)

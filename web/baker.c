@@ -16,6 +16,8 @@ struct baker {
     kiln_context *context;
     kiln_error error;
     kiln_map source;
+    kiln_load_report report; // about the source
+    kiln_note note;          // the sentence that baker_note returned last
     kiln_environment baked, scenery;
     kiln_image truth;
     double truth_noise;
@@ -57,20 +59,23 @@ const char *baker_cpu(const baker *b)
     return kiln_context_cpu(b->context);
 }
 
-static bool take_source(baker *b, kiln_result result, kiln_map *map)
+static bool take_source(baker *b, kiln_result result, kiln_map *map, const kiln_load_report *report)
 {
     if (result)
         return false;
     kiln_map_free(&b->source);
     b->source = *map;
+    b->report = *report;
     return true;
 }
 
 bool baker_open(baker *b, const void *bytes, size_t size, const char *name)
 {
     kiln_map map;
-    return take_source(b, kiln_map_decode(b->context, bytes, size, name, NULL, &map, &b->error),
-                       &map);
+    kiln_load_report report;
+    const kiln_load_def def = {.report = &report};
+    return take_source(b, kiln_map_decode(b->context, bytes, size, name, &def, &map, &b->error),
+                       &map, &report);
 }
 
 bool baker_sky(baker *b, int size, double elevation, double azimuth, double turbidity)
@@ -80,7 +85,8 @@ bool baker_sky(baker *b, int size, double elevation, double azimuth, double turb
                         .azimuth = azimuth,
                         .turbidity = turbidity};
     kiln_map map;
-    return take_source(b, kiln_sky(b->context, &def, &map, &b->error), &map);
+    const kiln_load_report none = {0};
+    return take_source(b, kiln_sky(b->context, &def, &map, &b->error), &map, &none);
 }
 
 int baker_source_shape(const baker *b)
@@ -108,6 +114,19 @@ bool baker_bake(baker *b, int size, int levels, double rotation, double exposure
     kiln_environment_free(&b->baked);
     b->baked = made;
     return true;
+}
+
+const char *baker_note(baker *b, int index)
+{
+    int count = 0;
+    while (kiln_load_report_note(&b->report, count, &b->note)) {
+        if (count == index)
+            return b->note.text;
+        count++;
+    }
+    return index == count && kiln_cut_note(&b->report, &b->baked.levels_cut, &b->note)
+               ? b->note.text
+               : NULL;
 }
 
 int baker_level_count(const baker *b)

@@ -30,6 +30,9 @@ BAKER bool baker_bake(baker *b, int size, int levels, double rotation, double ex
 BAKER int baker_level_count(const baker *b);
 BAKER int baker_level_size(const baker *b, int level);
 BAKER double baker_roughness(const baker *b, int level);
+/// What was found in the source and cut off by the last bake, in sentences without a full stop;
+/// NULL behind the last. The text stays until the next call.
+BAKER const char *baker_note(baker *b, int index);
 /// The six faces of a baked level, as RGB floats.
 BAKER const float *baker_texels(const baker *b, int level);
 /// Spherical harmonics of the baked radiance: coefficients [9][3].

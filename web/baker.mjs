@@ -54,8 +54,16 @@ export class Baker {
         return this.module.HEAPF32.slice(at >>> 2, (at >>> 2) + 18 * size * size);
     }
 
-    // Bakes the source. Returns each level's size, roughness and texels, the harmonics and the
-    // time.
+    // What was found in the source and cut off by the last bake, in sentences without a full stop.
+    notes() {
+        const { module, self } = this, notes = [];
+        for (let at; (at = module._baker_note(self, notes.length)) !== 0;)
+            notes.push(module.UTF8ToString(at));
+        return notes;
+    }
+
+    // Bakes the source. Returns each level's size, roughness and texels, the harmonics, the notes
+    // and the time.
     bake({ size = 256, levels = 0, rotation = 0, exposure = 0 } = {}) {
         const { module, self } = this, began = performance.now();
         this.call('baker_bake', size, levels, rotation, exposure);
@@ -64,6 +72,7 @@ export class Baker {
         return {
             seconds,
             cpu: module.UTF8ToString(module._baker_cpu(self)),
+            notes: this.notes(),
             harmonics: module.HEAPF64.slice(sh, sh + 27),
             levels: Array.from({ length: module._baker_level_count(self) }, (_, k) => {
                 const side = module._baker_level_size(self, k);

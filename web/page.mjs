@@ -137,6 +137,7 @@ const bake = (file) => request(async () => {
     opened = file;
     state.source = file ? file.name : 'sky';
     say(describe(source));
+    get('report').textContent = made.notes.map((note) => `${state.source}: ${note}.`).join(' ');
     showLevels();
     remember();
 });

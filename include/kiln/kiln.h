@@ -238,7 +238,8 @@ typedef enum kiln_note_kind {
     KILN_NOTE_MISSING,      ///< texels are not in the file and are black
     KILN_NOTE_CHOICE,       ///< which part, layer, channels or layout of the file are the picture
     KILN_NOTE_CONVERSION,   ///< the numbers were converted: colours, exposure, transfer function
-    KILN_NOTE_ASSUMPTION    ///< the file leaves open what kiln needs to know, and kiln assumed it
+    KILN_NOTE_ASSUMPTION,   ///< the file leaves open what kiln needs to know, and kiln assumed it
+    KILN_NOTE_CUT           ///< filtered values below zero became 0
 } kiln_note_kind;
 
 enum { KILN_MAX_NOTES = 16, KILN_NOTE_TEXT = 256 };
@@ -275,6 +276,11 @@ typedef struct kiln_load_report {
 /// Puts a report into sentences: sets *note to sentence number `index`, counted from 0, and returns
 /// true. Returns false if the report has no such sentence.
 KILN_API bool kiln_load_report_note(const kiln_load_report *report, int index, kiln_note *note);
+
+/// Puts into a sentence what a bake cut off from a source with this report: sets *note and returns
+/// true. Returns false if nothing was cut off, or only by rounding, because the source had no
+/// negative texels or these became 0.
+KILN_API bool kiln_cut_note(const kiln_load_report *source, const kiln_cut *cut, kiln_note *note);
 
 /// Options for loading a map. {0} selects the default of each option.
 typedef struct kiln_load_def {

@@ -91,3 +91,14 @@ bool kiln_load_report_note(const kiln_load_report *report, int index, kiln_note 
                  report->note_count - stored);
     return true;
 }
+
+bool kiln_cut_note(const kiln_load_report *source, const kiln_cut *cut, kiln_note *note)
+{
+    if (!cut->cut_count || !source->negative_count || source->negative != KILN_NEGATIVE_KEEP)
+        return false;
+    *note = (kiln_note){.kind = KILN_NOTE_CUT, .warning = true};
+    snprintf(note->text, sizeof note->text,
+             "%zu of %zu values were negative, with %.3g %% of the light, and became 0",
+             cut->cut_count, cut->value_count, 100 * cut->share);
+    return true;
+}

@@ -72,6 +72,22 @@ async function aBrokenFileGivesASentence(page) {
     check(!await page.isVisible('#error'), 'the sentence stays after a good file');
 }
 
+// A cube of floats with an infinite and a negative texel behind its header of 148 bytes.
+async function whatWasFoundIsTold(page) {
+    kiln('bake', 'low.hdr', '-q', '-o', 'odd.dds', '--format', 'rgba32f', '--size', '2', '--levels', '1');
+    const bytes = read('odd.dds');
+    bytes.writeFloatLE(Infinity, 148);
+    bytes.writeFloatLE(-1000, 148 + 5 * 16);
+    await drop(page, 'odd.dds', bytes);
+    const report = await text(page, 'report');
+    for (const sentence of ['odd.dds: 1 of 24 texels is infinite and became 65504.',
+                            'odd.dds: 1 of 24 texels is negative and kept, with ',
+                            ' values were negative, with '])
+        check(report.includes(sentence), `the report says "${report}"`);
+    await drop(page, 'low.hdr', read('low.hdr'));
+    check(await text(page, 'report') === '', 'the report stays after a file without such texels');
+}
+
 async function theKeyboardSuffices(page, address) {
     await page.goto('about:blank');
     await page.goto(`${address}#samples=1`);
@@ -209,8 +225,8 @@ async function theTextbookTakesItsTime(page, address) {
 
 await withPage(site, async (page, address) => {
     for (const test of [theSkyIsBakedAtOnce, aFileIsDroppedAndBaked, aBrokenFileGivesASentence,
-                        theKeyboardSuffices, theAddressHoldsTheState, theFilesAreTheCommands,
-                        theErrorIsIntegrated, theTextbookTakesItsTime]) {
+                        whatWasFoundIsTold, theKeyboardSuffices, theAddressHoldsTheState,
+                        theFilesAreTheCommands, theErrorIsIntegrated, theTextbookTakesItsTime]) {
         const began = Date.now();
         await test(page, address);
         console.log(`${test.name}: ${Date.now() - began} ms`);
