@@ -49,7 +49,7 @@ kiln_result ki_dds_decode(kiln_context *context, const uint8_t *bytes, size_t si
                           const char *name, ki_decoded *decoded, kiln_file_info *info,
                           kiln_error *error);
 
-/// Append a whole KTX2 or DDS file to `writer`, which holds a cube with all its levels.
+/// Append a whole KTX2 or DDS file, which holds a cube with all its levels, to `writer`.
 kiln_result ki_ktx2_encode(const kiln_map *map, const kiln_save_def *def, ki_writer *writer,
                            kiln_error *error);
 kiln_result ki_dds_encode(const kiln_map *map, const kiln_save_def *def, ki_writer *writer,
