@@ -147,7 +147,8 @@ test)
     build_release TESTS GOLDEN BENCH EXAMPLES
     build wasm
     run_tests release
-    build asan -DKILN_BENCH=OFF -DKILN_EXAMPLES=OFF
+    # Tests of the library: the command and the renderer are not run under the sanitizers.
+    build asan -DKILN_BENCH=OFF -DKILN_EXAMPLES=OFF -DKILN_CLI=OFF -DKILN_VIEWER=OFF
     run_tests asan -L unit -LE slow
     printf '\n%d passed, %d failed\n' "$passed" "$failed"
     [ "$failed" = 0 ]
