@@ -50,15 +50,6 @@ static void report_output(const bake *b, json *j)
     json_end(j);
 }
 
-static void report_notes(const kiln_load_report *loaded, json *j)
-{
-    kiln_note note;
-    json_array(j, "notes");
-    for (int i = 0; kiln_load_report_note(loaded, i, &note); i++)
-        json_text(j, NULL, note.text);
-    json_end(j);
-}
-
 static void report_cut(const char *key, const kiln_cut *cut, const kiln_save_report *saved, json *j)
 {
     json_object(j, key);
@@ -82,7 +73,7 @@ static void report_losses(const bake *b, json *j)
     json_number(j, "negative_count", (double)loaded->negative_count);
     json_number(j, "negative_share", loaded->negative_share);
     json_number(j, "missing_count", (double)loaded->missing_count);
-    report_notes(loaded, j);
+    json_notes(j, loaded);
     report_cut("levels", &b->made.levels_cut, &b->saved.levels, j);
     if (b->irradiance_path)
         report_cut("irradiance", &b->made.irradiance_cut, &b->saved.irradiance, j);

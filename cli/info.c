@@ -57,6 +57,9 @@ static void print_text(const char *path, const kiln_file_info *info)
     }
     if (info->writer[0])
         printf("  writer       %s\n", info->writer);
+    kiln_note note;
+    for (int i = 0; kiln_load_report_note(&info->report, i, &note); i++)
+        printf("  %-12s %s\n", note.warning ? "warning" : "note", note.text);
 }
 
 static void print_roughness_json(json *j, const kiln_file_info *info)
@@ -109,6 +112,7 @@ static void print_json(json *j, const char *path, const kiln_file_info *info)
         json_text(j, "writer", info->writer);
     if (info->sh_bands)
         print_sh_json(j, info);
+    json_notes(j, &info->report);
     json_end(j);
 }
 
@@ -163,8 +167,9 @@ const cli_command cli_info = {
     .arguments = "FILE... [OPTION...]",
     .summary = "Describes files that kiln reads or writes.",
     .about = "For each file kiln prints the format, encoding, layout, size, the roughness of the "
-             "levels, the spherical harmonics, and the engine that the file is for. Files that "
-             "kiln writes only, such as .env and .glb, are described too.",
+             "levels, the spherical harmonics, the engine that the file is for, and what kiln "
+             "chooses, converts and assumes when the file is read. Files that kiln writes only, "
+             "such as .env and .glb, are described too.",
     .examples = examples,
     .options = options,
     .run = run,

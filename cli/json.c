@@ -173,3 +173,12 @@ void json_text(json *j, const char *key, const char *text)
     begin(j, key);
     print_text(text);
 }
+
+void json_notes(json *j, const kiln_load_report *report)
+{
+    kiln_note note;
+    json_array(j, "notes");
+    for (int i = 0; kiln_load_report_note(report, i, &note); i++)
+        json_text(j, NULL, note.text);
+    json_end(j);
+}

@@ -3,6 +3,8 @@
 #ifndef KILN_CLI_JSON_H
 #define KILN_CLI_JSON_H
 
+#include <kiln/kiln.h>
+
 #include <stdbool.h>
 
 enum { JSON_DEPTH = 16 };
@@ -29,5 +31,7 @@ void json_float(json *j, const char *key, float value);
 void json_bool(json *j, const char *key, bool value);
 /// Writes text; bytes that are not UTF-8 become U+FFFD.
 void json_text(json *j, const char *key, const char *text);
+/// Writes the array "notes" with the sentences of a report.
+void json_notes(json *j, const kiln_load_report *report);
 
 #endif

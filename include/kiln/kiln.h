@@ -368,6 +368,9 @@ typedef struct kiln_file_info {
     /// Coefficients of the spherical harmonics, converted to the normalisation and order of kiln_sh
     /// but in the axes of the file.
     float sh[KILN_MAX_BANDS * KILN_MAX_BANDS][3];
+    /// Notes about what kiln chooses, converts and assumes when it reads the file. The counts are 0,
+    /// because the texels were not read.
+    kiln_load_report report;
 } kiln_file_info;
 
 /// Describes any file that kiln can read, and of the files that kiln only writes KTX 1 (Filament),

@@ -279,12 +279,13 @@ static kiln_result read_bytes(kiln_context *context, const uint8_t *bytes, size_
         return ki_fail(error, KILN_ERROR_UNSUPPORTED,
                        "%s: is a %s file, which kiln writes and describes but does not read", name,
                        format->endings[0]);
+    kiln_load_report *report = decoded ? &decoded->report : &info->report;
     if (format->describe)
         return format->describe(bytes, size, name, info, error);
     if (format->read)
         return format->read(context, bytes, size, name, decoded, info, error);
     return format->read_picture(context, bytes, size, name, decoded ? &decoded->image : NULL, info,
-                                decoded ? &decoded->report : NULL, error);
+                                report, error);
 }
 
 kiln_result ki_decode(kiln_context *context, const uint8_t *bytes, size_t size, const char *name,

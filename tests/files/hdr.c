@@ -144,8 +144,9 @@ static void refused(const char *text, kiln_result wanted, const char *sentence)
 static void what_is_not_read_is_said(void **state)
 {
     (void)state;
-    refused("#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\nabcd", KILN_ERROR_UNSUPPORTED,
-            "bad.hdr: the HDR format is \"32-bit_rle_xyze\", kiln reads 32-bit_rle_rgbe only");
+    refused("#?RADIANCE\nFORMAT=32-bit_rle_abcd\n\n-Y 1 +X 1\nabcd", KILN_ERROR_UNSUPPORTED,
+            "bad.hdr: the HDR format is \"32-bit_rle_abcd\", kiln reads 32-bit_rle_rgbe and "
+            "32-bit_rle_xyze");
     refused("#?RADIANCE\n\n-Y 40000 +X 80000\nabcd", KILN_ERROR_UNSUPPORTED,
             "bad.hdr: the picture is 80000 x 40000, the limit is 32768");
     refused("#?RADIANCE\n\n-Y 2 +X 1\nabcd", KILN_ERROR_FORMAT,
