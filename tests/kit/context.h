@@ -22,7 +22,7 @@ int set_up_folder(void **state);
 /// Removes the folder with all that is in it, and destroys the context as tear_down does.
 int tear_down_folder(void **state);
 
-/// Does the same, and fails if a file was left in the folder.
+/// Does what tear_down_folder does, and fails if the folder was not empty.
 int tear_down_empty_folder(void **state);
 
 #endif

@@ -20,7 +20,7 @@ typedef struct failing {
 /// A context with one thread and at most 512 MiB.
 kiln_context *failing_context(failing *f);
 
-/// The same with more threads.
+/// A context with this number of threads and at most 512 MiB.
 kiln_context *failing_context_of(failing *f, int threads);
 
 #endif

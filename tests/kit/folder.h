@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/// Makes a new folder for this program in /tmp. There is one at a time.
+/// Makes a new folder for this program in /tmp. Only one such folder exists at a time.
 void folder_make(void);
 
 /// The folder's path, without a slash at the end.

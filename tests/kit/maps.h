@@ -8,13 +8,13 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/// A context with this number of threads, 0 for one a core.
+/// A context with this number of threads; 0 means as many as there are cores.
 kiln_context *make_context(int threads);
 
-/// The same for one instruction set.
+/// A context with this number of threads that uses one instruction set.
 kiln_context *make_context_for(int threads, enum kiln_cpu cpu);
 
-/// A black map. No levels means all down to one texel.
+/// A black map; level_count 0 makes all levels down to one texel.
 kiln_map make_map(kiln_context *context, kiln_shape shape, int size, int level_count);
 
 /// A black panorama of one level.

@@ -30,7 +30,7 @@ static inline double random_number(uint64_t *state)
     return ((double)(random_bits(state) >> 12) + 0.5) / 4503599627370496.0;
 }
 
-/// Uniform in (low, high), or at an end by rounding.
+/// Uniform between low and high; rounding may give an end of this range.
 static inline double random_between(uint64_t *state, double low, double high)
 {
     return low + (high - low) * random_number(state);
