@@ -1,9 +1,10 @@
 // Files. In: paths, and bytes to write. Out: the bytes of a file, files on disk that appear
 // completely or not at all, or files in memory. Method: each file is written under a temporary name
-// in the same folder, synchronised to disk and renamed; a set renames its first file only after
-// every file is written.
+// in the same folder, synchronised to disk and renamed, and the folder is synchronised; a set
+// renames its first file only after every file is written.
 #include "base/file.h"
 #include "base/os.h"
+#include "base/temporary.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -91,7 +92,10 @@ done:
 // memory.
 typedef struct set_entry {
     struct set_entry *next;
-    char *path, *temporary; // temporary is NULL for entries that are not renamed
+    // target: the path behind all symbolic links, to which the temporary file is renamed. Both are
+    // NULL for entries that are not renamed.
+    char *path, *target, *temporary;
+    int file; // descriptor of the temporary file, open until the file has its final name
     bool is_folder;
     uint8_t *bytes;
     size_t size;
@@ -133,6 +137,9 @@ kiln_result ki_file_set_make_folder(ki_file_set *set, const char *path, kiln_err
     if (!entry)
         return KILN_ERROR_MEMORY;
     entry->is_folder = true;
+    // Without separators at its end, so that the part before the name is the folder above.
+    for (size_t n = strlen(path); n > 1 && ki_os_is_separator(path[n - 1]); n--)
+        entry->path[n - 1] = 0;
     if (ki_os_make_folder(path)) {
         append_entry(set, entry);
         return KILN_OK;
@@ -170,18 +177,6 @@ static bool write_all(kiln_context *context, int fd, const uint8_t *bytes, size_
     return ki_os_sync(fd);
 }
 
-// Creates a file PATH.kiln-PID-N.tmp whose name is not in use, and returns its descriptor.
-static int create_temporary(char *name, size_t room, const char *path)
-{
-    for (int n = 0; n < 1000; n++) {
-        snprintf(name, room, "%s.kiln-%ld-%d.tmp", path, ki_os_process(), n);
-        int fd = ki_os_create(name);
-        if (fd >= 0 || errno != EEXIST)
-            return fd;
-    }
-    return -1;
-}
-
 static kiln_result add_in_memory(ki_file_set *set, const char *path, const void *bytes, size_t size,
                                  kiln_error *error)
 {
@@ -196,44 +191,79 @@ static kiln_result add_in_memory(ki_file_set *set, const char *path, const void 
     return KILN_OK;
 }
 
+// Returns whether two paths name files of the same folder.
+static bool same_folder(const char *a, const char *b)
+{
+    size_t length = ki_folder_length(a);
+    return length == ki_folder_length(b) && !memcmp(a, b, length);
+}
+
+// Removes what killed runs left in the folder of an entry, unless an earlier entry did that.
+static void sweep(const ki_file_set *set, const set_entry *entry)
+{
+    for (const set_entry *e = set->first; e; e = e->next)
+        if (e->target && same_folder(e->target, entry->target))
+            return;
+    ki_temporary_sweep(entry->target);
+}
+
+// Creates the entry of a file that will be renamed, with room for its three paths.
+static kiln_result create_target(ki_file_set *set, const char *path, set_entry **entry,
+                                 kiln_error *error)
+{
+    char target[KI_OS_PATH];
+    ki_os_kind kind = ki_os_kind_of(path);
+    if (kind != KI_OS_NOTHING && kind != KI_OS_FILE)
+        return ki_fail(error, KILN_ERROR_IO,
+                       "%s: the path exists and is not a regular file, name another path", path);
+    if (!ki_os_follow(path, target))
+        return ki_fail(error, KILN_ERROR_IO, "%s: cannot be created: %s", path, strerror(errno));
+    size_t length = strlen(target) + 1;
+    *entry = create_entry(set, path, 2 * length + KI_TEMPORARY_ROOM, error);
+    if (!*entry)
+        return KILN_ERROR_MEMORY;
+    (*entry)->target = (*entry)->path + strlen(path) + 1;
+    (*entry)->temporary = (*entry)->target + length;
+    memcpy((*entry)->target, target, length);
+    return KILN_OK;
+}
+
+// Closes and removes the temporary file of an entry.
+static void remove_temporary(const set_entry *entry)
+{
+    ki_os_close(entry->file);
+    ki_os_remove(entry->temporary);
+}
+
 kiln_result ki_file_set_add(ki_file_set *set, const char *path, const void *bytes, size_t size,
                             kiln_error *error)
 {
-    enum { ROOM = 64 };
     if (set->in_memory)
         return add_in_memory(set, path, bytes, size, error);
-    size_t length = strlen(path) + 1;
-    set_entry *entry = create_entry(set, path, length + ROOM, error);
-    if (!entry)
-        return KILN_ERROR_MEMORY;
-    entry->temporary = entry->path + length;
-
-    ki_os_kind kind = ki_os_kind_of(path);
-    if (kind != KI_OS_NOTHING && kind != KI_OS_FILE) {
-        ki_free(entry);
-        return ki_fail(error, KILN_ERROR_IO,
-                       "%s: the path exists and is not a regular file, name another path", path);
-    }
-    int fd = create_temporary(entry->temporary, length + ROOM, path);
-    if (fd < 0) {
-        kiln_result result =
-            ki_fail(error, KILN_ERROR_IO, "%s: cannot be created: %s", path, strerror(errno));
+    set_entry *entry = NULL;
+    kiln_result result = create_target(set, path, &entry, error);
+    if (result != KILN_OK)
+        return result;
+    sweep(set, entry);
+    entry->file = ki_temporary_create(entry->target, entry->temporary,
+                                      strlen(entry->target) + 1 + KI_TEMPORARY_ROOM);
+    if (entry->file < 0) {
+        result = ki_fail(error, KILN_ERROR_IO, "%s: cannot be created: %s", path, strerror(errno));
         ki_free(entry);
         return result;
     }
-    bool good = write_all(set->context, fd, bytes, size);
-    int reason = errno;
-    good = ki_os_close(fd) && good;
-    if (!good) {
-        ki_os_remove(entry->temporary);
-        ki_free(entry);
-        if (reason == ECANCELED)
-            return ki_fail_cancelled(error, "writing");
-        return ki_fail(error, KILN_ERROR_IO, "%s: cannot write %zu bytes: %s", path, size,
-                       strerror(reason));
+    if (write_all(set->context, entry->file, bytes, size) &&
+        ki_os_copy_mode(entry->file, entry->target)) {
+        append_entry(set, entry);
+        return KILN_OK;
     }
-    append_entry(set, entry);
-    return KILN_OK;
+    int reason = errno;
+    remove_temporary(entry);
+    ki_free(entry);
+    if (reason == ECANCELED)
+        return ki_fail_cancelled(error, "writing");
+    return ki_fail(error, KILN_ERROR_IO, "%s: cannot write %zu bytes: %s", path, size,
+                   strerror(reason));
 }
 
 static void free_entries(ki_file_set *set)
@@ -252,6 +282,70 @@ static void remove_folders(const ki_file_set *set)
             ki_os_remove_folder(entry->path);
 }
 
+// Copies the folder of a path: "." for a file of the current folder.
+static void copy_folder(const char *path, char folder[KI_OS_PATH])
+{
+    size_t length = ki_folder_length(path);
+    if (length)
+        snprintf(folder, KI_OS_PATH, "%.*s", (int)length, path);
+    else
+        strcpy(folder, ".");
+}
+
+// Locks the folder of a set's first file, so that of two sets with the same names one stays whole.
+static int enter_folder(const ki_file_set *set)
+{
+    char folder[KI_OS_PATH];
+    for (const set_entry *entry = set->first; entry; entry = entry->next) {
+        if (!entry->target)
+            continue;
+        copy_folder(entry->target, folder);
+        return ki_os_enter_folder(folder);
+    }
+    return -1;
+}
+
+// Synchronises the folders in which a set has created or renamed something, each run of entries
+// with the same folder once.
+static kiln_result sync_folders(const ki_file_set *set, kiln_error *error)
+{
+    const char *synced = NULL;
+    for (const set_entry *entry = set->first; entry; entry = entry->next) {
+        char folder[KI_OS_PATH];
+        const char *path = entry->target ? entry->target : entry->path;
+        if (synced && same_folder(path, synced))
+            continue;
+        synced = path;
+        copy_folder(path, folder);
+        if (!ki_os_sync_folder(folder))
+            return ki_fail(error, KILN_ERROR_IO,
+                           "%s: the file is written, but the name may be lost in a power failure, "
+                           "because its folder cannot be synchronised to disk: %s",
+                           entry->path, strerror(errno));
+    }
+    return KILN_OK;
+}
+
+// Renames all files, or removes them all if `result` is a failure.
+static kiln_result rename_all(const ki_file_set *set, kiln_result result, kiln_error *error)
+{
+    for (const set_entry *entry = set->first; entry; entry = entry->next) {
+        if (!entry->target)
+            continue;
+        if (result == KILN_OK && !ki_os_replace(entry->temporary, entry->target))
+            result = ki_fail(error, KILN_ERROR_IO,
+                             "%s: the finished file cannot be renamed to this path: %s",
+                             entry->path, strerror(errno));
+        if (result == KILN_OK)
+            ki_os_close(entry->file);
+        else
+            remove_temporary(entry);
+    }
+    if (result != KILN_OK)
+        remove_folders(set);
+    return result;
+}
+
 // Renames all files of a set and frees the set, on failure too.
 static kiln_result commit(ki_file_set *set, kiln_error *error)
 {
@@ -259,18 +353,11 @@ static kiln_result commit(ki_file_set *set, kiln_error *error)
     kiln_result result = KILN_OK;
     if (!ki_progress(set->context, "writing", 1))
         result = ki_fail_cancelled(error, "writing");
-    for (set_entry *entry = set->first; entry; entry = entry->next) {
-        if (!entry->temporary)
-            continue;
-        if (result == KILN_OK && !ki_os_replace(entry->temporary, entry->path))
-            result = ki_fail(error, KILN_ERROR_IO,
-                             "%s: the finished file cannot be renamed to this path: %s",
-                             entry->path, strerror(errno));
-        if (result != KILN_OK)
-            ki_os_remove(entry->temporary);
-    }
-    if (result != KILN_OK)
-        remove_folders(set);
+    int folder = enter_folder(set);
+    result = rename_all(set, result, error);
+    ki_os_leave_folder(folder);
+    if (result == KILN_OK)
+        result = sync_folders(set, error);
     free_entries(set);
     return result;
 }
@@ -279,8 +366,8 @@ static kiln_result commit(ki_file_set *set, kiln_error *error)
 static void abandon(ki_file_set *set)
 {
     for (set_entry *entry = set->first; entry; entry = entry->next)
-        if (entry->temporary)
-            ki_os_remove(entry->temporary);
+        if (entry->target)
+            remove_temporary(entry);
     remove_folders(set);
     free_entries(set);
 }

@@ -12,8 +12,9 @@ bool ki_ends_with(const char *path, const char *ending);
 /// `bytes`.
 kiln_result ki_file_read(kiln_context *context, const char *path, uint8_t **bytes, size_t *size,
                          kiln_error *error);
-/// Writes a temporary file in the folder of `path`, synchronises it to disk and renames it. On
-/// failure the file at `path` is unchanged and the temporary file is removed.
+/// Writes a temporary file in the folder of `path`, synchronises it to disk and renames it. A file
+/// that is replaced hands on its permissions; a symbolic link stays, and the file to which the link
+/// leads is replaced. On failure the file at `path` is unchanged and the temporary file is removed.
 kiln_result ki_file_write(kiln_context *context, const char *path, const void *bytes, size_t size,
                           kiln_error *error);
 

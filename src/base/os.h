@@ -27,8 +27,14 @@ int ki_os_open(const char *path);
 /// Returns the descriptor of standard input, which must not be closed.
 int ki_os_standard_input(void);
 /// Creates a file for writing and returns its descriptor, or -1. If the file exists, errno is
-/// EEXIST.
+/// EEXIST. The file is locked until the descriptor is closed, which also happens when the process
+/// is killed, and may be renamed meanwhile.
 int ki_os_create(const char *path);
+/// Removes a file that ki_os_create made, unless some descriptor still locks the file or the file
+/// system has no locks.
+void ki_os_remove_abandoned(const char *path);
+/// Gives an open file the permissions of the file at `path`, if there is a file.
+bool ki_os_copy_mode(int file, const char *path);
 /// Returns the size of an open file in bytes, or 0 if the size is unknown, as for a pipe or a
 /// device.
 uint64_t ki_os_size(int file);
@@ -40,8 +46,22 @@ ptrdiff_t ki_os_write(int file, const void *bytes, size_t size);
 bool ki_os_sync(int file);
 bool ki_os_close(int file);
 
+/// Greatest length of a path in bytes, with its terminating zero.
+enum { KI_OS_PATH = 4096 };
+
+/// Follows symbolic links: sets `target` to the path of the file to which `path` leads, which need
+/// not exist. A path that is no link is copied.
+bool ki_os_follow(const char *path, char target[KI_OS_PATH]);
 /// Renames `from` to `to` in one step. An existing file `to` is replaced.
 bool ki_os_replace(const char *from, const char *to);
+/// Waits until the names in a folder have reached the disk. Returns true too on systems that do not
+/// offer this.
+bool ki_os_sync_folder(const char *path);
+/// Locks a folder against other callers of this function, and returns a descriptor for
+/// ki_os_leave_folder. Returns -1 if the folder cannot be locked within a second; the caller then
+/// goes on without the lock.
+int ki_os_enter_folder(const char *path);
+void ki_os_leave_folder(int folder);
 bool ki_os_remove(const char *path);
 bool ki_os_make_folder(const char *path);
 bool ki_os_remove_folder(const char *path);

@@ -12,6 +12,8 @@
 #include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
@@ -50,10 +52,40 @@ int ki_os_standard_input(void)
     return STDIN_FILENO;
 }
 
-// The file gets the permissions of an ordinary new file.
+// The file gets the permissions of an ordinary new file. Another process may take the file for
+// abandoned and remove it between its creation and its locking; the name then counts as in use.
 int ki_os_create(const char *path)
 {
-    return open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    int file = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (file < 0)
+        return -1;
+    struct stat status;
+    bool taken = flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+    if (!taken && fstat(file, &status) == 0 && status.st_nlink > 0)
+        return file;
+    close(file);
+    errno = EEXIST;
+    return -1;
+}
+
+void ki_os_remove_abandoned(const char *path)
+{
+    int file = open(path, O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (file < 0)
+        return;
+    struct stat opened, named;
+    if (flock(file, LOCK_EX | LOCK_NB) == 0 && fstat(file, &opened) == 0 &&
+        lstat(path, &named) == 0 && S_ISREG(named.st_mode) && opened.st_dev == named.st_dev &&
+        opened.st_ino == named.st_ino)
+        unlink(path);
+    close(file);
+}
+
+// Bits that run a program as another user are not copied, since the owner may be another one now.
+bool ki_os_copy_mode(int file, const char *path)
+{
+    struct stat status;
+    return stat(path, &status) != 0 || fchmod(file, status.st_mode & 0777) == 0;
 }
 
 ptrdiff_t ki_os_read(int file, void *bytes, size_t size)
@@ -79,9 +111,76 @@ bool ki_os_close(int file)
     return close(file) == 0;
 }
 
+// Replaces a path by what the symbolic link at this path holds, which is relative to the link's
+// folder unless it begins with a slash.
+static bool follow_once(char path[KI_OS_PATH], const char *link)
+{
+    char *slash = strrchr(path, '/');
+    size_t kept = slash && link[0] != '/' ? (size_t)(slash + 1 - path) : 0;
+    if (kept + strlen(link) >= KI_OS_PATH) {
+        errno = ENAMETOOLONG;
+        return false;
+    }
+    strcpy(path + kept, link);
+    return true;
+}
+
+bool ki_os_follow(const char *path, char target[KI_OS_PATH])
+{
+    enum { MOST_LINKS = 40 };
+    target[0] = 0;
+    if (!follow_once(target, path))
+        return false;
+    for (int i = 0; i < MOST_LINKS; i++) {
+        char link[KI_OS_PATH];
+        ssize_t length = readlink(target, link, sizeof link - 1);
+        if (length < 0)
+            return true;
+        link[length] = 0;
+        if (!follow_once(target, link))
+            return false;
+    }
+    errno = ELOOP;
+    return false;
+}
+
 bool ki_os_replace(const char *from, const char *to)
 {
     return rename(from, to) == 0;
+}
+
+// Some file systems cannot synchronise a folder, and a folder may be writable without being
+// readable; only an error of the disk itself counts.
+bool ki_os_sync_folder(const char *path)
+{
+    int folder = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (folder < 0)
+        return true;
+    bool good = ki_os_sync(folder) || (errno != EIO && errno != ENOSPC);
+    int reason = errno;
+    close(folder);
+    errno = reason;
+    return good;
+}
+
+int ki_os_enter_folder(const char *path)
+{
+    enum { TRIES = 1000 };
+    int folder = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    for (int i = 0; folder >= 0 && flock(folder, LOCK_EX | LOCK_NB) != 0; i++) {
+        if (errno != EWOULDBLOCK || i == TRIES) {
+            close(folder);
+            return -1;
+        }
+        nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
+    }
+    return folder;
+}
+
+void ki_os_leave_folder(int folder)
+{
+    if (folder >= 0)
+        close(folder);
 }
 
 bool ki_os_remove(const char *path)

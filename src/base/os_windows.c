@@ -99,13 +99,64 @@ int ki_os_standard_input(void)
     return 0;
 }
 
+// Opens a file that other processes may read, rename and remove meanwhile.
+static HANDLE open_shared(const wchar_t *wide, DWORD access, DWORD disposition, DWORD flags)
+{
+    return CreateFileW(wide, access, FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE, NULL,
+                       disposition, flags, NULL);
+}
+
+// Locks one byte at an offset that no file reaches. Windows unlocks the byte when the handle is
+// closed.
+static bool lock(HANDLE file)
+{
+    OVERLAPPED at = {.OffsetHigh = 0x7fffffff};
+    return LockFileEx(file, LOCKFILE_EXCLUSIVE_LOCK | LOCKFILE_FAIL_IMMEDIATELY, 0, 1, 0, &at);
+}
+
+// Another process may take the file for abandoned and remove it between its creation and its
+// locking; the name then counts as in use.
 int ki_os_create(const char *path)
 {
     wchar_t wide[ROOM];
-    return widen(path, wide)
-               ? _wopen(wide, _O_WRONLY | _O_CREAT | _O_EXCL | _O_BINARY | _O_NOINHERIT,
-                        _S_IREAD | _S_IWRITE)
-               : -1;
+    if (!widen(path, wide))
+        return -1;
+    HANDLE file = open_shared(wide, GENERIC_WRITE, CREATE_NEW, FILE_ATTRIBUTE_NORMAL);
+    if (file == INVALID_HANDLE_VALUE) {
+        failed();
+        return -1;
+    }
+    FILE_STANDARD_INFO info = {0};
+    bool held = lock(file) &&
+                GetFileInformationByHandleEx(file, FileStandardInfo, &info, sizeof info) &&
+                !info.DeletePending;
+    int descriptor = held ? _open_osfhandle((intptr_t)file, _O_WRONLY | _O_BINARY) : -1;
+    if (descriptor < 0) {
+        CloseHandle(file);
+        errno = EEXIST;
+    }
+    return descriptor;
+}
+
+void ki_os_remove_abandoned(const char *path)
+{
+    wchar_t wide[ROOM];
+    if (!widen(path, wide))
+        return;
+    HANDLE file = open_shared(wide, GENERIC_WRITE, OPEN_EXISTING, FILE_ATTRIBUTE_NORMAL);
+    if (file == INVALID_HANDLE_VALUE)
+        return;
+    if (lock(file))
+        DeleteFileW(wide);
+    CloseHandle(file);
+}
+
+// A new file of Windows takes its access list from the folder, like every file there.
+bool ki_os_copy_mode(int file, const char *path)
+{
+    (void)file;
+    (void)path;
+    return true;
 }
 
 // Limits the size of one read or write, because _read and _write take at most INT_MAX bytes.
@@ -134,6 +185,39 @@ bool ki_os_close(int file)
     return _close(file) == 0;
 }
 
+// Copies the path that Windows found for the open file of a link. Returns false with errno set.
+static bool copy_final_path(HANDLE file, char target[KI_OS_PATH])
+{
+    wchar_t wide[ROOM];
+    DWORD length = GetFinalPathNameByHandleW(file, wide, ROOM, 0);
+    if (!length)
+        return failed();
+    if (length < ROOM && WideCharToMultiByte(CP_UTF8, 0, wide, -1, target, KI_OS_PATH, NULL, NULL))
+        return true;
+    errno = ENAMETOOLONG;
+    return false;
+}
+
+bool ki_os_follow(const char *path, char target[KI_OS_PATH])
+{
+    wchar_t wide[ROOM];
+    if (!widen(path, wide))
+        return false;
+    if (snprintf(target, KI_OS_PATH, "%s", path) >= KI_OS_PATH) {
+        errno = ENAMETOOLONG;
+        return false;
+    }
+    DWORD attributes = GetFileAttributesW(wide);
+    if (attributes == INVALID_FILE_ATTRIBUTES || !(attributes & FILE_ATTRIBUTE_REPARSE_POINT))
+        return true;
+    HANDLE file = open_shared(wide, 0, OPEN_EXISTING, FILE_FLAG_BACKUP_SEMANTICS);
+    if (file == INVALID_HANDLE_VALUE)
+        return failed();
+    bool good = copy_final_path(file, target);
+    CloseHandle(file);
+    return good;
+}
+
 bool ki_os_replace(const char *from, const char *to)
 {
     wchar_t wide_from[ROOM], wide_to[ROOM];
@@ -141,6 +225,25 @@ bool ki_os_replace(const char *from, const char *to)
         return false;
     return MoveFileExW(wide_from, wide_to, MOVEFILE_REPLACE_EXISTING | MOVEFILE_WRITE_THROUGH) ||
            failed();
+}
+
+// MOVEFILE_WRITE_THROUGH has synchronised the names.
+bool ki_os_sync_folder(const char *path)
+{
+    (void)path;
+    return true;
+}
+
+// Windows locks no folders.
+int ki_os_enter_folder(const char *path)
+{
+    (void)path;
+    return -1;
+}
+
+void ki_os_leave_folder(int folder)
+{
+    (void)folder;
 }
 
 bool ki_os_remove(const char *path)

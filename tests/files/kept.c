@@ -1,0 +1,292 @@
+// What a writer owes to a folder: an overwritten file keeps its mode, a link stays, long names work, the folder
+// is synchronised after the renames, and neither killed nor simultaneous writers damage or leave anything.
+#include "base/file.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "kit/context.h"
+
+enum { N = 8, LEVELS = 2, FILES = 6 * LEVELS, MOMENTS = 200, ROUNDS = 40 };
+
+// ------------------------------------------------------------------------- calls of the system, recorded
+
+// The linker sends the library's calls of fsync and rename here: F for a synchronised file, D for a folder,
+// R for a renamed file.
+static char calls[256];
+static size_t call_count;
+
+static void record(char c)
+{
+    if (call_count + 1 < sizeof calls)
+        calls[call_count++] = c;
+}
+
+int __real_fsync(int file);
+int __wrap_fsync(int file);
+int __wrap_fsync(int file)
+{
+    struct stat status;
+    assert_int_equal(fstat(file, &status), 0);
+    record(S_ISDIR(status.st_mode) ? 'D' : 'F');
+    return __real_fsync(file);
+}
+
+int __real_rename(const char *from, const char *to);
+int __wrap_rename(const char *from, const char *to);
+int __wrap_rename(const char *from, const char *to)
+{
+    record('R');
+    return __real_rename(from, to);
+}
+
+// ------------------------------------------------------------------------------------------- single files
+
+static void write_text(const char *path, const char *text)
+{
+    CHECK_OK(ki_file_write(context, path, text, strlen(text), &error));
+}
+
+static void check_text(const char *path, const char *text)
+{
+    size_t size;
+    uint8_t *bytes = read_file(path, &size);
+    assert_string_equal((const char *)bytes, text);
+    assert_int_equal(size, strlen(text));
+    free(bytes);
+}
+
+static void an_overwritten_file_keeps_its_mode(void **state)
+{
+    (void)state;
+    static const mode_t modes[] = {0600, 0640, 0664, 0755, 0444};
+    struct stat status;
+    const char *path = in_folder("a.bin");
+    mode_t mask = umask(022);
+    write_text(path, "new");
+    assert_int_equal(stat(path, &status), 0);
+    assert_int_equal(status.st_mode & 07777, 0644); // of an ordinary new file
+    for (size_t i = 0; i < sizeof modes / sizeof *modes; i++) {
+        assert_int_equal(chmod(path, modes[i]), 0);
+        write_text(path, "again");
+        assert_int_equal(stat(path, &status), 0);
+        assert_int_equal(status.st_mode & 07777, modes[i]);
+    }
+    // The right to run as the file's owner is not handed on.
+    assert_int_equal(chmod(path, 04755), 0);
+    write_text(path, "last");
+    assert_int_equal(stat(path, &status), 0);
+    assert_int_equal(status.st_mode & 07777, 0755);
+    check_text(path, "last");
+    umask(mask);
+}
+
+static void a_link_is_followed_and_stays(void **state)
+{
+    (void)state;
+    struct stat status;
+    assert_int_equal(mkdir(in_folder("far"), 0777), 0);
+    write_text(in_folder("far/a.bin"), "old");
+    assert_int_equal(symlink("far/a.bin", in_folder("one")), 0);              // relative
+    assert_int_equal(symlink(in_folder("one"), in_folder("far/two")), 0);     // absolute, to a link
+    assert_int_equal(symlink("../far/new.bin", in_folder("far/dangles")), 0); // to no file yet
+    assert_int_equal(symlink("loop", in_folder("loop")), 0);
+    write_text(in_folder("far/two"), "new");
+    check_text(in_folder("far/a.bin"), "new");
+    write_text(in_folder("far/dangles"), "fresh");
+    check_text(in_folder("far/new.bin"), "fresh");
+    static const char *const links[] = {"one", "far/two", "far/dangles", "loop"};
+    for (size_t i = 0; i < sizeof links / sizeof *links; i++) {
+        assert_int_equal(lstat(in_folder(links[i]), &status), 0);
+        assert_true(S_ISLNK(status.st_mode));
+    }
+    assert_int_equal(ki_file_write(context, in_folder("loop"), "x", 1, &error), KILN_ERROR_IO);
+    CHECK_SAYS(error.message, "loop: cannot be created: ");
+    assert_int_equal(file_count(folder_path()), 3);    // far, one, loop
+    assert_int_equal(file_count(in_folder("far")), 4); // a.bin, new.bin, two, dangles
+}
+
+static void names_may_be_as_long_as_the_file_system_allows(void **state)
+{
+    (void)state;
+    char name[512];
+    long most = pathconf(folder_path(), _PC_NAME_MAX);
+    assert_in_range(most, 64, 400);
+    memset(name, 'n', sizeof name);
+    name[most] = 0;
+    write_text(in_folder(name), "long");
+    check_text(in_folder(name), "long");
+    name[most] = 'n';
+    name[most + 1] = 0;
+    assert_int_equal(ki_file_write(context, in_folder(name), "x", 1, &error), KILN_ERROR_IO);
+    assert_int_equal(file_count(folder_path()), 1);
+}
+
+static kiln_result add_three(ki_file_set *set, void *data, kiln_error *e)
+{
+    (void)data;
+    kiln_result result = ki_file_set_add(set, in_folder("a"), "1", 1, e);
+    if (result == KILN_OK)
+        result = ki_file_set_make_folder(set, in_folder("sub/"), e);
+    if (result == KILN_OK)
+        result = ki_file_set_add(set, in_folder("sub/b"), "2", 1, e);
+    return result == KILN_OK ? ki_file_set_add(set, in_folder("sub/c"), "3", 1, e) : result;
+}
+
+static void the_folder_is_synchronised_after_the_renames(void **state)
+{
+    (void)state;
+    memset(calls, 0, sizeof calls);
+    call_count = 0;
+    write_text(in_folder("one"), "1");
+    assert_string_equal(calls, "FRD");
+    memset(calls, 0, sizeof calls);
+    call_count = 0;
+    CHECK_OK(ki_file_set_make(context, add_three, NULL, NULL, &error));
+    assert_string_equal(calls, "FFFRRRDD"); // the folder of "a" and "sub", then "sub"
+}
+
+// ----------------------------------------------------------------------------------------------- leftovers
+
+static void leftovers_are_removed_unless_their_writer_lives(void **state)
+{
+    (void)state;
+    // Names of kiln's own, which no descriptor locks, and names of others.
+    static const char *const left[] = {"kiln-1-0.tmp", "kiln-4194304-999.tmp"};
+    static const char *const others[] = {"kiln-1-0.tmp.exr", "kiln--0.tmp", "kiln-1-.tmp",
+                                         "my-kiln-1-0.tmp",  "kiln-1.tmp",  "kiln-a-0.tmp"};
+    for (size_t i = 0; i < sizeof left / sizeof *left; i++)
+        write_file(in_folder(left[i]), "left", 4);
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+        write_file(in_folder(others[i]), "other", 5);
+    write_file(in_folder("kiln-77-3.tmp"), "held", 4);
+    int held = open(in_folder("kiln-77-3.tmp"), O_WRONLY);
+    assert_int_equal(flock(held, LOCK_EX), 0);
+    assert_int_equal(symlink("kiln-a-0.tmp", in_folder("kiln-5-5.tmp")), 0);
+    write_text(in_folder("made"), "made");
+    for (size_t i = 0; i < sizeof left / sizeof *left; i++)
+        assert_int_equal(access(in_folder(left[i]), F_OK), -1);
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+        check_text(in_folder(others[i]), "other");
+    check_text(in_folder("kiln-77-3.tmp"), "held");
+    close(held); // as if the writer had been killed
+    write_text(in_folder("made"), "made");
+    assert_int_equal(access(in_folder("kiln-77-3.tmp"), F_OK), -1);
+    assert_int_equal(file_count(folder_path()), 6 + 1 + 1); // others, the link, made
+}
+
+// Saves a cube of two levels whose texels are all `value`, in twelve files.
+static bool save_constant(kiln_context *c, float value)
+{
+    kiln_map cube;
+    kiln_error e;
+    if (kiln_map_create(c, KILN_SHAPE_CUBE, N, LEVELS, &cube, &e) != KILN_OK)
+        return false;
+    for (int k = 0; k < LEVELS; k++)
+        for (size_t i = 0; i < kiln_map_texels(&cube, k) * 3; i++)
+            cube.level[k][i] = value;
+    bool good = kiln_map_save(c, &cube, in_folder("cube.exr"), NULL, NULL, &e) == KILN_OK;
+    kiln_map_free(&cube);
+    return good;
+}
+
+// Returns the value of a face that was written whole: all its texels are this value.
+static float face_value(const char *name)
+{
+    kiln_image image;
+    CHECK_OK(kiln_image_load(context, in_folder(name), &image, &error));
+    assert_true(image.width == N || image.width == N / 2);
+    float value = image.pixels[0];
+    for (int i = 0; i < image.width * image.height * image.channels; i++)
+        assert_true(image.pixels[i] == value);
+    kiln_image_free(&image);
+    return value;
+}
+
+// Checks every picture in the folder, and returns the number of pictures with the value `wanted`.
+static int check_pictures(float wanted)
+{
+    int count = 0;
+    DIR *folder = opendir(folder_path());
+    assert_non_null(folder);
+    for (struct dirent *entry; (entry = readdir(folder));)
+        if (strstr(entry->d_name, ".exr"))
+            count += face_value(entry->d_name) == wanted;
+    closedir(folder);
+    return count;
+}
+
+// Starts a process that saves sets whose values are `first`, first + step ... Returns its number.
+static pid_t start_writer(float first, float step, int count)
+{
+    pid_t child = fork();
+    assert_true(child >= 0);
+    if (child)
+        return child;
+    kiln_context *own = NULL;
+    bool good = kiln_context_create(&(kiln_context_def){.thread_count = 1}, &own, NULL) == KILN_OK;
+    for (int i = 0; good && i < count; i++)
+        good = save_constant(own, first + step * (float)i);
+    _exit(!good);
+}
+
+static void a_killed_writer_damages_nothing(void **state)
+{
+    (void)state;
+    int caught = 0, status;
+    assert_true(save_constant(context, 1));
+    for (int moment = 0; moment < MOMENTS; moment++) {
+        pid_t child = start_writer(2, 1, 1000000);
+        nanosleep(&(struct timespec){.tv_nsec = 200000 + 37000L * moment}, NULL);
+        assert_int_equal(kill(child, SIGKILL), 0);
+        assert_int_equal(waitpid(child, &status, 0), child);
+        assert_true(WIFSIGNALED(status));
+        if (moment % 8 == 0)
+            check_pictures(0); // every file is whole
+        caught += file_count(folder_path()) > FILES;
+    }
+    printf("%d of %d moments left temporary files\n", caught, MOMENTS);
+    assert_true(caught > MOMENTS / 20);
+    assert_true(save_constant(context, 5));
+    assert_int_equal(file_count(folder_path()), FILES);
+    assert_int_equal(check_pictures(5), FILES);
+}
+
+static void two_writers_leave_one_whole_set(void **state)
+{
+    (void)state;
+    int status;
+    for (int round = 0; round < 5; round++) {
+        pid_t child[2] = {start_writer(16, 0, ROUNDS), start_writer(64, 0, ROUNDS)};
+        for (int i = 0; i < 2; i++) {
+            assert_int_equal(waitpid(child[i], &status, 0), child[i]);
+            assert_int_equal(status, 0); // no save failed
+        }
+        assert_int_equal(file_count(folder_path()), FILES);
+        int first = check_pictures(16), second = check_pictures(64);
+        if (first != FILES && second != FILES)
+            fail_msg("%d files are the first writer's, %d the second's", first, second);
+    }
+}
+
+int main(void)
+{
+#define IN_FOLDER(test) cmocka_unit_test_setup_teardown(test, set_up_folder, tear_down_folder)
+    const struct CMUnitTest tests[] = {
+        IN_FOLDER(an_overwritten_file_keeps_its_mode),
+        IN_FOLDER(a_link_is_followed_and_stays),
+        IN_FOLDER(names_may_be_as_long_as_the_file_system_allows),
+        IN_FOLDER(the_folder_is_synchronised_after_the_renames),
+        IN_FOLDER(leftovers_are_removed_unless_their_writer_lives),
+        IN_FOLDER(a_killed_writer_damages_nothing),
+        IN_FOLDER(two_writers_leave_one_whole_set),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
