@@ -207,13 +207,14 @@ const cli_command cli_bake = {
     .summary = "Bakes a panorama into a prefiltered environment.",
     .about =
         "IN is a panorama, cross, strip, octahedron or cube (EXR, HDR, PNG, KTX2, DDS), a folder "
-        "or "
-        "pattern of six faces, six files, or - for standard input. In a pattern, and in OUT, %s or "
-        "{face} stands for px nx py ny pz nz; in OUT, %d or {level} stands for the level.",
+        "or pattern of six faces, six files, or - for standard input. In a pattern, and in OUT, %s "
+        "or {face} stands for the face; in OUT, %d or {level} stands for the level.",
     .more = "PNG files are read as sRGB. Of KTX2 and DDS files kiln reads those that kiln wrote. "
-            "Six files whose names end in px nx py ny pz nz, or in right left top bottom front "
-            "back, may come in any order; other six files are taken as +X, -X, +Y, -Y, +Z, "
-            "-Z.\n\nIf a bake takes longer than half a second and standard error is a terminal, a "
+            "Names of six faces are px nx py ny pz nz, posx negx ..., +x -x ..., right left top "
+            "bottom front back, or rt lf up dn ft bk, which are oriented as Quake and Source draw "
+            "a sky; see docs/conventions.md. Six files with such names may come in any order; "
+            "other six files are taken as +X, -X, +Y, -Y, +Z, -Z.\n\nIf a bake takes longer than "
+            "half a second and standard error is a terminal, a "
             "line on standard error shows the progress.",
     .examples = examples,
     .options = bake_options,

@@ -40,9 +40,8 @@ void cli_note(cli_work *work, bool warning, const char *format, ...) CLI_PRINTF(
 // ------------------------------------------------------------------------------------------- input
 
 /// Loads an environment. One name is a file, a folder, a pattern, or "-" for standard input. Six
-/// names are the cube's faces: px nx py ny pz nz (or right left top bottom front back) in the names
-/// tell the faces, else the names are in that order. What the loader found is told on standard
-/// error and stays in work->loaded. Returns CLI_GO or CLI_FAILED.
+/// names are those of the cube's faces, as kiln_map_load_faces takes them. What the loader found is
+/// told on standard error and stays in work->loaded. Returns CLI_GO or CLI_FAILED.
 int cli_load(cli_work *work, const char **names, int count, const kiln_load_def *def,
              kiln_map *map);
 /// Checks the number and form of the names. Returns CLI_GO, or CLI_WRONG if the names cannot be an

@@ -291,8 +291,9 @@ typedef struct kiln_load_def {
 
 /// Loads a map from an EXR, Radiance HDR or PNG file (PNG values are sRGB and are decoded to
 /// linear), from a KTX2 or DDS cube that kiln wrote, or from six face files. Six faces are given by
-/// a folder or by a path with `%s` or `{face}` in place of px nx py ny pz nz. The content of a file
-/// decides its format, never the ending of its name. Texels that are infinite or not a number are
+/// a folder or by a path with `%s` or `{face}` in place of the face, with any of the names in
+/// docs/conventions.md: px nx py ny pz nz and the like. A folder that holds two sets of faces is
+/// refused. The content of a file decides its format, never the ending of its name. Texels that are infinite or not a number are
 /// replaced as kiln_load_report says. A picture in which no texel is a number is refused. `def` may
 /// be NULL.
 KILN_API KILN_CHECKED kiln_result kiln_map_load(kiln_context *context, const char *path,
@@ -304,12 +305,18 @@ KILN_API KILN_CHECKED kiln_result kiln_map_decode(kiln_context *context, const v
                                                   size_t size, const char *name,
                                                   const kiln_load_def *def, kiln_map *map,
                                                   kiln_error *error);
-/// Loads a cube from six files, one for each of the faces +X -X +Y -Y +Z -Z. `def->layout` is
-/// ignored. `def` may be NULL.
+/// Loads a cube from six files, which may come in any order if their names tell the faces, as those
+/// in a folder do; other files are taken as +X -X +Y -Y +Z -Z. `def->layout` is ignored. `def` may
+/// be NULL.
 KILN_API KILN_CHECKED kiln_result kiln_map_load_faces(kiln_context *context,
                                                       const char *const paths[6],
                                                       const kiln_load_def *def, kiln_map *map,
                                                       kiln_error *error);
+/// Sets order[face] to the index of the file of each of the faces +X -X +Y -Y +Z -Z, by the names
+/// of six files, or to 0 to 5 if the names do not tell the faces. Returns false if the names of some
+/// files are those of a face, but do not make up a set.
+KILN_API bool kiln_faces_order(const char *const paths[6], int order[6]);
+
 typedef enum kiln_pixel_type {
     KILN_PIXEL_FLOAT = 0, ///< 32 bits
     KILN_PIXEL_HALF       ///< 16 bits

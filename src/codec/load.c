@@ -5,13 +5,12 @@
 #include "base/file.h"
 #include "base/os.h"
 #include "codec/engine_text.h"
+#include "codec/faces.h"
 #include "codec/formats.h"
 #include "codec/layout.h"
 #include "codec/report.h"
 #include "image/mend.h"
 
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 // -------------------------------------------------------------------------------------- one file
@@ -140,106 +139,6 @@ kiln_result kiln_file_describe(kiln_context *context, const char *path, kiln_fil
 
 // -------------------------------------------------------------------------------------- six files
 
-// The path of a face: the parts before and after the two letters of the face.
-typedef struct face_paths {
-    char *before, *after;
-} face_paths;
-
-static void free_paths(face_paths *paths)
-{
-    ki_free(paths->before);
-    ki_free(paths->after);
-}
-
-static char *copy_text(kiln_context *context, const char *text, size_t length)
-{
-    char *copy = ki_alloc(context, length + 1, 1);
-    if (copy)
-        memcpy(copy, text, length);
-    return copy;
-}
-
-static kiln_result split_path(kiln_context *context, const char *path, const char *at,
-                              size_t length, face_paths *paths, kiln_error *error)
-{
-    paths->before = copy_text(context, path, (size_t)(at - path));
-    paths->after = copy_text(context, at + length, strlen(at + length));
-    return paths->before && paths->after ? KILN_OK
-                                         : ki_fail_memory(context, error, path, strlen(path) + 2);
-}
-
-// Finds "px" as the name of a face in a file name: px.exr, NAME_px.exr, px_0.exr or NAME_px_0.exr.
-// Only level 0 is accepted. Returns NULL if the name has no such part.
-static const char *face_in(const char *name)
-{
-    if (!ki_file_holds(ki_file_format_of_path(name), KI_HOLDS_PICTURE))
-        return NULL;
-    const char *end = strrchr(name, '.');
-    if (end - name > 2 && end[-1] == '0' && end[-2] == '_')
-        end -= 2;
-    if (end - name < 2)
-        return NULL;
-    const char *at = end - 2;
-    return !strncmp(at, "px", 2) && (at == name || at[-1] == '_') ? at : NULL;
-}
-
-// Orders face files: a name that is only the face comes first, then the byte order of the names
-// decides.
-static bool goes_before(const char *a, const char *b)
-{
-    size_t before_a = (size_t)(face_in(a) - a), before_b = (size_t)(face_in(b) - b);
-    if (!before_a != !before_b)
-        return !before_a;
-    return strcmp(a, b) < 0;
-}
-
-// The two names of a folder that come first in the order of goes_before.
-typedef struct face_search {
-    char best[256], other[256];
-} face_search;
-
-static void consider(void *user, const char *name)
-{
-    face_search *found = user;
-    if (strlen(name) >= sizeof found->best || !face_in(name))
-        return;
-    if (!found->best[0] || goes_before(name, found->best)) {
-        memcpy(found->other, found->best, sizeof found->other);
-        snprintf(found->best, sizeof found->best, "%s", name);
-    } else if (!found->other[0] || goes_before(name, found->other)) {
-        snprintf(found->other, sizeof found->other, "%s", name);
-    }
-}
-
-static kiln_result search_folder(kiln_context *context, const char *path, face_paths *paths,
-                                 kiln_error *error)
-{
-    face_search found = {"", ""};
-    if (!ki_os_list_folder(path, consider, &found))
-        return ki_fail(error, KILN_ERROR_IO, "%s: the folder cannot be opened", path);
-    const char *best = found.best, *other = found.other;
-    if (!best[0])
-        return ki_fail(error, KILN_ERROR_IO,
-                       "%s: holds no face named px.exr, NAME_px.exr or the like (exr, hdr, png)",
-                       path);
-    if (other[0] && face_in(best) > best)
-        return ki_fail(
-            error, KILN_ERROR_IO,
-            "%s: holds two sets of faces, as %.64s and %.64s; name one set by a pattern with %%s",
-            path, best, other);
-    size_t length = strlen(path);
-    bool slash = length && ki_os_is_separator(path[length - 1]);
-    size_t room = length + strlen(best) + 2;
-    char *full = ki_alloc(context, room, 1);
-    if (!full)
-        return ki_fail_memory(context, error, path, room);
-    snprintf(full, room, "%s%s%s", path, slash ? "" : "/", best);
-    const char *at = full + room - 1 - strlen(best) - (slash ? 1 : 0) + (face_in(best) - best);
-    kiln_result result = split_path(context, full, at, 2, paths, error);
-    ki_free(full);
-    return result;
-}
-
 // Fails where a picture cannot be a face of the map; the first face gives the map its size.
 static kiln_result check_face(const char *path, const kiln_image *image, const kiln_map *map,
                               kiln_error *error)
@@ -256,11 +155,12 @@ static kiln_result check_face(const char *path, const kiln_image *image, const k
     return KILN_OK;
 }
 
-static kiln_result load_face(kiln_context *context, const char *path, int face, kiln_map *map,
-                             kiln_load_report *report, kiln_error *error)
+static kiln_result load_face(kiln_context *context, const ki_face_files *files, int face,
+                             kiln_map *map, kiln_load_report *report, kiln_error *error)
 {
     ki_decoded decoded;
     kiln_file_info info;
+    const char *path = files->path[face];
     kiln_result result = load_image(context, path, &decoded, &info, error);
     if (result != KILN_OK)
         return result;
@@ -274,42 +174,33 @@ static kiln_result load_face(kiln_context *context, const char *path, int face, 
             map->roughness[0] = info.roughness[0];
     }
     if (result == KILN_OK)
-        ki_cut_face(image, 0, 0, size, false,
-                    map->level[0] + 3 * (size_t)size * (size_t)size * (size_t)face);
+        ki_face_place(files->set, image, face,
+                      map->level[0] + 3 * (size_t)size * (size_t)size * (size_t)face);
     ki_report_add(report, &decoded.report);
     ki_decoded_free(&decoded);
     return result;
 }
 
+static kiln_result load_faces(kiln_context *context, const ki_face_files *files,
+                              const kiln_load_def *def, kiln_map *map, kiln_error *error)
+{
+    kiln_load_report report = {0};
+    kiln_result result = KILN_OK;
+    ki_faces_note(files->set, &report);
+    for (int face = 0; face < 6 && result == KILN_OK; face++)
+        result = load_face(context, files, face, map, &report, error);
+    return finish(context, files->path[0], def, result, &report, map, error);
+}
+
 kiln_result kiln_map_load_faces(kiln_context *context, const char *const paths[6],
                                 const kiln_load_def *def, kiln_map *map, kiln_error *error)
 {
-    kiln_load_report report = {0};
+    int order[6] = {0, 1, 2, 3, 4, 5};
+    ki_face_files files = {.set = ki_faces_order(paths, order)};
     kiln_result result = begin(&def, map, error);
-    if (result != KILN_OK)
-        return result;
-    for (int face = 0; face < 6 && result == KILN_OK; face++)
-        result = load_face(context, paths[face], face, map, &report, error);
-    return finish(context, paths[0], def, result, &report, map, error);
-}
-
-// Loads six files whose paths differ only in the name of the face.
-static kiln_result load_pattern(kiln_context *context, const face_paths *parts,
-                                const kiln_load_def *def, kiln_map *map, kiln_error *error)
-{
-    const char *paths[6];
-    size_t room = strlen(parts->before) + strlen(parts->after) + 3;
-    char *text = ki_alloc(context, 6, room);
-    if (!text)
-        return ki_fail_memory(context, error, "six paths", 6 * room);
-    for (size_t face = 0; face < 6; face++) {
-        paths[face] = text + room * face;
-        snprintf(text + room * face, room, "%s%s%s", parts->before, ki_face_names[face],
-                 parts->after);
-    }
-    kiln_result result = kiln_map_load_faces(context, paths, def, map, error);
-    ki_free(text);
-    return result;
+    for (int face = 0; face < 6; face++)
+        files.path[face] = paths[order[face]];
+    return result == KILN_OK ? load_faces(context, &files, def, map, error) : result;
 }
 
 kiln_result kiln_map_load(kiln_context *context, const char *path, const kiln_load_def *def,
@@ -319,16 +210,16 @@ kiln_result kiln_map_load(kiln_context *context, const char *path, const kiln_lo
     if (result != KILN_OK)
         return result;
 
-    face_paths paths = {0};
     const char *braces = strstr(path, "{face}"), *percent = strstr(path, "%s");
     bool folder = ki_os_kind_of(path) == KI_OS_FOLDER;
     if (braces || percent || folder) {
-        result = folder ? search_folder(context, path, &paths, error)
-                        : split_path(context, path, braces ? braces : percent, braces ? 6 : 2,
-                                     &paths, error);
-        if (result == KILN_OK && paths.before && paths.after)
-            result = load_pattern(context, &paths, def, map, error);
-        free_paths(&paths);
+        ki_face_files files;
+        result = folder ? ki_faces_in_folder(context, path, &files, error)
+                        : ki_faces_of_pattern(context, path, braces ? braces : percent,
+                                              braces ? 6 : 2, &files, error);
+        if (result == KILN_OK)
+            result = load_faces(context, &files, def, map, error);
+        ki_face_files_free(&files);
         return result;
     }
     kiln_file_info info;

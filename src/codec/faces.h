@@ -1,0 +1,35 @@
+// The six files of a cube's faces: which names files of faces have, and which file is which face.
+#ifndef KI_FACES_H
+#define KI_FACES_H
+
+#include "base/base.h"
+
+/// Names of six faces that programs use together; see faces.c for the table.
+typedef struct ki_face_set ki_face_set;
+
+/// Paths of six files in the order +X -X +Y -Y +Z -Z.
+typedef struct ki_face_files {
+    const char *path[6];
+    const ki_face_set *set; ///< the names that the paths have; NULL if the names tell nothing
+    char *owner;            ///< memory of the paths, freed by ki_face_files_free
+} ki_face_files;
+
+/// Finds the six files of a folder.
+kiln_result ki_faces_in_folder(kiln_context *context, const char *folder, ki_face_files *files,
+                               kiln_error *error);
+/// Finds the six files of a pattern, a path in which `length` characters at `place` stand for the
+/// name of the face.
+kiln_result ki_faces_of_pattern(kiln_context *context, const char *pattern, const char *place,
+                                size_t length, ki_face_files *files, kiln_error *error);
+void ki_face_files_free(ki_face_files *files);
+
+/// Sets order[face] to the index of the path of each face, and returns the set whose names the
+/// paths have. Returns NULL, with the order unchanged, if no set has all six.
+const ki_face_set *ki_faces_order(const char *const paths[6], int order[6]);
+/// Says which axes the names were taken for, where names leave that open. `set` may be NULL.
+void ki_faces_note(const ki_face_set *set, kiln_load_report *report);
+/// Copies a square picture of three channels to a face of a cube, turned as the set's names want.
+/// `set` may be NULL.
+void ki_face_place(const ki_face_set *set, const kiln_image *image, int face, float *texels);
+
+#endif
