@@ -1,5 +1,5 @@
 // Fast Fourier transforms of any length. One call transforms eight independent signals, one in each
-// vector lane.
+// lane of the vectors.
 #ifndef KI_FFT_H
 #define KI_FFT_H
 

@@ -4,11 +4,12 @@
 
 #include <math.h>
 
-// Number of unknowns of the linear system: the interpolation weights, and the Lagrange multiplier
-// of the constraint that the weights sum to 1.
+// Number of unknowns of the linear system that determines interpolation weights: the eight weights,
+// and the Lagrange multiplier of the constraint that the weights sum to 1.
 enum { UNKNOWNS = KI_TAPS + 1 };
 
-// Solves a x = b in place by elimination with partial pivoting.
+// Solves the linear system a x = b by Gaussian elimination with partial pivoting. The solution x
+// replaces b, and a is overwritten.
 static void solve(double a[UNKNOWNS][UNKNOWNS], double b[UNKNOWNS])
 {
     for (int i = 0; i < UNKNOWNS; i++) {
@@ -38,13 +39,15 @@ static void solve(double a[UNKNOWNS][UNKNOWNS], double b[UNKNOWNS])
     }
 }
 
-// A random function with autocorrelation r(x) = sum_l density_l cos(l x) is known at the points
-// x_i. The mean square error of its interpolation at x is least with the weights w that solve
-// sum_j r(x_i - x_j) w_j = r(x_i - x) (Wiener's filter). Here the constraint sum w = 1 is added.
+// A random function whose power at angular frequency l is density_l has the autocorrelation
+// r(x) = sum_l density_l cos(l x). Its value at x is interpolated from its values at grid points
+// x_i. The mean square error is least with the weights w_j that solve
+// sum_j r(x_i - x_j) w_j = r(x_i - x) for each i (Wiener's filter). Here the constraint that the
+// weights sum to 1 is added.
 void ki_taps_design(double step, const double *density, int degree, double *taps)
 {
-    // The spectral density is smooth in the degree l, so that every stride-th degree represents its
-    // neighbours.
+    // To save time, the sums over the angular frequency l take only every stride-th l: `density` is
+    // smooth in l, and each l that is taken represents its neighbours.
     int stride = 1 + degree / 64;
     double total = 0, apart[KI_TAPS] = {0};
     for (int l = 0; l <= degree; l += stride) {
@@ -60,8 +63,9 @@ void ki_taps_design(double step, const double *density, int degree, double *taps
             a[i][KI_TAPS] = a[KI_TAPS][i] = 1;
         }
         a[KI_TAPS][KI_TAPS] = 0;
-        // Computes cos(l x) by its recurrence in l, whose error is about 1e-13, far below the error
-        // of the interpolation itself.
+        // Computes cos(l x) for the distance x from each grid point to the interpolated position,
+        // by its recurrence in l. The recurrence errs by about 1e-13, far less than the
+        // interpolation itself.
         double twice[KI_TAPS], now[KI_TAPS], before[KI_TAPS];
         for (int i = 0; i < KI_TAPS; i++) {
             double c = ki_cos((fraction - (i - 3)) * step * stride);
@@ -91,8 +95,9 @@ void ki_taps_design(double step, const double *density, int degree, double *taps
     }
 }
 
-// The power of environments is modelled as 1 / (l + 1), and the transform of a GGX lobe as
-// exp(-2 alpha l), with alpha chosen so that the lobe's transform is exp(-10.4) at the last degree.
+// The power of an environment is modelled as 1 / l^2 for each coefficient a_lm; summed over the
+// orders m of a degree, that is about 1 / (l + 1). The coefficients of a GGX lobe are modelled as
+// exp(-2 alpha l), with alpha chosen so that the coefficient of the last degree is exp(-10.4).
 void ki_model_density(int degree, double *density)
 {
     for (int l = 0; l <= degree; l++)

@@ -13,52 +13,60 @@
 
 enum {
     KI_LANES = 8,
-    KI_COMPONENTS = 6, // real and imaginary parts of the three colour channels
+    // number of doubles of a coefficient a_lm: real and imaginary parts of three colour channels
+    KI_COMPONENTS = 6,
     // Number of weights of the interpolation between latitude rings, and between the points of a
     // ring.
     KI_TAPS = 8,
     // number of intervals into which a table of interpolation weights divides the fraction 0 to 1
     KI_TAP_STEPS = 256,
-    // Number of doubles in a table of interpolation weights, which has entries for the fractions 0
-    // and 1 too.
+    // Number of doubles in a table of interpolation weights: eight weights for each of the
+    // KI_TAP_STEPS + 1 fractions from 0 to 1.
     KI_TAP_TABLE = KI_TAPS * (KI_TAP_STEPS + 1)
 };
 
 /// One pass of a Stockham FFT of mixed radix.
 typedef struct ki_fft_pass {
-    // The passes follow one another: `length` of a pass is its radix times the `length` of the next
-    // pass.
+    // `length` of a pass is its radix times the `length` of the next pass. `stride` is the product
+    // of the radices of the earlier passes.
     int radix, length, stride;
-    const double *twiddles; // twiddle factors, [length / radix][radix - 1][2]
-    const double *roots;    // roots of unity, [radix][2], read by radices other than 2, 3, 4
+    // Twiddle factors exp(-2 pi i p j / length), p < length / radix, j = 1 .. radix - 1, as
+    // [p][j - 1][real, imaginary].
+    const double *twiddles;
+    // Roots of unity exp(-2 pi i j / radix), [j][real, imaginary]. Passes of radix 2, 3 and 4 do
+    // not read them.
+    const double *roots;
 } ki_fft_pass;
 
 enum { KI_FFT_PASSES = 24 };
 
-/// A forward transform of `length` complex numbers in eight lanes. An element of the data is 16
-/// doubles: eight real parts, then eight imaginary parts.
+/// Plan of the forward Fourier transform of eight signals at once, one in each lane, of `length`
+/// complex numbers each. Element i of the data is 16 doubles: the real parts of number i of the
+/// eight signals, then the imaginary parts.
 typedef struct ki_fft {
     int length, pass_count;
     ki_fft_pass pass[KI_FFT_PASSES];
     double *tables;
 } ki_fft;
 
-/// Suns, the texels that the analysis keeps out of the spectrum, as points with a direction and
-/// radiance times solid angle. For eight directions at once, a sun counts as its one centre point
-/// if the directions are all farther than far_versine (1 - cos of the angle) from the sun, and as 4
-/// points if they are farther than near_versine. Otherwise, or if the horizon of a direction is
-/// within `horizon` (in cos of the angle) of the sun, the sun counts as near_count points.
+/// Suns, the texels that the analysis keeps out of the spectrum, as points on the sphere. A point
+/// is a unit direction and its light: radiance times solid angle, divided by the lobe's integral. A
+/// sun is summed for eight directions at once. It counts as its one centre point if all eight
+/// directions are farther than far_versine (1 - cos of the angle) from the sun, and as 4 points if
+/// they are farther than near_versine. It counts as near_count points if a direction is nearer, or
+/// if the plane perpendicular to a direction passes within `horizon` (in cos of the angle) of the
+/// sun, because the lobe has a kink there.
 typedef struct ki_sun_points {
     int count, near_count;
     double far_versine, near_versine, horizon;
-    // arrays of `count` centre points, `count` sets of 4 points, and `count` sets of near_count
-    // points
+    // Points {x, y, z, r, g, b} of all suns: `centre` has 1 point for each sun, `pairs` 2 x 2
+    // points, `near` near_count points.
     double (*centre)[6], (*pairs)[6], (*near)[6];
 } ki_sun_points;
 
 typedef struct ki_kernels {
-    /// Transforms `data`, with `work` as a second buffer of the same size. Returns the buffer that
-    /// holds the result.
+    /// Fourier-transforms `data` by the plan `fft`, with `work` as a second buffer of the same
+    /// size. Returns the buffer, `data` or `work`, that holds the result.
     double *(*fft)(const ki_fft *fft, double *data, double *work);
 
     /// Adds weighted rows: accumulator[i] += weights[k] * (rows + offsets[k])[i] for i < count,
@@ -70,34 +78,38 @@ typedef struct ki_kernels {
     /// magnitude of the row.
     float (*sum_row)(const float *row, int count, double sum[3]);
 
-    /// Sums one order m of the analysis: out[l - m][6] is the sum, over the lanes of the vectors
-    /// first .. last - 1, of q_l times the half of data[vector][12][8] that is even about the
-    /// equator (l - m even) or odd (l - m odd). `f` holds the coefficients of the recurrence of q_l
-    /// from l = m on. `twice_cos` and `start`, both [vector][8], hold 2 cos theta and sin^m theta
-    /// of the rings. `state` is scratch, [vector][2][8].
+    /// Analyses one order m of `count` degrees: out[l - m][6] is the sum, over the latitude rings
+    /// of the vectors first .. last - 1, of q_l (legendre.h) times the data of the ring.
+    /// data[vector][12][lane] holds six components (real and imaginary part of r, g, b) of the
+    /// data's part that is even about the equator, then six of the odd part. The even part is read
+    /// where l - m is even, the odd part where l - m is odd. `f` holds the coefficients of the
+    /// recurrence of q_l from l = m on. `twice_cos` and `start`, both [vector][lane], hold 2 cos
+    /// theta and sin^m theta of the rings. `state` is scratch memory, [vector][2][lane].
     void (*analyze)(const double *f, int count, const double *twice_cos, const double *start,
                     const double *data, int first, int last, double *state, double *out);
 
-    /// The transpose of `analyze`, for two neighbouring vectors: out[12][8] is the sum over l of
-    /// q_l times coefficients[l - m][6]. Terms with even l - m are summed in the first six rows,
-    /// terms with odd l - m in the other six.
+    /// The transpose of `analyze`, for two neighbouring vectors of latitude rings: sums q_l times
+    /// coefficients[l - m][6] over the degrees l. Writes [12][lane] for each vector: six sums of
+    /// the terms with even l - m, then six of the terms with odd l - m.
     void (*synthesize)(const double *f, int count, const double *twice_cos, const double *start,
                        const double *coefficients, double *out0, double *out1);
 
-    /// Sums the orders m = 0 .. count - 1 at one point of each latitude ring of a vector. `orders`
-    /// is [m][pitch], as `synthesize` writes it. `cosine` and `sine` belong to phi of each point,
-    /// and `sign` is 1 on northern and -1 on southern rings. Writes rgb[channel][lane].
+    /// Sums the Fourier series over the orders m = 0 .. count - 1 at one point of each of eight
+    /// latitude rings. `orders` is [m][pitch], as `synthesize` writes it for one vector. `cosine`
+    /// and `sine` belong to the longitude phi of the points, and `sign` is 1 on northern and -1 on
+    /// southern rings. Writes rgb[channel][lane].
     void (*sum_orders)(const double *orders, size_t pitch, int count, const double *cosine,
                        const double *sine, const double *sign, double *rgb);
 
-    /// Interpolates `count` texels and adds them to rgb[i][3]. position[i] = {ring, column} is not
-    /// negative and in units of the grid's spacing. `grid` is [3][rows][pitch]; the first of the
-    /// eight weights belongs to the integer part of the position.
+    /// Interpolates `count` texels from a grid and adds them to rgb[i][3]. position[i] = {ring,
+    /// column}, in grid steps and not negative; the first of the eight weights along each axis
+    /// belongs to the integer part of the position. `grid` is [channel][rows][pitch], with `plane`
+    /// floats in a channel. `ring_taps` and `column_taps` are tables of interpolation weights.
     void (*interpolate)(const float *grid, size_t plane, size_t pitch, const float *ring_taps,
                         const float *column_taps, const double *position, int count, float *rgb);
 
-    /// Adds the light of the suns through a GGX lobe, for eight directions [3][8], to
-    /// sum[channel][lane]. The weight of the lobe is that of ki_lobe_weight.
+    /// Adds the light of the suns through a GGX lobe to sum[channel][lane], for eight unit
+    /// directions [axis][lane]. The weight of the lobe is that of ki_lobe_weight.
     void (*suns_ggx)(const ki_sun_points *suns, double alpha, const double *directions,
                      double *sum);
 } ki_kernels;

@@ -84,7 +84,7 @@ static inline double sum_lanes(const double *v)
 
 // --------------------------------------------------------------------------------------------- FFT
 
-// Multiplies the complex number (re, im) by w and stores the product.
+// Multiplies the complex number (re, im) by the twiddle factor w and stores the product.
 static inline void store_twisted(double *to, vec re, vec im, const double *w)
 {
     vec wr = splat(w[0]), wi = splat(w[1]);
@@ -160,7 +160,8 @@ static void pass4(const ki_fft_pass *pass, const double *x, double *y)
     }
 }
 
-// A pass of a radix other than 2, 3 and 4, by the definition of the Fourier transform.
+// A pass of an FFT of any radix, used for radices other than 2, 3 and 4: sums by the definition of
+// the Fourier transform.
 static void pass_any(const ki_fft_pass *pass, const double *x, double *y)
 {
     ptrdiff_t r = pass->radix, m = pass->length / r, s = pass->stride, apart = 16 * s * m;
@@ -324,7 +325,8 @@ static void analyze(const double *f, int count, const double *twice_cos, const d
     }
 }
 
-// Synthesises KI_WIDTH lanes of a vector. All sums stay in registers.
+// Sums the products of q_l and coefficients of one order m on KI_WIDTH pairs of latitude rings, as
+// the kernel `synthesize` of kernels.h does for two vectors. All sums stay in registers.
 static inline void synthesize_one(const double *f, int count, vec x, vec q0, const double *b,
                                   double *out)
 {
@@ -348,7 +350,8 @@ static inline void synthesize_one(const double *f, int count, vec x, vec q0, con
 }
 
 #if KI_WIDTH == 8
-// Synthesises two vectors at once, which hides the latency of the recurrence.
+// The kernel `synthesize` of kernels.h. Sums both vectors in one loop, which hides the latency of
+// the recurrence.
 static void synthesize(const double *f, int count, const double *twice_cos, const double *start,
                        const double *b, double *out0, double *out1)
 {
@@ -417,7 +420,8 @@ static void sum_orders(const double *orders, size_t pitch, int count, const doub
 
 // ----------------------------------------------------------------------------------------- texels
 
-// Interpolates the eight weights at a fraction linearly between two entries of the table.
+// Interpolates the eight weights at a fraction in [0, 1] of the way between two grid points,
+// linearly between two entries of the table that ki_taps_design wrote.
 static inline void taps_at(const float *table, double fraction, float taps[KI_TAPS])
 {
     double at = fraction * KI_TAP_STEPS;
@@ -459,8 +463,8 @@ static inline vec versine(const double *directions, int h, const double *p)
     return ((x * x + y * y) + z * z) * 0.5;
 }
 
-// Adds the light of `count` points through a GGX lobe for eight directions. Every lane runs the
-// same arithmetic.
+// Adds the light of `count` points through a GGX lobe of alpha^2 = a2, for eight directions. Every
+// lane runs the same arithmetic.
 static inline void add_points(double a2, const double *directions, const double (*points)[6],
                               int count, double *sum)
 {

@@ -5,8 +5,8 @@
 
 #include <math.h>
 
-// Number of entries after the last degree of a row, which the kernels read when they handle several
-// degrees at once.
+// Number of entries of padding after the last degree of each order's row of coefficients. The
+// kernels read them when they handle several degrees at once.
 enum { ROW_PADDING = 8 };
 
 size_t ki_legendre_row(const ki_legendre *legendre, int m)
@@ -25,10 +25,10 @@ bool ki_legendre_create(kiln_context *context, int degree, ki_legendre *legendre
         ki_legendre_destroy(legendre);
         return false;
     }
-    // P_mm = sqrt((2m+1)!! / (2m)!! / 4 pi) sin^m theta. For l > m,
+    // For order m, P_mm = sqrt((2m+1)!! / (2m)!! / 4 pi) sin^m theta. For l > m,
     // P_l = a_l (x P_{l-1} - P_{l-2} / a_{l-1}) with a_l = sqrt((4 l^2 - 1) / (l^2 - m^2)).
-    // The factorisation P_l = scale_l q_l therefore has scale_l = a_l scale_{l-1} / 2 and
-    // f_l = 4 / a_{l-1}^2.
+    // With P_l = scale_l q_l and q_l = 2 x q_{l-1} - f_l q_{l-2}, that makes
+    // scale_l = a_l scale_{l-1} / 2 and f_l = 4 / a_{l-1}^2.
     double start = sqrt(1 / (4 * KI_PI));
     for (int m = 0; m <= degree; m++) {
         double *f = legendre->f + ki_legendre_row(legendre, m);
@@ -81,8 +81,9 @@ bool ki_rings_create(kiln_context *context, const double *theta, int pair_count,
         for (int m = 0; m <= degree; m++) {
             rings->start[(size_t)m * (size_t)lanes + (size_t)k] = power;
             power = power > 1e-280 ? power * sine : 0;
-            // The last lane is the nearest to the equator and has the largest sin theta. This lane
-            // decides whether the vector contributes to order m.
+            // Rings lie nearer to the equator from lane to lane. The last lane of a vector
+            // therefore has the largest sin theta, and decides whether the vector contributes to
+            // order m.
             if (k % KI_LANES == KI_LANES - 1 && m > reach)
                 rings->first[m] = k / KI_LANES + 1;
         }
@@ -114,8 +115,8 @@ void ki_rings_destroy(ki_rings *rings)
 
 size_t ki_coefficient_row(int degree, int m)
 {
-    // Row k of the coefficients holds degree - k + 1 degrees, and one entry of padding if that
-    // number is odd.
+    // Row k holds the coefficients of order k: degree - k + 1 of them, and one of padding if that
+    // number is odd. Counts those of the rows before row m.
     size_t row = (size_t)m, length = (size_t)degree + 1;
     size_t full = row * length - row * (row - (row > 0)) / 2;
     size_t odd_rows = length % 2 ? (row + 1) / 2 : row / 2;

@@ -19,14 +19,14 @@ void ki_legendre_destroy(ki_legendre *legendre);
 /// degrees l = m .. degree and eight entries of padding.
 size_t ki_legendre_row(const ki_legendre *legendre, int m);
 
-/// Pairs of latitude rings that are mirror images at the equator. Lane j of vector g holds pair 8 g
-/// + j.
+/// Pairs of latitude rings that are mirror images at the equator, in vectors of eight lanes: lane j
+/// of vector g holds pair 8 g + j.
 typedef struct ki_rings {
     int pair_count, vector_count, degree;
-    double *twice_cos; // 2 cos theta of the northern latitude ring of each pair, [vector][8]
-    double *start;     // sin^m theta, [degree + 1][vector][8]
-    // The first vector of rings that contributes to each order, [degree + 1]. P_lm is negligible on
-    // the rings of the vectors before, which are nearer to the poles.
+    double *twice_cos; // 2 cos theta of the northern latitude ring of each pair, [vector][lane]
+    double *start;     // sin^m theta of the rings for each order m, [m][vector][lane]
+    // The first vector of rings that contributes to each order m, [degree + 1]. P_lm is negligible
+    // on the rings of the vectors before, which are nearer to the poles.
     int *first;
 } ki_rings;
 
@@ -34,9 +34,10 @@ typedef struct ki_rings {
 /// pair is repeated until the number of vectors is even. Returns false when memory runs out.
 bool ki_rings_create(kiln_context *context, const double *theta, int pair_count, int degree,
                      ki_rings *rings);
-/// Creates pairs of latitude rings at equal steps, theta = (k + 1/2) pi / (2 pair_count). There are
-/// at least 1.5 (degree + 1) rings, so that interpolation between rings errs less than the
-/// truncation at `degree`. Returns false when memory runs out.
+/// Creates pairs of latitude rings at equal steps: the northern ring of pair k lies at
+/// theta = (k + 1/2) pi / (2 pair_count) from the pole. There are at least 1.5 (degree + 1) rings,
+/// so that interpolation between rings errs less than cutting off the harmonics at `degree`.
+/// Returns false when memory runs out.
 bool ki_rings_create_grid(kiln_context *context, int degree, ki_rings *rings);
 void ki_rings_destroy(ki_rings *rings);
 
@@ -44,7 +45,8 @@ void ki_rings_destroy(ki_rings *rings);
 /// row holds l = m .. degree, six doubles for each degree (real and imaginary part of r, g, b), and
 /// is padded to an even number of degrees.
 size_t ki_coefficient_row(int degree, int m);
-/// Returns the number of doubles in all rows of coefficients of a degree.
+/// Returns the number of doubles in an array of spherical-harmonic coefficients a_lm up to
+/// `degree`.
 size_t ki_coefficient_count(int degree);
 
 #endif

@@ -1,8 +1,9 @@
 // Synthesis of one level (docs/theory/spectral.md). In: a spectrum, a lobe, and the shape and size
-// of the level. Out: the texels of the level, RGB floats. Method: the coefficients are multiplied
-// by the lobe's and summed on latitude rings. A small level is evaluated directly at its texels.
-// For other levels the rings are Fourier-synthesised to a regular grid in (theta, phi), from which
-// texels are interpolated with eight weights along each axis. The suns are added as points.
+// of the level. Out: the texels of the level, RGB floats. Method: the coefficients of the spectrum
+// are multiplied by the lobe's and summed on latitude rings. A small level is evaluated directly at
+// its texels. For other levels the rings are Fourier-synthesised to a regular grid in (theta, phi),
+// from which texels are interpolated with eight weights along each axis. The suns, bright texels
+// kept out of the spectrum, are added as points.
 #include "sphere/level.h"
 
 #include "image/image.h"
@@ -14,15 +15,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-// PAD: rows and columns around the grid that repeat its opposite side, so that the interpolation
-// needs no wrapping. TAP_OFFSET: index of the weight of the grid point left of a texel.
+// PAD: number of rows and columns added at each side of the grid, which repeat values from the
+// opposite side so that the interpolation needs no wrapping. TAP_OFFSET: index, among the eight
+// weights along an axis, of the weight of the last grid point before the texel.
 enum { PAD = 4, TAP_OFFSET = KI_TAPS / 2 - 1 };
 
 // A texel of a small level. Such a level is evaluated at its texels, whose centres lie on few
 // circles of latitude.
 typedef struct place {
-    // theta of the northern latitude ring of the pair, cosine and sine of phi, and the sign of the
-    // hemisphere: 1 north, -1 south
+    // theta: angle of the texel's latitude ring, or of its mirror image if it lies in the south,
+    // from the north pole. cosine, sine: of the longitude phi. sign: 1 in the northern hemisphere,
+    // -1 in the southern.
     double theta, cosine, sine, sign;
     int texel, ring;
 } place;
@@ -40,18 +43,22 @@ struct ki_level {
     // The fields up to ring_start are for small levels, whose texels are evaluated directly.
     place *places; // texels, sorted by the latitude ring on which they lie
     int place_count;
-    int *ring_start; // index in `places` of the first texel on each ring, [lanes + 1]
+    // Index in `places` of the first texel on each latitude ring, a lane of `rings`; [lanes + 1],
+    // the last one being the number of texels.
+    int *ring_start;
 
     // The fields up to `positions` are for larger levels, whose texels are interpolated on a grid.
     ki_fft fft;
     float *ring_taps, *column_taps;
-    size_t pitch, plane; // the grid is [3][PAD + rings + PAD][pitch], and a plane one channel of it
-    // Position of each texel on the grid as {index of the latitude ring, column}, both with
-    // fractions: of the faces +X and +Y of a cube, or of all texels.
+    // Number of floats in a row of the grid and in a colour channel of it. The grid is
+    // [channel][PAD + rings + PAD][pitch].
+    size_t pitch, plane;
+    // Positions of texels on the grid as {index of the latitude ring, column}, both with fractions:
+    // of the texels of the faces +X and +Y of a cube, or of all texels of a map of another shape.
     double *positions;
 };
 
-// The data of one execution, which all its tasks share.
+// The data of one call of ki_level_execute, which all its tasks share.
 typedef struct run {
     const ki_level *level;
     const kiln_spectrum *spectrum;
@@ -60,7 +67,9 @@ typedef struct run {
     ki_points points;
     kiln_map *map; // map whose level `index` is written
     int index;
-    double *coefficients; // product of the spectrum and the lobe, rows as ki_coefficient_row says
+    // Products of the coefficients of the spectrum and of the lobe, in rows as ki_coefficient_row
+    // says.
+    double *coefficients;
     float *grid;
     double *scratch; // scratch memory of all threads
 } run;
@@ -69,7 +78,8 @@ static bool design_taps(kiln_context *context, ki_level *level)
 {
     double *density = ki_alloc_raw(context, (size_t)level->degree + 1, sizeof *density);
     double *taps = ki_alloc_raw(context, KI_TAP_TABLE, sizeof *taps);
-    // the table has one entry more than the fractions need, since a fraction may round up to 1
+    // KI_TAPS zeros follow the table: a fraction that rounds up to 1 reads the entry after the last
+    // one, with weight 0.
     size_t count = KI_TAP_TABLE + KI_TAPS;
     level->ring_taps = ki_alloc(context, count, sizeof(float));
     level->column_taps = ki_alloc(context, count, sizeof(float));
@@ -89,8 +99,8 @@ static bool design_taps(kiln_context *context, ki_level *level)
 }
 
 // Task of one thread: finds the positions of a row of texels on the grid. For a cube the first
-// `size` rows are those of +X, the next `size` rows those of +Y; the other faces differ from these
-// by a quarter turn or a reflection.
+// `size` rows are those of the face +X, the next `size` rows those of +Y; find_positions derives
+// the positions on other faces from these by a quarter turn or a reflection.
 static void place_row(void *data, int row)
 {
     ki_level *level = data;
@@ -119,8 +129,8 @@ static int by_theta(const void *a, const void *b)
     return x->texel - y->texel;
 }
 
-// Prepares a small level: sorts the texels by latitude. Texels that lie on one ring by symmetry
-// have theta that differ only by rounding.
+// Prepares a small level: sorts the texels by latitude. Texels whose theta differ by at most 1e-12
+// lie on one latitude ring by symmetry, and differ only by rounding.
 static bool plan_places(kiln_context *context, ki_level *v, const kiln_map *map)
 {
     int count = v->place_count = (int)kiln_map_texels(map, 0), ring = -1;
@@ -246,8 +256,9 @@ void ki_level_workspace_free(ki_level_workspace *workspace)
     *workspace = (ki_level_workspace){0};
 }
 
-// Task of one thread: multiplies the coefficients of one order of the spectrum by the lobe's
-// coefficients, applies the rotation, and scales the products for the recurrence.
+// Task of one thread: multiplies the coefficients a_lm of one order m of the spectrum by the lobe's
+// coefficients k_l, applies the rotation, and multiplies by the factors `scale` of the Legendre
+// recurrence (legendre.h).
 static void weigh_order(void *data, int m)
 {
     const run *r = data;
@@ -264,15 +275,17 @@ static void weigh_order(void *data, int m)
             to[6 * i + 2 * c + 1] = re * sine + im * cosine;
         }
     }
-    // The kernel reads an even number of degrees, so the padding of the row must be 0.
+    // The kernel `synthesize` reads an even number of degrees, so the entry of padding that follows
+    // an odd number must be 0.
     int count = v->degree - m + 1;
     if (count % 2)
         memset(to + 6 * count, 0, 6 * sizeof *to);
 }
 
-// Copies one channel of a vector's orders to a buffer for the Fourier transform: the northern ring
-// as real part, the southern ring as imaginary part. Real and imaginary parts are swapped, which
-// makes the forward transform an inverse transform.
+// Copies one channel of the Fourier coefficients of a vector of latitude rings, for all orders m,
+// to a buffer for the Fourier transform: the northern ring of a pair as real part, the southern
+// ring as imaginary part. Real and imaginary parts are then swapped, which makes the forward
+// transform an inverse transform.
 static void place_orders(const ki_level *v, const double *orders, int vector, int channel,
                          double *buffer)
 {
@@ -299,8 +312,10 @@ static void place_orders(const ki_level *v, const double *orders, int vector, in
     }
 }
 
-// Synthesises all orders of the two vectors of latitude rings 2 * index and 2 * index + 1, as
-// [m][2][12][8].
+// Sums the spherical harmonics over the degrees l, for all orders m, on the two vectors of latitude
+// rings 2 * index and 2 * index + 1. Returns the Fourier coefficients of the rings,
+// [m][vector][12][lane]: six components of the part even about the equator, then six of the odd
+// part.
 static const double *synthesize_orders(const run *r, int worker, int index)
 {
     const ki_level *v = r->level;
@@ -335,8 +350,8 @@ static void fill_grid(void *data, int worker, int index)
             int vector = 2 * index + half;
             place_orders(v, orders + 96 * (size_t)half, vector, c, buffer);
             const double *z = v->kernels->fft(&v->fft, buffer, buffer + 16 * (size_t)length);
-            // The rings' values are transposed to rows of the grid in blocks that fit in the
-            // first-level cache.
+            // The transform leaves the values of eight rings side by side. They are transposed to
+            // rows of the grid in blocks that fit in the first-level cache.
             float *plane = r->grid + (size_t)c * v->plane + TAP_OFFSET;
             for (int from = 0; from < length; from += 32)
                 for (int j = 0; j < KI_LANES; j++) {
@@ -383,8 +398,8 @@ static void fill_places(void *data, int worker, int index)
     }
 }
 
-// Copies rows beyond the poles, where the grid continues half a turn away, and columns around the
-// ends of each row.
+// Fills the padding of the grid: rows beyond the poles, where the grid continues half a turn away,
+// and columns around the ends of each row, where the longitude wraps.
 static void pad_grid(const run *r)
 {
     const ki_level *v = r->level;
@@ -424,8 +439,8 @@ static void find_positions(const ki_level *v, size_t first, int count, double *p
         memcpy(positions, v->positions + 2 * first, 2 * (size_t)count * sizeof *positions);
         return;
     }
-    // Number of quarter turns for each of the faces +X -X +Y -Y +Z -Z: every side face is +X
-    // turned, and -Y is +Y turned upside down.
+    // Number of quarter turns about the vertical axis for each of the faces +X -X +Y -Y +Z -Z:
+    // every side face is +X turned, and -Y is +Y turned upside down.
     static const int quarters[6] = {0, 2, 0, 0, 1, 3};
     bool side = face < 2 || face > 3, bottom = face == 3;
     size_t y = at / n, x = at % n, from = (bottom ? n - 1 - y : y) * n + x + (side ? 0 : n * n);
@@ -455,7 +470,7 @@ static void find_direction(const run *r, size_t texel, double d[3])
         d[k] *= scale;
 }
 
-// Adds the light of the suns through the lobe to `count` texels.
+// Adds the light of the suns through the lobe to the texels first .. first + count - 1.
 static void add_suns(const run *r, size_t first, int count, float *rgb)
 {
     for (int i = 0; i < count; i += KI_LANES) {
@@ -473,7 +488,8 @@ static void add_suns(const run *r, size_t first, int count, float *rgb)
     }
 }
 
-// Adds to `count` texels the light near the lobe's axis that the lobe's spectrum leaves out.
+// Adds to the texels first .. first + count - 1 the light near the lobe's axis, which the spectrum
+// of a very narrow lobe leaves out.
 static void add_surroundings(const run *r, size_t first, int count, float *rgb)
 {
     const ki_level *v = r->level;
@@ -488,7 +504,7 @@ static void add_surroundings(const run *r, size_t first, int count, float *rgb)
 }
 
 // Task of one thread: computes a row of texels from the grid, unless the level is small and the row
-// is already there, and adds the suns and the surroundings.
+// is already there. Then adds the suns, and for a very narrow lobe the light near the lobe's axis.
 static void fill_row(void *data, int index)
 {
     const run *r = data;

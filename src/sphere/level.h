@@ -5,9 +5,9 @@
 #include "sphere/spectrum.h"
 #include "sphere/zonal.h"
 
-/// Everything about a level that depends only on sizes and on the lobe. An execution changes
-/// nothing in the level, so that any number of threads may execute one level at the same time, each
-/// with a workspace of its own.
+/// The plan of a filtered level: everything that depends only on sizes and on the lobe. An
+/// execution changes nothing in the level, so that any number of threads may execute one level at
+/// the same time, each with a workspace of its own.
 typedef struct ki_level ki_level;
 
 /// Prepares a level of `size` in the given shape, filtered by the lobe of `zonal`. The level takes
@@ -32,14 +32,15 @@ kiln_result ki_level_reserve(kiln_context *context, const ki_level *level,
 void ki_level_workspace_free(ki_level_workspace *workspace);
 
 /// Writes level `index` of `map`, in a workspace that was reserved for the level. `panorama` is
-/// needed if the zonal has an outer angle > 0. `range` is described at ki_parallel_steps. Only the
-/// suns take memory, ki_level_suns_size.
+/// needed only if the lobe's centre is left out of its spectrum (`outer` of ki_zonal above 0).
+/// `range` is described at ki_parallel_steps. The only memory allocated is that of the suns, see
+/// ki_level_suns_size.
 kiln_result ki_level_execute(const ki_level *level, const ki_level_workspace *workspace,
                              const kiln_spectrum *spectrum, const kiln_map *panorama,
                              double rotation, kiln_map *map, int index,
                              const ki_progress_range *range, kiln_error *error);
 
-/// Returns the number of bytes that an execution takes in all for `count` suns of a panorama of
+/// Returns the number of bytes that an execution allocates for `count` suns of a panorama of
 /// `source_size` rows.
 size_t ki_level_suns_size(const ki_level *level, int source_size, size_t count);
 

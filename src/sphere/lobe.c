@@ -48,9 +48,10 @@ double ki_lobe_weight(const kiln_lobe *lobe, double one_minus_cos)
     case KILN_LOBE_GGX: {
         if (!(c > 0))
             return 0;
-        // With N = V = R, the half vector h of N and the light at angle theta has cos^2 = (1 + c) /
-        // 2, where c = cos theta. D(h) is divided by its value at c = 1, so that D stays in the
-        // range of doubles for tiny alphas.
+        // The weight is D(h) cos theta with normal, view and reflection alike, N = V = R, and c =
+        // cos theta. The half vector h of N and the light has cos^2 theta_h = (1 + c) / 2. D(h) is
+        // divided by its value at c = 1, so that the weight stays in the range of doubles for tiny
+        // alphas.
         double a2 = lobe->parameter * lobe->parameter;
         double d = a2 + (1 - a2) * (0.5 * one_minus_cos);
         return d > 0 ? c * (a2 / d) * (a2 / d) : 1;
@@ -58,8 +59,9 @@ double ki_lobe_weight(const kiln_lobe *lobe, double one_minus_cos)
     case KILN_LOBE_LAMBERT:
         return c > 0 ? c : 0;
     case KILN_LOBE_CHARLIE:
-        // The half vector of N and the light has sin^2 = (1 - c) / 2. The lobe is divided by its
-        // value at the horizon, c = 0.
+        // The weight is D(h) cos theta, where D is proportional to (sin theta_h)^(1 / alpha). The
+        // half vector h of N and the light has sin^2 theta_h = (1 - c) / 2 with c = cos theta. D is
+        // divided by its value at the horizon, c = 0.
         return c > 0 ? c * ki_pow(one_minus_cos, 0.5 / lobe->parameter) : 0;
     case KILN_LOBE_PHONG:
         return c > 0 ? ki_pow(c, lobe->parameter) : 0;

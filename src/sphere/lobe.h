@@ -4,8 +4,9 @@
 
 #include "base/base.h"
 
-/// Returns the lobe's weight up to a constant factor. `one_minus_cos` is 1 - cos theta in [0, 2]:
-/// for small theta the caller knows that difference with more digits than cos theta itself.
+/// Returns the lobe's weight, up to a constant factor, at the angle theta from its axis.
+/// `one_minus_cos` is 1 - cos theta in [0, 2]: for small theta the caller knows that difference
+/// with more digits than cos theta itself.
 double ki_lobe_weight(const kiln_lobe *lobe, double one_minus_cos);
 /// Returns the lobe's weight up to the same constant factor as ki_lobe_weight, for cos theta in
 /// [-1, 1].

@@ -47,8 +47,8 @@ double ki_mixture_weight(const ki_mixture *mixture, double one_minus_cos)
     double x = (one_minus_cos > 0 ? one_minus_cos : 0) + offset;
     uint64_t bits;
     memcpy(&bits, &x, sizeof bits);
-    // The exponent of the number and the first bits of its mantissa choose the cubic. The remaining
-    // bits of the mantissa are the cubic's argument t.
+    // The exponent of x and the first bits of its mantissa choose the cubic. The remaining bits of
+    // the mantissa are the cubic's argument t.
     uint64_t first = (uint64_t)(1023 + FIRST_OCTAVE) << STEP_BITS;
     const double *c = mixture->cubic[(bits >> (52 - STEP_BITS)) - first];
     double t = (double)(bits & ((UINT64_C(1) << (52 - STEP_BITS)) - 1)) * 0x1p-47;

@@ -8,15 +8,16 @@
 /// KI_MIXTURE_STEPS ranges, and each range has a cubic.
 enum { KI_MIXTURE_STEPS = 32, KI_MIXTURE_OCTAVES = 21 };
 
-/// The weight is the sum of weights[i] lobe_i / integral_i, and 0 beyond the horizon. The table's
-/// error is below 1e-7.
+/// The weight of a mixture is the sum of weights[i] times the GGX lobe of alphas[i] over its
+/// integral integrals[i], and 0 beyond the horizon. The error of the table is below 1e-7.
 typedef struct ki_mixture {
     double cubic[KI_MIXTURE_STEPS * KI_MIXTURE_OCTAVES][4];
 } ki_mixture;
 
 void ki_mixture_create(ki_mixture *mixture, const double *alphas, const double *weights,
                        const double *integrals, int count);
-/// Returns the weight at 1 - cos theta.
+/// Returns the weight of the mixture at the angle theta from its axis; `one_minus_cos` is 1 - cos
+/// theta.
 double ki_mixture_weight(const ki_mixture *mixture, double one_minus_cos);
 
 #endif

@@ -15,7 +15,7 @@
 
 enum { MOST_CELLS = 24 };
 
-// Gauss-Legendre nodes on [-1/2, 1/2], then their weights.
+// Nodes, then weights of the Gauss-Legendre rules on [-1/2, 1/2] with two and with four nodes.
 static const double gauss_two[2][2] = {{-0.28867513459481288225, 0.28867513459481288225},
                                        {0.5, 0.5}};
 static const double gauss_four[2][4] = {{-0.43056815579702628761, -0.16999052179242813170,
@@ -31,8 +31,9 @@ static double versine(const double *a, const double *b)
 }
 
 // Divides a sun's texel into n^2 points that share its solid angle. `nodes` in [0, 1] lie across
-// each side of the texel; a point's share is the product of its `weights` times sin theta,
-// normalised. The radiance is divided by `integral`.
+// each side of the texel. A point's share is the product of its `weights` times sin theta, scaled
+// so that the shares add up to the solid angle. The light of the points is divided by `integral`,
+// the lobe's integral.
 static void divide(const ki_sun *sun, int size, int n, const double *nodes, const double *weights,
                    double rotation, double integral, double (*points)[6])
 {
@@ -58,9 +59,10 @@ static void divide(const ki_sun *sun, int size, int n, const double *nodes, cons
 }
 
 // Decides how many points represent a sun, that is a bright texel kept out of the spectrum. Let h
-// be the size of the texel and s the distance from the sun or the width of the lobe k. The relative
-// error of one point is about (h/s)^2 / 24 times k'' s^2 / k, which is 20 in the tail of GGX. Two
-// by two Gauss nodes err by (h/s)^4 / 4320 times 840, four by four by 1e-4 (h/s)^8.
+// be the size of the texel, k the lobe, and s the distance from the sun or the width of the lobe,
+// over which k varies. The relative error of one point is about (h/s)^2 / 24 times s^2 k'' / k,
+// which is 20 in the tail of GGX. The error of two by two Gauss nodes is (h/s)^4 / 4320 times s^4
+// k'''' / k, which is 840; that of four by four nodes is about 1e-4 (h/s)^8.
 static void choose_point_counts(const ki_zonal *zonal, int size, ki_sun_points *suns)
 {
     double texel = KI_PI / size, width = ki_lobe_width(&zonal->lobe);
@@ -131,8 +133,8 @@ void ki_points_destroy(ki_points *points)
     *points = (ki_points){0};
 }
 
-// Adds the suns through a mixture of lobes, with the same choice of points as the kernel suns_ggx
-// but for each lane alone.
+// Adds the suns through a mixture of lobes. Chooses the number of points as the kernel suns_ggx
+// does, but for each of the eight directions alone.
 static void add_mixture(const ki_points *points, const double *directions, double *sum)
 {
     const ki_sun_points *suns = &points->suns;
@@ -174,7 +176,8 @@ void ki_points_add(const ki_points *points, const double *directions, double *su
         points->kernels->suns_ggx(suns, ggx ? lobe->parameter : 1, directions, sum);
         return;
     }
-    // Suns through lobes other than GGX and Lambert are rare, so each lane is summed alone.
+    // Suns through lobes other than GGX and Lambert are rare, so the eight directions are summed
+    // one by one, without vectors.
     for (int i = 0; i < suns->count; i++)
         for (int j = 0; j < KI_LANES; j++) {
             const double direction[3] = {directions[j], directions[8 + j], directions[16 + j]};
@@ -195,10 +198,10 @@ void ki_points_add(const ki_points *points, const double *directions, double *su
 
 // -------------------------------------------------------------------------------- narrow lobes
 
-// A sum over square cells of a texel, in which integrate_cell integrates lobe * (1 - step). A cell
-// is cut in four until the cell is small relative to its distance from the direction and to the
-// lobe's width. The cell is then integrated with four by four Gauss nodes, or with two by two nodes
-// if the cell is very small.
+// What integrate_cell needs to integrate weight * (1 - step) of a very narrow lobe over a square
+// cell of a texel, that is the lobe's centre, which the spectrum leaves out. A cell is cut in four
+// until it is small relative to its distance from `direction` and to the lobe's width. It is then
+// integrated with four by four Gauss nodes, or with two by two nodes if it is very small.
 typedef struct cell_sum {
     const ki_zonal *zonal;
     double direction[3], width;

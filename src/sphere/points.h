@@ -18,15 +18,15 @@ typedef struct ki_points {
 kiln_result ki_points_create(const kiln_spectrum *spectrum, const ki_zonal *zonal, double integral,
                              double rotation, ki_points *points, kiln_error *error);
 void ki_points_destroy(ki_points *points);
-/// Returns the number of bytes that ki_points_create takes for `count` suns of a panorama of `size`
-/// rows.
+/// Returns the number of bytes that ki_points_create allocates for `count` suns of a panorama of
+/// `size` rows.
 size_t ki_points_size(const ki_zonal *zonal, int size, size_t count);
-/// Adds the light of the suns in eight unit directions, [3][8], to sum[channel][lane].
+/// Adds the light of the suns in eight unit directions, [axis][lane], to sum[channel][lane].
 void ki_points_add(const ki_points *points, const double *directions, double *sum);
 
-/// Adds the light that `zonal` leaves out near the centre of its lobe: the sum over the texels
-/// within the outer angle of a direction of radiance * (lobe - zonal) / integral. The outer angle
-/// must be above 0.
+/// Adds the light near the lobe's axis that the spectrum of `zonal` leaves out: the sum over the
+/// texels within the angle `outer` of `direction` of radiance * weight * (1 - step) / integral,
+/// where ki_zonal_step is the step. `outer` of `zonal` must be above 0.
 void ki_surroundings_add(const kiln_map *panorama, const ki_zonal *zonal, double integral,
                          const double direction[3], double rgb[3]);
 

@@ -1,8 +1,8 @@
 // The first bands of spherical harmonics as rendering engines use them (docs/theory/spectral.md).
 // In: a spectrum about the axis +Y with its list of suns. Out: up to 25 real coefficients for each
 // channel about the axis z, of radiance or irradiance, with or without a window; and the power of
-// each degree. Method: the first bands are evaluated on a Gauss grid and projected onto the basis,
-// exactly for polynomials.
+// each degree. Method: the first bands are evaluated on a Gauss grid and projected onto the basis.
+// The grid integrates their products with the basis exactly.
 #include "sphere/sh.h"
 
 #include "image/image.h"
@@ -13,7 +13,7 @@
 
 // Real orthonormal spherical harmonics as polynomials in x, y, z. The normalisations are the usual
 // closed forms, for example in Sloan, "Stupid Spherical Harmonics Tricks" (2008), appendix A2,
-// without Sloan's signs.
+// without the factor (-1)^m that Sloan's have.
 void ki_sh_basis(const double d[3], double y[25])
 {
     double x = d[0], v = d[1], z = d[2], x2 = x * x, v2 = v * v, z2 = z * z;
@@ -51,9 +51,9 @@ void ki_sh_basis(const double d[3], double y[25])
     y[24] = k4 / 4 * (x2 * (x2 - 3 * v2) - v2 * (3 * x2 - v2));
 }
 
-// The spectrum has the polar axis +Y, the basis the polar axis z. Therefore the first bands are
-// evaluated on a product grid, which integrates polynomials of twice the degree exactly, and
-// projected onto the basis.
+// The spectrum has the polar axis +Y, the basis the polar axis z. Therefore the sum of the first
+// bands is evaluated on a product grid of directions and projected onto the basis anew. The grid
+// integrates products of two harmonics of these bands exactly.
 kiln_result ki_sh_project(const kiln_spectrum *spectrum, int bands, double rotation, kiln_sh *sh,
                           kiln_error *error)
 {
@@ -97,8 +97,8 @@ kiln_result ki_sh_project(const kiln_spectrum *spectrum, int bands, double rotat
                     q = next;
                 }
             }
-            // Direction of the point at (u, theta) of a panorama, as ki_panorama_direction defines
-            // it, from cos theta.
+            // Direction of the point at longitude 2 pi u and polar angle theta of a panorama, as
+            // ki_panorama_direction defines it. `nodes[j]` is cos theta.
             double y[25], s, c;
             ki_sincos(2 * KI_PI * u, &s, &c);
             ki_sh_basis((double[3]){-sine * s, nodes[j], sine * c}, y);
@@ -128,8 +128,8 @@ kiln_result ki_sh_check_bands(int bands, double window, double rotation, kiln_er
 kiln_result kiln_sh_filter(const kiln_sh *radiance, int bands, bool irradiance, double window,
                            kiln_sh *sh, kiln_error *error)
 {
-    // Factors of the cosine lobe by band, from Ramamoorthi and Hanrahan 2001, eq. 8; A_3 = 0, A_4 =
-    // -pi / 24.
+    // Factor A_l of the cosine lobe for each band l = 0 .. 4, from Ramamoorthi and Hanrahan 2001,
+    // eq. 8.
     static const double cosine_lobe[] = {KI_PI, 2 * KI_PI / 3, KI_PI / 4, 0, -KI_PI / 24};
     kiln_sh from = *radiance;
     *sh = (kiln_sh){0};

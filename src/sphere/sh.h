@@ -8,8 +8,8 @@
 void ki_sh_basis(const double direction[3], double y[KILN_MAX_BANDS * KILN_MAX_BANDS]);
 /// Fails unless the arguments are in the ranges that kiln_spectrum_sh states.
 kiln_result ki_sh_check_bands(int bands, double window, double rotation, kiln_error *error);
-/// Computes the first `bands` bands of the radiance, turned by `rotation` degrees about +Y, in the
-/// world's directions.
+/// Computes the coefficients of the spectrum's radiance in the first `bands` bands of kiln_sh,
+/// after a turn by `rotation` degrees about +Y.
 kiln_result ki_sh_project(const kiln_spectrum *spectrum, int bands, double rotation, kiln_sh *sh,
                           kiln_error *error);
 

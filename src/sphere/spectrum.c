@@ -25,14 +25,14 @@ enum { CANDIDATES = 4096 };
 
 enum { ROW_NODES = 6 };
 
-// Computes the weights of a row for the latitude rings from ring *first on: the integral over the
-// row, from theta0 to theta1, of each ring's interpolating function times sin theta. Rings k < 0 or
-// k >= ring_count lie beyond a pole. Returns the number of weights; with `weights` NULL the weights
-// are only counted.
+// Computes the weights with which one row of the panorama contributes to the latitude rings from
+// ring *first on. The weight of a ring is the integral over the row, from theta0 to theta1, of the
+// ring's interpolating function times sin theta. Rings k < 0 or k >= ring_count lie beyond a pole.
+// Returns the number of weights; with `weights` NULL the weights are only counted.
 static int weigh_row(double theta0, double theta1, int ring_count, const double *taps,
                      const double rule[2][ROW_NODES], int *first, double *weights)
 {
-    // in units in which latitude ring k lies at scale * theta = k + 1/2
+    // latitude ring k lies at theta = (k + 1/2) / scale
     double scale = ring_count / KI_PI;
     int low = (int)floor(theta0 * scale - 0.5), high = (int)floor(theta1 * scale - 0.5);
     *first = low - 3;
@@ -62,16 +62,16 @@ static int real_ring(int ring, int count, bool *half_turn)
     return ring < 0 ? -1 - ring : ring >= count ? 2 * count - 1 - ring : ring;
 }
 
-// Fills in the list of weights, sorted by latitude ring: the first pass counts the weights of each
-// ring, the second pass stores them. Returns false when memory runs out.
+// Fills in the weights with which rows contribute to latitude rings, sorted by ring: the first pass
+// counts the weights of each ring, the second pass stores them. Returns false when memory runs out.
 static bool plan_row_weights(kiln_context *context, ki_analysis *a, const double *taps)
 {
     int size = a->size, rings = 2 * a->rings.pair_count, first;
     double rule[2][ROW_NODES];
     ki_gauss_legendre(ROW_NODES, rule[0], rule[1]);
     const double(*nodes)[ROW_NODES] = (const double(*)[ROW_NODES])rule;
-    // A row contributes to at most as many latitude rings as its height covers, and at each end to
-    // half as many as an interpolation has weights.
+    // A row contributes to at most as many latitude rings as its height covers, rings / size, and
+    // at each end to half as many as the interpolation has weights.
     int most = rings / size + KI_TAPS + 2;
     double *weights = ki_alloc_raw(context, (size_t)most, sizeof *weights);
     int *filled = ki_alloc(context, (size_t)rings, sizeof *filled);
@@ -119,8 +119,9 @@ kiln_result ki_analysis_create(kiln_context *context, int size, int degree, cons
         !ki_fft_create(context, 2 * size, &a->fft))
         goto failed;
 
-    // With d the width of a column, the integral of exp(-i m phi) over column x is exp(-i m (x +
-    // 1/2) d) d sinc(m d / 2). The Fourier transform supplies the factor exp(-i m x d).
+    // With d the width of a column of texels in radians, the integral of exp(-i m phi) over column
+    // x is exp(-i m (x + 1/2) d) d sinc(m d / 2). The Fourier transform supplies the factor exp(-i
+    // m x d), `column` the rest.
     double d = KI_PI / size;
     for (int m = 0; m <= degree; m++) {
         double sine, cosine, width = m ? ki_sin(m * d / 2) * 2 / m : d;
@@ -192,33 +193,41 @@ int kiln_spectrum_degree(const kiln_spectrum *spectrum)
 struct ki_analysis_workspace {
     kiln_context *context;
     int row_count; // number of panorama rows added by earlier calls of ki_analysis_add_rows
-    double *rings; // sums of each latitude ring, [ring][2 size][3]; NULL for whole panoramas
-    // The magnitudes of texels decide which texels are suns, because texels may be negative.
-    double *row_sums;   // magnitudes of the radiance summed over each row, [size][3]
-    float *row_peaks;   // largest magnitude of each row, [size]
-    double total[3];    // magnitudes times solid angle, summed over the rows so far
+    // Weighted sums of panorama rows for each latitude ring, [ring][column][rgb]; NULL if panoramas
+    // come whole.
+    double *rings;
+    // The magnitudes |radiance| of texels decide which texels are suns, because texels may be
+    // negative.
+    double *row_sums; // magnitudes of the radiance summed over each row, [size][3]
+    float *row_peaks; // largest magnitude of each row, [size]
+    // magnitudes times solid angle, summed over the texels of the rows so far
+    double total[3];
     ki_sun *candidates; // texels bright enough to be suns relative to the light of the rows so far
     int candidate_count;
 
-    double *orders; // Fourier coefficients of the latitude rings, [degree + 1][vector][12][8]
+    // Fourier coefficients of the latitude rings for each order m, [m][vector of rings][12][lane].
+    // The twelve are the real and imaginary parts of r, g, b: first of the part that is even about
+    // the equator, then of the odd part.
+    double *orders;
     // Scratch memory of each worker: two FFT buffers and 16 latitude rings, or the state of the
     // Legendre recurrence.
     double *scratch;
     size_t scratch_size;
 };
 
-// The data of one call, which all its tasks share.
+// The data of one call of ki_analysis_add_rows, _finish or _execute, which all its tasks share.
 typedef struct run {
     const ki_analysis *analysis;
     ki_analysis_workspace *work;
-    const float *rows;       // panorama rows that are added, RGB; or the whole panorama
+    // RGB of the panorama rows that are added, or of the whole panorama
+    const float *rows;
     int row_count;           // number of rows in `rows`
     kiln_spectrum *spectrum; // the spectrum that is written
 } run;
 
 enum {
     PIECES = 16,             // number of pieces into which each half of a panorama row is cut
-    RING_SET = 2 * KI_LANES, // number of latitude rings in a vector
+    RING_SET = 2 * KI_LANES, // number of latitude rings in a vector, two in each lane
 };
 
 kiln_result ki_analysis_workspace_create(kiln_context *context, const ki_analysis *analysis,
@@ -267,10 +276,10 @@ void ki_analysis_workspace_destroy(ki_analysis_workspace *workspace)
 
 // ------------------------------------------------------------------------------------------ the rows
 
-// Adds the contributions of the panorama rows r->rows to one piece of a latitude ring. The two
-// halves of a row are cut at the same places, so that a ring half a turn away receives the same
-// piece of the other half. The sums are in the order of the rows, so that the result does not
-// depend on how many rows come at a time.
+// Adds the weighted panorama rows r->rows to one piece of a latitude ring. The two halves of a row
+// (`half` 0 and 1) are cut at the same places, so that a ring beyond a pole, half a turn away,
+// receives the same piece of the other half. The rows are added in their order, so that the sums do
+// not depend on how many rows come at a time.
 static void add_to_piece(const run *r, int ring, int half, int piece, double *accumulator)
 {
     enum { MOST = 32 };
@@ -296,7 +305,7 @@ static void add_to_piece(const run *r, int ring, int half, int piece, double *ac
         a->kernels->add_weighted(accumulator + here, r->rows, offsets, weights, n, 3 * count);
 }
 
-// Task of one thread: adds the panorama rows r->rows to the same piece of all latitude rings.
+// Task of one thread: adds one piece of the panorama rows r->rows to all latitude rings.
 static void add_to_rings(void *data, int index)
 {
     const run *r = data;
@@ -305,7 +314,7 @@ static void add_to_rings(void *data, int index)
                      r->work->rings + (ptrdiff_t)ring * r->analysis->size * 6);
 }
 
-// Task of one thread: computes the sum and the largest value of one of the rows r->rows.
+// Task of one thread: sums the magnitudes of one of the rows r->rows and finds the largest.
 static void sum_one_row(void *data, int index)
 {
     const run *r = data;
@@ -317,13 +326,14 @@ static void sum_one_row(void *data, int index)
 
 static double row_solid_angle(int row, int size)
 {
-    // The solid angle of one texel is the column's width times the difference of cos theta.
+    // The solid angle of one texel is its width in longitude times the difference of cos theta
+    // between its upper and lower edge.
     double high = ki_sin((row + 0.5) * KI_PI / size) * ki_sin(KI_PI / size / 2);
     return KI_PI / size * 2 * high;
 }
 
-// Returns true if a texel of this radiance and solid angle holds the share sun_share of the total
-// light in some channel.
+// Returns true if a texel with the radiance `rgb` and this solid angle holds more than the share
+// sun_share of the total light in some channel.
 static bool is_candidate(const float rgb[3], double solid, const double total[3])
 {
     for (int c = 0; c < 3; c++)
@@ -332,8 +342,8 @@ static bool is_candidate(const float rgb[3], double solid, const double total[3]
     return false;
 }
 
-// Removes the candidates that hold too small a share of the light of all rows so far, which grows
-// with every row.
+// Removes the candidate suns that hold too small a share of the light of all rows so far, since
+// that light grows with every row.
 static void drop_candidates(ki_analysis_workspace *w, int size)
 {
     int count = 0;
@@ -345,7 +355,8 @@ static void drop_candidates(ki_analysis_workspace *w, int size)
     w->candidate_count = count;
 }
 
-// Adds the light of the rows r->rows to the total, and their brightest texels to the candidates.
+// Adds the light of the rows r->rows to the total, and their brightest texels to the candidate
+// suns.
 static void gather_candidates(const run *r)
 {
     ki_analysis_workspace *w = r->work;
@@ -384,8 +395,8 @@ kiln_result ki_analysis_add_rows(const ki_analysis *analysis, ki_analysis_worksp
     return KILN_OK;
 }
 
-// Writes the list of suns of the spectrum: the candidates that hold enough of the whole panorama's
-// light and are bright enough relative to the mean.
+// Writes the list of suns of the spectrum: the candidates that hold the share sun_share of the
+// whole panorama's light and are sun_contrast times brighter than its mean.
 static void select_suns(ki_analysis_workspace *w, kiln_spectrum *spectrum)
 {
     int count = 0;
@@ -421,8 +432,9 @@ static void subtract_suns(const run *r, int ring, double *accumulator)
 }
 
 // Computes the Fourier transforms of eight pairs of latitude rings for one channel. The real part
-// of the data is the northern ring, the imaginary part the southern ring. The sum of the two
-// transforms goes to the functions even about the equator, their difference to the odd functions.
+// of the data is the northern ring of a pair, the imaginary part the southern ring. The sum of the
+// transforms of both rings is the pair's part that is even about the equator, their difference the
+// odd part.
 static void transform_channel(const run *r, int vector, int channel, double *const *rings,
                               double *buffer)
 {
@@ -482,7 +494,8 @@ static void transform_rings(void *data, int worker, int vector)
         transform_channel(r, vector, channel, rings, buffer);
 }
 
-// Task of one thread: computes the coefficients of one order m.
+// Task of one thread: computes the coefficients a_lm of one order m from the Fourier coefficients
+// of the rings.
 static void analyze_order(void *data, int worker, int m)
 {
     const run *r = data;

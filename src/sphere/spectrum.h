@@ -12,7 +12,7 @@
 #include "sphere/fft.h"
 #include "sphere/legendre.h"
 
-/// A texel of the panorama that is left out of the spectrum because of its brightness.
+/// A sun: a texel of the panorama that is left out of the spectrum because of its brightness.
 typedef struct ki_sun {
     int row, column;
     float radiance[3];
@@ -21,7 +21,8 @@ typedef struct ki_sun {
 struct kiln_spectrum {
     kiln_context *context;
     int degree, size; // degree of the coefficients, and number of rows of the panorama
-    // Spherical-harmonic coefficients a_lm, m >= 0, see ki_coefficient_row; without the suns.
+    // Spherical-harmonic coefficients a_lm, m >= 0, of the panorama without its suns, in rows as
+    // ki_coefficient_row says.
     double *a;
     ki_sun *suns;
     int sun_count;
@@ -30,7 +31,9 @@ struct kiln_spectrum {
 /// The weight with which a row of the panorama contributes to a latitude ring.
 typedef struct ki_row_weight {
     int row;
-    bool half_turn; // true: the ring lies across a pole and takes the texels half a turn away
+    // true: the ring is the mirror image of one beyond a pole, and takes the row's texels half a
+    // turn away
+    bool half_turn;
     double weight;
 } ki_row_weight;
 
@@ -42,16 +45,20 @@ typedef struct ki_analysis {
     int size, degree;
     ki_legendre legendre;
     ki_rings rings;
-    ki_fft fft; // transform of one row
-    // Integral of exp(-i m phi) over the texel column 0 for each order m, [degree + 1][2].
+    ki_fft fft; // Fourier transform along a latitude ring
+    // Integral of exp(-i m phi) over the width of texel column 0 for each order m, [m][real,
+    // imaginary].
     double *column;
     int *
-        ring_start; // index in `row_weights` of the first weight of each latitude ring, [rings + 1]
-    ki_row_weight *row_weights; // weights of the rows, sorted by latitude ring and then by row
+        // Index in `row_weights` of the first weight of each latitude ring, [rings + 1].
+        ring_start;
+    // Weights of panorama rows for latitude rings, sorted by ring and then by row.
+    ki_row_weight *row_weights;
 } ki_analysis;
 
-/// Prepares the analysis of panoramas with `size` rows. `density` is the model of the spectrum for
-/// which the interpolation is designed, see ki_taps_design.
+/// Prepares the analysis of panoramas with `size` rows up to `degree`. `density[l]` is the expected
+/// power at degree l, for which the interpolation between latitude rings is designed, see
+/// ki_taps_design.
 kiln_result ki_analysis_create(kiln_context *context, int size, int degree, const double *density,
                                ki_analysis **analysis, kiln_error *error);
 /// Frees an analysis. `analysis` may be NULL.
@@ -77,10 +84,10 @@ void ki_analysis_workspace_destroy(ki_analysis_workspace *workspace);
 /// Writes the spectrum of a whole panorama of `size` rows. The function allocates nothing.
 void ki_analysis_execute(const ki_analysis *analysis, ki_analysis_workspace *workspace,
                          const float *rows, kiln_spectrum *spectrum);
-/// Adds the next `count` rows of a panorama, which come from north to south.
+/// Adds the next `count` rows of a panorama to its analysis. Rows come from north to south.
 kiln_result ki_analysis_add_rows(const ki_analysis *analysis, ki_analysis_workspace *workspace,
                                  const float *rows, int count, kiln_error *error);
-/// Writes the spectrum after all rows have been added. Fails if rows are missing.
+/// Writes the spectrum of a panorama after all its rows have been added. Fails if rows are missing.
 kiln_result ki_analysis_finish(const ki_analysis *analysis, ki_analysis_workspace *workspace,
                                kiln_spectrum *spectrum, kiln_error *error);
 

@@ -18,8 +18,8 @@ double ki_zonal_step(const ki_zonal *zonal, double one_minus_cos)
 {
     if (zonal->outer <= 0)
         return 1;
-    // By theta = 2 asin(sqrt((1 - cos theta) / 2)). The step that leaves out the lobe's centre is a
-    // polynomial with six continuous derivatives.
+    // theta = 2 asin(sqrt((1 - cos theta) / 2)). The step is a polynomial in t of degree 13 that
+    // rises from 0 to 1, with six derivatives that are 0 at both ends.
     double theta = 2 * ki_asin(sqrt(ki_clamp(0.5 * one_minus_cos, 0, 1)));
     double t = ki_clamp((theta - zonal->inner) / (zonal->outer - zonal->inner), 0, 1);
     double t2 = t * t, t4 = t2 * t2;
@@ -36,9 +36,9 @@ double ki_zonal_weight(const ki_zonal *zonal, double one_minus_cos)
 }
 
 // Panels of theta for quadrature, whose lengths double from a sixteenth of the lobe's width up to
-// pi. The panels end at pi / 2, where lobes have a kink, and where the step that leaves out the
-// lobe's centre begins and ends. No panel is longer than `longest`, over which PANEL_NODES nodes
-// integrate P_limit exactly enough.
+// pi. A panel ends at pi / 2, where lobes have a kink, and where the step that leaves out the
+// lobe's centre begins and ends. No panel is longer than `longest`, which is short enough for
+// PANEL_NODES Gauss nodes to integrate the Legendre polynomial of the highest degree.
 typedef struct panels {
     double longest;
     double *edges;
@@ -97,8 +97,8 @@ kiln_result ki_zonal_analyze(kiln_context *context, const ki_zonal *zonal, doubl
     }
     make_panels(&p, zonal, width);
 
-    // Arrays over the nodes: x = cos theta, w = weight(theta) dOmega, and the Legendre polynomials
-    // of x of the last two degrees.
+    // Arrays over the quadrature nodes: x = cos theta, w = weight of the lobe times solid angle,
+    // and the Legendre polynomials P_{l-1} and P_l of x.
     double *x = nodes, *w = x + count, *p0 = w + count, *p1 = p0 + count;
     double whole = 0, sum = 0, squares = 0;
     size_t n = 0;
@@ -128,9 +128,10 @@ kiln_result ki_zonal_analyze(kiln_context *context, const ki_zonal *zonal, doubl
     spectrum->integral = whole;
     spectrum->k[0] = sum / whole;
 
-    // Parseval: the integral of weight^2 is the sum of (2l + 1) / 4 pi k_l^2. Once the tolerance is
-    // met, at most a quarter more degrees are computed, because the coefficients of most lobes fall
-    // exponentially and the error may fall to a quarter of the tolerance.
+    // By Parseval, the integral of the squared weight is the sum of (2l + 1) / (4 pi) k_l^2. `left`
+    // is 4 pi times what the degrees above l contribute to it. Once `left` meets the tolerance, at
+    // most a quarter more degrees are computed: the coefficients of most lobes fall exponentially,
+    // so that the error may fall to a quarter of the tolerance at little cost.
     double left = squares * 4 * KI_PI - sum * sum;
     double stop = tolerance * tolerance * squares * 4 * KI_PI;
     int l = 1, last = limit;
@@ -173,8 +174,8 @@ kiln_result ki_lobe_spectrum(kiln_context *context, const kiln_lobe *lobe, doubl
                              kiln_error *error)
 {
     *zonal = (ki_zonal){.lobe = *lobe};
-    // First guess of the degree. The widest lobes get a longer allowance, because their kink at the
-    // horizon makes their coefficients fall slowly.
+    // First guess of the degree that the tolerance needs. The guess for the widest lobes is higher,
+    // because their kink at the horizon makes their coefficients fall slowly.
     double width = ki_lobe_width(lobe), guess = (width < 1 ? 160 : 320) + 14 / width;
     // The Charlie lobe is narrow at the horizon and not around its centre, so that leaving the
     // centre out of the spectrum would not help.

@@ -14,38 +14,44 @@ typedef struct ki_zonal {
     double inner, outer;
 } ki_zonal;
 
-/// Returns the weight of the lobe times the step that leaves out the lobe's centre, at 1 - cos
-/// theta. See ki_lobe_weight.
+/// Returns the weight of the lobe (ki_lobe_weight) times the step that leaves out the lobe's
+/// centre, at the angle theta from the lobe's axis.
 double ki_zonal_weight(const ki_zonal *zonal, double one_minus_cos);
-/// Returns the value at 1 - cos theta of the step that leaves out the lobe's centre.
+/// Returns the step that leaves out the lobe's centre, from 0 to 1, at the angle theta from the
+/// lobe's axis.
 double ki_zonal_step(const ki_zonal *zonal, double one_minus_cos);
 
 typedef struct ki_zonal_spectrum {
-    // integral over the sphere of the weight of the whole lobe, whose centre is not left out
+    // integral over the sphere of the weight of the whole lobe, even if its centre is left out of
+    // `k`
     double integral;
     // Degree at which the coefficients are cut off: the degree at which the tolerance is met, or
     // the greatest allowed degree.
     int degree;
     double
-        truncation; // L2 norm of the coefficients above `degree`, relative to the L2 norm of the lobe
-    // Legendre coefficients k_l / integral, [limit + 1]; 0 beyond `degree`.
+        // L2 norm of the coefficients above `degree`, relative to the L2 norm of the lobe.
+        truncation;
+    // Legendre coefficients k_l divided by `integral`, for l = 0 up to the greatest allowed degree;
+    // 0 beyond `degree`.
     double *k;
 } ki_zonal_spectrum;
 
-/// Degrees that cost next to nothing: no lobe's spectrum is cut off below this degree.
+/// No lobe's spectrum is cut off below this degree, because the degrees up to it cost next to
+/// nothing.
 enum { KI_LEAST_DEGREE = 80 };
 
-/// Computes k_l = 2 pi integral of weight(theta) P_l(cos theta) d cos theta up to the degree above
-/// which the coefficients have less than `tolerance` of the L2 norm. That share is the relative
-/// error for a single bright point. The degree is at most `limit`, and at least KI_LEAST_DEGREE
-/// where `limit` allows.
+/// Computes the Legendre coefficients k_l = 2 pi integral of weight(theta) P_l(cos theta) d cos
+/// theta of a lobe, up to the degree above which the coefficients have less than `tolerance` of the
+/// lobe's L2 norm. That share is the relative error for a single bright point. The degree is at
+/// most `limit`, and at least KI_LEAST_DEGREE where `limit` allows.
 kiln_result ki_zonal_analyze(kiln_context *context, const ki_zonal *zonal, double tolerance,
                              int limit, ki_zonal_spectrum *spectrum, kiln_error *error);
 void ki_zonal_free(ki_zonal_spectrum *spectrum);
 
-/// Default tolerance: the share of the L2 norm, for a lone bright point, that a level loses when
-/// its harmonics are cut off. Bright texels are kept out of the spectrum (spectrum.h), so the error
-/// of a real environment is a small fraction of the tolerance.
+/// Default tolerance of a lobe's spectrum: the share of the lobe's L2 norm that may lie in the
+/// degrees that are cut off. It is the relative error of a level for a lone bright point. Bright
+/// texels are kept out of the spectrum (spectrum.h), so the error of a real environment is a small
+/// fraction of the tolerance.
 extern const double ki_lobe_tolerance;
 
 /// Computes the spectrum of a lobe up to a degree that its width suggests. If KILN_MAX_DEGREE is
