@@ -95,6 +95,17 @@ build_release() {
     build release "$@"
 }
 
+# start_release [PART...]: build_release while the shell goes on, to what downloads and unpacks;
+# await_release waits for it and shows what it printed.
+start_release() {
+    build_release "$@" >build/compiling.log 2>&1 &
+    compiling=$!
+}
+await_release() {
+    wait $compiling || { cat build/compiling.log; exit 1; }
+    cat build/compiling.log
+}
+
 panoramas() {
     say "panoramas"
     scripts/panoramas.sh ||
@@ -141,9 +152,12 @@ build)
     say "the command is build/release/bin/kiln"
     ;;
 test)
-    need build render web test
+    need build
+    start_release EXAMPLES
+    need render web test
     panoramas
     npm_packages web tests/web tests/files/assets tests/files/ktx tests/brdf/witness tests/engines
+    await_release
     build_release TESTS GOLDEN BENCH EXAMPLES
     build wasm
     run_tests release
@@ -165,13 +179,10 @@ demo)
     mkdir -p build/demo
     set -- build/data/blender/city.exr
     if [ -e "$1" ]; then
-        # The command is compiled while the browser and the engines are installed.
-        build_release EXAMPLES >build/compiling.log 2>&1 &
-        compiling=$!
+        start_release EXAMPLES
         need demo
         npm_packages tests/web tests/engines
-        wait $compiling || { cat build/compiling.log; exit 1; }
-        cat build/compiling.log
+        await_release
         say "drawing in the engines"
         node examples/gallery.mjs build/release/bin build/gallery build/demo/gallery.part \
             build/data/blender/courtyard.exr
