@@ -125,42 +125,59 @@ static void choose_directions(double alpha, int size, double (*directions)[3], d
     }
 }
 
-// Relative rms over roughness, `from` to 1, of what is shown: everywhere, and farther than .1415 from the sun.
-static void displayed_error(kiln_context *context, const kiln_map *source, const char *engine,
-                            const kiln_map *map, double from, double error_of[2])
+// What is off and what the whole is, squared: over all directions, and farther than .1415 from the sun.
+typedef struct sums {
+    double off[2], whole[2];
+} sums;
+
+static sums compare_shown(int size, const double (*directions)[3], const double *weights,
+                          const double (*shown)[3], const double (*truth)[3])
 {
     double sun[3];
-    int row = source->size / 3;
-    panorama_direction(source->size, source->size + 5.5, row + 0.5, sun);
+    int row = size / 3;
+    panorama_direction(size, size + 5.5, row + 0.5, sun);
+    sums sum = {0};
+    for (int i = 0; i < DIRECTIONS; i++) {
+        const double *at = directions[i];
+        double dot = at[0] * sun[0] + at[1] * sun[1] + at[2] * sun[2];
+        double away = dot < cos(0.1415) ? weights[i] : 0;
+        for (int c = 0; c < 3; c++) {
+            double d = shown[i][c] - truth[i][c];
+            sum.off[0] += weights[i] * d * d;
+            sum.whole[0] += weights[i] * truth[i][c] * truth[i][c];
+            sum.off[1] += away * d * d;
+            sum.whole[1] += away * truth[i][c] * truth[i][c];
+        }
+    }
+    return sum;
+}
+
+// Relative rms over roughness, `from` to 1, of what is shown of each of two maps: everywhere, and farther than
+// .1415 from the sun. The truth, by brute force, is computed once for both.
+static void displayed_errors(kiln_context *context, const kiln_map *source, const char *engine,
+                             const kiln_map maps[2], double from, double error_of[2][2])
+{
     static double directions[DIRECTIONS][3], truth[DIRECTIONS][3], shown[DIRECTIONS][3],
         weights[DIRECTIONS];
-    error_of[0] = error_of[1] = 0;
+    memset(error_of, 0, 2 * sizeof *error_of);
     for (int k = 0; k < STEPS; k++) {
-        double r = from + (1 - from) * (k + 0.5) / STEPS, off[2] = {0}, whole[2] = {0};
+        double r = from + (1 - from) * (k + 0.5) / STEPS;
         kiln_lobe lobe = kiln_lobe_ggx(r * r);
         choose_directions(r * r, source->size, directions, weights);
         CHECK_OK(kiln_reference_filter(context, source, &lobe, 0, (const double(*)[3])directions,
                                        DIRECTIONS, truth, &error));
-        CHECK_OK(kiln_engine_show(context, kiln_engine_find(engine), map, r,
-                                  (const double(*)[3])directions, DIRECTIONS, shown, &error));
-        for (int i = 0; i < DIRECTIONS; i++) {
-            const double *at = directions[i];
-            double dot = at[0] * sun[0] + at[1] * sun[1] + at[2] * sun[2];
-            double away = dot < cos(0.1415) ? weights[i] : 0;
-            for (int c = 0; c < 3; c++) {
-                double d = shown[i][c] - truth[i][c];
-                off[0] += weights[i] * d * d;
-                whole[0] += weights[i] * truth[i][c] * truth[i][c];
-                off[1] += away * d * d;
-                whole[1] += away * truth[i][c] * truth[i][c];
-            }
-        }
-        for (int i = 0; i < 2; i++) {
-            error_of[i] += off[i] / whole[i] / STEPS;
+        for (int m = 0; m < 2; m++) {
+            CHECK_OK(kiln_engine_show(context, kiln_engine_find(engine), &maps[m], r,
+                                      (const double(*)[3])directions, DIRECTIONS, shown, &error));
+            sums sum = compare_shown(source->size, (const double(*)[3])directions, weights,
+                                     (const double(*)[3])shown, (const double(*)[3])truth);
+            for (int i = 0; i < 2; i++)
+                error_of[m][i] += sum.off[i] / sum.whole[i] / STEPS;
         }
     }
-    for (int i = 0; i < 2; i++)
-        error_of[i] = sqrt(error_of[i]);
+    for (int m = 0; m < 2; m++)
+        for (int i = 0; i < 2; i++)
+            error_of[m][i] = sqrt(error_of[m][i]);
 }
 
 static void tuned_levels_show_less_error(void **state)
@@ -173,18 +190,18 @@ static void tuned_levels_show_less_error(void **state)
     for (int sun = 0; sun < 2; sun++) {
         kiln_map source = make_environment(context, 32, sun);
         for (int e = 0; e < 2; e++) {
-            kiln_map plain = bake(context, &source, engines[e], 128, 0, false, false);
-            kiln_map sharp = bake(context, &source, engines[e], 128, 0, true, false);
-            double before[2], after[2];
-            displayed_error(context, &source, engines[e], &plain, from[e], before);
-            displayed_error(context, &source, engines[e], &sharp, from[e], after);
+            kiln_map maps[2];
+            for (int tuned = 0; tuned < 2; tuned++)
+                maps[tuned] = bake(context, &source, engines[e], 128, 0, tuned, false);
+            double errors[2][2], *before = errors[0], *after = errors[1];
+            displayed_errors(context, &source, engines[e], maps, from[e], errors);
             for (int i = 0; i < 2; i++) {
                 print_message("%s, %s%s: %.4f, tuned %.4f\n", engines[e], sun ? "sunny" : "calm",
                               i ? ", away from it" : "", before[i], after[i]);
                 assert_true(after[i] < 0.9 * before[i]);
             }
-            kiln_map_free(&plain);
-            kiln_map_free(&sharp);
+            kiln_map_free(&maps[0]);
+            kiln_map_free(&maps[1]);
         }
         kiln_map_free(&source);
     }
