@@ -10,6 +10,7 @@
 #include "codec/ktx1.h"
 #include "codec/layout.h"
 #include "codec/pixel_format.h"
+#include "codec/png.h"
 #include "codec/png_text.h"
 #include "codec/rgbx_png.h"
 #include "codec/sh_describe.h"
@@ -53,8 +54,14 @@ static kiln_result write_png(const kiln_image *image, const ki_picture_about *ab
                              kiln_error *error)
 {
     const ki_pixel_format *pixel = ki_pixel_format_of(about->format);
-    if (pixel && pixel->rgbx)
-        return ki_rgbx_png_encode(image, pixel->rgbx, false, w, error);
+    if (pixel && pixel->rgbx) {
+        size_t start = w->size;
+        kiln_result result = ki_rgbx_png_encode(image, pixel->rgbx, false, w, error);
+        if (result == KILN_OK)
+            ki_png_add_text(w, start, KI_PNG_TEXELS_KEY, ki_format_names[about->format]);
+        return result == KILN_OK && w->failed ? ki_fail_memory(w->context, error, "a PNG", w->size)
+                                              : result;
+    }
     return ki_png_encode(image->pixels, image->width, image->height, image->channels,
                          about->radiance ? KI_PNG_SRGB8 : KI_PNG_PLAIN8, w, error);
 }

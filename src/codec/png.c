@@ -1,18 +1,19 @@
 // Reading of PNG files. In: the bytes of a file. Out: a picture of three linear floats a pixel.
 // Every colour type, depth and filter is read, interlaced or not, by the specification (W3C,
-// "Portable Network Graphics", second edition). Values are taken as sRGB whatever the chunks gAMA,
-// cHRM, iCCP and cICP say. Alpha and tRNS are ignored.
+// "Portable Network Graphics", third edition). png_color.c finds what the samples mean. Alpha and
+// tRNS are ignored.
 //
 // kiln has its own PNG code so that kiln can be built without libpng and writes the same bytes on
 // every system. The tests compare the code with libpng, oiiotool and a browser.
 //
 // The IDAT chunks are joined and decompressed at once, the filters of the rows are undone in place,
-// and a table gives the linear value of every sample. Sizes are checked against the file's before
+// and a table for each channel gives the linear value of every sample. Sizes are checked against the file's before
 // memory is allocated.
 #include "codec/png.h"
 #include "codec/codec.h"
 #include "codec/deflate.h"
-#include "image/pack.h"
+#include "codec/png_color.h"
+#include "codec/report.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -41,7 +42,8 @@ typedef struct png_file {
     size_t packed_size;
     uint64_t raw_size; // size that the data must decompress to
     uint8_t *raw;
-    float *table, *pixels; // table: the linear value of every sample
+    ki_png_meaning meaning;
+    float *table[3], *pixels; // table: the linear value of every sample of a channel
 } png_file;
 
 static kiln_result damaged(const png_file *f, kiln_error *error, const char *what)
@@ -294,14 +296,17 @@ static bool undo_filters(uint8_t *raw, const pass *p, size_t step, const uint8_t
 
 // ------------------------------------------------------------------------------------------ pixels
 
-// Fills the table with the linear value of every possible sample.
-static bool make_table(png_file *f)
+// Fills the tables with the linear value of every possible sample. The first table owns the memory
+// of the three.
+static bool make_tables(png_file *f)
 {
     int count = f->color & KI_PNG_PALETTE ? 256 : 1 << f->depth;
-    f->table = ki_alloc_raw(f->context, (size_t)count, sizeof(float));
-    for (int i = 0; f->table && i < count; i++)
-        f->table[i] = ki_linear_from_srgb((float)i / (float)(count - 1));
-    return f->table != NULL;
+    f->table[0] = ki_alloc_raw(f->context, 3 * (size_t)count, sizeof(float));
+    for (int c = 0; f->table[0] && c < 3; c++) {
+        f->table[c] = f->table[0] + (size_t)c * (size_t)count;
+        ki_file_color_fill(&f->meaning.color, c, f->table[c], count);
+    }
+    return f->table[0] != NULL;
 }
 
 // Returns sample i of a row, whose bits are stored highest first.
@@ -325,11 +330,21 @@ static inline void put_row(const png_file *f, const uint8_t *row, size_t width, 
         if (f->color & KI_PNG_PALETTE) {
             const uint8_t *entry = f->palette[sample(row, x, depth)];
             for (int c = 0; c < 3; c++)
-                rgb[c] = f->table[entry[c]];
+                rgb[c] = f->table[c][entry[c]];
             continue;
         }
         for (size_t c = 0; c < 3; c++)
-            rgb[c] = f->table[sample(row, x * channels + (grey ? 0 : c), depth)];
+            rgb[c] = f->table[c][sample(row, x * channels + (grey ? 0 : c), depth)];
+    }
+}
+
+// Decodes a row of radiance in four bytes.
+static void unpack_row(const png_file *f, const uint8_t *row, size_t width, float *rgb, size_t step)
+{
+    for (size_t x = 0; x < width; x++, rgb += step, row += 4) {
+        const float stored[4] = {(float)row[0] / 255, (float)row[1] / 255, (float)row[2] / 255,
+                                 (float)row[3] / 255};
+        f->meaning.unpack(stored, rgb);
     }
 }
 
@@ -340,7 +355,9 @@ static void put_pass(const png_file *f, const pass *p, const uint8_t *raw, size_
         const uint8_t *row = raw + y * (p->row + 1) + 1;
         float *rgb = f->pixels + ((size_t)p->y + y * (size_t)p->y_step) * line + 3 * (size_t)p->x;
         size_t step = 3 * (size_t)p->x_step;
-        if (f->depth == 8)
+        if (f->meaning.unpack)
+            unpack_row(f, row, p->width, rgb, step);
+        else if (f->depth == 8)
             put_row(f, row, p->width, 8, rgb, step);
         else
             put_row(f, row, p->width, f->depth, rgb, step);
@@ -406,12 +423,13 @@ static kiln_result read_pixels(png_file *f, kiln_image *image, kiln_error *error
         return result;
     size_t texels = (size_t)f->width * (size_t)f->height;
     f->pixels = ki_alloc_raw(f->context, texels * 3, sizeof(float));
-    if (!f->pixels || !make_table(f))
+    if (!f->pixels || !make_tables(f))
         return ki_fail_memory(f->context, error, f->name, texels * 3 * sizeof(float));
     result = put_all(f, error);
     if (result == KILN_OK) {
         *image = (kiln_image){f->width, f->height, 3, f->pixels, f->pixels};
         f->pixels = NULL;
+        ki_file_color_finish(f->context, &f->meaning.color, image);
     }
     return result;
 }
@@ -420,22 +438,40 @@ static void describe(const png_file *f, kiln_file_info *info)
 {
     bool color = f->color & KI_PNG_COLOR;
     snprintf(info->format, sizeof info->format, "png");
-    snprintf(info->encoding, sizeof info->encoding, "%d bits %s%s, srgb%s", f->depth,
+    snprintf(info->encoding, sizeof info->encoding, "%d bits %s%s, %s%s", f->depth,
              f->color & KI_PNG_PALETTE ? "palette"
              : color                   ? "rgb"
                                        : "grey",
-             f->color & KI_PNG_ALPHA ? " with alpha" : "", f->interlaced ? ", interlaced" : "");
+             f->color & KI_PNG_ALPHA ? " with alpha" : "", f->meaning.name,
+             f->interlaced ? ", interlaced" : "");
     info->width = f->width;
     info->height = f->height;
     info->channel_count = color ? 3 : 1;
     info->level_count = 1;
 }
 
+// Finds what the samples mean. Radiance in four bytes needs four channels of 8 bits.
+static kiln_result read_meaning(png_file *f, const uint8_t *bytes, size_t size,
+                                kiln_load_report *report, kiln_error *error)
+{
+    kiln_result result =
+        ki_png_read_meaning(f->context, bytes, size, f->name, &f->meaning, report, error);
+    if (result != KILN_OK)
+        return result;
+    if (f->meaning.unpack && (f->depth != 8 || f->channels != 4))
+        return ki_fail(error, KILN_ERROR_FORMAT,
+                       "%s: says that its texels are %s, which has four channels of 8 bits, but "
+                       "the picture has %d channels of %d bits",
+                       f->name, f->meaning.name, f->channels, f->depth);
+    if (f->color & KI_PNG_ALPHA && !f->meaning.unpack)
+        ki_note(report, KILN_NOTE_CHOICE, false, "alpha was ignored: every pixel counts as opaque");
+    return KILN_OK;
+}
+
 kiln_result ki_png_decode(kiln_context *context, const uint8_t *bytes, size_t size,
                           const char *name, kiln_image *image, kiln_file_info *info,
                           kiln_load_report *report, kiln_error *error)
 {
-    (void)report;
     if (image)
         *image = (kiln_image){0};
     png_file *f = ki_alloc(context, 1, sizeof *f);
@@ -446,13 +482,16 @@ kiln_result ki_png_decode(kiln_context *context, const uint8_t *bytes, size_t si
     f->reader = ki_reader_make(bytes, size);
     ki_crc32_fill(&f->crc);
     kiln_result result = read_head(f, error);
+    if (result == KILN_OK)
+        result = read_meaning(f, bytes, size, report, error);
     if (result == KILN_OK && info)
         describe(f, info);
     if (result == KILN_OK && image)
         result = read_pixels(f, image, error);
     ki_free(f->joined);
     ki_free(f->raw);
-    ki_free(f->table);
+    ki_free(f->table[0]);
+    ki_file_color_free(&f->meaning.color);
     ki_free(f->pixels);
     ki_free(f);
     return result;

@@ -7,6 +7,10 @@
 /// Bits of a colour type.
 enum { KI_PNG_PALETTE = 1, KI_PNG_COLOR = 2, KI_PNG_ALPHA = 4 };
 
+/// Key of the text chunk by which a picture of kiln says that its samples are radiance in four
+/// bytes. The text is "rgbm", "rgbd" or "rgbp".
+#define KI_PNG_TEXELS_KEY "kiln:texels"
+
 /// Filters of a row, whose bytes are stored as differences from a prediction.
 typedef enum ki_png_filter {
     KI_PNG_NONE,

@@ -22,5 +22,6 @@ void ki_float_from_rgbp(const float rgbp[4], float rgb[3]);
 void ki_float_from_rgbd(const float rgbd[4], float rgb[3]);
 
 typedef void ki_rgbx(const float rgb[3], float rgbx[4]);
+typedef void ki_from_rgbx(const float rgbx[4], float rgb[3]);
 
 #endif

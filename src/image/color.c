@@ -124,6 +124,15 @@ bool ki_rec709_from_xyz(const double white[2], ki_matrix3 *matrix)
     return rec709_from_xyz(white, matrix);
 }
 
+bool ki_luminance_weights(const ki_primaries *primaries, double weights[3])
+{
+    ki_matrix3 to_xyz = {0};
+    bool good = xyz_from_rgb(primaries, &to_xyz);
+    for (int c = 0; c < 3; c++)
+        weights[c] = good ? to_xyz.m[1][c] : 0;
+    return good;
+}
+
 static bool is_rec709(const double *xy, const double *neutral)
 {
     for (int i = 0; i < 8; i++) {

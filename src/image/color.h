@@ -32,6 +32,10 @@ bool ki_rec709_from_rgb(const ki_primaries *primaries, const double *neutral, ki
 /// if the white is no colour with positive y.
 bool ki_rec709_from_xyz(const double white[2], ki_matrix3 *matrix);
 
+/// Sets `weights` to the luminances Y of the primaries, of which white has 1. Returns false as
+/// ki_rec709_from_rgb does.
+bool ki_luminance_weights(const ki_primaries *primaries, double weights[3]);
+
 ki_matrix3 ki_matrix_multiply(const ki_matrix3 *a, const ki_matrix3 *b);
 /// Multiplies each RGB value of a picture of three channels by the matrix. A texel with a channel
 /// that is not finite stays as it is, because no colour can be computed for it.

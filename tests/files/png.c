@@ -41,12 +41,12 @@ static void add_palette(png_structp png, png_infop info, int depth)
     png_set_PLTE(png, info, palette, 1 << depth);
 }
 
-// What must not change a pixel: a gamma, and transparent colours.
+// What must not change a pixel: a chunk that says what the default is, and transparent colours.
 static void add_ancillary(png_structp png, png_infop info, const made *m)
 {
     static const png_byte alphas[4] = {0, 100, 200, 255};
     const png_color_16 color = {.red = 1, .green = 1, .blue = 1, .gray = 1};
-    png_set_gAMA(png, info, 1.0);
+    png_set_sRGB(png, info, PNG_sRGB_INTENT_RELATIVE);
     if (m->transparent)
         png_set_tRNS(png, info, alphas, m->depth < 2 ? 2 : 4, &color);
 }
@@ -344,11 +344,11 @@ static void what_is_damaged_is_said(void **state)
                 "or has a wrong Adler-32 sum");
     w.bytes[data + 3 + __builtin_bswap32(bytes)] ^= 1;
     set_sum(&w, data);
-    size_t gamma = find(&w, "gAMA");
-    w.bytes[gamma] = 'G'; // critical now
-    set_sum(&w, gamma);
+    size_t coding = find(&w, "sRGB");
+    w.bytes[coding] = 'S'; // critical now
+    set_sum(&w, coding);
     refused(&w, "bad.png: the PNG is damaged: it has a critical chunk that PNG does not define");
-    w.bytes[gamma] = 'g'; // whose sum is wrong now, which is nobody's loss
+    w.bytes[coding] = 's'; // whose sum is wrong now, which is nobody's loss
     kiln_image image;
     CHECK_OK(ki_png_decode(context, w.bytes, w.size, "good.png", &image, NULL, NULL, &error));
     kiln_image_free(&image);
