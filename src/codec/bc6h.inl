@@ -19,19 +19,19 @@ enum { TEXELS = 16, VALUES = 3 * TEXELS, PARTITIONS = KI_BC6H_PARTITIONS };
 // The decoder multiplies a number between endpoints by 31/64 to get a code.
 #define CODE (31.0f / 64)
 
-// Number of partitions that are tried, of modes that are tried for each partition, and of rounds of
-// least squares for each mode.
+// TRIED: number of partitions that are tried in full. MODES: number of modes that are tried for
+// each partition. ROUNDS: number of least-squares refinements for each mode.
 enum { TRIED = 3, MODES = 2, ROUNDS = 2 };
 
-// A relative mode is also tried if the differences exceed its range by this factor; its endpoints
-// are then moved into range.
+// A mode that stores endpoints as differences from endpoint 0 is also tried if the differences
+// exceed its range by at most this factor; the endpoints are then moved into range.
 #define REACH 1.2f
 
 typedef struct texels {
     float code[3][TEXELS];
 } texels;
 
-// The two ends of each subset's line, in codes.
+// The two ends of each subset's line in the space of the codes (bits of half floats).
 typedef struct lines {
     float end[2][2][3];
 } lines;
@@ -87,7 +87,8 @@ static void find_axis(const float m[6], float axis[3])
     axis[2] = z * scale;
 }
 
-// Finds the ends of the least-squares line through the texels whose weight is 1.
+// Finds the least-squares line through the codes of the texels whose weight is 1, and the line's
+// two ends, between which all of these texels lie.
 static void find_line(const texels *t, const float weight[TEXELS], float end[2][3])
 {
     float centered[3][TEXELS], product[TEXELS], mean[3], m[6], axis[3];
@@ -128,7 +129,9 @@ static void rank(const texels *t, float left[PARTITIONS])
         for (int i = 0; i < TEXELS; i++)
             x[c][i] = t->code[c][i] - mean[c];
     }
-    // Count, sums and products of the colours, first of subset 1, then of all texels.
+    // For each partition p, sum[k][p] is the sum of value[k] over the texels of subset 1: their
+    // number, their three channels, and the channels' six products. total[k] is the same sum over
+    // all texels of the block.
     float sum[10][PARTITIONS] = {{0}};
     for (int i = 0; i < TEXELS; i++) {
         const float a = x[0][i], b = x[1][i], d = x[2][i];
@@ -153,8 +156,9 @@ static void rank(const texels *t, float left[PARTITIONS])
             float xx = s[4] - s[1] * s[1] * share, xy = s[5] - s[1] * s[2] * share;
             float xz = s[6] - s[1] * s[3] * share, yy = s[7] - s[2] * s[2] * share;
             float yz = s[8] - s[2] * s[3] * share, zz = s[9] - s[3] * s[3] * share;
-            // The largest eigenvalue by its Rayleigh quotient after three multiplications by the
-            // matrix, from the matrix's largest column.
+            // The largest eigenvalue of the covariance matrix xx .. zz: its largest column is
+            // multiplied by the matrix three times, and the Rayleigh quotient of the result is the
+            // eigenvalue.
             bool first = xx >= yy && xx >= zz, second = yy >= zz;
             float a = first ? xx : second ? xy : xz;
             float b = first ? xy : second ? yy : yz;
@@ -183,7 +187,7 @@ static float code_of(int value, int bits)
     return (float)ki_bc6h_unquantize(value, bits) * CODE;
 }
 
-// Returns the endpoint whose code is nearest to `code`.
+// Returns the stored endpoint of `bits` bits whose code is nearest to `code`.
 static int quantize(float code, int bits)
 {
     float step = (float)(65536 >> bits) * CODE;
@@ -192,7 +196,8 @@ static int quantize(float code, int bits)
     return at < 0.25f ? 0 : at > (float)last + 0.75f ? last : ki_min((int)at, last);
 }
 
-// Moves an endpoint into the range that the bits of the mode's differences allow.
+// Moves a stored endpoint into the range that the mode's bits allow: near `base`, which is endpoint
+// 0, if the mode stores differences from it, and below 2^bits.
 static int keep(int value, int base, const ki_bc6h_mode *mode, int channel)
 {
     if (mode->relative) {
@@ -213,7 +218,7 @@ static void quantize_lines(const lines *from, candidate *k)
         }
 }
 
-// Returns whether all differences from endpoint 0 fit in the mode's bits.
+// Returns whether the differences of all endpoints from endpoint 0 fit in the mode's bits.
 static bool fits(const ki_bc6h_block *b)
 {
     const ki_bc6h_mode *mode = &ki_bc6h_modes[b->mode];
@@ -235,8 +240,9 @@ static void swap_ends(int end[2][3])
     }
 }
 
-// Makes the index of each anchor less than half of its range. The ends of the subset's line are
-// swapped, or if the differences then no longer fit, the index is changed instead.
+// Makes the index of each subset's anchor texel less than half of the index range, as the format
+// requires. The ends of the subset's line are swapped to this end. If the swapped endpoints would
+// not fit in the mode's bits, the anchor's index is changed instead.
 static void obey_anchors(ki_bc6h_block *b, int index[TEXELS])
 {
     int subsets = ki_bc6h_modes[b->mode].subsets, count = subsets == 2 ? 8 : 16;
@@ -287,7 +293,7 @@ static void choose_indices(const texels *t, const float mask[TEXELS], candidate 
         b->index[i] = index[i];
         weight[i] = (float)ki_bc6h_weight(index[i], mode->subsets);
     }
-    // All values here are integers below 2^24, which floats represent exactly.
+    // All values in the following loop are integers below 2^24, which floats represent exactly.
     for (int c = 0; c < 3; c++) {
         float end[4];
         for (int e = 0; e < 4; e++)
@@ -302,21 +308,22 @@ static void choose_indices(const texels *t, const float mask[TEXELS], candidate 
     k->error = fold(error);
 }
 
-// The squared error of a channel as a function of the codes a and b of the two ends, up to a
-// constant: xx a^2 + 2 xy a b + yy b^2 - 2 x a - 2 y b.
+// The squared error of a channel, summed over a subset, as a function of the codes a and b of the
+// line's ends, up to a constant: xx a^2 + 2 xy a b + yy b^2 - 2 x a - 2 y b.
 typedef struct parabola {
     float xx, xy, yy, x, y;
 } parabola;
 
-// Tries three values of the low end near the minimum of the error, each with the best high end for
-// it, and keeps the best pair.
+// Chooses the two stored ends of a subset's line in one channel. Tries three values of the end
+// `low` near the minimum of the parabola, each with the best end `high` for it, and keeps the best
+// pair.
 static void descend(const parabola *p, const ki_bc6h_mode *mode, int channel, int base,
                     bool is_base, int *low, int *high)
 {
     float determinant = p->xx * p->yy - p->xy * p->xy;
     if (!(determinant > 1e-4f * p->xx * p->yy))
-        // All texels have the same index, so that the ends are not determined; they stay as they
-        // are.
+        // All texels of the subset have the same index, so that the indices do not determine the
+        // ends; the ends stay as they are.
         return;
     float a = (p->x * p->yy - p->y * p->xy) / determinant, best = INFINITY;
     int first = quantize(a, mode->bits);
@@ -372,8 +379,7 @@ static void refine(const texels *t, const float mask[TEXELS], candidate *k)
     }
 }
 
-// Endpoint 0 has moved, so the other endpoints are moved into the range of the mode's differences
-// from it.
+// Moves the other endpoints into the range of the mode's differences after endpoint 0 has changed.
 static void keep_all(ki_bc6h_block *b)
 {
     const ki_bc6h_mode *mode = &ki_bc6h_modes[b->mode];
@@ -403,8 +409,8 @@ static void try_mode(const texels *t, const float mask[TEXELS], const lines *end
     }
 }
 
-// Returns whether the differences from the first end to the others fit in a mode's bits, or exceed
-// them by less than the factor REACH.
+// Returns whether the endpoints' differences from endpoint 0 fit in a mode's bits, or exceed them
+// by less than the factor REACH.
 static bool reaches(const lines *ends, const ki_bc6h_mode *mode)
 {
     float step = (float)(65536 >> mode->bits) * CODE;
@@ -417,7 +423,8 @@ static bool reaches(const lines *ends, const ki_bc6h_mode *mode)
     return true;
 }
 
-// Tries the first MODES modes whose differences fit, from the most precise mode on.
+// Tries modes on the lines of a partition, from the most precise mode on, until MODES of them could
+// store the lines' ends.
 static void try_modes(const texels *t, const float mask[TEXELS], const lines *ends,
                       const uint8_t *modes, int count, int partition, candidate *best)
 {

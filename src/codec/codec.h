@@ -9,15 +9,16 @@
 
 #include <kiln/brdf.h>
 
-/// The content of a decoded file: a flat picture of three channels; or a cube with its levels
-/// (KTX2, DDS); or a table in `image` (KTX2), whose slices lie one below the other and whose 1, 2
-/// or 4 channels may be negative. Texels have the values of the file, of whatever kind; ki_map_mend
-/// replaces those that are no radiance.
+/// The content of a decoded file. If `is_map`, `map` is a cube with its levels (KTX2, DDS). If
+/// `is_table`, `image` is a table (KTX2) whose slices lie one below the other and whose 1, 2 or 4
+/// channels may be negative. Otherwise `image` is a flat picture of three channels. Texels have the
+/// file's values, even infinite ones and values that are not a number, which ki_map_mend replaces
+/// later.
 typedef struct ki_decoded {
     bool is_map, is_table;
     kiln_image image;
     kiln_map map;
-    kiln_load_report report; ///< notes of the reader, and its missing_count
+    kiln_load_report report; ///< notes of the reader, and the number of pixels that the file lacks
 } ki_decoded;
 
 /// Decodes any file that kiln can read; the first bytes decide the format. `name` appears in error
@@ -40,8 +41,9 @@ kiln_result ki_hdr_decode(kiln_context *context, const uint8_t *bytes, size_t si
 kiln_result ki_png_decode(kiln_context *context, const uint8_t *bytes, size_t size,
                           const char *name, kiln_image *image, kiln_file_info *info,
                           kiln_load_report *report, kiln_error *error);
-/// Decode a KTX2 file, which is a cube or a table, and a DDS file, which is a cube. An atlas in a
-/// DDS file is only described. `decoded` may be NULL, `info` must not be.
+/// Decode a KTX2 file, which holds a cube or a table, or a DDS file, which holds a cube. A DDS file
+/// may also hold an atlas, one flat picture with all levels for an engine: with `decoded` NULL the
+/// file is described in `info`, otherwise the function fails. `info` must not be NULL.
 kiln_result ki_ktx2_decode(kiln_context *context, const uint8_t *bytes, size_t size,
                            const char *name, ki_decoded *decoded, kiln_file_info *info,
                            kiln_error *error);
@@ -54,17 +56,18 @@ kiln_result ki_ktx2_encode(const kiln_map *map, const kiln_save_def *def, ki_wri
                            kiln_error *error);
 kiln_result ki_dds_encode(const kiln_map *map, const kiln_save_def *def, ki_writer *writer,
                           kiln_error *error);
-/// Appends a DDS file with a square picture of four channels as halves and the name of the engine
-/// that reads the picture.
+/// Appends a DDS file that holds an atlas, one square picture with all levels for an engine, as
+/// four half floats a texel, and the engine's name.
 kiln_result ki_dds_encode_atlas(const kiln_image *image, const char *engine, ki_writer *writer,
                                 kiln_error *error);
-/// Appends a KTX2 file with a table, whose `depth` slices lie one below the other in `image`.
-/// Several slices become a 3-D texture. `text` describes the table.
+/// Appends a KTX2 file with a table of the reflection model, whose `depth` slices lie one below the
+/// other in `image`. Several slices become a 3-D texture. `text`, the table's description, is
+/// stored in the metadata.
 kiln_result ki_ktx2_encode_table(const kiln_image *image, int depth, const char *text,
                                  kiln_table_format format, int zstd, ki_writer *writer,
                                  kiln_error *error);
-/// Options of an EXR file of `width` * `height` texels of `channels` (1 to 4) floats, compressed by
-/// ZIP.
+/// Options of an EXR file of `width` * `height` texels of `channels` (1 to 4) floats. The file is
+/// always compressed by ZIP.
 typedef struct ki_exr_options {
     bool half; ///< true: 16-bit floats; false: 32-bit floats
     /// True: writes the attribute "envmap", which says that the picture is a panorama.
@@ -80,7 +83,8 @@ kiln_result ki_exr_encode(const float *pixels, int width, int height, int channe
                           const ki_exr_options *options, ki_writer *writer, kiln_error *error);
 kiln_result ki_hdr_encode(const float *pixels, int width, int height, ki_writer *writer,
                           kiln_error *error);
-/// How a PNG file stores values of 0 to 1: by the sRGB curve, or linearly.
+/// How a PNG file stores values of 0 to 1: in 8 bits by the sRGB curve, in 8 bits linearly, or in
+/// 16 bits linearly.
 typedef enum ki_png_coding { KI_PNG_SRGB8, KI_PNG_PLAIN8, KI_PNG_PLAIN16 } ki_png_coding;
 kiln_result ki_png_encode(const float *pixels, int width, int height, int channels,
                           ki_png_coding coding, ki_writer *writer, kiln_error *error);

@@ -8,15 +8,16 @@
 
 #include "base/bytes.h"
 
-/// Appends the line of text that describes the levels of a map, with a NUL at its end. `words` are
-/// further words between the engine and the roughness, each with a space before it.
+/// Appends the line "engine=ENGINE WORDS roughness=R0,R1,..." with a NUL at its end, where Rk is
+/// the roughness of level k of the map. `words` are words such as "layout=atlas", each with a space
+/// before it, or "".
 void ki_engine_text_write(ki_writer *writer, const char *engine, const char *words,
                           const kiln_map *map);
-/// Fills in `info` from a line that ends in NUL. The word `format` of the line becomes the encoding
-/// of the texels, which a PNG file does not state.
+/// Fills in `info` from such a line, which ends in NUL. The line's word "format=..." becomes the
+/// encoding of the texels, which a PNG file does not state.
 void ki_engine_text_read(const char *text, kiln_file_info *info);
-/// Returns whether a file's description says that the file is an atlas. kiln cannot lay an atlas
-/// out on the sphere.
+/// Returns whether a file's description says that the file is an atlas: one picture that holds all
+/// levels in an engine's own arrangement. kiln cannot lay an atlas out on the sphere.
 bool ki_is_atlas(const kiln_file_info *info);
 
 #endif

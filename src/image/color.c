@@ -12,7 +12,8 @@ const ki_primaries ki_rec709 = {{0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3
 const ki_primaries ki_rec2020 = {{0.708, 0.292, 0.170, 0.797, 0.131, 0.046, 0.3127, 0.3290}};
 const ki_primaries ki_p3_d65 = {{0.680, 0.320, 0.265, 0.690, 0.150, 0.060, 0.3127, 0.3290}};
 const double ki_white_e[2] = {1.0 / 3, 1.0 / 3};
-const double ki_white_d50[2] = {0.9642 / 2.7891, 1 / 2.7891}; // XYZ 0.9642, 1, 0.8249 of ICC.1
+// the white D50 of ICC.1, whose X, Y, Z are 0.9642, 1, 0.8249
+const double ki_white_d50[2] = {0.9642 / 2.7891, 1 / 2.7891};
 
 static const ki_matrix3 bradford = {
     {{0.8951, 0.2664, -0.1614}, {-0.7502, 1.7135, 0.0367}, {0.0389, -0.0685, 1.0296}}};
@@ -36,8 +37,8 @@ static void apply(const ki_matrix3 *a, const double v[3], double product[3])
     memcpy(product, sum, sizeof sum);
 }
 
-// Inverts a matrix by its cofactors. Returns false if the determinant is below 1e-9 or not a
-// number.
+// Inverts a matrix by its cofactors. Returns false if the magnitude of the determinant is below
+// 1e-9 or not a number.
 static bool invert(const ki_matrix3 *a, ki_matrix3 *inverse)
 {
     double c[3][3];

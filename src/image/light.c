@@ -59,8 +59,8 @@ ki_light ki_map_light(const kiln_map *map, double limit)
 
 // ------------------------------------------------------------------------------- values below zero
 
-// A level is cut into strips of rows, whose number does not depend on the number of threads, so that
-// the order of sums does not either.
+// Number of strips of rows into which a level is cut, one for each task. The number does not depend
+// on the number of threads, so that sums are added in the same order with any number of threads.
 enum { STRIPS = 64 };
 
 typedef struct cutting {
@@ -102,7 +102,7 @@ static void cut_strip(void *data, int index)
     }
 }
 
-// Runs one of the tasks above for all strips of a level.
+// Runs a task, count_strip or cut_strip, for all strips of a level of the map.
 static void run(kiln_context *context, ki_task *task, kiln_map *map, int level, cutting *c)
 {
     *c = (cutting){.map = map, .level = level};
@@ -121,7 +121,8 @@ void ki_cut_negative(kiln_context *context, kiln_map *map, int first, int count,
         for (int i = 0; i < STRIPS; i++)
             cut->cut_count += c.counts[i];
     }
-    // The light is summed only where light is cut off, because that takes longer than the counting.
+    // Summing light takes longer than counting values below zero, so maps without such values skip
+    // the sums.
     for (int level = first; level < first + count && cut->cut_count; level++) {
         run(context, cut_strip, map, level, &c);
         for (int i = 0; i < STRIPS; i++) {

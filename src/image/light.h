@@ -10,11 +10,11 @@
 /// pictures, whose shape is KILN_SHAPE_AUTO.
 double ki_texel_weight(kiln_shape shape, int size, int row, int x);
 
-/// Sums over the values of texels, each multiplied by the weight of its texel.
+/// Light: sums over the values of texels, each multiplied by its texel's ki_texel_weight.
 typedef struct ki_light {
-    /// sum of the values above 0; sum of the magnitudes of the values below 0
+    /// light of the values above 0, and of the magnitudes of the values below 0
     double above_zero, below_zero;
-    double above_limit; ///< sum of the amounts by which values exceed a limit
+    double above_limit; ///< light of the amounts by which values exceed ki_add_light's `limit`
 } ki_light;
 
 /// Adds the light of a row of RGB texels to *light. `limit` may be infinite.
@@ -23,8 +23,8 @@ void ki_add_light(kiln_shape shape, int size, int row, int width, const float *r
 /// Returns the light of values below zero relative to that of values above zero; 1 if there is only
 /// light below zero.
 double ki_share_below(const ki_light *light);
-/// Returns the light of all levels of a map. `above_limit` of the result counts what exceeds
-/// `limit`.
+/// Returns the light of all levels of a map. `above_limit` of the result is the light by which
+/// values exceed `limit`.
 ki_light ki_map_light(const kiln_map *map, double limit);
 
 /// Sets the values below zero of `count` levels from `first` on to 0, as kiln_map_cut_negative

@@ -75,7 +75,7 @@ static bool level_floats(const kiln_map *map, int level, size_t *count)
     return true;
 }
 
-enum { PIECE = 1 << 20 }; // number of floats that one task clears
+enum { PIECE = 1 << 20 }; // number of floats of a new map that one task sets to 0
 
 typedef struct clear_job {
     float *memory;
@@ -125,7 +125,8 @@ kiln_result ki_map_allocate(kiln_context *context, kiln_map *map, kiln_error *er
 
 kiln_result ki_image_allocate(kiln_context *context, kiln_image *image, kiln_error *error)
 {
-    // Greatest length of a side in texels: six faces of the largest cube, one below the other.
+    // Greatest width and height of a picture in texels: six faces of the largest cube, one below
+    // the other.
     enum { LIMIT = 6 * KILN_MAX_SIZE };
     kiln_image made = *image;
     *image = (kiln_image){0};
@@ -251,8 +252,8 @@ void kiln_map_expose(kiln_map *map, double stops)
 {
     if (stops == 0 || !isfinite(stops))
         return;
-    // The whole part of `stops` is an exact power of two. Values that would overflow become the
-    // largest float.
+    // The whole part of `stops` is applied as an exact power of two. Values that would overflow
+    // become the largest float.
     double whole = floor(ki_clamp(stops, -600, 600)), part = ki_clamp(stops - whole, 0, 1);
     double factor = ldexp(ki_exp(part * 0.69314718055994530942), (int)whole);
     for (int level = 0; level < map->level_count; level++) {

@@ -15,7 +15,8 @@
 // A level of a map, or a flat picture, whose shape is KILN_SHAPE_AUTO.
 typedef struct plane {
     kiln_shape shape;
-    int size, width, height; // rows of a face, and texels of all faces
+    int size;          // number of rows of a face
+    int width, height; // size in texels; the height counts the rows of all faces
     float *rgb;
 } plane;
 
@@ -25,7 +26,7 @@ enum { STRIPS = 64 }; // number of strips of rows, each of which is a task
 
 typedef struct counts {
     size_t infinite, nan, negative;
-    size_t bad; // number of texels that are infinite or not a number
+    size_t bad; // number of texels with a channel that is infinite or not a number
 } counts;
 
 typedef struct survey {
@@ -45,15 +46,16 @@ static float *row_of(const survey *s, int row)
     return s->plane.rgb + 3 * (size_t)s->plane.width * (size_t)row;
 }
 
-// Returns whether all values are finite and have no sign. The bits of such a float are an integer
-// below those of infinity.
+// Returns whether all values are finite and have no minus sign. The bits of such a float, read as
+// an integer, are below the bits of infinity.
 static bool is_plain(const float *values, size_t count)
 {
     uint32_t any = 0;
     for (size_t i = 0; i < count; i++) {
         uint32_t bits;
         memcpy(&bits, &values[i], sizeof bits);
-        // the sum's sign bit is set for infinity and not-a-number
+        // 2^23 is the unit of a float's exponent: adding it to the bits of infinity or not-a-number
+        // carries into the sign bit
         any |= bits | (bits + (1U << 23));
     }
     return !(any >> 31);
@@ -104,11 +106,12 @@ enum { GOOD, BAD, LISTED };
 typedef struct holes {
     const plane *plane;
     uint8_t *state;
-    size_t *list, count; // the listed texels, in the order in which they are filled
+    size_t *list, count; // the texels to fill, in the order in which they are filled
 } holes;
 
-// Finds the texels around a texel, at most eight, and returns their number. The columns of a
-// panorama and the faces of a cube are joined where they meet on the sphere.
+// Finds the at most eight texels around the texel `index` and returns their number. Texels at a
+// panorama's left and right edge, and at the edges of a cube's faces, have neighbours across the
+// edge.
 static int find_neighbours(const plane *p, size_t index, size_t found[8])
 {
     int x = (int)(index % (size_t)p->width), row = (int)(index / (size_t)p->width), count = 0;
@@ -138,8 +141,8 @@ static int find_good(const holes *h, size_t index, size_t found[8])
     return count;
 }
 
-// Lists a texel if it has a channel that is not a number, is not listed yet, and has a neighbour to
-// take a value from.
+// Adds a texel to the list of texels to fill if it has a channel that is not a number, is not in
+// the list yet, and has a neighbour whose value is known.
 static void list(holes *h, size_t index)
 {
     size_t good[8];
@@ -154,7 +157,8 @@ static bool is_nan(const float rgb[3])
     return isnan(rgb[0]) || isnan(rgb[1]) || isnan(rgb[2]);
 }
 
-// Sets the channels that are not a number to the mean of the good neighbours.
+// Sets the channels of a listed texel that are not a number to the mean of those neighbours whose
+// value is known.
 static void fill(const holes *h, size_t index)
 {
     size_t good[8];
@@ -169,7 +173,8 @@ static void fill(const holes *h, size_t index)
     }
 }
 
-// Fills the listed texels from `begin` on, makes them good, and lists the texels around them.
+// Fills the texels of the list from `begin` on, one ring around the holes, and marks them as known.
+// Then lists the unknown texels around them, the next ring.
 static void fill_ring(holes *h, size_t begin)
 {
     size_t end = h->count, around[8];
@@ -217,7 +222,8 @@ done:
 
 // --------------------------------------------------------------------------------- negative values
 
-// Task of one thread: sums the light of a strip and, if so wanted, sets its values below zero to 0.
+// Task of one thread: sums the light of a strip of rows. If `negative` is KILN_NEGATIVE_ZERO, then
+// sets its values below zero to 0.
 static void weigh_strip(void *data, int index)
 {
     survey *s = data;
@@ -245,7 +251,8 @@ static counts add_counts(const survey *s)
     return sum;
 }
 
-// Mends a plane. Adds its counts to *report, and its light to *light if values are below zero.
+// Mends a level or a picture, here called plane. Adds what was replaced to the counts of *report,
+// and the plane's light to *light if it has values below zero.
 static kiln_result mend_plane(kiln_context *context, const char *name, const plane *p,
                               kiln_negative negative, kiln_load_report *report, ki_light *light,
                               kiln_error *error)

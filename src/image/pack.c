@@ -45,7 +45,8 @@ static inline int32_t small_float(int32_t bits, int m)
 // Converts a small float without sign, of 5 exponent bits and `m` mantissa bits, to a float.
 static inline float large_float(int32_t bits, int m)
 {
-    // bits of the float whose unit in the last place is 2^(-14-m)
+    // bits of the float 2^(9-m), whose unit in the last place, 2^(-14-m), is that of the smallest
+    // numbers of the small format
     int32_t unit = (127 + 9 - m) << 23;
     float low = float_of(bits + unit) - float_of(unit);
     int32_t high = (bits << (23 - m)) + (bits >> m == 31 ? 224 << 23 : 112 << 23);
@@ -100,11 +101,12 @@ void ki_floats_from_half_bytes(const void *restrict bytes, size_t count, float *
     }
 }
 
-// EXT_texture_shared_exponent: value = mantissa 2^(exponent - 15 - 9). The chosen exponent is the
-// smallest for which the largest mantissa, rounded, still fits in 9 bits.
+// Packs by EXT_texture_shared_exponent: a channel is mantissa 2^(exponent - 15 - 9), with mantissas
+// of 9 bits and one exponent for all three. The exponent is the smallest for which the mantissa of
+// the largest channel, rounded, still fits in 9 bits.
 uint32_t ki_rgb9e5_from_float(const float rgb[3])
 {
-    const float largest = KI_RGB9E5_MAX; // 511 / 512 * 2^16
+    const float largest = KI_RGB9E5_MAX; // the largest value of the format, 511 / 512 * 2^16
     float c[3], most = 0;
     for (int i = 0; i < 3; i++) {
         c[i] = rgb[i] > 0 ? rgb[i] : 0;
@@ -113,7 +115,8 @@ uint32_t ki_rgb9e5_from_float(const float rgb[3])
     }
     int exponent = (bits_of(most) >> 23) - 127 + 16;
     exponent = exponent < 0 ? 0 : exponent;
-    // The unit in the last place of 2^23 is 1: adding 2^23 rounds to an integer, ties to even.
+    // The unit in the last place of the float 2^23 is 1, so adding 2^23 rounds a mantissa to an
+    // integer, ties to even.
     const float round = 8388608;
     float scale = float_of((127 + 24 - exponent) << 23);
     if ((most * scale + round) - round >= 512) {
@@ -145,12 +148,13 @@ void ki_float_from_b10g11r11(uint32_t packed, float rgb[3])
     rgb[2] = large_float((int32_t)(packed >> 22), 5);
 }
 
-// Converts a block of RGB values to halves without gaps, then copies them to RGBA texels. Both
-// loops compile to vector instructions or copies of single words.
+// Converts STRETCH texels at a time: RGB floats to RGB halves without gaps, then the halves to RGBA
+// texels. The compiler makes vector instructions of the first loop and copies of whole words of the
+// second.
 void ki_pack_rgba16f(const float *rgb, size_t count, uint16_t *rgba)
 {
     enum { STRETCH = 64 };
-    // One more element than 3 a texel, because the last texel is copied as four halves.
+    // Three halves a texel and one more, because each texel is copied as four halves.
     uint16_t half[STRETCH * 3 + 1] = {0};
     while (count) {
         size_t n = count < STRETCH ? count : STRETCH;
@@ -158,7 +162,7 @@ void ki_pack_rgba16f(const float *rgb, size_t count, uint16_t *rgba)
         for (size_t i = 0; i < n; i++) {
             uint16_t texel[4];
             memcpy(texel, half + 3 * i, sizeof texel);
-            texel[3] = 0x3c00; // the half with the value 1
+            texel[3] = 0x3c00; // alpha: the half with the value 1
             memcpy(rgba + 4 * i, texel, sizeof texel);
         }
         rgb += 3 * n;

@@ -79,8 +79,9 @@ kiln_result ki_resample_plan_create(kiln_context *context, kiln_shape source_sha
     return result;
 }
 
-// Sets *bytes to the size of the buffer that an execution of the plan needs: for the finer map of a
-// gather, or the bands of a scatter. Returns false on overflow.
+// Sets *bytes to the size of the buffer that an execution of the plan needs. The method gather
+// stores a finer map there before it is averaged, the method scatter bands of the panorama's rows.
+// Returns false if the size overflows.
 static bool buffer_bytes(const ki_resample_plan *plan, size_t *bytes)
 {
     size_t size = (size_t)plan->size, faces = plan->shape == KILN_SHAPE_CUBE ? 6 : 1, texels;
@@ -104,8 +105,8 @@ kiln_result ki_resample_reserve(kiln_context *context, const ki_resample_plan *p
     return ki_fail_memory(context, error, "resampling", fits ? bytes : SIZE_MAX);
 }
 
-// Computes each texel from the source texels under it: directly, or on the finer map, whose texels
-// are then averaged.
+// Computes each texel of a cube or octahedron from the panorama texels under it: directly, or on a
+// map with `factor` times as many texels along a side, whose texels are then averaged.
 static bool gather(kiln_context *context, ki_resample_run *r, int rows,
                    const ki_progress_range *range)
 {

@@ -10,8 +10,9 @@
 #include <math.h>
 
 enum {
+    /// most grids of stencils: two kinds of grid for each quarter of the map
     KI_RESAMPLE_GRIDS = 8,
-    KI_RESAMPLE_BANDS = 8 ///< row bands to which threads distribute light at the same time
+    KI_RESAMPLE_BANDS = 8 ///< bands of panorama rows to which threads add light at the same time
 };
 
 typedef enum ki_resample_method {
@@ -28,7 +29,7 @@ typedef enum ki_resample_method {
 /// The range of source columns or rows that a target column or row overlaps.
 typedef struct ki_resample_span {
     int first, count;
-    size_t weight; // index in `weights` of the weight of the first column or row
+    size_t weight; // index of the first column's or row's weight in the plan's array `weights`
 } ki_resample_span;
 
 struct ki_resample_plan {
@@ -40,20 +41,22 @@ struct ki_resample_plan {
     ki_resample_method method;
     union {
         struct
-        // gather and scatter: the cube or octahedron is computed `factor` times finer than its size
+        // gather and scatter: the grids are stencils of a cube or octahedron that has `factor`
+        // times as many texels along a face as the map that is read or written
         {
             ki_stencil_grid grid[KI_RESAMPLE_GRIDS];
             int grid_count;
             int factor;
-            // gather only: solid angles of the texels of the finer map's first face
+            // gather only: solid angle of each texel of one face of that finer cube, or of that
+            // finer octahedron
             float *fine_area;
-            int band_rows; // scatter only: number of rows of a band
+            int band_rows; // scatter only: number of panorama rows that one task computes
         };
-        struct { // separable
+        struct { // separable: for each column and row of the target, the source's under it
             ki_resample_span *columns, *rows;
             float *weights;
         };
-        int sub; // subsample: number of points along a texel's side
+        int sub; // subsample: number of samples along a side of each target texel
     };
 };
 
@@ -62,9 +65,9 @@ typedef struct ki_resample_run {
     const ki_resample_plan *plan;
     const float *source;
     float *target;
-    float *fine;    ///< gather: texels of the finer map, or `target` if factor is 1
-    double *bands;  ///< scatter: sums of KI_RESAMPLE_BANDS bands of rows of a panorama
-    int first_band; ///< scatter: index of the first of these bands
+    float *fine;    ///< gather: texels of the map before averaging; `target` if none is averaged
+    double *bands;  ///< scatter: light of each texel of KI_RESAMPLE_BANDS bands of panorama rows
+    int first_band; ///< scatter: index of the first of these bands, from the panorama's top
 } ki_resample_run;
 
 // Wraps a column into the range 0 .. width - 1, without a division. The column must not be far
@@ -84,26 +87,27 @@ static inline bool ki_is_whole(double x)
     return fabs(x - floor(x + 0.5)) < 1e-9;
 }
 
-/// Sets grids and factor for resampling between a cube or octahedron of size n and a panorama of
-/// `height` rows.
+/// Sets the fields of gather and scatter: the grids of stencils, and the factor by which they are
+/// finer than the map, for a cube or octahedron of size n and a panorama of `height` rows.
 kiln_result ki_resample_plan_stencils(kiln_context *context, ki_resample_plan *plan,
                                       kiln_shape shape, int n, int height, double rotation,
                                       kiln_error *error);
-/// Computes the solid angles of the texels of a gather's finer map.
+/// Sets `fine_area`, the solid angles by which the method gather averages a finer map.
 kiln_result ki_resample_plan_fine(kiln_context *context, ki_resample_plan *plan, kiln_error *error);
 /// Sets the columns, rows and weights of a separable resampling.
 kiln_result ki_resample_plan_separable(kiln_context *context, ki_resample_plan *plan,
                                        kiln_error *error);
 
-// The tasks of threads; `data` is a ki_resample_run.
+// The tasks of ki_parallel_for; `data` is a ki_resample_run.
 
 /// Gathers the texels of one chunk of stencils; `index` counts the chunks of all grids.
 void ki_resample_gather(void *data, int index);
-/// Averages `factor` rows of the finer map to row `index` of the target.
+/// Averages `factor` rows of the finer map that gather has filled to row `index` of the target.
 void ki_resample_coarsen(void *data, int index);
-/// Computes band first_band + index of a panorama.
+/// Computes one band of a panorama's rows, the band first_band + index, by the method scatter.
 void ki_resample_scatter(void *data, int index);
-/// Compute row `index` of the target; the rows of all faces are counted one face after the other.
+/// Compute row `index` of the target by the method of the function's name. The rows of a cube's
+/// faces are counted one face after the other.
 void ki_resample_separable(void *data, int index);
 void ki_resample_faces(void *data, int index);
 void ki_resample_subsample(void *data, int index);

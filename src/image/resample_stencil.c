@@ -13,20 +13,21 @@
 #include <string.h>
 
 enum {
-    FEWEST = 32, // number of texels along a face below which a finer map is computed first
-    AHEAD = 192, // number of stencils between the prefetch of texels and their use
-    FLUSH = 64   // number of blocks of 4 texels that are summed in single precision
+    FEWEST = 32, // a map with fewer texels along a face is computed finer and then averaged
+    AHEAD = 192, // number of stencils by which the prefetch of their texels precedes their sum
+    // number of blocks of 4 texels that are summed as floats before the sum is added to doubles
+    FLUSH = 64
 };
 
-// Marks functions whose loops are compiled once with `mirror` true and once with `mirror` false.
-// The function that only prefetches needs the mark too, because GCC removes calls to such a
-// function.
+// Marks functions with an argument `mirror` that are inlined once with true and once with false, so
+// that their loops have no branch. The function prefetch() needs the mark too, because GCC removes
+// calls to a function that does nothing but prefetch.
 #define ALWAYS_INLINE __attribute__((always_inline)) static inline
 
 // -------------------------------------------------------------------------------------------- grids
 
-// Returns the coordinate of the texel `k` steps from the middle, towards larger or smaller
-// coordinates.
+// Returns the coordinate of the texel `k` steps from the middle of a side of 2 * half texels,
+// towards larger coordinates if `sign` is positive, else towards smaller ones.
 static int from_middle(int sign, int k, int half)
 {
     return sign > 0 ? half + k : half - 1 - k;
@@ -47,7 +48,7 @@ static ptrdiff_t quarter_texel(ki_stencil_kind kind, int quarter, bool flip, int
     // Forward is -Z and right is +X: (forward, right) is (p, q) turned by the number of quarters.
     static const int forward_sign[4] = {1, -1, -1, 1}, right_sign[4] = {1, 1, -1, -1};
     int forward = quarter & 1 ? q : p, right = quarter & 1 ? p : q;
-    // on the face -Y the coordinate t runs in the opposite direction
+    // rows of the face +Y grow towards +Z, rows of the face -Y towards -Z
     bool bottom = flip && kind == KI_STENCIL_TOP;
     int x = from_middle(right_sign[quarter], right, half);
     int y = from_middle(bottom ? forward_sign[quarter] : -forward_sign[quarter], forward, half);
@@ -65,8 +66,8 @@ static void add_place(ki_stencil_grid *grid, int quarter, bool mirror, bool flip
     int half = grid->half;
     ptrdiff_t n = 2 * (ptrdiff_t)half;
     if (grid->kind == KI_STENCIL_SIDE) {
-        // The faces in the order of the panorama's columns. The coordinate s of a face runs against
-        // the columns.
+        // -Z, +X, +Z and -X, the order in which the panorama's columns meet the faces. A grid's i
+        // grows against the coordinate s of a face unless the grid is mirrored.
         static const int faces[4] = {5, 0, 4, 1};
         int x = mirror ? half : half - 1, y = flip ? half : half - 1;
         place->base = (faces[quarter] * n + y) * n + x;
@@ -81,8 +82,9 @@ static void add_place(ki_stencil_grid *grid, int quarter, bool mirror, bool flip
     place->down = quarter_texel(kind, quarter, flip, j, i, half) - place->base;
 }
 
-// Adds the grids of stencils of one kind. Quarters of the map whose first directions lie at the
-// same position within a panorama column share a grid.
+// Adds the grids of stencils of one kind to a plan. The map has four quarters, one for each of the
+// axes -Z, +X, +Z and -X. Quarters whose axes lie at the same fraction of a panorama column share a
+// grid.
 static kiln_result add_grids(kiln_context *context, ki_resample_plan *plan, ki_stencil_kind kind,
                              int half, int height, double turn, kiln_error *error)
 {
@@ -96,8 +98,9 @@ static kiln_result add_grids(kiln_context *context, ki_resample_plan *plan, ki_s
         for (int k = 0; k < plan->grid_count; k++)
             if (plan->grid[k].kind == kind && fabs(plan->grid[k].offset - offset) < 1e-9)
                 grid = &plan->grid[k];
-        // Mirroring a map at the middle of a cube's side, or at the diagonal of a quarter, maps
-        // panorama column c to column `about` - c.
+        // Mirroring a cube's side at its middle, or a quarter of the map at its diagonal, takes the
+        // panorama position x, in columns, to `about` - x. Columns fall on columns if `about` is
+        // whole.
         double about = kind == KI_STENCIL_SIDE ? 2 * offset : 2 * offset + width / 4;
         if (!grid) {
             grid = &plan->grid[plan->grid_count++];
@@ -130,9 +133,9 @@ kiln_result ki_resample_plan_stencils(kiln_context *context, ki_resample_plan *p
                                       kiln_shape shape, int n, int height, double rotation,
                                       kiln_error *error)
 {
-    // The number of texels along a face must be even, so that the middle of the face lies between
-    // texels. The number must not be too small, so that stencils stay small. If necessary a finer
-    // map is computed and averaged afterwards.
+    // The stencils need an even number of texels along a face, so that the middle of the face lies
+    // between texels, and at least FEWEST, so that stencils stay small. Other sizes are multiplied
+    // by the smallest factor that fits; the finer map is averaged afterwards.
     plan->factor = 1;
     while ((n * plan->factor) % 2 || n * plan->factor < FEWEST)
         plan->factor++;
@@ -181,7 +184,8 @@ static cursor cursor_start(const ki_stencil_grid *grid, int chunk, const ki_sten
     return c;
 }
 
-// Moves to the next stencil. Returns false after the last. Rows of a grid are never empty.
+// Moves to the next stencil: in the same row of the grid, or the first of the next row, since every
+// row has at least one stencil. Returns false after the last stencil of the chunk.
 static inline bool cursor_next(cursor *c)
 {
     c->weights += (size_t)c->stencil->rows * c->stencil->blocks * 4;
@@ -205,7 +209,7 @@ static inline int first_column(const ki_stencil *stencil, const ki_stencil_place
 
 // -------------------------------------------------------------------------------------------- gather
 
-// Four RGB texels as three vectors with the channels rgbr gbrg brgb.
+// Four floats. Four RGB texels are three such vectors, with the channels rgbr, gbrg and brgb.
 typedef ki_float4 lanes;
 
 typedef struct sums {
@@ -243,7 +247,8 @@ ALWAYS_INLINE void add_blocks(sums *sum, const float *texels, const float *weigh
     }
 }
 
-// Returns the sums of red, green and blue in the first three lanes.
+// Adds up the lanes by channel and returns red, green and blue in the first three lanes. The three
+// vectors of `sum` hold the channels rgbr, gbrg and brgb of four texels.
 static inline lanes total(const sums *sum)
 {
     lanes a = sum->a, b = sum->b, c = sum->c;
@@ -259,8 +264,9 @@ static inline void flush(sums *sum, double rgb[3])
     *sum = (sums){0};
 }
 
-// Sums a stencil that is large or extends across the panorama's edge. For a small stencil the
-// result has the same bits as in gather_place.
+// Adds a stencil's weighted sum of texels to `rgb`, for stencils that are large or extend across
+// the panorama's left or right edge. A stencil of up to FLUSH blocks gets the same bits as from the
+// faster loop in gather_place.
 static void gather_slowly(const float *source, int width, ptrdiff_t stride,
                           const ki_stencil *stencil, const float *weights, int column, bool mirror,
                           double rgb[3])
@@ -291,8 +297,8 @@ static void gather_slowly(const float *source, int width, ptrdiff_t stride,
     flush(&sum, rgb);
 }
 
-// Prefetches the texels of a stencil that is used soon, because a grid reads many short, scattered
-// pieces of memory.
+// Prefetches the panorama texels of a stencil that is summed soon, because stencils read many
+// short, scattered pieces of memory.
 ALWAYS_INLINE void prefetch(const ki_stencil_grid *grid, const ki_stencil_place *place,
                             const ki_stencil *s, const float *source)
 {
@@ -418,8 +424,8 @@ void ki_resample_scatter(void *data, int index)
                     const ki_stencil *s = c.stencil;
                     int row = place->flip ? height - s->row - s->rows : s->row;
                     int from = ki_max(row, first), to = ki_min(row + s->rows, end);
-                    // On the diagonal of a quarter of the map, mirroring gives the same texel
-                    // again.
+                    // A texel on the diagonal of a quarter of the map is its own mirror image, and
+                    // its light is added only once.
                     bool again = place->mirror && grid->kind != KI_STENCIL_SIDE && c.i == c.j;
                     if (from >= to || again)
                         continue;
@@ -468,8 +474,8 @@ kiln_result ki_resample_plan_fine(kiln_context *context, ki_resample_plan *plan,
     plan->fine_area = fits ? ki_alloc_raw(context, area, sizeof *plan->fine_area) : NULL;
     if (!plan->fine_area)
         return ki_fail_memory(context, error, "resampling", fits ? area * sizeof(float) : SIZE_MAX);
-    // The texels of all faces of a cube have the same solid angles, so the angles of face +Y are
-    // used.
+    // The faces of a cube have equal solid angles at equal texels, so the solid angles of face +Y
+    // are stored for all faces.
     ptrdiff_t before = plan->shape == KILN_SHAPE_CUBE ? 2 * (ptrdiff_t)area : 0;
     for (int g = 0; g < plan->grid_count; g++) {
         const ki_stencil_grid *grid = &plan->grid[g];

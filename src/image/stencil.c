@@ -28,18 +28,18 @@
 #include <math.h>
 #include <string.h>
 
-// A corner of the grid. In its coordinates, x points in the grid's first direction, y a quarter
-// turn east of x, and z up.
+// A corner of a texel of the grid. The axis x points in the grid's first direction on the horizon,
+// y a quarter turn east of x, and z up. phi is the angle from x towards y.
 typedef struct corner {
     double x, y, z;      // direction of the corner, not normalised
-    double cosine, sine; // cosine and sine of phi
+    double cosine, sine; // cosine and sine of the corner's phi
     double height;       // z of the corner's direction as a unit vector
     double radius;       // length of (x, y)
     int column, row;     // column and row of the panorama that hold the corner
 } corner;
 
-// Area north of an arc in one texel. All rows north of `row` in the same column get `width` times
-// their height.
+// What one arc contributes to the areas of one panorama column: `area` in (column, row), and in
+// every row north of `row` the arc's `width` in phi times the row's height in z.
 typedef struct entry {
     int column, row;
     double area, width;
@@ -51,31 +51,35 @@ typedef struct trace {
     int first_column, end_column, first_row, end_row;
 } trace;
 
-// A great circle that is no meridian, cot theta = a cos phi + b sin phi. kappa2 = a^2 + b^2,
-// inverse_k2 = 1 / (1 + kappa2).
+// A great circle that is no meridian: points at angle theta from the north pole and longitude phi
+// with cot theta = a cos phi + b sin phi. kappa2 = a^2 + b^2, inverse_k2 = 1 / (1 + kappa2).
 typedef struct circle {
     double a, b; // coefficients of cot theta = a cos phi + b sin phi
     double kappa2, inverse_k2;
-    double sign; // sign with which areas north of the circle are added
+    double sign; // 1 if the arc runs east, -1 if it runs west; factor of the areas north of it
 } circle;
 
-// A point at which an arc is divided while it is traced; s, q and z as in the head of this file.
+// A point at which an arc of a great circle is divided while it is traced. s, q and z are defined
+// at the head of this file.
 typedef struct node {
-    double cosine, sine; // cosine and sine of phi
+    double cosine, sine; // cosine and sine of the point's longitude phi
     double s, q, z;
 } node;
 
 typedef struct builder {
     kiln_context *context;
     const ki_stencil_grid *grid;
-    // cos and cot of theta at the borders between rows, height + 1 numbers each.
+    // Cosine and cotangent of theta, the angle from the north pole, at the borders between the
+    // panorama's rows, poles included: height + 1 numbers each.
     const double *height, *cotangent;
-    // Cosine and sine of phi at the borders between columns, from first_border on.
+    // Cosine and sine of the longitude phi at the borders between the panorama's columns, from the
+    // border first_border on.
     const double *cosine, *sine;
     int first_border, end_border;
     bool small; // true: the columns of the panorama are at most 45 degrees wide
     ki_stencil_chunk *chunk;
-    double *area, *width; // areas and widths of the box of texels that is being filled
+    // for each texel of the stencil's box, the sums of `area` and `width` of the arcs' entries
+    double *area, *width;
     size_t box_room;
 } builder;
 
@@ -115,9 +119,9 @@ void ki_stencil_grid_range(const ki_stencil_grid *grid, int j, int *first, int *
 
 // --------------------------------------------------------------------------------------------- arcs
 
-// Returns the angle in [-pi, pi] with this sine and cosine. With eight columns or more,
-// neighbouring nodes are at most 45 degrees apart. Small angles are then computed by the series
-// of arcsin, whose first omitted term is below 1e-16 of the first term.
+// Returns the angle in [-pi, pi] with this sine and cosine. `small` says that all angles are at
+// most 45 degrees, as in a panorama of eight columns or more. Angles near 0 are then computed by
+// the series of arcsin, whose first omitted term is below 1e-16 of the first term.
 static inline double angle(double sine, double cosine, bool small)
 {
     double y = sine * sine, p;
@@ -157,7 +161,8 @@ static inline node node_at(const circle *on, double cosine, double sine)
     return (node){cosine, sine, a * sine - b * cosine, q, c / q};
 }
 
-// Returns the row with height[row] >= z > height[row + 1], by a search that begins at `row`.
+// Returns the panorama row that holds the z of a unit direction, by a search that begins at `row`.
+// The result is the row with height[row] >= z > height[row + 1].
 static inline int find_row(const builder *b, double z, int row)
 {
     while (row > 0 && z > b->height[row])
@@ -167,11 +172,12 @@ static inline int find_row(const builder *b, double z, int row)
     return row;
 }
 
-// Returns the column of a direction, by a search that begins at `column`.
+// Returns the panorama column that holds the longitude with this cosine and sine, by a search that
+// begins at `column`.
 static inline int find_column(const builder *b, double cosine, double sine, int column)
 {
-    // Columns wider than 45 degrees are found by arctan, because a step to the next column by the
-    // sign of a cross product would be ambiguous.
+    // The search below moves to the next column by the sign of a cross product, which is ambiguous
+    // for columns wider than 45 degrees. Those are found by arctan.
     if (!b->small)
         return (int)floor(ki_atan2(sine, cosine) * (b->grid->height / KI_PI) + b->grid->offset);
     const double *bc = b->cosine - b->first_border, *bs = b->sine - b->first_border;
@@ -187,8 +193,9 @@ static inline void add_entry(trace *arc, int column, int row, double area, doubl
     arc->entries[arc->count++] = (entry){column, row, area, width};
 }
 
-// Adds the areas of one column's piece of an arc that crosses the rows `north` to `south`. `area_left`
-// is G at the upper border of row `north`, and `low` is the lower end of the piece.
+// Adds the areas north of the piece of an arc that lies in one column and crosses the rows `north`
+// to `south`. `area_left` is G, as defined at the head of this file, at the upper border of row
+// `north`, and `low` is the end of the piece with the smaller z.
 static void trace_rows(const builder *b, trace *arc, const circle *on, const node *low, double side,
                        int column, int north, int south, double area_left, double width)
 {
@@ -210,8 +217,8 @@ static void trace_rows(const builder *b, trace *arc, const circle *on, const nod
     }
 }
 
-// Adds one column's piece of an arc, over which z only rises or only falls. Returns the row at
-// `end`.
+// Adds the areas north of a piece of an arc, from `start` to `end` within one column. z only rises
+// or only falls along the piece. Returns the panorama row of `end`.
 static inline int trace_piece(const builder *b, trace *arc, const circle *on, const node *start,
                               const node *end, int column, int row)
 {
@@ -257,8 +264,8 @@ static void trace_arc(const builder *b, const corner *from, const corner *to, tr
     for (;;) {
         bool last = column >= to->column;
         if (last && column > from->column && to->sine * at.cosine - to->cosine * at.sine < 1e-14) {
-            // the corner lies on the border of its column, so that the arc ends in the column
-            // before
+            // the end of the arc lies on the western border of its column, so that the arc ends in
+            // the column before
             column--;
             break;
         }
@@ -266,7 +273,8 @@ static void trace_arc(const builder *b, const corner *from, const corner *to, tr
         node next = last ? node_at(&on, to->cosine, to->sine)
                          : node_at(&on, b->cosine[border], b->sine[border]);
         if (at.s * next.s < 0) {
-            // The highest or lowest point of the arc lies between the two nodes.
+            // s, the slope of cot theta, changes its sign between `at` and `next`: the highest or
+            // lowest point of the arc lies between them, and the arc is divided there.
             double kappa = sqrt(on.kappa2);
             double c = on.a / kappa, s = on.b / kappa;
             if (c * at.cosine + s * at.sine < 0) {
@@ -317,8 +325,9 @@ static void add_arc(const builder *b, const trace *arc, double sign, int column,
     }
 }
 
-// Adds the stencil of a polygon. Its boundary is arcs[0] + arcs[1] - arcs[2] - arcs[3],
-// counter-clockwise with the sphere seen from inside (east, then north, on a side of the cube).
+// Adds the stencil of one texel of the map. The texel's boundary, counter-clockwise with the sphere
+// seen from inside, is arcs[0], arcs[1], then arcs[2] and arcs[3] backwards. `pole` says that the
+// texel touches the north pole, so that its stencil begins at row 0.
 static bool add_stencil(builder *b, const trace *const arcs[4], bool pole)
 {
     int column = INT32_MAX, row = INT32_MAX, end_column = INT32_MIN, end_row = INT32_MIN;
@@ -408,8 +417,8 @@ static corner below_horizon(const builder *b, const corner *above)
     return c;
 }
 
-// Computes the stencils of the octahedron's texels that the horizon cuts. Such a texel has two
-// sides above the horizon and two below.
+// Computes the stencils of the octahedron's texels that the horizon cuts, in the rows begin ..
+// stop - 1. Such a texel has two sides above the horizon and two below.
 static bool build_rim(builder *b, int begin, int stop, entry *entries, size_t line)
 {
     for (int j = begin; j < stop; j++) {
@@ -431,8 +440,8 @@ static bool build_rim(builder *b, int begin, int stop, entry *entries, size_t li
     return true;
 }
 
-// The corners along the lower or upper edge of a row of texels, and the arcs between neighbouring
-// corners.
+// The corners of texels along the lower or upper edge of a row of a grid, and the great-circle arcs
+// between neighbouring corners.
 typedef struct grid_line {
     corner *corners;
     trace *arcs;
@@ -450,9 +459,9 @@ static void trace_line(const builder *b, int j, int first, int end, grid_line *l
     }
 }
 
-// Computes the stencils of the rows begin .. stop - 1. The arcs between two rows are traced once,
-// as the top of a row and the bottom of the next row. The arc between two texels of a row is traced
-// once too, as the right side of a texel and the left side of the next texel.
+// Computes the stencils of the grid's rows begin .. stop - 1. The arcs between two rows are traced
+// once, as the top of a row and the bottom of the next row. The arc between two texels of a row is
+// traced once too, as the right side of a texel and the left side of the next texel.
 static bool build_rows(builder *b, int begin, int stop, grid_line bottom, grid_line top,
                        entry *entries, size_t line)
 {
