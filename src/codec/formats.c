@@ -6,6 +6,7 @@
 #include "base/file.h"
 #include "codec/env.h"
 #include "codec/file_info.h"
+#include "codec/foreign.h"
 #include "codec/gltf.h"
 #include "codec/ktx1.h"
 #include "codec/layout.h"
@@ -278,6 +279,8 @@ static kiln_result read_bytes(kiln_context *context, const uint8_t *bytes, size_
                               kiln_error *error)
 {
     const ki_file_format *format = find_bytes(bytes, size);
+    if (!format && ki_refuse_foreign(bytes, size, name, error))
+        return KILN_ERROR_UNSUPPORTED;
     if (!format)
         return ki_fail(error, KILN_ERROR_FORMAT,
                        "%s: its %zu bytes do not begin like a file of EXR, HDR, PNG, KTX2 or DDS",
