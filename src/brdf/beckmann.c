@@ -24,7 +24,7 @@ double ki_beckmann_lambda(double alpha, double cosine)
     if (!(cosine > 0))
         return DBL_MAX;
     double a = cosine / fmax(alpha * sine, cosine * 1e-2);
-    // Lambda is below 1e-18 for a > 6.
+    // Smith's Lambda is below 1e-18 for a > 6.
     if (a > 6)
         return 0;
     return ki_exp(-a * a) * (1 / (a * 1.77245385090551602730) - ki_erfcx(a)) / 2;

@@ -1,5 +1,5 @@
-// A and B of the split sum for Beckmann's distribution, by quadrature over the light's elevation
-// and azimuth: model, roughness and n.v in; the two integrals out, to 1e-8.
+// A and B of the split sum (albedo = F0 A + B) for Beckmann's distribution, by quadrature over the
+// light's elevation and azimuth: model, roughness and n.v in; the integrals A and B out, to 1e-8.
 #include "brdf/beckmann.h"
 
 #include "base/base.h"
@@ -36,8 +36,8 @@ static void integrate_azimuth(double alpha, double tan2, double spread, double s
         e += d;
         b += d * ki_schlick_fresnel(fmin(1, s * sqrt(1 + t) / 2));
     }
-    // x is phi / 2 in [0, half], one half of a symmetric integral: int dphi = 4 int dx. The weights
-    // w sum to 2, which leaves a factor 2 * half.
+    // x is phi / 2 in [0, half]: by symmetry and the factor 2, int dphi = 4 int dx. The interval
+    // has length `half`, and the weights w sum to 2, which leaves a factor of 2 * half.
     sum[0] += scale * 2 * half * e;
     sum[1] += scale * 2 * half * b;
 }
@@ -46,11 +46,12 @@ static void integrate_azimuth(double alpha, double tan2, double spread, double s
 //
 //     E(v) = int int D G / (4 nov) dphi dnol,
 //
-// and B is the same integral with the factor (1 - v.h)^5. The inner integral, over the azimuth, is
-// integrate_azimuth. The outer integral runs over the light's elevation psi_l, in which D is a
-// Gaussian about the view's elevation psi_v with a width of 2 alpha. The range of psi_l ends where
-// D is below 2e-12 of its peak. If the horizon lies inside that range, the pole of G near psi_l =
-// -psi_v comes close, and the nodes are spaced evenly in log(psi_l + psi_v).
+// and B, which is the same integral with the factor (1 - v.h)^5; A is E - B. integrate_azimuth
+// computes the inner integral, over the azimuth phi. The outer integral runs over the light's
+// elevation psi_l, in which D is a Gaussian about the view's elevation psi_v with a width of 2
+// alpha. The range of psi_l ends where D is below 2e-12 of its peak. If the horizon lies inside
+// that range, the pole of G near psi_l = -psi_v comes close, and the nodes are spaced evenly in
+// log(psi_l + psi_v).
 void ki_beckmann_energy(const kiln_model *model, double roughness, double nov, double ab[2])
 {
     roughness = ki_clamp(roughness, 0, 1);
@@ -85,8 +86,8 @@ void ki_beckmann_energy(const kiln_model *model, double roughness, double nov, d
             delta = total - 2 * psi_v;
             weight *= total;
         }
-        // nol = sin(psi_v + delta) by the addition theorem: the sum psi_v + delta would round off
-        // the digits of delta where the lobe is narrow.
+        // nol = sin(psi_v + delta) by the addition theorem: rounding the sum psi_v + delta would
+        // lose the digits of delta where the lobe is narrow.
         double half_sine, half_cosine;
         ki_sincos(delta / 2, &half_sine, &half_cosine);
         double tangent = half_sine / half_cosine, turn = 2 * half_sine * half_cosine;

@@ -39,7 +39,7 @@ double ki_brdf_d(kiln_d d, double roughness, double noh);
 /// G / (nov nol) for the model's masking G. The quotient is finite, except perhaps where both
 /// cosines are 0, or where roughness and one cosine are 0.
 double ki_visibility(const kiln_model *model, double roughness, double nov, double nol);
-/// The model's masking G in [0, 1]. Where a cosine is 0, G is its limit at that cosine.
+/// Returns the model's masking G in [0, 1]. Where a cosine is 0, G is its limit at that cosine.
 double ki_masking(const kiln_model *model, double roughness, double nov, double nol);
 /// Smith's masking of one direction for GGX over that direction's cosine: G1 / nox = 1 / (nox (1 +
 /// Lambda)), where nox is n.v or n.l. The quotient is finite at nox = 0.

@@ -25,7 +25,9 @@ double kiln_kulla_conty_fresnel(kiln_f_add form, double f_average, double e_aver
 {
     double f = ki_unit(f_average), e = ki_unit(e_average);
     double divisor = (1 - f) + f * e; // 1 - f (1 - E) without cancellation near f = 1
-    if (!(divisor > 0)) // f = 1 and E = 0: no light is absorbed, and the limit of the factor is 1
+    // f = 1 and E = 0: all light bounces for ever, none is absorbed, and the limit of the factor is
+    // 1
+    if (!(divisor > 0))
         return 1;
     double sum = f * e / divisor;
     return form == KILN_F_ADD_ASSIGNMENT ? sum : f * sum;
@@ -33,14 +35,15 @@ double kiln_kulla_conty_fresnel(kiln_f_add form, double f_average, double e_aver
 
 double kiln_turquin(double f0, double e)
 {
-    // The albedo of every lobe that reflects light is above 1e-6. The bound keeps the factor finite.
+    // The bound of 1e-6 keeps the factor finite. The albedo of every lobe that reflects light is
+    // above that bound.
     double albedo = ki_clamp(e, 1e-6, 1);
     return 1 + ki_unit(f0) * (1 - albedo) / albedo;
 }
 
-// The single bounce has the albedo s = f0 a + b, the lobe for F = 1 loses m = 1 - a - b, and f = (1
-// + 20 f0) / 21 is the average of Schlick's F. The further bounces add s f m / (1 - f m), taken as
-// diffuse light. Fdez-Aguera 2019, section 3.
+// The single bounce has the albedo s = f0 a + b, where a and b are those of the split sum. The lobe
+// for F = 1 loses m = 1 - a - b, and f = (1 + 20 f0) / 21 is the average of Schlick's F. The
+// further bounces add s f m / (1 - f m), taken as diffuse light. Fdez-Aguera 2019, section 3.
 void kiln_fdez_aguera(double f0, double a, double b, double *single, double *multiple)
 {
     f0 = ki_unit(f0);

@@ -12,15 +12,16 @@
 // l cancel.
 //
 // The outer integral is over theta, the angle of h to n, and the inner over phi, the azimuth of h
-// from v. c falls as phi grows, and the conditions on h hold up to some phi = reach: the inner
-// integral is over one arc. The conditions are
+// from v. c falls as phi grows, and the integrands differ from 0 while c is large enough, that is
+// up to some phi = reach: the inner integral is over one arc. Light reaches l if
 //
 //     reflected       n.l = 2 c cos theta - n.v > 0
 //     transmitted     c > 0 and -n.l = eta n.v - (eta c - g) cos theta > 0
-//     both, for v in the denser medium    c > critical, beyond which reflection is total
 //
-// Under total reflection F = 1. For v in the denser medium R is therefore E minus the integral of
-// 1 - F over c > critical.
+// If v is in the denser medium (ior < 1), facets with c <= critical = sqrt(1 - ior^2) reflect all
+// light: F = 1. With the albedo E(v) = int D c G(v, l) / (n.v) dh of the lobe with F = 1
+// (energy.h), the code then computes R as E minus the same integral with 1 - F in place of F. That
+// integral, like T, is over the facets with c > critical.
 #include "brdf/dielectric.h"
 
 #include "base/base.h"
@@ -42,16 +43,20 @@ typedef struct boundary {
     kiln_model model;
     double roughness, alpha, ior, eta; // eta = 1 / ior
     double mu, sin_v, theta_v;         // n.v, and the sine and angle of v to n
-    // cosine c = v.h at which total reflection begins; 0 for v in the thinner medium
+    // Cosine v.h below which a microfacet reflects all light: sqrt(1 - ior^2), or 0 for v in the
+    // thinner medium.
     double critical;
     double lambda_v; // Smith's Lambda(v), for masking in transmission
     double root_v;   // n.v (1 + 2 Lambda(v)) for GGX with KILN_G_SMITH, 0 for other models
-    double pole;     // the pole of G nearest to 0 is at about n.l = -pole
+    double pole;     // G, as a function of n.l, has its pole nearest to 0 at about n.l = -pole
     double most;     // upper bound of G(v, l) / (n.v)
-    double coarse;   // share of the result below which a ring of half vectors needs 8 nodes only
+    // Share of R or T that a ring of half vectors (all h at one angle to n) must hold to get 16
+    // quadrature nodes instead of 8.
+    double coarse;
 } boundary;
 
-// Smith's Lambda of a direction with this cosine to n, at most 1e9 for ki_beta.
+// Smith's Lambda of a direction with this cosine to n. It is limited to 1e9, which ki_beta can
+// take.
 static double lambda(const boundary *s, double cosine)
 {
     if (s->model.d == KILN_D_BECKMANN)
@@ -72,8 +77,8 @@ static double transmitted_masking(const boundary *s, double nol)
     return nol * ki_visibility(&s->model, s->roughness, s->mu, nol);
 }
 
-// F as by ki_fresnel_dielectric, with one division. `contrast` is 1 - ior^2, c the cosine of
-// incidence, and `beyond` is ior times the cosine of refraction.
+// The exact Fresnel reflectance of ki_fresnel_dielectric, with a single division. `contrast` is 1 -
+// ior^2, c the cosine of incidence, and `beyond` is ior times the cosine of refraction.
 static double fresnel(double contrast, double c, double beyond)
 {
     double s2 = (1 - c) * (1 + c), product = c * beyond, sum2 = (c + beyond) * (c + beyond);
@@ -115,9 +120,9 @@ static double arc_end(double y)
     return y >= 1 ? 0 : y <= -1 ? KI_PI : ki_acos(y);
 }
 
-// The distance in phi from `reach`, the end of the arc of azimuths, to a singularity of the
-// integrand beyond that end, where cos phi is y - more. y is cos phi at the end, or below -1 where
-// the arc is the half circle.
+// The distance in phi from `reach`, the end of an arc of azimuths, to a singularity of the
+// integrand beyond that end, where cos phi is y - more. y is cos phi at the end of the arc, or
+// below -1 where the arc is the half circle.
 static double arc_margin(double y, double reach, double more)
 {
     double sine = ki_sin(reach);
@@ -144,12 +149,13 @@ static double arc_cosine(double x)
     return 1 - 2 * sine * sine;
 }
 
-// Integrates facet() over the arc 0 <= phi < reach of the half vectors whose sine and cosine to n
-// are h[0] and h[1]. The integrand has a singularity `margin` beyond the arc's end, so that nodes
-// are to be closer towards the end: margin + reach - phi = margin (1 + slope x)^16 with x evenly
-// spaced in [0, 1], a power that is nearly an exponential and costs four products. With `root` the
-// integrand behaves as a square root at the end itself, which the substitution x = y^2 with y
-// evenly spaced removes. `coarse` takes 8 nodes per panel instead of 16.
+// Integrates facet() over the arc 0 <= phi < reach of the half vectors h at one angle to n, whose
+// sine and cosine are h[0] and h[1]. The integrand has a singularity at the distance `margin`
+// beyond the arc's end, so the quadrature nodes are closer towards the end: margin + reach - phi =
+// margin (1 + slope x)^16 with x evenly spaced in [0, 1]. The 16th power is nearly an exponential
+// and costs four products. With `root` the integrand behaves as a square root at the end itself,
+// which the substitution x = y^2 with y evenly spaced removes. With `coarse` a panel has 8 nodes
+// instead of 16.
 static double integrate_arc(const boundary *s, part what, const double h[2], double reach,
                             double margin, bool root, bool coarse)
 {
@@ -175,10 +181,10 @@ static double integrate_arc(const boundary *s, part what, const double h[2], dou
     return 16 * slope / panels * sum;
 }
 
-// The inner integral, over a ring of half vectors: all half vectors at one angle to n, whose sine
-// and cosine are h[0] and h[1]. Finds the end of the arc of azimuths to which light is reflected or
-// transmitted, and the singularity nearest to that end. `coarse` marks a ring with little influence
-// on the result.
+// The inner integral, over a ring of half vectors: all half vectors h at one angle to n, whose sine
+// and cosine are h[0] and h[1]. Finds the end of the arc of azimuths from which light is reflected
+// or transmitted, and the singularity nearest to that end. `coarse` marks a ring with little
+// influence on the result.
 static double ring(const boundary *s, part what, const double h[2], bool coarse)
 {
     double k = s->sin_v * h[0], least = h[1] * s->mu; // v.h = least + k cos phi at azimuth phi
@@ -189,8 +195,8 @@ static double ring(const boundary *s, part what, const double h[2], bool coarse)
     } else {
         y = -least / k;
         pole = fmin(s->pole, 0.5 * sqrt(fabs(s->ior - 1)) + 1e-3) / (h[1] * k);
-        // From the denser side, n.l = 0 at c = (m^2 + eta^2 - 1) / (2 eta m), m = eta n.v / cos
-        // theta.
+        // If v is in the denser medium, transmitted light has n.l = 0 at c = v.h = (m^2 + eta^2 -
+        // 1) / (2 eta m), where m = eta n.v / cos theta.
         double m = s->eta * s->mu / h[1], m2 = s->eta * s->eta - 1;
         y = s->critical > 0 && m * m < m2 ? ((m * m + m2) / (2 * s->eta * m) - least) / k : y;
         pole = s->critical > 0 ? s->pole / (h[1] * k) : pole;
@@ -199,8 +205,8 @@ static double ring(const boundary *s, part what, const double h[2], bool coarse)
         double reach = arc_end(y);
         return integrate_arc(s, what, h, reach, arc_margin(y, reach, pole), false, coarse);
     }
-    // From the denser side, 1 - F is a square root near the critical angle, which is the arc's end
-    // if the condition n.l > 0 allows, and lies beyond the end otherwise.
+    // If v is in the denser medium, 1 - F behaves as a square root near the critical angle. The arc
+    // ends there, unless the condition n.l > 0 ends it earlier.
     if (y <= critical) {
         double reach = arc_end(critical);
         double margin = fmax(arc_margin(critical, reach, 0), reach / 20);
@@ -210,7 +216,7 @@ static double ring(const boundary *s, part what, const double h[2], bool coarse)
     return integrate_arc(s, what, h, reach, fmin(margin, arc_margin(y, reach, pole)), true, coarse);
 }
 
-// D(h) sin theta, where h[0] and h[1] are the sine and cosine of theta.
+// D(h) sin theta, where theta is the angle of h to n, and h[0] and h[1] are its sine and cosine.
 static double density(const boundary *s, const double h[2])
 {
     double a2 = s->alpha * s->alpha, s2 = h[0] * h[0], c2 = h[1] * h[1];
@@ -220,10 +226,11 @@ static double density(const boundary *s, const double h[2])
     return h[0] * a2 / (KI_PI * d * d);
 }
 
-// The outer integral, over the angle theta of half vectors to n. At `from` and `to`, the arc of
-// azimuths that ring() integrates over opens, closes or changes the condition that limits it. D is
-// narrow, and theta = width sinh(x) spreads its peak over x. The arc's length behaves as a square
-// root at the ends, so that x is a polynomial of the quadrature variable with zero slope there.
+// The outer integral, over the angle theta of half vectors to n, between `from` and `to`. At these
+// angles the arc of azimuths that ring() integrates over opens, closes or changes the condition
+// that limits it. D is narrow, and theta = width sinh(x) spreads its peak over x. The arc's length
+// behaves as a square root at both ends, so x is a polynomial of the quadrature variable with zero
+// slope there.
 static double integrate_rings(const boundary *s, part what, double from, double to)
 {
     double width = fmin(s->alpha, fmax(s->mu, 0.1 * s->alpha)), sum = 0;
@@ -247,16 +254,17 @@ static double integrate_rings(const boundary *s, part what, double from, double 
     return sum;
 }
 
-// Integrates over all half vectors: cuts the range of theta at the angles where the arc opens,
-// closes or changes its limiting condition, and adds the integrals between the cuts.
+// Integrates R or T over all half vectors: cuts the range of their angle theta to n at the angles
+// where ring()'s arc of azimuths opens, closes or changes its limiting condition, and adds the
+// integrals between the cuts.
 static double integrate_part(const boundary *s, part what)
 {
     double elevation = KI_PI / 2 - s->theta_v, start = 0, end = KI_PI / 2, cuts[6];
     int count = 0;
     cuts[count++] = what == REFLECTED ? elevation / 2 : elevation;
     if (what == REFLECTED) {
-        // If the view is near the horizon, a cut near `end` separates the grazing light, which is
-        // close to the pole of G.
+        // If the view is near the horizon, a cut near `end` separates the light that leaves at
+        // grazing angles, n.l near 0, which is close to the pole of G.
         end = (KI_PI - elevation) / 2;
         cuts[count++] = elevation < 0.05 ? end - 8 * elevation : end;
     }
@@ -270,14 +278,14 @@ static double integrate_part(const boundary *s, part what)
         if (s->theta_v > total && what == REFLECTED)
             start = s->theta_v - total;
         if (s->theta_v > total && what == TRANSMITTED) {
-            // The smallest theta at which refracted light can leave: the ray turns by the view's
-            // elevation and runs along the surface.
+            // The smallest theta at which refracted light can leave: there it runs along the
+            // surface, turned by the view's elevation.
             ki_sincos(elevation, &sine, &cosine);
             start = s->theta_v - ki_atan2(sine, s->eta - cosine);
         }
     }
     double sum = 0, from = fmax(0, start);
-    for (;;) { // finds the next cut of the range of theta, in increasing order
+    for (;;) { // takes the cuts of the range of theta in increasing order
         double to = end;
         for (int i = 0; i < count; i++)
             if (cuts[i] > from && cuts[i] < to)
@@ -290,7 +298,7 @@ static double integrate_part(const boundary *s, part what)
     }
 }
 
-// R and T of a smooth boundary: F and 1 - F, times G, which differs from 1 only for
+// R and T of a smooth boundary: F and 1 - F, times the masking G, which differs from 1 only for
 // KILN_G_SCHLICK_TEXT.
 static void smooth(const kiln_model *model, double ior, double nov, double rt[2])
 {
@@ -301,8 +309,8 @@ static void smooth(const kiln_model *model, double ior, double nov, double rt[2]
     rt[1] = f < 1 ? (1 - f) * ki_masking(model, 0, nov, beyond) : 0;
 }
 
-// Fills the boundary from clamped arguments. Returns false for roughness below 1e-4, which smooth()
-// handles.
+// Fills `s` from arguments that are clamped to their ranges. Returns false for roughness below
+// 1e-4, for which smooth() computes R and T.
 static bool prepare(const kiln_model *model, double roughness, double ior, double nov, boundary *s)
 {
     *s = (boundary){.model = *model, .roughness = ki_clamp(roughness, 0, 1)};
@@ -357,9 +365,10 @@ double ki_dielectric_reflection(const kiln_model *model, double roughness, doubl
     return rt[0];
 }
 
-// R and T change fast at grazing angles, near the critical angle and where the cone of total
-// reflection meets the horizon (n.v = ior). The integral over n.v is cut at these cosines, and a
-// cubic substitution places more nodes near the cuts.
+// The averages of R and T under diffuse light, 2 int R mu dmu with mu = n.v. R and T change fast at
+// grazing angles, at the critical angle, and where the cone of total reflection meets the horizon
+// (n.v = ior). The integral is cut at these cosines, and a cubic substitution places more nodes
+// near the cuts.
 void kiln_glass_average(const kiln_model *model, double roughness, double ior, double rt[2])
 {
     enum { PANELS = 2 };

@@ -1,7 +1,7 @@
-// The albedo E of the specular lobe, and A and B of the split sum, for given cosines of the view.
-// This file chooses the kernel: for GGX the fastest that the processor runs, compiled from
-// energy.inl, and for Beckmann ki_beckmann_energy. It also integrates E to the average E_avg.
-// docs/theory/energy.md.
+// The albedo E of the specular lobe, and A and B of the split sum (albedo = F0 A + B), for given
+// cosines of the view. This file chooses the kernel: for GGX the fastest that the processor runs,
+// compiled from energy.inl, and for Beckmann ki_beckmann_energy. It also integrates E to its
+// average E_avg under diffuse light. docs/theory/energy.md.
 #include "brdf/energy.h"
 
 #include "base/vector.h"
@@ -11,8 +11,8 @@
 
 #include <math.h>
 
-// The kernel for calls that have no context. It uses only instructions that every processor of the
-// compiled architecture has.
+// The kernel (the inner loop that computes E or A and B of a row) for calls that have no context.
+// It uses only instructions that every processor of the compiled architecture has.
 #if defined(KILN_HAVE_SIMD128)
 #define BASELINE ki_energy_row_simd128
 #else
@@ -57,9 +57,10 @@ void ki_energy_split(const kiln_model *model, double roughness, double nov, doub
     row_of(model, BASELINE)(model, roughness, &nov, 1, true, ab);
 }
 
-// Integrates 2 E(mu) mu by composite Gauss-Legendre quadrature over u, where mu = c (e^u - 1). E
-// changes fast at grazing angles, mu < alpha, and with correlated masking behaves as mu log(mu)
-// near 0; the substitution places enough nodes there.
+// The average of E under diffuse light, 2 int_0^1 E(mu) mu dmu, by composite Gauss-Legendre
+// quadrature over u, where mu = c (e^u - 1) and c = alpha / 50. E changes fast at grazing angles,
+// mu < alpha, and with correlated masking behaves as mu log(mu) near 0. The range mu < alpha has
+// the length log 51 in u at every roughness, so that enough nodes lie there.
 double ki_energy_average(const kiln_model *model, double roughness)
 {
     enum { NODES = 16 };

@@ -9,10 +9,10 @@
 
 #include <kiln/brdf.h>
 
-/// Returns the albedo E at the cosine nov for F = 1. Roughness and nov are in [0, 1]. The error is
-/// below 1e-11 for GGX and below 1e-8 for Beckmann's D. At roughness 0, E is the limit as roughness
-/// tends to 0 while nov is fixed. At roughness 0 and nov = 0, E is the limit of the values at
-/// roughness 0 as nov tends to 0.
+/// Returns the albedo E of the lobe with F = 1 at the cosine nov = n.v. Roughness and nov are in
+/// [0, 1]. The error is below 1e-11 for GGX and below 1e-8 for Beckmann's D. At roughness 0, E is
+/// the limit as roughness tends to 0 while nov is fixed. At roughness 0 and nov = 0, E is the limit
+/// of the values at roughness 0 as nov tends to 0.
 double ki_energy(const kiln_model *model, double roughness, double nov);
 /// The average E_avg = 2 int_0^1 E(mu) mu dmu. Roughness is in [0, 1]. The error is below 1e-10.
 double ki_energy_average(const kiln_model *model, double roughness);
@@ -20,9 +20,9 @@ double ki_energy_average(const kiln_model *model, double roughness);
 /// E = A + B. Ranges and error are those of ki_energy.
 void ki_energy_split(const kiln_model *model, double roughness, double nov, double ab[2]);
 
-/// Computes the values for `count` cosines nov at one roughness: ki_energy to out[count], or with
-/// `split` the pairs of ki_energy_split to out[count][2]. The results are bit-identical to the
-/// results of these two functions, on every instruction set.
+/// Computes the values for `count` cosines nov at one roughness: E of ki_energy to out[count], or
+/// with `split` the pairs A, B of ki_energy_split to out[count][2]. The results are bit-identical
+/// to the results of these two functions, on every instruction set.
 void ki_energy_values(const kiln_context *context, const kiln_model *model, double roughness,
                       const double *nov, int count, bool split, double *out);
 

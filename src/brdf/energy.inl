@@ -3,21 +3,20 @@
 // define KI_ROW, the kernel's name, and include this file. The loops over sixteen nodes are plain C
 // that compilers vectorise.
 //
-// With o the view, i the light, mu and mu_i their cosines, s = 1 - alpha^2 and S = mu + mu_i, the
-// azimuth phi is integrated in closed form (derived in docs/theory/energy.md):
+// With o the view, i the light, mu and mu_i the cosines of o and i to the normal, s = 1 - alpha^2
+// and S = mu + mu_i, the integral over the azimuth phi has a closed form (derived in
+// docs/theory/energy.md):
 //
 //     E = int_0^1 G / (4 mu) [int_0^2pi D dphi] dmu_i,
 //     int D dphi = 2 alpha^2 (1 + 2 s S / Q + s^2 S P / Q^3),
 //     P = sin^2 o + sin^2 i + alpha^2 S^2,
 //     Q^2 = (s (mu_i - mu) - 2 alpha^2 mu)^2 + 4 alpha^2 sin^2 o.
 //
-// The integral over mu_i has two intervals, each cut into panels of a 16-point Gauss-Legendre rule:
-//
-//     from 0 to max(mu, alpha) / 2    mu_i = c (e^u - 1), evenly in u; G has its nearest pole at -c
-//     from there to 1                 mu_i = m + d sinh t, evenly in t, which makes Q = s d cosh t
-//
-// with m = mu (1 + alpha^2) / s and d = 2 alpha sin o / s. For alpha > 0.7 the second interval is
-// one panel, even in mu_i.
+// The integral over mu_i is cut into two intervals, at max(mu, alpha) / 2, and each interval into
+// panels of a 16-point Gauss-Legendre rule. In the first interval mu_i = c (e^u - 1), with nodes
+// evenly in u, where -c is the pole of G nearest to 0. In the second mu_i = m + d sinh t, with
+// nodes evenly in t, which makes Q = s d cosh t for m = mu (1 + alpha^2) / s and d = 2 alpha sin o
+// / s. For alpha > 0.7 the second interval is one panel, with nodes evenly in mu_i.
 #include "brdf/energy.h"
 
 #include "math/math.h"
@@ -26,8 +25,9 @@
 
 enum { NODES = 16, HALF = NODES / 2 };
 
-// Greatest length of a panel in u or t. The integrand's poles are at least pi/2 away from the real
-// axis, so that the rule's relative error is 1e-12 at this length.
+// Greatest length of a quadrature panel in the integration variables u and t. The integrand's poles
+// are at least pi/2 away from the real axis, so that the 16-point rule's relative error is 1e-12 at
+// this length.
 #define PANEL 2.5
 
 // Positive nodes of the 16-point Gauss-Legendre rule and their weights. The other eight nodes are
@@ -43,15 +43,17 @@ static const double weight[HALF] = {
 typedef struct view {
     kiln_g g;
     double alpha, alpha2, s; // roughness^2, alpha^2 and 1 - alpha^2
-    double mu, sin2, sine;   // cosine of the view, 1 - mu^2 and its square root
+    double mu, sin2, sine;   // cosine mu of the view, 1 - mu^2 and its square root
     double k;                // k of Schlick's masking G1(x) = x / (x (1 - k) + k)
-    double root;             // sqrt(alpha^2 + s mu^2)
-    double front;            // factor of G / mu that depends on the view only
-    double split;            // mu_i at which the second of the two intervals of mu_i begins
-    double pole;             // c: the integrand's pole nearest to mu_i = 0 is at mu_i = -c
+    double root;             // sqrt(alpha^2 + s mu^2), of Smith's masking
+    double front;            // factor of G / mu that depends on the view and not on the light
+    // cosine mu_i of the light at which the second of the two intervals of mu_i begins
+    double split;
+    double pole; // c: the integrand's pole nearest to mu_i = 0 is at mu_i = -c
 } view;
 
-// The nodes of a panel: mu_i, rest = 1 - mu_i, delta = mu_i - mu, q = Q and the weight w. The two
+// The sixteen nodes of a quadrature panel: mu = mu_i, the cosine of the light; rest = 1 - mu_i;
+// delta = mu_i minus the cosine of the view; q = Q of int D dphi; and the weight w. The two
 // differences are kept because they have full precision where they are small.
 typedef struct panel {
     double mu[NODES], rest[NODES], delta[NODES], q[NODES], w[NODES];
@@ -77,24 +79,24 @@ static void view_set(view *v, const kiln_model *model, double roughness, double 
         v->front = 4 / (nov + v->root);
         v->pole = v->alpha;
         break;
-    default: // Schlick's masking with either k
+    default: // Schlick's masking with the k of either KILN_G_SCHLICK model
         v->front = 1 / (nov * (1 - v->k) + v->k);
         v->pole = v->k / (1 - v->k);
         break;
     }
-    // The integrand of B is singular, as a logarithm, at mu_i = -mu.
+    // The integrand of B is singular, as a logarithm, at mu_i = -mu (cosines of light and view).
     if (split && v->pole > nov)
         v->pole = nov;
     v->split = (nov > v->alpha ? nov : v->alpha) / 2;
-    // A pole nearer to 0 than 1e-12 of the first interval's length has the same effect as one at
-    // that distance.
+    // A pole nearer to mu_i = 0 than 1e-12 of the first interval's length has the same effect as
+    // one at that distance.
     v->pole = ki_clamp(v->pole, 1e-12 * v->split, 1);
 }
 
 // ------------------------------------------------------------------------------------------- nodes
 
-// sinh and cosh of h times the positive quadrature nodes, |h| <= 1.25, by Taylor polynomials to
-// degree 21 and 20. The first omitted term of each is below 1e-19.
+// sinh and cosh of h times the eight positive quadrature nodes, |h| <= 1.25, by Taylor polynomials
+// of degree 21 and 20. The first omitted term of each is below 1e-19.
 static void hyperbolic(double h, double sinh_y[HALF], double cosh_y[HALF])
 {
     for (int j = 0; j < HALF; j++) {
@@ -123,7 +125,7 @@ static void hyperbolic(double h, double sinh_y[HALF], double cosh_y[HALF])
     }
 }
 
-// Sets delta and Q of nodes whose mu_i is known, for substitutions in which Q has no closed form.
+// Sets delta and Q of nodes whose mu_i is known, for substitutions that give Q no closed form.
 static void finish_nodes(const view *v, panel *p)
 {
     double back = 2 * v->alpha2 * v->mu, wide = 4 * v->alpha2 * v->sin2;
@@ -134,9 +136,9 @@ static void finish_nodes(const view *v, panel *p)
     }
 }
 
-// The nodes of a panel of the first interval, mu_i = c (e^u - 1) with c = v->pole. The panel goes
-// from u0 - h to u0 + h, and `centre` is e^u0. sinh_y and cosh_y are those of h times the positive
-// quadrature nodes.
+// Sets the nodes of a panel of the first interval of mu_i, where mu_i = c (e^u - 1) with c =
+// v->pole. The panel goes from u0 - h to u0 + h, and `centre` is e^u0. sinh_y and cosh_y are the
+// functions of h times the eight positive quadrature nodes.
 static void log_nodes(const view *v, double h, double centre, const double *sinh_y,
                       const double *cosh_y, panel *p)
 {
@@ -153,8 +155,8 @@ static void log_nodes(const view *v, double h, double centre, const double *sinh
     finish_nodes(v, p);
 }
 
-// The nodes of the second interval as one panel, even in mu_i from v->split to 1. This serves alpha
-// > 0.7, where the integrand has no pole near the interval.
+// Sets the nodes of the second interval of mu_i as one panel, even in mu_i from v->split to 1. Only
+// alpha > 0.7 uses this panel, where the integrand has no pole near the interval.
 static void even_nodes(const view *v, panel *p)
 {
     double h = (1 - v->split) / 2;
@@ -168,15 +170,17 @@ static void even_nodes(const view *v, panel *p)
     finish_nodes(v, p);
 }
 
-// The parameters of the second interval's substitution mu_i = m + d sinh t.
+// The parameters of the substitution mu_i = m + d sinh t in the second interval of mu_i, the cosine
+// of the light.
 typedef struct stretch {
     double m_rest; // 1 - m, where m is the centre of the peak of D
     double ahead;  // m - mu, where mu is the cosine of the view
     double d;      // width of the peak of D in mu_i
 } stretch;
 
-// The nodes of a panel of the second interval, mu_i = m + d sinh t. The panel is t0 - h to t0 + h,
-// and `centre` is e^t0. sinh_y and cosh_y are those of h times the positive quadrature nodes.
+// Sets the nodes of a panel of the second interval of mu_i, where mu_i = m + d sinh t. The panel
+// goes from t0 - h to t0 + h, and `centre` is e^t0. sinh_y and cosh_y are the functions of h times
+// the eight positive quadrature nodes.
 static void sinh_nodes(const view *v, const stretch *x, double h, double centre,
                        const double *sinh_y, const double *cosh_y, panel *p)
 {
@@ -189,7 +193,7 @@ static void sinh_nodes(const view *v, const stretch *x, double h, double centre,
         double low_c = x->d * (even_c - odd_c), high_c = x->d * (even_c + odd_c);
         p->mu[j] = m + low;
         p->mu[j + HALF] = m + high;
-        // Rounding can make the difference 1 - mu_i negative.
+        // Rounding can make the difference 1 - mu_i negative where mu_i is near 1.
         double rest_low = x->m_rest - low, rest_high = x->m_rest - high;
         p->rest[j] = rest_low > 0 ? rest_low : 0;
         p->rest[j + HALF] = rest_high > 0 ? rest_high : 0;
@@ -231,7 +235,7 @@ static void masking(const view *v, const panel *p, double top[NODES], double bot
     }
 }
 
-// Adds the panel's terms of E to eight partial sums.
+// Adds the terms of E at the sixteen nodes of a panel to eight sums, one for each lane of vectors.
 static void add_e(const view *v, const panel *p, const double top[NODES],
                   const double bottom[NODES], double sum[HALF])
 {
@@ -252,19 +256,21 @@ static int mean_steps(double kc)
     return kc > 0.55 ? 4 : kc > 0.09 ? 5 : kc > 1.8e-3 ? 6 : kc > 8e-7 ? 7 : kc > 1.7e-13 ? 8 : 9;
 }
 
-// Complete elliptic integrals over x from 0 to pi/2, with Y^2 = cos^2 x + kc^2 sin^2 x and
+// Complete elliptic integrals over x from 0 to pi/2, for kc and p, with Y^2 = cos^2 x + kc^2 sin^2
+// x and
 // W = cos^2 x + p sin^2 x:
 //
 //     cel = int Y / W dx,   slope = d cel / dp,   k = int 1 / Y dx,   e = int Y dx.
 //
-// cel is computed by Bulirsch's iteration (1965), which adds positive numbers only; slope, by the
-// same iteration differentiated by p. k and e follow from the arithmetic-geometric mean of 1 and
-// kc: after n steps em and qc are 2^n times the arithmetic and the geometric mean.
+// cel is computed by Bulirsch's iteration (1965), which adds positive numbers only, and slope by
+// the same iteration differentiated by p. k and e follow from the arithmetic-geometric mean of 1
+// and kc: after n steps em and qc are 2^n times the arithmetic and the geometric mean.
 typedef struct elliptic {
     double cel[NODES], slope[NODES], k[NODES], e[NODES];
 } elliptic;
 
-// kc2 is kc^2, and p0 is p. A d before a variable's name denotes the derivative by p.
+// Computes the integrals of `elliptic` for kc2 = kc^2 and p0 = p. A d before a variable's name
+// denotes the derivative by p.
 static void elliptic_integrals(const double kc2[NODES], const double p0[NODES], int steps,
                                elliptic *out)
 {
@@ -310,9 +316,9 @@ static void elliptic_integrals(const double kc2[NODES], const double p0[NODES], 
     }
 }
 
-// Adds the panel's terms of B to eight partial sums. The integrand has D (1 - c)^5 instead of D,
-// where c = o.h = sqrt(z) / 2 and z = 2 (1 + o.i). With W = P + q cos phi, q = 2 sin o sin i and
-// a = s S^2, which give z = W + a,
+// Adds the terms of B at the sixteen nodes of a panel to eight sums, one for each lane of vectors.
+// The integrand of B has D (1 - c)^5 where that of E has D, with c = o.h = sqrt(z) / 2 and z = 2 (1
+// + o.i). With W = P + q cos phi, q = 2 sin o sin i and a = s S^2, which give z = W + a,
 //
 //     D (1 - c)^5 = alpha^2 / (pi W^2) [z^2 + 5/2 z^3 + 5/16 z^4 -
 //                   sqrt(z) / 2 (5 z^2 + 5/2 z^3 + z^4 / 16)]
@@ -363,7 +369,7 @@ static void add_b(const view *v, const panel *p, const double top[NODES],
 
 // --------------------------------------------------------------------------------------- integrals
 
-// Adds the partial sums in an order that does not depend on the width of vectors.
+// Adds the eight sums of E or B in an order that does not depend on the width of vectors.
 static double sum_lanes(const double x[HALF])
 {
     return ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]));
@@ -378,15 +384,17 @@ static void add(const view *v, const panel *p, double e[HALF], double b[HALF], b
         add_b(v, p, top, bottom, b);
 }
 
-// An interval of the integration variable, u or t, cut into `count` panels of equal length.
+// An interval of the integration variable x, which is u or t, cut into `count` panels of equal
+// length.
 typedef struct tiling {
-    double from;     // e^x at the interval's lower end, where x is the integration variable
-    double ratio;    // e^x at the interval's upper end over e^x at the lower end
-    double h, ahead; // h: half the length of a panel; ahead: e^h
+    double from;     // e^x at the interval's lower end
+    double ratio;    // e^x at the interval's upper end over e^x at its lower end
+    double h, ahead; // h: half the length of a panel in x; ahead: e^h
     int count;
 } tiling;
 
-// The integral for one cosine of the view: its constants and its two intervals of mu_i.
+// The integral for one cosine of the view: its constants, and its intervals `near` and `far` of
+// mu_i, the cosine of the light.
 typedef struct entry {
     view v;
     stretch x;
@@ -405,7 +413,7 @@ static void entry_set(entry *n, const kiln_model *model, double roughness, doubl
     n->x.ahead = 2 * v->alpha2 * nov / v->s;
     double d = 2 * v->alpha * v->sine / v->s;
     n->x.d = d > 1e-120 ? d : 1e-120;
-    // e^t at both ends of the second interval, by t = asinh((mu_i - m) / d).
+    // e^t at both ends of the second interval of mu_i, from mu_i = m + d sinh t.
     double low = (v->split - nov - n->x.ahead) / n->x.d, high = n->x.m_rest / n->x.d;
     double root_low = sqrt(low * low + 1), root_high = sqrt(high * high + 1);
     double to = high > 0 ? high + root_high : 1 / (root_high - high);
@@ -421,7 +429,8 @@ static void tile(tiling *t)
     t->ahead = ki_exp(t->h);
 }
 
-// Sets out[0] to E and, with `split`, out[1] to B.
+// Integrates over both intervals of mu_i. Sets out[0] to E and, with `split`, out[1] to B of the
+// split sum.
 static void integrate(const entry *n, bool split, double out[2])
 {
     double e[HALF] = {0}, b[HALF] = {0}, sinh_y[HALF], cosh_y[HALF];
@@ -445,7 +454,8 @@ static void integrate(const entry *n, bool split, double out[2])
     }
     out[0] = sum_lanes(e);
     out[1] = sum_lanes(b);
-    // B tends to 0 for smooth surfaces at nov = 1, where rounding can make it negative.
+    // B tends to 0 for smooth surfaces at normal incidence, nov = 1, where rounding can make it
+    // negative.
     out[1] = out[1] > 0 ? out[1] : 0;
 }
 
@@ -458,8 +468,8 @@ static void mirror(const view *v, double out[2])
     out[1] = out[0] * (c * c) * (c * c) * c;
 }
 
-// The entries (cosines of the view) are prepared in blocks, so that the processor overlaps the
-// computation of their logarithms and exponentials.
+// An entry is one cosine of the view. Entries are prepared in blocks, so that the processor
+// overlaps the computation of their logarithms and exponentials.
 void KI_ROW(const kiln_model *model, double roughness, const double *nov, int count, bool split,
             double *out)
 {

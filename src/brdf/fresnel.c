@@ -28,22 +28,24 @@ double ki_fresnel_dielectric(double ior, double c)
     double contrast = (1 - ior) * (1 + ior), s2 = (1 - c) * (1 + c);
     double g2 = c * c - contrast;
     if (!(g2 > 0))
-        return contrast > 0; // F is 1 for total reflection, and 0 for ior = 1 at c = 0
+        // F is 1 for total reflection, and 0 for ior = 1 at c = 0, where both media are the same
+        return contrast > 0;
     double g = sqrt(g2), r = contrast / ((c + g) * (c + g)), p = (c * g - s2) / (c * g + s2);
     double f = r * r * (1 + p * p) / 2;
     return f < 1 ? f : 1;
 }
 
 // The formulas of ki_fresnel_dielectric with a complex g = a + i b, where g^2 = (n + i k)^2 - s^2
-// and the squares become squared absolute values. The larger of a and b is a sum under a root; the
-// smaller follows from a b = n k, so that nothing cancels.
+// and the squares in R_s and R_p become squared absolute values. The larger of a and b is the root
+// of a sum; the smaller follows from a b = n k, so that nothing cancels.
 double ki_fresnel_conductor(double n, double k, double c)
 {
     double s2 = (1 - c) * (1 + c);
     double real = (n - 1) * (n + 1) - k * k + c * c, size = sqrt(real * real + 4 * n * n * k * k);
     double a, b, larger = sqrt((size + fabs(real)) / 2);
-    if (!(larger > 0)) // g = 0: for n < 1 the critical angle, where F is 1; else n = 1, k = 0 and c
-                       // = 0
+    // g = 0 in two cases: for n < 1 and k = 0 at the critical angle, where F is 1, and for n = 1, k
+    // = 0 at c = 0
+    if (!(larger > 0))
         return n < 1;
     if (real > 0) {
         a = larger;
@@ -58,10 +60,10 @@ double ki_fresnel_conductor(double n, double k, double c)
     return f < 1 ? f : 1;
 }
 
-// Gulbrandsen 2014, with r the reflectivity. As the edge tint grows from 0 to 1, n goes from n_max
-// = (1 + sqrt r) / (1 - sqrt r) to n_min = (1 - r) / (1 + r). k follows from the reflectivity by (1
-// - r) k^2 = r (n + 1)^2 - (n - 1)^2. The right side cancels where k is small, so the code uses its
-// factored form
+// Gulbrandsen 2014, with r the reflectivity at normal incidence. As the edge tint grows from 0 to
+// 1, n goes from n_max = (1 + sqrt r) / (1 - sqrt r) to n_min = (1 - r) / (1 + r). k follows from
+// the reflectivity by (1 - r) k^2 = r (n + 1)^2 - (n - 1)^2. The right side cancels where k is
+// small, so the code uses its factored form
 //
 //     k^2 = (n_max - n) (n - 1 / n_max).
 void kiln_gulbrandsen(double reflectivity, double edge_tint, double *n, double *k)
@@ -164,8 +166,8 @@ static double walsh_term(double n, double q, double p)
 double kiln_fresnel_dielectric_average(double ior)
 {
     ior = ki_index(ior);
-    // By reciprocity the transmitted averages of the two sides are related: 1 - F_avg(ior) = ior^2
-    // (1 - F_avg(1 / ior)).
+    // By reciprocity the averages of transmitted light from the two sides of the boundary are
+    // related: 1 - F_avg(ior) = ior^2 (1 - F_avg(1 / ior)).
     if (ior < 1)
         return ior > 0 ? 1 - ior * ior * (1 - kiln_fresnel_dielectric_average(1 / ior)) : 1;
     double q = (ior - 1) / (ior + 1), p = 2 / (ior + 1), d = 1 + q * q; // p = 1 - q
@@ -177,15 +179,15 @@ double kiln_fresnel_dielectric_average(double ior)
 
 enum { NODES = 16, DEPTH = 40 };
 
-// The integral 2 int F mu dmu of a conductor between the kink of F and one end of [0, 1]. F behaves
-// as a square root at its kink, which the substitution mu = kink + (end - kink) t^2 with t in [0,
-// 1] removes.
+// The integral 2 int F mu dmu of a conductor n + i k between the kink of F and one end of [0, 1]. F
+// behaves as a square root at its kink, which the substitution mu = kink + (end - kink) t^2 with t
+// in [0, 1] removes.
 typedef struct average {
     double n, k, kink, end, node[NODES], weight[NODES];
 } average;
 
-// Returns the part of the integral between two values of the substitution's variable t, by one
-// Gauss-Legendre rule.
+// Returns the part of the integral 2 int F mu dmu between two values of the substitution's variable
+// t, by one Gauss-Legendre rule.
 static double panel(const average *f, double from, double to)
 {
     double sum = 0, half = (to - from) / 2, length = f->end - f->kink;
@@ -196,8 +198,8 @@ static double panel(const average *f, double from, double to)
     return sum * 4 * half * fabs(length);
 }
 
-// Adaptive quadrature: halves intervals of t until at two depths in succession the two halves
-// together agree with the whole panel.
+// Adaptive quadrature of 2 int F mu dmu: halves an interval of t until, at two depths in
+// succession, the sum over the halves agrees to 1e-14 with the integral over the whole interval.
 static double refine(const average *f, double from, double to, double whole, bool agreed, int depth)
 {
     double middle = (from + to) / 2;
@@ -215,9 +217,10 @@ double kiln_fresnel_conductor_average(double n, double k)
     k = ki_index(k);
     average f = {.n = n, .k = k, .end = 1};
     ki_gauss_legendre(NODES, f.node, f.weight);
-    // The kink is at the critical angle, where g^2 is imaginary. The kink is sharp for small k. For
-    // small n the kink is at mu near 1, and the cone of directions inside the critical angle is so
-    // narrow that no node would fall into the cone.
+    // F has a kink at the critical angle, mu^2 = 1 - n^2 + k^2, beyond which g^2 of
+    // ki_fresnel_conductor has a negative real part. The kink is sharp for small k. For small n it
+    // is at mu near 1, and the cone of directions inside the critical angle is so narrow that no
+    // quadrature node would fall into the cone.
     double kink2 = (1 - n) * (1 + n) + k * k;
     f.kink = kink2 > 0 && kink2 < 1 ? sqrt(kink2) : 0;
     double sum = refine(&f, 0, 1, panel(&f, 0, 1), false, DEPTH);
@@ -227,7 +230,8 @@ double kiln_fresnel_conductor_average(double n, double k)
     return sum < 1 ? sum : 1;
 }
 
-// The two fits of Kulla and Conty 2017, one for ior > 1 and one for ior <= 1.
+// The fits of a dielectric's average reflectance by Kulla and Conty 2017, one for ior > 1 and one
+// for ior <= 1.
 double kiln_fresnel_dielectric_average_fit(double ior)
 {
     ior = ki_clamp(ior, 0, 400);
@@ -236,7 +240,8 @@ double kiln_fresnel_dielectric_average_fit(double ior)
     return 0.997118 + ior * (0.1014 + ior * (-0.965241 - 0.130607 * ior));
 }
 
-// The polynomial of Kulla and Conty 2017, page 26, where r is the reflectivity and g the edge tint.
+// The fit of a conductor's average reflectance by Kulla and Conty 2017, page 26: a polynomial in
+// the reflectivity r and the edge tint g.
 double kiln_fresnel_conductor_average_fit(double reflectivity, double edge_tint)
 {
     double r = ki_unit(reflectivity), g = ki_unit(edge_tint), r2 = r * r, g2 = g * g;

@@ -16,8 +16,8 @@ double ki_ggx_d(double alpha, double noh)
 
 void ki_ggx_half_vector(double alpha, const double xi[2], double h[3])
 {
-    // The half vector's angle theta to the normal has tan^2 theta = alpha^2 xi / (1 - xi), xi =
-    // xi[1].
+    // The angle theta of the half vector to the normal has tan^2 theta = alpha^2 x / (1 - x) with x
+    // = xi[1].
     double a2 = alpha * alpha, d = (1 - xi[1]) + a2 * xi[1];
     double cos_theta = sqrt((1 - xi[1]) / d), sin_theta = alpha * sqrt(xi[1] / d);
     double sin_phi, cos_phi;

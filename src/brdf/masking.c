@@ -50,8 +50,8 @@ double ki_smith_g1_over_cosine(double alpha, double nox)
     return 2 / (nox + ggx_root(alpha, nox));
 }
 
-// Schlick's two maskings are the same function for GGX and Beckmann. Smith's correlated masking for
-// GGX is Heitz 2014, eq. 99.
+// For Schlick's two maskings, GGX and Beckmann have the same formula. Smith's correlated masking
+// for GGX is Heitz 2014, eq. 99.
 double ki_visibility(const kiln_model *model, double roughness, double nov, double nol)
 {
     double alpha = roughness * roughness;

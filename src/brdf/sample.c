@@ -26,14 +26,13 @@ void ki_beckmann_half_vector(double alpha, const double xi[2], double h[3])
 }
 
 // By spherical caps (Dupuy and Benyoub 2023). Multiplying the x and y of directions by alpha turns
-// GGX's microsurface into a hemisphere. The stretched v mirrored by a visible normal of that
-// hemisphere is a direction c, and c is uniform over the cap c.z > -v.z. So the code draws c and
-// takes h along c + v.
+// GGX's microsurface into a hemisphere. v, stretched like this and mirrored at a visible normal of
+// that hemisphere, becomes a direction c that is uniform over the cap c.z > -v.z. The code
+// therefore draws c and takes h along c + v.
 //
-// c.z = 1 - xi (1 + v.z) with xi = xi[1], therefore (c + v).z = (1 - xi) (1 + v.z): neither that
-// nor 1 - c.z^2 is a difference that cancels. v may point below the surface, where it belongs to a
-// ray that goes up inside the microsurface; then 1 + v.z is computed as (v.x^2 + v.y^2) / (1 -
-// v.z).
+// c.z = 1 - x (1 + v.z) with x = xi[1], therefore (c + v).z = (1 - x) (1 + v.z): neither that nor 1
+// - c.z^2 is a difference that cancels. v may point below the surface, where it belongs to a ray
+// that goes up inside the microsurface; then 1 + v.z is computed as (v.x^2 + v.y^2) / (1 - v.z).
 void ki_sample_visible(double alpha, const double v[3], const double xi[2], double h[3])
 {
     double x = alpha * v[0], y = alpha * v[1], z = v[2];
@@ -88,7 +87,7 @@ void kiln_sample_visible(double roughness, const double v[3], const double xi[2]
 {
     double r = ki_roughness(roughness), x[2];
     h[0] = h[1] = 0;
-    h[2] = 1; // the half vector of a mirror
+    h[2] = 1; // the half vector of a mirror is the normal
     if (r > 0)
         ki_sample_visible(r * r, v, clamp_xi(xi, x), h);
 }

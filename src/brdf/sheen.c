@@ -60,8 +60,8 @@ double ki_sheen_visibility(kiln_sheen sheen, double alpha, double nov, double no
 
 enum { STEPS = 61 };
 
-// atan(sqrt w) / sqrt w for w > -1. For w < 0 the function continues as artanh(sqrt -w) / sqrt -w.
-// `rest` is 1 + w, which the caller knows more precisely than the sum would be.
+// Returns atan(sqrt w) / sqrt w for w > -1. For w < 0 the function continues as artanh(sqrt -w) /
+// sqrt -w. `rest` is 1 + w, which the caller knows more precisely than a sum would be.
 static double arc_ratio(double w, double rest)
 {
     if (fabs(w) < 1e-4)
@@ -70,20 +70,23 @@ static double arc_ratio(double w, double rest)
     return w > 0 ? ki_atan2(y, 1) / y : ki_log((1 + y) * (1 + y) / rest) / (2 * y);
 }
 
-// The inner integral for half vectors h at the angle theta to the normal, with mu = n.v:
+// The inner integral of the albedo with Ashikhmin's masking, for half vectors h at the angle theta
+// to the normal, with mu = n.v:
 //
 //     int (v.h) (n.l) / (n.l + mu - (n.l) mu) dphi
 //
-// over the azimuths |phi| <= reach at which n.l >= 0, where v.h = mu cos theta + sin theta_v sin
-// theta cos phi and n.l = 2 cos theta (v.h) - mu. Its closed form needs K = int_0^reach dphi / ((1
-// - mu) n.l + mu). The closed form cancels for mu > 1/2, where Gauss's rule replaces it.
+// over the azimuths |phi| <= reach at which n.l >= 0, where
+// v.h = mu cos theta + sin theta_v sin theta cos phi and n.l = 2 cos theta (v.h) - mu. Its closed
+// form needs K = int_0^reach dphi / ((1 - mu) n.l + mu). For mu > 1/2 the terms of the closed form
+// cancel, and Gauss's rule replaces it.
 static double ashikhmin_azimuth(double theta, double theta_v, double mu)
 {
     double sine, cosine, sin_v = sqrt((1 - mu) * (1 + mu));
     ki_sincos(theta, &sine, &cosine);
     double nearest = fmax(0, ki_cos(theta_v - 2 * theta)); // n.l at phi = 0
     double farthest = ki_cos(theta_v + 2 * theta);
-    // n.l = 0 at cos reach = -cot theta_v cot 2 theta. t2 is tan^2(reach / 2).
+    // The arc of azimuths ends at phi = reach, where n.l = 0: cos reach = -cot theta_v cot 2 theta.
+    // t2 is tan^2(reach / 2).
     bool circle = !(farthest < 0);
     double t2 = circle ? 0 : nearest / -farthest;
     double reach = circle ? KI_PI : 2 * ki_atan2(sqrt(t2), 1), q = sin_v * sine;
@@ -107,13 +110,13 @@ static double ashikhmin_azimuth(double theta, double theta_v, double mu)
            (mu * cosine * reach + q * sin_reach - mu * reach / c + mu * mu * mu * k / c);
 }
 
-// The albedo with Ashikhmin's masking, as an integral over half vectors:
+// The albedo with Ashikhmin's masking, as an integral over half vectors h:
 //
 //     E(v) = int D (v.h) (n.l) / (n.l + n.v - (n.l)(n.v)) dh.
 //
-// The range of theta is cut at half the view's elevation. Below the cut every azimuth of h mirrors
-// the view to above the horizon. Above the cut only an arc of azimuths does, whose length falls to
-// 0.
+// The range of theta, the angle of h to the normal, is cut at half the view's elevation. Below the
+// cut every azimuth of h mirrors the view to above the horizon. Above the cut only an arc of
+// azimuths does, and the arc's length falls to 0.
 static double ashikhmin_albedo(double alpha, double mu)
 {
     double nodes[STEPS], weights[STEPS], sum = 0;

@@ -27,8 +27,8 @@ static double point(int index, int count)
     return (1 + ki_cos(KI_PI * (index + 0.5) / count)) / 2;
 }
 
-// Fills matrix[i][k] with the weight of the value at Chebyshev point i in the coefficient of degree
-// k.
+// Fills matrix[i][k] with the weight that the function's value at Chebyshev point i has in the
+// series' coefficient of degree k.
 static void transform_matrix(int count, double matrix[KI_SURFACE_NOV][KI_SURFACE_NOV])
 {
     double cosine[4 * KI_SURFACE_NOV];
@@ -45,7 +45,8 @@ typedef struct build_job {
     double by_nov[KI_SURFACE_NOV][KI_SURFACE_NOV], by_roughness[KI_SURFACE_NOV][KI_SURFACE_NOV];
 } build_job;
 
-// Computes E along one row of constant roughness and transforms the row to coefficients in n.v.
+// Task of one thread: computes the albedo E along one row of constant roughness and transforms the
+// row to Chebyshev coefficients in u, the variable that replaces n.v (surface.h).
 static void build_row(void *data, int row)
 {
     const build_job *job = data;
@@ -66,14 +67,15 @@ static void build_row(void *data, int row)
             coefficient[k] += job->by_nov[i][k] * e[i];
 }
 
-// The numbers of Chebyshev coefficients that bring the error of E below 7e-8 for each masking. For
-// KILN_G_SMITH, E has a logarithmic singularity at n.v = 0, which the fourth root in u smooths. For
-// KILN_G_SCHLICK_TEXT, E changes over n.v < k / (1 - k) and, by a small amount, over n.v < alpha.
-// The two widths need more coefficients in roughness.
+// Chooses the numbers of Chebyshev coefficients that bring the error of E below 7e-8 for each
+// masking. For KILN_G_SMITH, E has a logarithmic singularity at n.v = 0, which the fourth root in u
+// smooths. For KILN_G_SCHLICK_TEXT, E changes over n.v < k / (1 - k), with Schlick's k, and by a
+// small amount over n.v < alpha. These two widths depend differently on roughness, which takes more
+// coefficients in roughness.
 static void choose_degrees(ki_surface *surface)
 {
     surface->quartic = surface->model.g == KILN_G_SMITH;
-    // the number of columns is even, as surface.inl requires
+    // the number of coefficients in u is even, because surface.inl sums two degrees per step
     surface->columns = surface->quartic ? 46 : 34;
     surface->rows = 18;
     if (surface->model.g == KILN_G_SCHLICK_TEXT) {
@@ -101,8 +103,9 @@ void ki_surface_build(kiln_context *context, const kiln_model *model, ki_surface
     }
 }
 
-// Sums the series over roughness by the recurrence of Chebyshev polynomials, T_i+1 = 2 x T_i -
-// T_i-1.
+// Sums the series of E over roughness by the recurrence of Chebyshev polynomials,
+// T_{i+1}(x) = 2 x T_i(x) - T_{i-1}(x) with x = 2 roughness - 1. A kernel then sums the remaining
+// series over u.
 void ki_surface_values(const kiln_context *context, const ki_surface *surface, double roughness,
                        const double *nov, int count, double *out)
 {

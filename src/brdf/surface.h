@@ -1,6 +1,6 @@
 // The albedo E of GGX as one Chebyshev series over n.v and roughness in [0, 1]. A large table of E
-// evaluates this series, which takes at most 828 integrals to build, instead of one integral per
-// texel.
+// evaluates this series instead of one integral per texel. The series takes at most 828 integrals
+// to build.
 //
 // E changes fast at grazing angles, n.v < c, where c is about alpha. In t = n.v (1 + c) / (n.v + c)
 // that range has the same width at every roughness. Therefore E is a smooth function of u and
@@ -16,7 +16,8 @@ enum { KI_SURFACE_NOV = 48, KI_SURFACE_ROUGHNESS = 40 };
 
 typedef struct ki_surface {
     kiln_model model;
-    bool quartic;      ///< true: u = t^(1/4); false: u = t^(1/2)
+    /// true: u = t^(1/4); false: u = t^(1/2), where t = n.v (1 + c) / (n.v + c)
+    bool quartic;
     int columns, rows; ///< numbers of Chebyshev coefficients in u and in roughness
     double coefficient[KI_SURFACE_ROUGHNESS][KI_SURFACE_NOV];
 } ki_surface;
@@ -25,7 +26,7 @@ typedef struct ki_surface {
 /// 1e-12, or k / (1 - k) with k = (roughness + 1)^2 / 8 for KILN_G_SCHLICK_TEXT.
 double ki_grazing_scale(const kiln_model *model, double roughness);
 
-/// Computes the series for a model whose D is GGX, by the context's threads.
+/// Computes the series of E for a model whose D is GGX, on the context's threads.
 void ki_surface_build(kiln_context *context, const kiln_model *model, ki_surface *surface);
 
 /// Sets out[i] to E at nov[i] for `count` cosines at one roughness, all in [0, 1]. The values

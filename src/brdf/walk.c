@@ -19,13 +19,15 @@
 #include <string.h>
 
 enum {
-    REPLICATES = 16,   // independent estimates, whose variance gives the standard error
-    DIMENSIONS = 16,   // random numbers of a path from the lattice; later numbers are hashed
+    // number of independent estimates of the albedo, whose variance gives the standard error
+    REPLICATES = 16,
+    // number of random numbers of a path that come from a lattice; later ones are hashed
+    DIMENSIONS = 16,
     MAX_BOUNCES = 1024 // number of bounces at which a path is stopped
 };
 
-// A ray whose weight inside the surface would fall below TAIL stays or leaves as a whole, at
-// random.
+// If less than TAIL of a ray's light would stay inside the surface, a random number decides whether
+// the ray stays or leaves as a whole.
 static const double TAIL = 0.1;
 
 // ----------------------------------------------------------------------------------------- the ray
@@ -40,7 +42,7 @@ static double stretched(double alpha, double sine, double c)
 ki_ray ki_walk_enter(double alpha, double nov, double xi)
 {
     ki_ray ray = {.sine = sqrt((1 - nov) * (1 + nov)), .cosine = -nov, .inside = 1};
-    // The mean depth of the first microfacet is 1 / (1 + Lambda) = 2 nov / (nov + stretched).
+    // The mean depth of the first microfacet is 1 / (1 + Lambda(v)) = 2 nov / (nov + stretched).
     ray.depth = -ki_log(1 - xi) * (2 * nov / (nov + stretched(alpha, ray.sine, nov)));
     return ray;
 }
@@ -84,14 +86,15 @@ double ki_walk_on(double alpha, double xi, ki_ray *ray)
 
 // ---------------------------------------------------------------------------------- random numbers
 
-// The generating vector of a rank-1 lattice with 2^k points, k up to 20, found by
-// component-by-component search (Cools, Kuo and Nuyens 2006). The numbers are from Kuo's file
-// lattice-32001-1024-1048576.3600.
+// The generating vector of a rank-1 lattice, a set of quasi-random points, with 2^k points for k up
+// to 20. It was found by component-by-component search (Cools, Kuo and Nuyens 2006). The numbers
+// are from Kuo's file lattice-32001-1024-1048576.3600.
 static const uint32_t generators[DIMENSIONS] = {1,      182667, 469891, 498753, 110745, 446247,
                                                 250185, 118627, 245333, 283199, 408519, 391023,
                                                 246327, 126539, 399185, 461527};
 
-// A lattice shifted at random: coordinate d of point i is i * step[d] + shift[d], modulo 1.
+// A rank-1 lattice (a set of quasi-random points) shifted at random: coordinate d of point i is i *
+// step[d] + shift[d], modulo 1.
 typedef struct lattice {
     uint32_t step[DIMENSIONS];  // step of each coordinate from point to point, in units of 2^-32
     uint32_t shift[DIMENSIONS]; // random shift of each coordinate, in units of 2^-32
@@ -116,8 +119,9 @@ static void make_lattice(uint32_t seed, int replicate, int bits, lattice *l)
     }
 }
 
-// Coordinate `d` of lattice point `index`, in (0, 1). The map x -> 1 - |2 x - 1| makes integrands
-// periodic (Hickernell 2002), which lowers the variance of the albedo by a factor of three.
+// Coordinate `d` of path `index`, in (0, 1): of the lattice point for d < DIMENSIONS, a hashed
+// number for others. The map x -> 1 - |2 x - 1| makes integrands periodic (Hickernell 2002), which
+// lowers the variance of the albedo by a factor of three.
 static double coordinate(const lattice *l, uint32_t index, int d)
 {
     if (d >= DIMENSIONS)
@@ -127,8 +131,8 @@ static double coordinate(const lattice *l, uint32_t index, int d)
     return ((double)x + 0.5) * (1.0 / 4294967296.0);
 }
 
-// log2 of the number of paths in each replicate, 1 to 20, so that all replicates together have at
-// least path_count paths.
+// log2 of the number of paths in each of the REPLICATES estimates, 1 to 20, so that all estimates
+// together have at least path_count paths, if 20 is enough.
 static int lattice_bits(int path_count)
 {
     int bits = 1;
@@ -139,12 +143,12 @@ static int lattice_bits(int path_count)
 
 // ------------------------------------------------------------------------------------------ albedo
 
-// Receives each bounce of a path: the index of the bounce, v.h at its microfacet, and the weight
-// that leaves the surface after the bounce.
+// Receives each bounce of a path: the index of the bounce from 0, v.h at its microfacet, and the
+// share of the path's light that leaves the surface after the bounce.
 typedef void visit(void *data, int bounce, double voh, double leaves);
 
-// Follows path `index` of the lattice from the view until it has left, and reports each bounce to
-// `seen`.
+// Follows the path that uses lattice point `index` from the view until it has left the surface, and
+// reports each bounce to `seen`.
 static void walk_path(double alpha, double nov, const lattice *l, uint32_t index, visit *seen,
                       void *data)
 {
@@ -160,8 +164,10 @@ static void walk_path(double alpha, double nov, const lattice *l, uint32_t index
 // Running sums over a set of paths for one Fresnel term.
 typedef struct series {
     const kiln_walk_def *def;
-    double throughput;                // product of F over the path's bounces
-    double bounce[KILN_WALK_BOUNCES]; // sum of the light that left after each number of bounces
+    double throughput; // product of F over the current path's bounces so far
+    // sum of the light that left after each number of bounces, the last entry for all higher
+    // numbers
+    double bounce[KILN_WALK_BOUNCES];
 } series;
 
 static double fresnel(const kiln_walk_def *def, double voh)
@@ -224,10 +230,10 @@ void kiln_walk_albedo(const kiln_walk_def *def, double roughness, double nov, ki
 typedef struct column {
     const double *f0;
     int count;
-    double throughput[KI_WALK_COLUMN]; // product of F over the path's bounces
+    double throughput[KI_WALK_COLUMN]; // product of F over the current path's bounces so far
     double sum[KI_WALK_COLUMN];        // light that left after the second or a later bounce
-    double weight;                     // light that left after the second or a later bounce, for F
-                                       // = 1
+    // light that would have left after the second or a later bounce for F = 1
+    double weight;
 } column;
 
 static void add_bounces(void *data, int bounce, double voh, double leaves)
@@ -258,11 +264,12 @@ void ki_walk_column(double roughness, double nov, const double *f0, int count, i
         for (uint32_t i = 0; i < 1u << bits; i++)
             walk_path(alpha, nov, &l, i, add_bounces, &c);
     }
-    // The light of the bounces after the first is 1 - E for F = 1, which is known exactly. The walk
-    // provides only the factor by which the Fresnel terms darken it.
+    // For F = 1 the light of the bounces after the first is 1 - E, where E = A + B is known
+    // exactly. The walk provides only the factor by which the Fresnel terms darken that light.
     ki_energy_split(&(kiln_model){0}, roughness, nov, ab);
-    // If no path had a second bounce, the factor is taken as f squared, where f is the factor by
-    // which the Fresnel term darkens the first bounce.
+    // If no path had a second bounce, the factor by which the Fresnel terms darken the further
+    // bounces is taken as f squared, where f is the factor by which the Fresnel term darkens the
+    // first bounce.
     double e = ab[0] + ab[1], missing = e < 1 ? 1 - e : 0;
     for (int k = 0; k < count; k++) {
         double f = (f0[k] * ab[0] + ab[1]) / e;

@@ -7,7 +7,8 @@
 
 #include <stdint.h>
 
-/// A ray in GGX's microsurface. The azimuth of its direction does not matter and is kept at 0.
+/// A ray in GGX's microsurface, followed by a random walk. The azimuth of its direction does not
+/// matter and is kept at 0.
 typedef struct ki_ray {
     double sine, cosine; ///< direction of travel (sine, 0, cosine), where +z leaves the surface
     double depth;        ///< -log of the share of the surface's heights below the ray; 0 at the top
@@ -17,15 +18,15 @@ typedef struct ki_ray {
 /// Starts a ray that comes down at the cosine nov, at the first microfacet it meets. alpha > 0, and
 /// xi is uniform in [0, 1).
 ki_ray ki_walk_enter(double alpha, double nov, double xi);
-/// Mirrors the ray at a random microfacet that it sees. Returns v.h there. xi is uniform in [0,
-/// 1)^2.
+/// Mirrors the ray at a random microfacet that it sees. Returns v.h there: the cosine between the
+/// reversed ray and the microfacet's normal. xi is uniform in [0, 1)^2.
 double ki_walk_bounce(double alpha, const double xi[2], ki_ray *ray);
 /// Moves the ray to the next microfacet. Returns the share of light that leaves the surface on the
 /// way. If less than 0.1 would stay inside, a random number decides whether all of the ray's light
 /// leaves or none of the light leaves.
 double ki_walk_on(double alpha, double xi, ki_ray *ray);
 
-/// Greatest number of f0 in a call of ki_walk_column.
+/// Greatest number of values of f0 in one call of ki_walk_column.
 enum { KI_WALK_COLUMN = 64 };
 
 /// Sets added[i] to the albedo of all bounces after the first, for a GGX surface with
