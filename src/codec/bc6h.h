@@ -8,12 +8,13 @@
 
 enum { KI_BC6H_MODES = 14, KI_BC6H_PARTITIONS = 32, KI_BC6H_BYTES = 16 };
 
-/// A mode of BC6H. In a `relative` mode endpoints 1 to 3 are stored as differences from endpoint 0,
-/// in `delta_bits` bits for each channel.
+/// A mode of BC6H, that is, a layout of a block's bits. In a `relative` mode endpoints 1 to 3 are
+/// stored as differences from endpoint 0, in `delta_bits` bits for each channel.
 typedef struct ki_bc6h_mode {
     uint8_t number, subsets, bits, delta_bits[3];
     bool relative;
-    /// Runs of endpoint bits in the order of the block, after the mode's number.
+    /// Where the bits of the endpoints lie in the block: runs of bits as text, in the order of the
+    /// block, after the bits of the mode's number. bc6h_block.c defines the text.
     const char *runs;
 } ki_bc6h_mode;
 
@@ -26,8 +27,9 @@ typedef struct ki_bc6h_block {
 } ki_bc6h_block;
 
 extern const ki_bc6h_mode ki_bc6h_modes[KI_BC6H_MODES];
-/// Bit 4 y + x of a partition is the subset of texel (x, y). An anchor is the texel of subset 1
-/// whose index is stored without its highest bit.
+/// ki_bc6h_partitions: bit 4 y + x of a partition is the subset, 0 or 1, of texel (x, y).
+/// ki_bc6h_anchors: for each partition the anchor, the texel of subset 1 whose index is stored
+/// without its highest bit.
 extern const uint16_t ki_bc6h_partitions[KI_BC6H_PARTITIONS];
 extern const uint8_t ki_bc6h_anchors[KI_BC6H_PARTITIONS];
 
@@ -39,21 +41,21 @@ static inline int ki_bc6h_unquantize(int value, int bits)
     return value == (1 << bits) - 1 ? 0xffff : ((value << 15) + 0x4000) >> (bits - 1);
 }
 
-/// Returns the interpolation weight, out of 64, for an index of 3 bits (two subsets) or 4 bits (one
-/// subset).
+/// Returns the weight, out of 64, with which a texel of this index mixes endpoint 1 into endpoint
+/// 0. Indices have 3 bits with two subsets, 4 bits with one subset.
 static inline int ki_bc6h_weight(int index, int subsets)
 {
     return subsets == 2 ? index * 9 + (index >> 2) : (index << 2) + (index >> 2) + (index >> 1 & 1);
 }
 
-/// Writes a block. Differences must fit in the mode's bits, and the indices of the anchors must be
-/// below half of their range.
+/// Writes a block's bits. Endpoints stored as differences must fit in the mode's bits, and the
+/// index of each subset's anchor texel must be below half of the index range.
 void ki_bc6h_pack(const ki_bc6h_block *block, uint8_t bytes[KI_BC6H_BYTES]);
-/// Reads a block. Returns false for the four reserved modes.
+/// Reads a block's bits. Returns false for the four reserved numbers of modes.
 bool ki_bc6h_unpack(const uint8_t bytes[KI_BC6H_BYTES], ki_bc6h_block *block);
 
-/// Returns the number of bytes of a picture of any size in blocks, row by row. Texels of a block
-/// outside the picture repeat the picture's edge.
+/// Returns the number of bytes of a picture of any size as BC6H blocks, stored row by row of
+/// blocks.
 size_t ki_bc6h_size(int width, int height);
 /// Encodes `picture_count` RGB pictures, stored one after the other, on all threads. Returns false
 /// if a progress report asks to stop.
@@ -61,8 +63,8 @@ bool ki_bc6h_encode(kiln_context *context, const float *rgb, int width, int heig
                     int picture_count, uint8_t *bytes);
 void ki_bc6h_decode(const uint8_t *bytes, int width, int height, float *rgb);
 
-/// Encodes the blocks of the texel rows 4 y to 4 y + 3. There is one variant for each instruction
-/// set, all with the same bits.
+/// Encodes one row of blocks, from the texel rows 4 y to 4 y + 3. Each instruction set has a
+/// variant of the function, and all variants write the same bits.
 typedef void ki_bc6h_row(const float *rgb, int width, int height, int y, uint8_t *bytes);
 extern ki_bc6h_row ki_bc6h_row_scalar, ki_bc6h_row_simd128, ki_bc6h_row_avx2, ki_bc6h_row_avx512;
 

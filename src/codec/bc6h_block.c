@@ -3,8 +3,8 @@
 #include "codec/bc6h.h"
 
 // From the Khronos Data Format Specification 1.4, "Endpoint and partition parameters for BPTC block
-// modes" and "Block descriptions for BC6H block modes". A run of bits is written as its channel,
-// endpoint, lowest bit and number of bits.
+// modes" and "Block descriptions for BC6H block modes". A run of endpoint bits is written as its
+// channel (r, g or b), the number of the endpoint, the lowest bit and the number of bits.
 const ki_bc6h_mode ki_bc6h_modes[KI_BC6H_MODES] = {
     {0,
      2,
@@ -88,8 +88,9 @@ const ki_bc6h_mode ki_bc6h_modes[KI_BC6H_MODES] = {
      "G0d1 G0c1 G0b1 G0a1 B104 B0f1 B0e1 B0d1 B0c1 B0b1 B0a1"},
 };
 
-// From the same specification, "Partition table for 2-subset BPTC" (first half) and "BPTC anchor
-// index values for the second subset of two-subset partitioning".
+// The subset of each texel, and the anchor texels of subset 1. From the same specification,
+// "Partition table for 2-subset BPTC" (first half) and "BPTC anchor index values for the second
+// subset of two-subset partitioning".
 const uint16_t ki_bc6h_partitions[KI_BC6H_PARTITIONS] = {
     0xcccc, 0x8888, 0xeeee, 0xecc8, 0xc880, 0xfeec, 0xfec8, 0xec80, 0xc800, 0xffec, 0xfe80,
     0xe800, 0xffe8, 0xff00, 0xfff0, 0xf000, 0xf710, 0x008e, 0x7100, 0x08ce, 0x008c, 0x7310,
@@ -134,7 +135,7 @@ static int hexadecimal(char digit)
     return digit <= '9' ? digit - '0' : digit - 'a' + 10;
 }
 
-// Parses the next run of bits. Returns false after the last run.
+// Parses the next run of endpoint bits from a mode's text at *at. Returns false after the last run.
 static bool next_run(const char **at, run *r)
 {
     const char *t = *at;
@@ -153,7 +154,8 @@ static int number_bits(int number)
     return number < 2 ? 2 : 5;
 }
 
-// Returns the number of bits that store a texel's index.
+// Returns the number of bits that store the index of a texel: one bit fewer for the anchor texel of
+// each subset.
 static int index_bits(const ki_bc6h_mode *mode, int partition, int texel)
 {
     bool anchor = texel == 0 || (mode->subsets == 2 && texel == ki_bc6h_anchors[partition]);

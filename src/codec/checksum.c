@@ -39,7 +39,7 @@ void ki_crc32_fill(ki_crc32_table *table)
             sum = sum >> 1 ^ (sum & 1 ? 0xedb88320 : 0);
         table->sums[0][i] = sum;
     }
-    for (int k = 1; k < 8; k++) // sums[k] holds the sum of a byte that is followed by k zero bytes
+    for (int k = 1; k < 8; k++) // sums[k][b] is the checksum of the byte b followed by k zero bytes
         for (uint32_t i = 0; i < 256; i++)
             table->sums[k][i] =
                 table->sums[k - 1][i] >> 8 ^ table->sums[0][table->sums[k - 1][i] & 255];

@@ -12,8 +12,8 @@ int ki_component_bytes(kiln_table_format format)
     return format == KILN_TABLE_FORMAT_F32 ? 4 : format == KILN_TABLE_FORMAT_U8 ? 1 : 2;
 }
 
-// Converts a value in [0, 1] to an integer of 0 to `most`. The product is exact in double
-// precision. Halves are rounded up.
+// Converts a value in [0, 1] to an integer of 0 to `most`. The product with `most` is exact in
+// double precision, and halves are rounded up.
 static uint32_t whole(float value, double most)
 {
     if (!(value > 0))

@@ -6,8 +6,8 @@
 
 #include <kiln/brdf.h>
 
-/// Returns the number of bytes of a stored number: 4, 2, 2 or 1. `format` is not
-/// KILN_TABLE_FORMAT_AUTO.
+/// Returns the number of bytes of one stored number of a table: 4 for floats, 2 for halves and
+/// 16-bit integers, 1 for 8-bit integers. `format` is not KILN_TABLE_FORMAT_AUTO.
 int ki_component_bytes(kiln_table_format format);
 
 /// Converts `count` texels of `channels` floats to texels of `stored` little-endian numbers.

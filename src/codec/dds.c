@@ -12,10 +12,11 @@
 
 enum {
     HEADER_SIZE = 124,
-    // The fields caps, size, format and levels are present.
+    // the flags that say which header fields are set: caps, height, width, format and number of
+    // levels
     FLAGS = 0x1 | 0x2 | 0x4 | 0x1000 | 0x20000,
-    FLAG_PITCH = 0x8, // the pitch field holds the bytes of a row
-    // For formats of blocks the pitch field holds the number of bytes of a face.
+    FLAG_PITCH = 0x8, // flag: the field "pitch" holds the bytes of a row of texels
+    // flag: the field "pitch" holds the bytes of a whole face, as for formats of blocks
     FLAG_LINEAR = 0x80000,
     FORMAT_SIZE = 32,
     FORMAT_FOURCC = 0x4,
@@ -26,7 +27,7 @@ enum {
     MISC_CUBE = 0x4,
     LEGACY_RGBA16F = 113,
     LEGACY_RGBA32F = 116,
-    RESERVED_AT = 32, // offset of eleven words without meaning
+    RESERVED_AT = 32, // offset of the eleven reserved words in the file
     RESERVED = 11,
 };
 
@@ -72,21 +73,22 @@ static void write_header(const kiln_map *map, const ki_pixel_format *pixel, ki_w
     ki_write_u32(w, (uint32_t)map->size);
     ki_write_u32(w, (uint32_t)map->size);
     ki_write_u32(w, (uint32_t)ki_pixels_size(pixel, map->size, rows));
-    ki_write_u32(w, 0); // depth of a volume
+    ki_write_u32(w, 0); // depth, which only volume textures have
     ki_write_u32(w, (uint32_t)map->level_count);
     write_zeros(w, RESERVED);
     ki_write_u32(w, FORMAT_SIZE);
     ki_write_u32(w, FORMAT_FOURCC);
     ki_write(w, "DX10", 4);
-    write_zeros(w, 5); // bits and masks of the older header
+    // number of bits and the bit masks of the channels, which only formats without a code have
+    write_zeros(w, 5);
     ki_write_u32(w, CAPS);
     ki_write_u32(w, CAPS2_CUBE | CAPS2_ALL_FACES);
     write_zeros(w, 3);
     ki_write_u32(w, pixel->dxgi);
     ki_write_u32(w, DIMENSION_2D);
     ki_write_u32(w, MISC_CUBE);
-    ki_write_u32(w, 1); // number of cubes
-    ki_write_u32(w, 0); // alpha mode "not stated"
+    ki_write_u32(w, 1); // array size: one cube
+    ki_write_u32(w, 0); // alpha mode: unknown
 }
 
 kiln_result ki_dds_encode(const kiln_map *map, const kiln_save_def *def, ki_writer *w,
@@ -110,9 +112,9 @@ kiln_result ki_dds_encode(const kiln_map *map, const kiln_save_def *def, ki_writ
     return KILN_OK;
 }
 
-// Writes an atlas with the older header, whose code 113 stands for four halves. Readers ignore the
-// header's reserved words, in which kiln stores its version and the name of the engine, for example
-// "kiln 0.2.0 playcanvas-dds".
+// Writes an atlas, one flat picture with all levels, with the older header of DDS. Its format code
+// 113 stands for four halves a texel. Readers ignore the header's reserved words, in which kiln
+// stores its version and the name of the engine, for example "kiln 0.2.0 playcanvas-dds".
 kiln_result ki_dds_encode_atlas(const kiln_image *image, const char *engine, ki_writer *w,
                                 kiln_error *error)
 {
@@ -138,16 +140,15 @@ kiln_result ki_dds_encode_atlas(const kiln_image *image, const char *engine, ki_
 
 typedef struct dds_header {
     uint32_t width, height, levels;
-    // True: the file is only described, and a flat picture, which kiln does not decode, is
-    // accepted.
+    // True: the file is only described and no texels are read. Flat pictures are then accepted too.
     bool describing;
     bool flat;
     char said[4 * RESERVED + 1];
     const ki_pixel_format *pixel;
 } dds_header;
 
-// Checks the pixel format, the size and the number of levels that the header states. `format` is
-// the header's number for the pixel format.
+// Checks the size, the number of levels and the pixel format that the header states, and sets the
+// row of h's format. `format` is the number for the pixel format in the file's header.
 static kiln_result check_header(dds_header *h, uint32_t format, const char *name, kiln_error *error)
 {
     if (!h->pixel)
@@ -175,7 +176,7 @@ static kiln_result read_header(ki_reader *r, const char *name, dds_header *h, ki
     h->height = ki_read_u32(r);
     h->width = ki_read_u32(r);
     ki_read_u32(r); // skips the pitch of a row or face
-    ki_read_u32(r); // depth of a volume
+    ki_read_u32(r); // skips the depth of a volume texture
     h->levels = ki_read_u32(r);
     const uint8_t *said = ki_read_bytes(r, sizeof h->said - 1);
     if (said)

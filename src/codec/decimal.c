@@ -42,7 +42,8 @@ const char *ki_parse_number(const char *text, double *value)
     return text;
 }
 
-// Writes a number with a decimal point, even if the program's locale has a decimal comma.
+// Writes a number, whose text printf has made in the program's locale, with a decimal point instead
+// of the locale's decimal comma.
 static void write_with_point(ki_writer *writer, char *text)
 {
     char *comma = strchr(text, ',');

@@ -14,39 +14,46 @@
 #include <string.h>
 
 enum {
-    WINDOW = 1 << 15, // bound of the distances
+    WINDOW = 1 << 15, // greatest distance back to the bytes that a match copies
     MIN_MATCH = 3,
     MAX_MATCH = 258,
-    NEAR = 1 << 12, // greatest distance at which a match of three bytes is used
-    CHAIN = 24,     // number of positions that are tried; half as many if there is a match already
-    NICE = 128,     // length of a match that is used without trying further positions
+    NEAR = 1 << 12, // greatest distance at which a match of only three bytes is used
+    // number of earlier positions that the search for a match tries; half as many if a match is
+    // known
+    CHAIN = 24,
+    NICE = 128, // length from which on a match is used without a search at the next position
     HASH_BITS = 15,
     NEAR_BITS = 12,
-    ITEMS = 1 << 15, // greatest number of items (literals and matches) in a block
-    LOOK = 512,      // number of items between two comparisons of the statistics
+    ITEMS = 1 << 15, // greatest number of items in a block; an item is a literal byte or a match
+    // number of items after which statistics are compared, to decide whether a new block begins
+    LOOK = 512,
     LITERALS = 286,
     DISTANCES = 30,
     LENGTH_CODES = 19,
     END_OF_BLOCK = 256,
-    CLASSES = 10,     // number of classes of items by which statistics are compared
-    MATCH_BITS = 10,  // estimated bits of a match, apart from the logarithm of its distance
-    SHORT_MATCH = 16, // length below which a match is compared with the cost of its literals
+    // number of classes of items that the statistics count: eight of literals by their three
+    // highest bits, short matches, and long matches
+    CLASSES = 10,
+    // estimated bits of a match without the bits of its distance, whose logarithm is added
+    MATCH_BITS = 10,
+    // a match of fewer bytes is used only if the bytes would cost more bits as literals
+    SHORT_MATCH = 16,
 };
 
 struct ki_deflater {
-    // State of the search for matches. Positions count from the first byte that is still known.
+    // Input: positions count from the first byte before the input that a match may refer to.
     const uint8_t *bytes;
-    int32_t end, inserted; // positions below `inserted` are in the hash chains
+    int32_t end, inserted; // all positions below `inserted` are in the hash chains
     int hash_bits;
     int32_t first[1 << HASH_BITS], threes[1 << NEAR_BITS], next[WINDOW];
-    // Items: a literal byte, or the length of a match << 16 | its distance.
+    // Items of the current block. An item is a literal byte, or a match as length << 16 | distance.
     uint32_t items[ITEMS];
-    // number of items of the block, and number of items whose classes are counted in `before`
+    // number of items of the block, and number of its items that `before` counts by class
     int count, looked;
-    int32_t start, at; // first position of the block, and the position after its last item
+    int32_t start, at; // position of the block's first byte, and the position after its last item
     uint32_t before[CLASSES], recent[CLASSES];
-    uint8_t literal_cost[256]; // estimated cost of each literal in eighths of a bit
-    // State of the output.
+    uint8_t literal_cost[256]; // estimated bits of each byte as a literal, in eighths of a bit
+    // Output, in which `held` bits of `bits` wait for a whole byte.
     uint8_t *out, *out_end;
     uint64_t bits;
     int held;
@@ -63,7 +70,8 @@ static const uint16_t length_from[29] = {3,  4,  5,  6,   7,   8,   9,   10,  11
                                          15, 17, 19, 23,  27,  31,  35,  43,  51, 59,
                                          67, 83, 99, 115, 131, 163, 195, 227, 258};
 
-// Extra bits of a length symbol, counted from the first of the 29.
+// Returns the number of extra bits after a length symbol; `symbol` counts from deflate's symbol
+// 257.
 static int length_extra(int symbol)
 {
     return symbol < 8 || symbol == 28 ? 0 : symbol / 4 - 1;
@@ -74,7 +82,8 @@ static int log2_of(uint32_t x)
     return 31 - __builtin_clz(x);
 }
 
-// Returns the logarithm to base 2 in eighths. Its fraction is the three bits after the highest bit.
+// Returns the logarithm to base 2 in eighths, rounded down. The fraction is linear: the three bits
+// after the highest bit.
 static uint32_t log2_eighths(uint32_t x)
 {
     int log = log2_of(x);
@@ -95,7 +104,8 @@ static int distance_extra(int symbol)
     return symbol < 4 ? 0 : symbol / 2 - 1;
 }
 
-// Writes the whole bytes that are held. The caller has checked that the output has room for them.
+// Writes the whole bytes that wait in d->bits. The caller has checked that the output has room for
+// them.
 static void flush(ki_deflater *d)
 {
     if (d->out_end - d->out >= 8) {
@@ -109,7 +119,8 @@ static void flush(ki_deflater *d)
         *d->out++ = (uint8_t)d->bits;
 }
 
-// Appends at most 16 bits. At most 48 bits may be appended without a call of flush().
+// Appends at most 16 bits to those that wait for output. At most 48 bits may be appended without a
+// call of flush().
 static void put(ki_deflater *d, uint32_t value, int count)
 {
     d->bits |= (uint64_t)value << d->held;
@@ -142,8 +153,9 @@ static void make_fixed_codes(ki_deflater *d)
     ki_huffman_assign(&d->distances, DISTANCES, with_distances, 5);
 }
 
-// The lengths of the literal code and of the distance code, as a block stores them. Bits 0 to 4 of
-// an item are a symbol of the code of lengths, the bits from 8 on the symbol's extra bits.
+// The code lengths of the literal code and of the distance code, as a block's header stores them:
+// compressed by a third code. Bits 0 to 4 of an item are a symbol of the third code, the bits from
+// 8 on the symbol's extra bits.
 typedef struct header {
     uint16_t items[LITERALS + DISTANCES];
     int count, literals, distances, lengths;
@@ -163,8 +175,8 @@ static void add_item(header *h, int symbol, int follows)
     h->items[h->count++] = (uint16_t)(follows << 8 | symbol);
 }
 
-// Adds a run of equal lengths. Symbol 16 repeats the previous length 3 to 6 times, symbols 17 and
-// 18 stand for 3 to 10 and 11 to 138 zeros.
+// Adds a run of equal code lengths to a block's header. Symbol 16 repeats the previous length 3 to
+// 6 times, symbols 17 and 18 stand for 3 to 10 and 11 to 138 zeros.
 static void add_run(header *h, int length, int run)
 {
     if (length) {
@@ -284,7 +296,8 @@ static void put_items(ki_deflater *d, int count)
 static uint64_t stored_bits(size_t size)
 {
     size_t pieces = size ? (size + 65534) / 65535 : 1;
-    // Each piece takes 3 bits of header, up to 7 bits of padding, and 32 bits for its length.
+    // An uncompressed block is cut into pieces of at most 65535 bytes. Each piece takes 3 bits of
+    // header, up to 7 bits of padding, and 32 bits for its length.
     return 8 * (uint64_t)size + 42 * (uint64_t)pieces;
 }
 
@@ -297,14 +310,16 @@ static void put_stored(ki_deflater *d, const uint8_t *bytes, size_t size, bool l
         put_flush(d, 0, -d->held & 7);
         put_flush(d, (uint32_t)count, 16);
         put_flush(d, (uint32_t)~count & 0xffff, 16);
-        memcpy(d->out, bytes, count); // the buffer of bits is empty here
+        // put_flush() has written all bits, since the padding above ends at a byte
+        memcpy(d->out, bytes, count);
         d->out += count;
         bytes += count;
     } while (size);
 }
 
-// Writes the first `count` items, which stand for the bytes from `start` to `end`, as a block in
-// the shortest of its three forms, if the block fits in the output.
+// Writes the first `count` items as a block in the shortest of deflate's three forms: with codes of
+// its own, with the fixed codes, or uncompressed. The items stand for the bytes from d->start to
+// `end`. Nothing is written if the block does not fit in the output.
 static void put_block(ki_deflater *d, int count, int32_t end, bool last)
 {
     size_t size = (size_t)(end - d->start);
@@ -330,7 +345,8 @@ static void put_block(ki_deflater *d, int count, int32_t end, bool last)
     put_items(d, count);
 }
 
-// Writes the first `count` items as a block, and keeps the other items.
+// Writes the first `count` items as a block. The other items are kept as the beginning of the next
+// block.
 static void write_block(ki_deflater *d, int count, int32_t end, bool last)
 {
     if (!d->full)
@@ -344,8 +360,9 @@ static void write_block(ki_deflater *d, int count, int32_t end, bool last)
 
 // ----------------------------------------------------------------------------------------- splitting
 
-// Returns whether the items since the last comparison differ in kind from the earlier items of the
-// block: their distributions over the classes differ by more than a third.
+// Returns whether the latest items differ in kind from the earlier items of the block. Both are
+// counted by class (`recent` and `before`), and the two distributions differ in kind if the sum of
+// the differences of their shares exceeds a third.
 static bool is_new_kind(const ki_deflater *d)
 {
     uint64_t old = (uint64_t)d->looked, new = (uint64_t)(d->count - d->looked), difference = 0;
@@ -356,8 +373,8 @@ static bool is_new_kind(const ki_deflater *d)
     return 3 * difference > old * new;
 }
 
-// Compares the statistics, after every LOOK items. If the latest items are of a new kind, a block
-// ends before them.
+// Called after every LOOK items. If the latest items are of a new kind, ends the block before them,
+// at the position `before_recent`.
 static void compare_statistics(ki_deflater *d, int32_t before_recent)
 {
     if (d->looked >= 4 * LOOK && is_new_kind(d))
@@ -419,8 +436,8 @@ typedef struct match {
     int32_t length, distance;
 } match;
 
-// Finds the longest match at a position that is longer than `best`. Returns the length `best` and
-// distance 0 if there is no longer match.
+// Finds the longest match at a position, if it is longer than `best` bytes, by trying at most
+// `tries` earlier positions. Otherwise returns the length `best` and distance 0.
 static inline match find(ki_deflater *d, int32_t position, int32_t best, int tries)
 {
     match found = {best, 0};
@@ -460,7 +477,8 @@ static void add(ki_deflater *d, uint32_t item, int32_t length)
     d->recent[item < 256 ? item >> 5 : length < 9 ? 8 : 9]++;
 }
 
-// Estimates the cost of each byte as a literal: the negative logarithm of its relative frequency.
+// Estimates the bits of each byte as a literal: the negative logarithm to base 2 of its share of
+// the input, at most 15 bits.
 static void estimate_literals(ki_deflater *d)
 {
     uint32_t counts[256] = {0}, most = 8 * 15;
@@ -473,7 +491,7 @@ static void estimate_literals(ki_deflater *d)
     }
 }
 
-// Returns whether a match takes fewer bits than its literals.
+// Returns whether a match takes fewer bits than its bytes would take as literals.
 static bool pays(const ki_deflater *d, match m)
 {
     if (!m.distance || m.length >= SHORT_MATCH)
@@ -495,7 +513,7 @@ static void compress(ki_deflater *d)
         bool taken = pays(d, m);
         while (taken && m.length < NICE) {
             match later = find(d, d->at + 1, m.length - 1, CHAIN / 2);
-            // a bit more in the distance cancels a quarter of a byte in the length
+            // one byte more in the length is worth as much as four bits less in the distance
             int gain = 4 * (later.length - m.length);
             if (!later.distance ||
                 gain + log2_of((uint32_t)m.distance) - log2_of((uint32_t)later.distance) <= 2)
@@ -532,8 +550,8 @@ void ki_deflater_free(ki_deflater *d)
 
 size_t ki_deflate_bound(size_t size)
 {
-    // No block is longer than in its stored form. A block has at least 4 * LOOK items, each of at
-    // least one byte, except the last block, which may be shorter.
+    // No block is longer than its bytes stored uncompressed. Each block but the last has at least 4
+    // * LOOK items, and each item stands for at least one byte.
     size_t blocks = size / (4 * LOOK) + 1;
     return (size_t)(stored_bits(size) / 8) + 6 * blocks + 16;
 }
@@ -549,7 +567,8 @@ size_t ki_deflate_part(ki_deflater *d, const uint8_t *plain, size_t history, siz
     d->count = d->looked = 0;
     memset(d->before, 0, sizeof d->before);
     memset(d->recent, 0, sizeof d->recent);
-    d->hash_bits = 10; // a short input gets a small hash table, since the table must be cleared
+    // a short input gets a small hash table, because the table must be cleared for each input
+    d->hash_bits = 10;
     while (d->hash_bits < HASH_BITS && d->end >> d->hash_bits)
         d->hash_bits++;
     memset(d->first, 0xff, sizeof *d->first << d->hash_bits);

@@ -5,12 +5,12 @@
 
 #include "base/base.h"
 
-/// Decompresses zlib data into exactly `size` bytes. Returns false if the data are damaged or have
-/// another size.
+/// Decompresses zlib data into exactly `size` bytes. Returns false if the data are damaged or
+/// decompress to another number of bytes.
 bool ki_inflate(const uint8_t *packed, size_t packed_size, uint8_t *plain, size_t size);
 /// Decompresses as ki_inflate does, but always by kiln's own code, even in a build with libdeflate.
 bool ki_inflate_own(const uint8_t *packed, size_t packed_size, uint8_t *plain, size_t size);
-/// Decompresses only the first `size` bytes of the data. Returns false if the data have fewer. The
+/// Decompresses only the first `size` bytes. Returns false if the data hold fewer bytes. The
 /// checksum after the data is not checked.
 bool ki_inflate_beginning(const uint8_t *packed, size_t packed_size, uint8_t *plain, size_t size);
 
@@ -23,9 +23,10 @@ void ki_deflater_free(ki_deflater *deflater);
 size_t ki_deflate(ki_deflater *deflater, const uint8_t *plain, size_t size, uint8_t *packed,
                   size_t room);
 
-/// Compresses one input in parts. The `history` bytes before `plain` (of which at most 32768 are
-/// used) are those of the earlier parts. The outputs of all parts, joined, are the zlib data.
-/// `room` must be at least ki_deflate_bound(size).
+/// Which part of the data ki_deflate_part compresses, for an input that is compressed in parts. The
+/// outputs of all parts, joined, are the zlib data. The `history` bytes before `plain` (of which at
+/// most 32768 are used) are the end of the parts before. `room` must be at least
+/// ki_deflate_bound(size).
 typedef enum ki_deflate_place {
     KI_DEFLATE_FIRST = 1,
     KI_DEFLATE_LAST = 2,
@@ -34,9 +35,11 @@ size_t ki_deflate_part(ki_deflater *deflater, const uint8_t *plain, size_t histo
                        int place, uint8_t *packed, size_t room);
 size_t ki_deflate_bound(size_t size);
 
-/// Adds bytes to zlib's checksum, Adler-32. The first sum is 1.
+/// Adds bytes to zlib's checksum, Adler-32, and returns the new checksum. The checksum of no bytes
+/// is 1.
 uint32_t ki_adler32(uint32_t sum, const uint8_t *bytes, size_t size);
-/// Adds bytes to PNG's checksum, CRC-32. The first sum is 0. ki_crc32_fill fills the table.
+/// Adds bytes to PNG's checksum, CRC-32, whose value for no bytes is 0. ki_crc32_fill fills the
+/// table.
 typedef struct ki_crc32_table {
     uint32_t sums[8][256];
 } ki_crc32_table;

@@ -24,9 +24,10 @@ double ki_env_roughness(int level, double lod_scale, int size)
 
 // --------------------------------------------------------------------------------------- harmonics
 
-// Factors of the coefficients of Babylon.js' polynomial. Irradiance / pi has the harmonics of
-// radiance times 1, 2/3 or 1/4 by band. Babylon.js multiplies the polynomial's coefficients once
-// more by these factors and by the constants of the basis functions, and the shader undoes that
+// Factors between the coefficients of radiance in spherical harmonics and those of the polynomial
+// in x, y and z that an .env file stores. Irradiance / pi has the harmonics of radiance times 1,
+// 2/3 or 1/4 by band. Babylon.js multiplies the polynomial's coefficients by these numbers and by
+// the constants of the basis functions once more, and its shader divides by them
 // (SphericalPolynomial.updateFromHarmonics and SphericalHarmonics.FromPolynomial). The constant 1
 // is written as x^2 + y^2 + z^2.
 static void find_factors(double *k0, double *k1, double *k2, double *k3)
@@ -55,9 +56,9 @@ static void make_polynomial(const kiln_sh *sh, double polynomial[9][3])
     }
 }
 
-// Computes harmonics from the polynomial. Its coefficients of x^2, y^2 and z^2 are, for the
-// coefficients c, z2 and x2_y2 of the harmonics 1, 3z^2 - 1 and x^2 - y^2: c - z2 + x2_y2, c - z2 -
-// x2_y2 and c + 2 z2.
+// Computes radiance in spherical harmonics from an .env file's polynomial. With c, z2 and x2_y2 the
+// coefficients of the harmonics 1, 3z^2 - 1 and x^2 - y^2, the polynomial's coefficients of x^2,
+// y^2 and z^2 are c - z2 + x2_y2, c - z2 - x2_y2 and c + 2 z2.
 static void make_harmonics(double polynomial[9][3], kiln_file_info *info)
 {
     double k0, k1, k2, k3;
@@ -124,8 +125,8 @@ kiln_result ki_env_encode(const kiln_map *map, double lod_scale, const kiln_sh *
 
 // ------------------------------------------------------------------------------------------ reading
 
-// The values of a manifest. The images follow the manifest in the file and take at least
-// `image_bytes` bytes.
+// The values of an .env file's JSON manifest. The images follow the manifest in the file and take
+// at least `image_bytes` bytes.
 typedef struct manifest {
     int version, width, image_count;
     // Number of bytes from the end of the manifest to the end of the last image.
@@ -257,7 +258,7 @@ kiln_result ki_env_describe(const uint8_t *bytes, size_t size, const char *name,
     if (!end)
         return ki_fail(error, KILN_ERROR_FORMAT,
                        "%s: the manifest does not end within the file's %zu bytes", name, size);
-    manifest m = {.lod_scale = 0.8}; // the scale that Babylon.js uses if a file states no scale
+    manifest m = {.lod_scale = 0.8}; // the level scale that Babylon.js uses if a file states none
     ki_json json = ki_json_make(from, (size_t)(end - from));
     read_manifest(&json, &m);
     if (json.failed)

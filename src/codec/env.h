@@ -4,11 +4,11 @@
 
 #include "codec/codec.h"
 
-/// Returns the roughness of a level. Babylon.js reads level log2(size (r^2 + 0.0005)) lod_scale at
-/// roughness r.
+/// Returns the roughness of a level of a cube. Babylon.js reads level log2(size (r^2 + 0.0005))
+/// lod_scale at roughness r, with `size` the texels along an edge of level 0.
 double ki_env_roughness(int level, double lod_scale, int size);
-/// Appends a .env file with a cube, which has all levels down to size 1, and the first three bands
-/// of radiance.
+/// Appends a .env file with a cube, which has all levels down to a single texel, and the first
+/// three bands of its radiance in spherical harmonics.
 kiln_result ki_env_encode(const kiln_map *map, double lod_scale, const kiln_sh *sh,
                           ki_writer *writer, kiln_error *error);
 kiln_result ki_env_describe(const uint8_t *bytes, size_t size, const char *name,

@@ -54,16 +54,18 @@ typedef struct counts {
 
 typedef struct dwa_rule {
     char suffix[32];
-    // place: position of the channel in a colour triple, -1 for a channel outside of triples
+    // place: position of the channel in a colour triple (0 red, 1 green, 2 blue), -1 for a channel
+    // that belongs to no triple; type: ki_exr_type
     int scheme, place, type;
     bool any_case;
 } dwa_rule;
 
-// How one channel is stored.
+// How the chunk stores the samples of one channel.
 typedef struct dwa_plan {
     int scheme;
-    int width, height;   // size of the channel in samples
-    const uint8_t *from; // raw bytes of a channel that is not stored by the transform
+    int width, height; // size of the channel in samples
+    // the channel's raw bytes, unless the channel is stored by the cosine transform
+    const uint8_t *from;
     bool done;
 } dwa_plan;
 
@@ -100,7 +102,8 @@ static void add_rule(dwa *d, const char *suffix, int scheme, int place, int type
     added->any_case = any_case;
 }
 
-// Adds the fixed rules of files before version 2, which do not store their rules.
+// Adds the rules of files before version 2, which do not store rules: which channels, by the end of
+// their names, are stored by which scheme (cosine transform, runs or zlib).
 static void add_old_rules(dwa *d)
 {
     static const struct {
@@ -115,8 +118,10 @@ static void add_old_rules(dwa *d)
         add_rule(d, "a", SCHEME_RUNS, -1, type, true);
 }
 
-// Reads the rules of a chunk. A rule is a suffix with its NUL; a byte with the position + 1 (4
-// bits), the scheme (2 bits) and, in the last bit, whether case is ignored; and the pixel type.
+// Reads the rules of a chunk: which channels are stored by which scheme (cosine transform, runs or
+// zlib). A rule is the last part of the channels' names with its NUL; a byte with the place in a
+// colour triple + 1 (4 bits), the scheme (2 bits) and, in the last bit, whether case is ignored;
+// and the pixel type.
 static bool read_rules(dwa *d, ki_reader *r)
 {
     const uint8_t *head = ki_read_bytes(r, 2);
@@ -162,7 +167,8 @@ static bool rule_fits(const dwa_rule *rule, const char *suffix, int type)
     return *wanted == *suffix;
 }
 
-// Compares the layers of two channels by their names before the last dot.
+// Compares the layers of two channels, which are the parts of the channels' names before the last
+// dot.
 static int compare_layers(const char *a, const char *b)
 {
     size_t length_a = (size_t)(ki_exr_suffix(a) - a), length_b = (size_t)(ki_exr_suffix(b) - b);
@@ -174,13 +180,13 @@ static int compare_layers(const char *a, const char *b)
 
 // --------------------------------------------------------------------------------------- transform
 
-// One of the two passes of the inverse transform, for eight columns at once. The even coefficients
-// give the part that is equal at mirrored positions, the odd coefficients the part that changes
-// sign.
+// One of the two passes of the inverse cosine transform of an 8 x 8 block, for eight columns at
+// once. The even coefficients give the part that is equal at the samples k and 7 - k, the odd
+// coefficients the part that has opposite signs there.
 static void inverse_pass(float v[8][8])
 {
     // Halves of cos(pi / 4), cos(pi / 16), cos(pi / 8), cos(3 pi / 16), cos(5 pi / 16), cos(3 pi /
-    // 8) and cos(7 pi / 16).
+    // 8) and cos(7 pi / 16), the factors of the transform of eight samples.
     static const float a = 0.35355339F, b = 0.49039264F, c = 0.46193977F, d = 0.41573481F,
                        e = 0.27778512F, f = 0.19134172F, g = 0.09754516F;
     for (int i = 0; i < 8; i++) {
@@ -203,7 +209,8 @@ static void inverse_pass(float v[8][8])
     }
 }
 
-// Position, as column * 8 + row, of each coefficient in zigzag order.
+// Position of each coefficient, as column * 8 + row, in the zigzag order in which a block stores
+// coefficients.
 static const uint8_t zigzag[64] = {0,  8,  1,  2,  9,  16, 24, 17, 10, 3,  4,  11, 18, 25, 32, 40,
                                    33, 26, 19, 12, 5,  6,  13, 20, 27, 34, 41, 48, 56, 49, 42, 35,
                                    28, 21, 14, 7,  15, 22, 29, 36, 43, 50, 57, 58, 51, 44, 37, 30,
@@ -224,9 +231,9 @@ static void inverse_transform(const uint16_t coefficients[64], float samples[64]
     memcpy(samples, rows, sizeof rows);
 }
 
-// Reads the coefficients of a block after its first one: values, runs of zeros (0xff01 to 0xff3f)
-// and an end mark. Returns the position of the last coefficient that is not zero, or -1 if the data
-// are damaged.
+// Reads all coefficients of a block but the first, which is stored elsewhere: values, runs of zeros
+// (0xff01 to 0xff3f) and an end mark. Returns the position of the last coefficient that is not
+// zero, or -1 if the data are damaged.
 static int read_block(dwa *d, uint16_t block[64])
 {
     int last = 0;
@@ -246,7 +253,7 @@ static int read_block(dwa *d, uint16_t block[64])
     return last;
 }
 
-// Writes a row of a block, at most 8 samples, to its place in the raw lines.
+// Writes a row of a decoded block, at most 8 samples, to its place in the lines of the chunk's box.
 static void put_row(const dwa *d, int bytes, bool linear, const uint16_t *halfs, int count,
                     uint8_t *to)
 {
@@ -334,14 +341,15 @@ static bool transform(dwa *d, const int *members, int count, size_t *const offse
 
 // ------------------------------------------------------------------------------------------- chunk
 
-// Three channels of one layer by their position in a colour triple; -1 for a missing channel.
+// The channels of one layer that are red, green and blue of a colour, as indices of channels; -1
+// for a missing channel.
 typedef struct triple {
     const char *name; // name of one of the channels
     int member[3];
 } triple;
 
-// Finds the scheme of every channel, and the colour triples in the order of their layers. Returns
-// the number of triples.
+// Sets for every channel the scheme by which it is stored (cosine transform, runs or zlib), and
+// lists the colour triples, sorted by the names of their layers. Returns the number of triples.
 static int make_plan(dwa *d, triple *triples)
 {
     const ki_exr_box *box = d->box;
@@ -407,8 +415,8 @@ static size_t block_count(const dwa *d)
     return count;
 }
 
-// Copies a channel that was not transformed: its lines, or for runs its planes of bytes of equal
-// significance.
+// Copies a channel that was stored without the cosine transform: line by line, or, if it was stored
+// as runs, from planes that hold the most significant byte of every sample, then the next byte.
 static void copy_plain(dwa *d, int index, const size_t *offset)
 {
     const dwa_plan *plan = &d->plans[index];
@@ -426,13 +434,16 @@ static void copy_plain(dwa *d, int index, const size_t *offset)
     }
 }
 
-// The packed sections of a chunk, and the memory for their unpacked content.
+// The packed sections of a chunk, and the memory for their unpacked content: channels compressed by
+// zlib; coefficients of the cosine transform after the first of each block (ac); first coefficients
+// (dc); and channels compressed as runs.
 typedef struct sections {
     const uint8_t *zlib, *ac, *dc, *runs; // the packed sections
-    uint8_t *plain; // unpacked channels that zlib compressed, then channels that are stored as runs
-    uint8_t *run_bytes; // runs after the first of two steps of unpacking
+    // unpacked channels that zlib compressed, followed by channels that are stored as runs
+    uint8_t *plain;
+    uint8_t *run_bytes; // the runs after unpacking by zlib, before they are expanded
     uint16_t *ac_values, *dc_values, *scratch;
-    size_t *offset; // byte offsets of the lines of three channels
+    size_t *offset; // byte offsets of the lines of up to three channels in the box
     triple *triples;
     size_t zlib_size, runs_size, blocks;
 } sections;
@@ -455,7 +466,8 @@ static bool read_sections(dwa *d, const uint8_t *packed, size_t packed_size, sec
     return !r.failed;
 }
 
-// Checks that every count is what the box requires. A block may have fewer than 64 coefficients.
+// Checks that the counts in the chunk's header are what the channels of the box require. A block
+// may have fewer than 64 coefficients.
 static bool check_counts(const dwa *d, sections *s)
 {
     const counts *n = &d->counts;
@@ -509,7 +521,8 @@ static kiln_result unpack_sections(kiln_context *context, dwa *d, const sections
     return unpack_ac(context, n, s);
 }
 
-// Decodes the colour triples, which are stored first, in the order of their layers.
+// Decodes the colour triples (red, green and blue of a layer), which are stored before all other
+// channels, sorted by the names of their layers.
 static bool transform_triples(dwa *d, const triple *triples, int count, size_t *const lines[3])
 {
     for (int t = 0; t < count; t++) {

@@ -7,8 +7,9 @@
 #include <math.h>
 #include <string.h>
 
-// Filament's factor of a basis function is the coefficient of radiance, times the cosine lobe's
-// factor of the band over pi, times the constant of the basis function.
+// The factor of each basis function in Filament's polynomial is the coefficient of radiance in
+// spherical harmonics, times the factor by which the cosine lobe multiplies the band, over pi,
+// times the constant of the basis function.
 static const double cosine[9] = {1, 2.0 / 3, 2.0 / 3, 2.0 / 3, 0.25, 0.25, 0.25, 0.25, 0.25};
 
 static double basis(int i)
@@ -43,7 +44,8 @@ bool ki_filament_sh_read(const char *text, kiln_file_info *info)
         if (!text)
             return false;
         sh[i / 3][i % 3] = ki_info_number(value / (cosine[i / 3] * basis(i / 3)));
-        if (i % 3 == 2 && *text == ')') // the name of the factor, in parentheses
+        // skips the text after the three numbers of "(0.1, 0.2, 0.3); // L00, irradiance"
+        if (i % 3 == 2 && *text == ')')
             text += strcspn(text, "\n");
     }
     memcpy(info->sh, sh, sizeof sh);

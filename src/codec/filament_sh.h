@@ -5,11 +5,12 @@
 
 #include "base/bytes.h"
 
-/// Writes the factors computed from three bands of radiance. `lines` true: one line for each factor
-/// with its name, as in sh.txt; false: the numbers alone, as in KTX files.
+/// Writes Filament's nine factors, computed from three bands of radiance. `lines` true: one line
+/// for each factor with its name, as in Filament's sh.txt; false: the numbers alone, as in KTX
+/// files.
 void ki_filament_sh_write(ki_writer *writer, const kiln_sh *sh, bool lines);
-/// Reads either form of text, which ends in NUL, as harmonics of radiance. Returns false if the
-/// text has another form.
+/// Reads Filament's nine factors from text that ends in NUL, with or without their names, and
+/// stores them in `info` as harmonics of radiance. Returns false if the text has another form.
 bool ki_filament_sh_read(const char *text, kiln_file_info *info);
 
 #endif

@@ -4,7 +4,8 @@
 
 #include "base/base.h"
 
-/// Zeroes the description, except for one face, one slice and -1 for each roughness.
+/// Sets the description of a file of `byte_count` bytes to zero, except for one face, one slice and
+/// -1 for each level's roughness.
 void ki_file_info_clear(kiln_file_info *info, size_t byte_count);
 /// Copies a text up to its first character that is not printable, truncated to `room`.
 void ki_copy_printable(char *to, size_t room, const char *text);

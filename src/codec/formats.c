@@ -315,7 +315,7 @@ kiln_result ki_decode(kiln_context *context, const uint8_t *bytes, size_t size, 
     }
     bool is_map = info->face_count == 6;
     const char *layout = is_map ? "cube" : ki_layout_name(info->width, info->height);
-    if (!info->layout[0]) // the file does not state its layout
+    if (!info->layout[0]) // such a file does not state the layout of its picture
         snprintf(info->layout, sizeof info->layout, "%s", layout ? layout : "image");
     if (decoded) {
         decoded->is_map = is_map;

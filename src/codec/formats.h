@@ -15,14 +15,15 @@ enum {
     KI_HOLDS_CODE = 16, ///< functions that look tables up, and closed forms
 };
 
-/// What a picture's file states about the picture, and how the picture's numbers are stored.
+/// What a picture's file states about the picture, and how the picture's numbers are stored: the
+/// arguments of a format's writer.
 typedef struct ki_picture_about {
     /// True: the picture is a level of a map, stored by `format`. False: the picture holds numbers,
     /// stored as exactly as the file allows.
     bool radiance;
     kiln_format format;
     bool panorama, octahedron;
-    float roughness; ///< roughness of the level; negative if the picture has no roughness
+    float roughness; ///< roughness of the level; negative if the picture is no level
 } ki_picture_about;
 
 typedef kiln_result ki_read_picture(kiln_context *context, const uint8_t *bytes, size_t size,
@@ -41,31 +42,36 @@ typedef kiln_result ki_write_cube(const kiln_map *map, const kiln_save_def *def,
 typedef struct ki_file_format {
     const char *name;       ///< name as in kiln_file_info, for example "ktx2"
     const char *endings[3]; ///< endings of paths, in lower case with the dot; NULL after the last
-    /// First bytes of every file; NULL if the first bytes do not identify the format.
+    /// The bytes with which every file of the format begins; NULL if formats are told apart in
+    /// another way.
     const char *first;
     int first_count;
-    /// For formats of text without such first bytes: returns whether bytes are of this format.
+    /// For text formats, whose first bytes vary: returns whether bytes are of this format.
     bool (*begins)(const uint8_t *bytes, size_t size);
-    unsigned holds; ///< bits KI_HOLDS_...: what the files can hold
-    /// Formats of maps, as bits 1 << kiln_format; KILN_FORMAT_AUTO is always allowed.
+    unsigned holds; ///< what files of the format can hold, a sum of KI_HOLDS_... constants
+    /// Texel formats that files of maps can have, a sum of 1 << kiln_format; KILN_FORMAT_AUTO is
+    /// always allowed.
     unsigned pixel_formats;
-    unsigned table_formats;         ///< formats of tables, as bits 1 << kiln_table_format
-    kiln_table_format table_format; ///< format that KILN_TABLE_FORMAT_AUTO stands for
+    /// number formats that files of tables can have, a sum of 1 << kiln_table_format
+    unsigned table_formats;
+    /// number format of a table if the caller chooses KILN_TABLE_FORMAT_AUTO
+    kiln_table_format table_format;
     bool zstd;
-    double limit; ///< largest radiance with KILN_FORMAT_AUTO; 0 for no limit
-    /// Reader. A format that is recognised by its bytes has one of read_picture, read and describe.
+    double limit; ///< largest radiance that files with KILN_FORMAT_AUTO hold; 0 for no limit
+    /// Reading: a format that is recognised by its first bytes has exactly one of the three
+    /// functions read_picture, read and describe.
     ki_read_picture *read_picture;
     ki_read_file *read;
-    ki_describe_file *describe; ///< for files whose texels are not read
+    ki_describe_file *describe; ///< describes files whose texels kiln does not read
     ki_write_picture *write_picture;
     ki_write_cube *write_cube;
 } ki_file_format;
 
-/// Returns the row for the ending of a path, in lower or upper case, or NULL if no format has the
-/// ending.
+/// Returns the row of the table for the ending of a path, in lower or upper case, or NULL if no
+/// format has the ending.
 const ki_file_format *ki_file_format_of_path(const char *path);
-/// Returns whether `format` is not NULL and its files can hold one of the contents in `holds`, a
-/// sum of KI_HOLDS constants.
+/// Returns whether files of a format can hold at least one of the contents in `holds`, a sum of
+/// KI_HOLDS constants. False if `format` is NULL.
 static inline bool ki_file_holds(const ki_file_format *format, unsigned holds)
 {
     return format && (format->holds & holds);
@@ -77,9 +83,9 @@ kiln_result ki_check_zstd(const char *path, const ki_file_format *file, int leve
                           kiln_error *error);
 
 enum { KI_ENDINGS_TEXT = 96 };
-/// Writes the endings of all formats that hold one of the things in `holds` to `text`, for example
-/// ".exr .hdr or .png", and returns `text`. `more`, which may be NULL, is a further ending at the
-/// end of the list.
+/// Writes the endings of all formats that hold at least one of the contents in `holds`, a sum of
+/// KI_HOLDS constants, to `text`, for example ".exr .hdr or .png", and returns `text`. `more`,
+/// which may be NULL, is a further ending at the end of the list.
 const char *ki_list_endings(unsigned holds, const char *more, char text[KI_ENDINGS_TEXT]);
 /// Writes the endings of all formats that store maps in `format` to `text`, and returns `text`.
 const char *ki_list_endings_of_format(kiln_format format, char text[KI_ENDINGS_TEXT]);

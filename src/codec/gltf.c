@@ -22,9 +22,10 @@ enum {
     CHUNK_BIN = 0x4e4942
 };
 
-// The extension asks for "spherical harmonics coefficients for irradiance": those of radiance times
-// pi, 2 pi / 3 and pi / 4 by band. It leaves their signs open. kiln uses Sloan's signs ("Stupid
-// Spherical Harmonics Tricks", 2008, appendix A2), which Babylon.js reads.
+// Factors from harmonics of radiance to those that a light stores. The extension asks for
+// "spherical harmonics coefficients for irradiance": those of radiance times pi, 2 pi / 3 and pi /
+// 4 by band. The extension leaves the signs of the basis functions open. kiln uses Sloan's signs
+// ("Stupid Spherical Harmonics Tricks", 2008, appendix A2), which Babylon.js reads.
 static const double irradiance_factor[9] = {
     KI_PI,         KI_PI *(-2.0 / 3), KI_PI *(2.0 / 3), KI_PI *(-2.0 / 3), KI_PI * 0.25,
     KI_PI * -0.25, KI_PI * 0.25,      KI_PI * -0.25,    KI_PI * 0.25};
@@ -100,11 +101,12 @@ kiln_result ki_gltf_encode(const kiln_map *map, const kiln_sh *sh, ki_writer *w,
 
 // ------------------------------------------------------------------------------------------ reading
 
-// The values of the first light in the JSON.
+// What the JSON of a glTF file says about its first light.
 typedef struct light {
     char generator[64];
     int width, level_count;
-    bool found, uneven; // uneven: a level has more or fewer than six images
+    // found: the file has a light; uneven: a level of the light has more or fewer than six images
+    bool found, uneven;
     int sh_count;
     double sh[9][3];
     // number of bytes from the buffer's beginning to the end of the last image

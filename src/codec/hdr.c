@@ -15,11 +15,15 @@
 #include <stdio.h>
 #include <string.h>
 
-// How the ends of the lines are found.
+// How the bytes of a file's lines are encoded, by which the ends of the lines are found.
 typedef enum hdr_coding {
-    CODING_BY_START, // as Radiance does: the first texel of a line says whether it has new runs
-    CODING_FLAT,     // four bytes for each texel, whatever their values
-    CODING_NEW_RUNS, // every line has new runs, although its length does not allow them
+    // each line by Radiance's rules: its first texel says whether it has run-lengths of the new
+    // kind
+    CODING_BY_START,
+    CODING_FLAT, // four bytes for each texel, whatever their values
+    // every line has run-lengths of the new kind, although Radiance's rules forbid them for its
+    // length
+    CODING_NEW_RUNS,
 } hdr_coding;
 
 typedef struct hdr_file {
@@ -31,7 +35,7 @@ typedef struct hdr_file {
     hdr_coding coding;
     size_t *line_start;
     int task_count;
-    uint8_t *texels; // texels of the line that each task decodes
+    uint8_t *texels; // memory for the texels of one line, for each task
     float *pixels;
     float scale[3][256];
 } hdr_file;
@@ -47,8 +51,9 @@ static bool has_new_runs(const hdr_file *f, const uint8_t *at, size_t left)
     return allowed && left >= 4 && at[0] == 2 && at[1] == 2 && (at[2] << 8 | at[3]) == length;
 }
 
-// Decodes one line of `line_length` texels to four bytes each, or only finds the end of the line if
-// `texels` is NULL. Returns the number of bytes read, 0 if the data are damaged.
+// Decodes a line with run-lengths of the new kind, or only finds its end if `texels` is NULL. The
+// line's `line_length` texels become four bytes each. Returns the number of bytes read, 0 if the
+// data are damaged.
 static size_t read_new_runs(const hdr_file *f, const uint8_t *at, size_t left, uint8_t *texels)
 {
     size_t in = 4;
@@ -70,9 +75,9 @@ static size_t read_new_runs(const hdr_file *f, const uint8_t *at, size_t left, u
     return in;
 }
 
-// Decodes a line of the old encoding, four bytes for each texel. The texel (1, 1, 1, n) repeats the
-// previous texel n times. If several such texels follow one another, the second counts n * 256
-// times, and so on.
+// Decodes a line with run-lengths of the old kind, four bytes for each texel. A texel (1, 1, 1, n)
+// repeats the previous texel n times. If several such texels follow one another, the second counts
+// n * 256 times, the third n * 65536 times, and so on.
 static size_t read_old_runs(const hdr_file *f, const uint8_t *at, size_t left, uint8_t *texels)
 {
     size_t in = 0;
@@ -121,7 +126,8 @@ static size_t read_line(const hdr_file *f, size_t start, uint8_t *texels)
                                           : 0;
 }
 
-// Finds where the lines begin and where the last line ends, from the start of line 0 on.
+// Finds where each line begins if the lines are encoded by `coding`, and sets *end to where the
+// last line ends. `start` is where line 0 begins.
 static kiln_result find_lines(hdr_file *f, hdr_coding coding, size_t start, size_t *end,
                               kiln_error *error)
 {
@@ -140,9 +146,10 @@ static kiln_result find_lines(hdr_file *f, hdr_coding coding, size_t start, size
     return KILN_OK;
 }
 
-// Finds the lines. If run-lengths by Radiance's rules do not end where the file ends, the file may
-// be flat with texels that look like run-lengths, or have new runs in lines of a length that does
-// not allow them; either is accepted if the file then ends where its last line does.
+// Finds how the lines are encoded and where they begin. Radiance's rules are tried first. If the
+// lines then do not end where the file ends, the file may be flat with texels that look like
+// run-lengths, or have run-lengths of the new kind in lines of a length that does not allow them.
+// One of these encodings is accepted if the lines then end where the file ends.
 static kiln_result find_coding(hdr_file *f, size_t start, kiln_load_report *report,
                                kiln_error *error)
 {
@@ -268,7 +275,8 @@ kiln_result ki_hdr_decode(kiln_context *context, const uint8_t *bytes, size_t si
     if (result == KILN_OK && image)
         result = decode_all(&f, image, error);
     else if (result == KILN_ERROR_FORMAT && !image)
-        result = KILN_OK; // the header alone describes a file whose texels are damaged
+        // damaged texels do not matter to a caller that asks only for the header's description
+        result = KILN_OK;
     ki_free(f.line_start);
     ki_free(f.texels);
     ki_free(f.pixels);

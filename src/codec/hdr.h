@@ -5,23 +5,30 @@
 #include "base/bytes.h"
 #include "image/color.h"
 
-/// The widths of pictures whose rows may have new run-lengths.
+/// The smallest and largest width of pictures whose lines may have run-lengths of the new kind,
+/// which store the four bytes of the texels separately.
 enum { KI_HDR_RUNS_LEAST = 8, KI_HDR_RUNS_MOST = 32767 };
 
-/// The header of a file.
+/// What the header of a Radiance HDR file says.
 typedef struct ki_hdr_header {
-    int width, height;           ///< size of the upright picture
-    int line_count, line_length; ///< number and length of lines as stored
-    bool columns;                ///< true: a stored line is a column of the picture
-    bool flip_line, flip_order;  ///< true: reversed along each line; reversed order of the lines
-    double divisor[3];           ///< product of EXPOSURE and COLORCORR for each channel
-    bool xyz;                    ///< true: the texels are CIE XYZ
-    bool converts;               ///< true: the colours are multiplied by `to_rec709`
+    int width, height; ///< size of the picture when its first row is the top row
+    /// number of lines, and texels of a line, in the order of the file
+    int line_count, line_length;
+    bool columns; ///< true: a line of the file is a column of the picture
+    /// flip_line: each line is stored from right to left, or from bottom to top if it is a column;
+    /// flip_order: the lines are stored from the last to the first
+    bool flip_line, flip_order;
+    /// each channel's values are divided by this product of the header's lines EXPOSURE and
+    /// COLORCORR
+    double divisor[3];
+    bool xyz;      ///< true: the texels are CIE XYZ instead of RGB
+    bool converts; ///< true: the colours are multiplied by the matrix `to_rec709`
     ki_matrix3 to_rec709;
 } ki_hdr_header;
 
-/// Reads the header up to the line with the resolution, and leaves the reader at the texels. Notes
-/// what is converted or assumed. `info`, which may be NULL, gets the name of the writer.
+/// Reads the header up to the line with the resolution, after which the texels begin. What is
+/// converted or assumed is noted in the report. `info`, which may be NULL, gets the name of the
+/// program that wrote the file.
 kiln_result ki_hdr_read_header(kiln_context *context, ki_reader *r, const char *name,
                                ki_hdr_header *header, kiln_file_info *info,
                                kiln_load_report *report, kiln_error *error);

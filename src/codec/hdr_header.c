@@ -15,11 +15,12 @@
 typedef struct header_reader {
     kiln_context *context;
     const char *name;
-    size_t size; // bytes of the file
+    size_t size; // number of bytes of the file
     ki_reader *r;
     ki_hdr_header *header;
     kiln_file_info *info;
-    double exposure, correction[3]; // products of the lines EXPOSURE and COLORCORR
+    // product of the header's lines EXPOSURE, and of its lines COLORCORR for each channel
+    double exposure, correction[3];
     bool has_primaries;
     ki_primaries primaries;
     kiln_load_report *report;
@@ -53,8 +54,8 @@ static const char *skip_blanks(const char *text)
     return text;
 }
 
-// Reads a sign, an axis and a size of at most nine digits, for example "-Y 512". Returns the text
-// after them, or NULL.
+// Reads a sign, an axis and a size of at most nine digits, for example "-Y 512". Returns a pointer
+// to the text after the size, or NULL if the text is no such thing.
 static const char *read_axis(const char *text, char *sign, char *axis, int *count)
 {
     int digits = 0;
@@ -69,7 +70,8 @@ static const char *read_axis(const char *text, char *sign, char *axis, int *coun
     return digits ? text : NULL;
 }
 
-// Reads the resolution, for example "-Y 512 +X 1024", which names the slower axis first.
+// Reads the line with the resolution, for example "-Y 512 +X 1024". The axis that is named first is
+// that along which the lines follow one another.
 static kiln_result read_resolution(ki_hdr_header *h, const char *name, const char *line,
                                    kiln_error *error)
 {
@@ -94,7 +96,7 @@ static kiln_result read_resolution(ki_hdr_header *h, const char *name, const cha
                        h->width < 1 || h->height < 1 ? KILN_ERROR_FORMAT : KILN_ERROR_UNSUPPORTED,
                        "%s: the picture is %d x %d, the limit is %d", name, h->width, h->height,
                        KILN_MAX_SIZE);
-    // In this format Y grows upwards and X to the right.
+    // In this format Y grows upwards and X to the right, so that an axis +Y or -X must be reversed.
     h->flip_order = h->columns ? sign[0] == '-' : sign[0] == '+';
     h->flip_line = h->columns ? sign[1] == '+' : sign[1] == '-';
     return KILN_OK;
@@ -111,7 +113,7 @@ static kiln_result bad_line(const header_reader *h, const char *line, const char
                    "%s: the HDR header has the line \"%s\", which is no %s", h->name, shown, what);
 }
 
-// Reads `count` numbers that are separated by blanks. Returns false if there are fewer.
+// Reads `count` numbers that are separated by blanks. Returns false if there are fewer numbers.
 static bool read_numbers(const char *text, double *values, int count)
 {
     for (int i = 0; text && i < count; i++)
@@ -119,8 +121,8 @@ static bool read_numbers(const char *text, double *values, int count)
     return text != NULL;
 }
 
-// Multiplies the product by a number that scales radiance. The number 0, which some programs write
-// for an unknown exposure, is taken as 1.
+// Multiplies *product by a number of the header that scales radiance. The number 0, which some
+// programs write for an unknown exposure, is taken as 1.
 static bool multiply(header_reader *h, double value, const char *keyword, double *product)
 {
     if (value == 0) {
@@ -208,7 +210,7 @@ static void note_primaries(const header_reader *h)
             xy[0], xy[1], xy[2], xy[3], xy[4], xy[5], xy[6], xy[7]);
 }
 
-// Sets what the values are divided and multiplied by, and notes both.
+// Sets the divisor and the colour matrix of the file's values, and notes both in the report.
 static void find_conversion(const header_reader *h)
 {
     static const ki_matrix3 identity = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
@@ -237,7 +239,8 @@ static void find_conversion(const header_reader *h)
 
 static kiln_result read_lines(header_reader *h, kiln_error *error)
 {
-    enum { LINES = 1 << 16 }; // number of lines between two questions whether to go on
+    // number of header lines after which the caller is asked whether to go on
+    enum { LINES = 1 << 16 };
     char line[256];
     kiln_result result = KILN_OK;
     bool more = next_line(h->r, line, sizeof line);

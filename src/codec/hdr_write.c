@@ -6,8 +6,8 @@
 #include <math.h>
 #include <string.h>
 
-// Converts a texel. The exponent is that of the largest channel; mantissas are rounded to the
-// nearest byte.
+// Converts an RGB texel to three mantissas and an exponent. The exponent is that of the largest
+// channel; mantissas are rounded to the nearest byte.
 static void to_rgbe(const float rgb[3], uint8_t rgbe[4])
 {
     float c[3], most = 0;
@@ -33,7 +33,7 @@ static void to_rgbe(const float rgb[3], uint8_t rgbe[4])
     rgbe[3] = (uint8_t)(e + 128);
 }
 
-// Writes runs of four or more equal bytes as runs, and other bytes literally.
+// Writes one channel of a line: four or more equal bytes as a run, other bytes literally.
 static void write_runs(ki_writer *w, const uint8_t *bytes, int count)
 {
     for (int x = 0; x < count;) {

@@ -31,8 +31,8 @@ static int sort_symbols(const uint32_t *counts, int count, uint16_t *sorted)
     return used;
 }
 
-// Finds the number of codes of each length in a Huffman code without a limit, from the counts of
-// the sorted symbols.
+// Counts how many codes of each length a Huffman code without a limit of length has. `counts` says
+// how often each symbol occurs; `sorted` lists the `used` symbols that occur, the rarest first.
 static void count_lengths(const uint32_t *counts, const uint16_t *sorted, int used, int *with)
 {
     uint32_t weight[2 * KI_HUFFMAN_SYMBOLS];
@@ -60,11 +60,12 @@ static void count_lengths(const uint32_t *counts, const uint16_t *sorted, int us
     }
 }
 
-// Limits the code lengths to `longest`. Longer codes are shortened, and other codes are lengthened
-// until the code is valid.
+// Limits the code lengths to `longest`. with[length] is the number of codes of a length. Longer
+// codes are shortened; shorter codes are then lengthened until the code is possible again.
 static void limit_lengths(int *with, int deepest, int longest)
 {
-    uint32_t used = 0; // used part of the code space, in units of 2^-longest
+    // sum over all codes of 2^(longest - length); a code is possible if it is at most 2^longest
+    uint32_t used = 0;
     for (int length = deepest; length > longest; length--) {
         with[longest] += with[length];
         with[length] = 0;
@@ -75,8 +76,8 @@ static void limit_lengths(int *with, int deepest, int longest)
         int length = longest - 1;
         while (!with[length])
             length--;
-        // The code of this length becomes two codes with one more bit. One of the two is for a
-        // symbol with a code of the greatest length.
+        // A code of this length becomes two codes with one more bit. The second of them is given to
+        // a symbol that had a code of the greatest length.
         with[length]--;
         with[length + 1] += 2;
         with[longest]--;
@@ -98,7 +99,8 @@ void ki_huffman_assign(ki_huffman_code *c, int count, const int *with, int longe
 
 void ki_huffman_make(ki_huffman_code *c, const uint32_t *counts, int count, int longest)
 {
-    enum { DEEPEST = 32 }; // depth that a tree of counts below 2^16 cannot exceed
+    // a Huffman tree of symbols that occur less than 2^16 times each is not deeper
+    enum { DEEPEST = 32 };
     uint16_t sorted[KI_HUFFMAN_SYMBOLS];
     int with[DEEPEST + 1] = {0};
     int used = sort_symbols(counts, count, sorted);

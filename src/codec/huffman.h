@@ -7,8 +7,8 @@
 /// Number of symbols of deflate's largest code.
 enum { KI_HUFFMAN_SYMBOLS = 288 };
 
-/// A code: the length of each symbol in bits, 0 for symbols that do not occur, and the bits of each
-/// symbol in the order in which they are written, lowest bit first.
+/// A Huffman code: the length in bits of each symbol's code, 0 for symbols that do not occur, and
+/// the bits of each code in the order in which they are written, lowest bit first.
 typedef struct ki_huffman_code {
     uint8_t length[KI_HUFFMAN_SYMBOLS];
     uint16_t bits[KI_HUFFMAN_SYMBOLS];
@@ -17,11 +17,12 @@ typedef struct ki_huffman_code {
 /// Builds the code of `count` symbols from how often each occurs. Each count is below 2^16, and no
 /// code is longer than `longest`, at most 15.
 void ki_huffman_make(ki_huffman_code *code, const uint32_t *counts, int count, int longest);
-/// Assigns bits to the lengths of `count` symbols. `with` holds the number of codes of each length.
+/// Assigns bits to the codes of `count` symbols, whose lengths are set. `with` holds the number of
+/// codes of each length.
 void ki_huffman_assign(ki_huffman_code *code, int count, const int *with, int longest);
 
-/// Returns the lowest `length` bits, 16 at most, in reverse order. Codes are counted from their
-/// highest bit, but written and read from their lowest bit.
+/// Returns the lowest `length` bits of a code, 16 at most, in reverse order. Deflate stores a code
+/// from its highest bit on, but fills each byte of the file from the lowest bit on.
 static inline uint32_t ki_reverse_bits(uint32_t bits, int length)
 {
     bits = (bits & 0x5555) << 1 | (bits >> 1 & 0x5555);

@@ -16,18 +16,18 @@ enum {
     LITERALS = 288,
     DISTANCES = 32,
     LENGTH_CODES = 19,
-    LITERAL_BITS = 11, // number of index bits of the first table for each code
+    LITERAL_BITS = 11, // number of bits that index the first table of the literal code
     DISTANCE_BITS = 8,
     LENGTH_BITS = 7,
-    // A second table of 2^k entries holds at least k + 1 codes, and k is at most 4 (literals) and 7
-    // (distances). This bounds the room for all second tables.
+    // A second table of 2^k entries serves at least k + 1 codes, and k is at most 4 for literals
+    // and 7 for distances. This bounds the number of entries in all second tables of a code.
     LITERAL_ROOM = (1 << LITERAL_BITS) + LITERALS * 16 / 5,
     DISTANCE_ROOM = (1 << DISTANCE_BITS) + DISTANCES * 128 / 8,
 };
 
-// An entry of a table. Bits 0 to 3 are the length of the code (in a second table: of its part
-// beyond the first index), bits 4 to 7 the number of extra bits, bits 8 to 10 the kind, and the
-// bits from 16 on a value.
+// An entry of a table that decodes symbols. Bits 0 to 3 are the length of the symbol's code (in a
+// second table: of the part of the code that the first table's index lacks), bits 4 to 7 the number
+// of extra bits, bits 8 to 10 the kind, and the bits from 16 on the symbol's value.
 enum { KIND_BAD, KIND_LITERAL, KIND_RANGE, KIND_END, KIND_TABLE };
 #define ENTRY(kind, value, extra)                                                                  \
     ((uint32_t)(value) << 16 | (uint32_t)(kind) << 8 | (uint32_t)(extra) << 4)
@@ -37,7 +37,7 @@ static inline uint32_t kind_of(uint32_t entry)
     return entry >> 8 & 7;
 }
 
-// The bits of the input, the first in the lowest place.
+// The input as bits, of which those in `bits` are read already, the next one lowest.
 typedef struct stream {
     const uint8_t *in, *in_end;
     uint64_t bits;
@@ -48,7 +48,7 @@ typedef struct stream {
 typedef struct state {
     stream s;
     uint8_t *out, *begin, *end;
-    bool full; // true: the output has no room for the next symbol
+    bool full; // set when the output has no room for the next symbol's bytes
     uint32_t literals[LITERAL_ROOM], distances[DISTANCE_ROOM];
 } state;
 
@@ -89,7 +89,7 @@ static inline uint32_t drop(stream *s, uint32_t count)
     return value;
 }
 
-// Returns the next `count` bits, at most 32.
+// Returns the next `count` bits of the input, at most 32, and consumes them.
 static inline uint32_t take(stream *s, uint32_t count)
 {
     fill(s);
@@ -98,8 +98,7 @@ static inline uint32_t take(stream *s, uint32_t count)
 
 // ------------------------------------------------------------------------------------------- codes
 
-// A function that returns the table entry of a symbol, with 0 in place of the length of the
-// symbol's code.
+// A function that makes the table entry of a symbol, with 0 as the length of its code.
 typedef uint32_t meaning(int symbol);
 
 static uint32_t plain_meaning(int symbol)
@@ -131,17 +130,17 @@ static uint32_t distance_meaning(int symbol)
     return ENTRY(KIND_RANGE, from, extra);
 }
 
-// A table that is being built. `with` holds the number of codes of each length, `sorted` the
-// symbols by length and then by number.
+// A table of a Huffman code that is being built. `with` holds the number of codes of each length,
+// `sorted` the symbols by the length of their codes and then by number.
 typedef struct table {
     uint32_t *entries;
     size_t room, size;
-    int bits; // number of index bits of the first table
+    int bits; // number of bits that index the first table
     uint16_t with[LONGEST + 1], sorted[LITERALS];
 } table;
 
-// Sorts the symbols. Returns false if the code is over-subscribed, or incomplete with more than one
-// symbol.
+// Sorts the symbols by the length of their codes. Returns false if the lengths belong to no code,
+// or leave bit sequences without a symbol in a code of more than one symbol.
 static bool sort(table *t, const uint8_t *lengths, int count)
 {
     uint16_t place[LONGEST + 2] = {0};
@@ -162,9 +161,9 @@ static bool sort(table *t, const uint8_t *lengths, int count)
     return true;
 }
 
-// Adds a second table for the codes that begin with `prefix`; the k-th code of `length` bits is the
-// first of these codes. The table is as large as the longest of the codes needs. Returns the number
-// of its index bits, or 0 if there is no room.
+// Adds a second table for the codes that begin with the bits `prefix`; the k-th code of `length`
+// bits is the first of these codes. The table is as large as the longest of these codes needs.
+// Returns the number of bits that index the table, or 0 if there is no room for it.
 static int add_second(table *t, uint32_t prefix, int length, int k)
 {
     int bits = length - t->bits, left = (1 << bits) - (t->with[length] - k);
@@ -180,8 +179,8 @@ static int add_second(table *t, uint32_t prefix, int length, int k)
     return bits;
 }
 
-// Builds the table of `count` codes from their lengths, which are 0 for symbols that do not occur.
-// Returns false if the lengths are not a valid code.
+// Builds the table of a Huffman code of `count` symbols from the lengths of their codes, which are
+// 0 for symbols that do not occur. Returns false if no code has these lengths.
 static bool build(uint32_t *entries, size_t room, int bits, const uint8_t *lengths, int count,
                   meaning *mean)
 {
@@ -213,7 +212,8 @@ static bool build(uint32_t *entries, size_t room, int bits, const uint8_t *lengt
     return true;
 }
 
-// Returns the entry of the next symbol and consumes its code. At least 15 bits must be held.
+// Returns the table entry of the next symbol in the input and consumes the symbol's code. At least
+// 15 bits must be held.
 static inline uint32_t next_entry(stream *s, const uint32_t *entries, int bits)
 {
     uint32_t entry = entries[s->bits & ((1U << bits) - 1)];
@@ -225,7 +225,7 @@ static inline uint32_t next_entry(stream *s, const uint32_t *entries, int bits)
     return entry;
 }
 
-// Returns the value of an entry plus the value of its extra bits.
+// Returns the value of a table entry plus the number in the extra bits that follow in the input.
 static inline size_t value_of(stream *s, uint32_t entry)
 {
     return (entry >> 16) + drop(s, entry >> 4 & 15);
@@ -247,7 +247,7 @@ static bool stored(state *st)
         *st->out++ = (uint8_t)drop(s, 8);
     if (overdrawn(s) || (size_t)(s->in_end - s->in) < count)
         return false;
-    st->full = full; // set here, because the held bytes are now written
+    st->full = full; // after the held bytes are written, so that drained() has not changed it
     if (count) {
         memcpy(st->out, s->in, count);
         s->bits = 0;
@@ -257,7 +257,7 @@ static bool stored(state *st)
     return !st->full;
 }
 
-// While this many bytes of input and output remain, no checks are needed: eight bytes are read at a
+// While this many bytes of input and output remain, checks are left out: eight bytes are read at a
 // time, and two literals and a match of 258 bytes are written, with up to seven bytes after the
 // match.
 enum { SPARE_IN = 16, SPARE_OUT = 258 + 2 + 7 };
@@ -348,7 +348,7 @@ static bool compressed(state *st)
     step result = fast_symbols(st);
     while (result == GO_ON) {
         result = careful_symbol(st);
-        // The end of a block may leave enough room to read the next symbols without checks.
+        // Symbols are read without checks whenever input and output have enough room.
         if (result == GO_ON && st->end - st->out >= SPARE_OUT &&
             st->s.in_end - st->s.in >= SPARE_IN)
             result = fast_symbols(st);
