@@ -46,7 +46,8 @@ const char *const bake_lobes[] = {"ggx", "lambert", "charlie", "phong", NULL};
 const char *const bake_shapes[] = {"auto", "panorama", "cube", "octahedron", NULL};
 const char *const bake_methods[] = {"exact", "textbook", NULL};
 const char *const bake_tunings[] = {"none", "sharp", "soft", NULL};
-static const char *const layouts[] = {"auto", "panorama", "cross", "strip", "octahedron", NULL};
+static const char *const layouts[] = {"auto",       "panorama", "cross", "strip",
+                                      "octahedron", "probe",    "ball",  NULL};
 
 static const char *format_word(int index)
 {
@@ -138,7 +139,10 @@ const cli_option bake_options[OPTIONS + 1] = {
                    .unset = "none"},
     [LAYOUT] =
         {"layout", CLI_CHOICE, AT(layout), .value = "LAYOUT", .words = layouts, .group = "Input",
-         .help = "how a picture that is read lies on the sphere; auto decides by the proportions"},
+         .help = "how a picture that is read lies on the sphere; auto decides by the proportions",
+         .more = "A panorama named so need not be twice as wide as high: the picture is stretched "
+                 "over the whole sphere. A probe is a square angular map with -Z in its centre, a "
+                 "ball the square photograph of a mirror ball; both become a panorama."},
     [NEGATIVE] = CLI_NEGATIVE_ROW(bake),
     [ROTATE] = {"rotate", CLI_NUMBER, AT(rotation), -3600, 3600, 0, "DEGREES",
                 .help = "turn the environment about the vertical axis, after --mirror; the content "

@@ -218,10 +218,13 @@ KILN_API KILN_CHECKED kiln_result kiln_map_convert(kiln_context *context, const 
 /// EXR file written by kiln states that its picture is an octahedron.
 typedef enum kiln_layout {
     KILN_LAYOUT_AUTO = 0,
-    KILN_LAYOUT_PANORAMA,
+    KILN_LAYOUT_PANORAMA, ///< a picture that is not 2:1 is stretched over the whole sphere
     KILN_LAYOUT_CROSS,
     KILN_LAYOUT_STRIP,
-    KILN_LAYOUT_OCTAHEDRON
+    KILN_LAYOUT_OCTAHEDRON,
+    KILN_LAYOUT_PROBE, ///< a square angular map around -Z; the map becomes a panorama
+    KILN_LAYOUT_BALL ///< the square photograph of a mirror ball, by a camera that looks along -Z;
+                     ///< the map becomes a panorama
 } kiln_layout;
 
 /// What becomes of negative texels. Lossy compression leaves such texels beside bright ones, and so

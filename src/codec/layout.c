@@ -1,8 +1,12 @@
 // Makes maps from flat pictures: panoramas, crosses, strips and octahedra, by the ratio of the
-// sides or by the caller's choice. A cross or strip is cut into the six faces of a cube.
+// sides or by the caller's choice. A cross or strip is cut into the six faces of a cube. Light
+// probes, mirror balls and panoramas that are not two to one, which only the caller can name, become
+// panoramas.
 #include "codec/layout.h"
 
-#include "image/image.h"
+#include "codec/report.h"
+#include "image/flat.h"
+#include "image/mend.h"
 
 #include <string.h>
 
@@ -64,8 +68,33 @@ static kiln_result take_over(kiln_image *image, kiln_shape shape, int size, kiln
     return KILN_OK;
 }
 
+// Makes a panorama from a light probe, a mirror ball, or a panorama with sides of any ratio.
+static kiln_result resample(kiln_context *context, kiln_image *image, const char *name,
+                            enum kiln_layout layout, kiln_map *map, kiln_load_report *report,
+                            kiln_error *error)
+{
+    bool ball = layout == KILN_LAYOUT_BALL, stretched = layout == KILN_LAYOUT_PANORAMA;
+    kiln_result result = ki_image_mend(context, name, image, report, error);
+    if (result == KILN_OK && stretched)
+        result = ki_panorama_stretch(context, image, map, error);
+    else if (result == KILN_OK)
+        result = ki_panorama_from_probe(context, image, ball ? KI_PROBE_BALL : KI_PROBE_ANGULAR,
+                                        map, error);
+    if (result == KILN_OK)
+        ki_note(report, KILN_NOTE_CONVERSION, stretched,
+                "the %s of %d x %d texels %s a panorama of %d x %d",
+                stretched ? "picture"
+                : ball    ? "mirror ball"
+                          : "light probe",
+                image->width, image->height,
+                stretched ? "was stretched over the whole sphere to" : "became", 2 * map->size,
+                map->size);
+    return result;
+}
+
 kiln_result ki_lay_out(kiln_context *context, kiln_image *image, const char *name,
-                       enum kiln_layout layout, kiln_map *map, kiln_error *error)
+                       enum kiln_layout layout, kiln_map *map, kiln_load_report *report,
+                       kiln_error *error)
 {
     int64_t w = image->width, h = image->height;
     bool any = layout == KILN_LAYOUT_AUTO;
@@ -84,14 +113,23 @@ kiln_result ki_lay_out(kiln_context *context, kiln_image *image, const char *nam
         return make_cube(context, image, ki_min(image->width, image->height), places, false, map,
                          error);
     }
+    if (layout == KILN_LAYOUT_PANORAMA ||
+        ((layout == KILN_LAYOUT_PROBE || layout == KILN_LAYOUT_BALL) && w == h))
+        return resample(context, image, name, layout, map, report, error);
     static const char *const wanted[] = {
         "2:1 (panorama), 4:3 or 3:4 (cross), 6:1 or 1:6 (strip)",
         "2:1 for a panorama",
         "4:3 or 3:4 for a cross",
         "6:1 or 1:6 for a strip",
         "1:1 for an octahedron",
+        "1:1 for a light probe",
+        "1:1 for a mirror ball",
     };
     return ki_fail(error, KILN_ERROR_FORMAT, "%s: is %lld x %lld, its sides must be %s%s", name,
                    (long long)w, (long long)h, wanted[layout],
-                   any && w == h ? "; if the square is an octahedron, say so by the layout" : "");
+                   any && w == h
+                       ? "; if the square is an octahedron, a light probe or a mirror ball, say "
+                         "so by the layout"
+                   : any ? "; a panorama of other sides is read if the layout says so"
+                         : "");
 }

@@ -12,8 +12,10 @@ const char *ki_layout_name(int width, int height);
 /// of the face is at (x, y); `turned` turns the face by 180 degrees.
 void ki_cut_face(const kiln_image *image, int x, int y, int size, bool turned, float *face);
 /// Makes a map of one level from a picture of three channels. If the layout keeps the order of the
-/// texels, the map takes over the picture's memory and `image` is zeroed.
+/// texels, the map takes over the picture's memory and `image` is zeroed. Layouts that mix texels
+/// mend the picture first and add what was mended, and a note, to *report.
 kiln_result ki_lay_out(kiln_context *context, kiln_image *image, const char *name,
-                       enum kiln_layout layout, kiln_map *map, kiln_error *error);
+                       enum kiln_layout layout, kiln_map *map, kiln_load_report *report,
+                       kiln_error *error);
 
 #endif

@@ -17,9 +17,9 @@
 
 static kiln_result check_def(const kiln_load_def *def, kiln_error *error)
 {
-    if ((int)def->layout < 0 || def->layout > KILN_LAYOUT_OCTAHEDRON)
+    if ((int)def->layout < 0 || def->layout > KILN_LAYOUT_BALL)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "layout is %d, it must be 0 to %d",
-                       (int)def->layout, (int)KILN_LAYOUT_OCTAHEDRON);
+                       (int)def->layout, (int)KILN_LAYOUT_BALL);
     if ((unsigned)def->negative > KILN_NEGATIVE_ZERO)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "negative is %d, it must be 0 or %d",
                        (int)def->negative, (int)KILN_NEGATIVE_ZERO);
@@ -70,7 +70,8 @@ static kiln_result place(kiln_context *context, ki_decoded *decoded, const kiln_
                        info->engine[0] ? info->engine : "an engine");
     if (layout == KILN_LAYOUT_AUTO && !strcmp(info->layout, "octahedron"))
         layout = KILN_LAYOUT_OCTAHEDRON;
-    kiln_result result = ki_lay_out(context, &decoded->image, name, layout, map, error);
+    kiln_result result =
+        ki_lay_out(context, &decoded->image, name, layout, map, &decoded->report, error);
     if (result == KILN_OK && info->roughness[0] >= 0)
         map->roughness[0] = info->roughness[0];
     return result;
@@ -122,7 +123,7 @@ kiln_result kiln_image_load(kiln_context *context, const char *path, kiln_image 
     if (result != KILN_OK)
         return result;
     if (!decoded.is_table && decoded.image.channels == 3)
-        result = ki_image_mend(context, path, &decoded.image, error);
+        result = ki_image_mend(context, path, &decoded.image, NULL, error);
     if (result == KILN_OK)
         *image = decoded.image;
     else

@@ -17,9 +17,9 @@ static kiln_result check_pixels(const kiln_pixels *p, size_t *row_bytes, kiln_er
     if ((unsigned)p->type > KILN_PIXEL_HALF)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "the pixels' type is %d, it must be 0 or %d",
                        (int)p->type, (int)KILN_PIXEL_HALF);
-    if ((unsigned)p->layout > KILN_LAYOUT_OCTAHEDRON)
+    if ((unsigned)p->layout > KILN_LAYOUT_BALL)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "layout is %d, it must be 0 to %d",
-                       (int)p->layout, (int)KILN_LAYOUT_OCTAHEDRON);
+                       (int)p->layout, (int)KILN_LAYOUT_BALL);
     if ((unsigned)p->negative > KILN_NEGATIVE_ZERO)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "negative is %d, it must be 0 or %d",
                        (int)p->negative, (int)KILN_NEGATIVE_ZERO);
@@ -83,7 +83,7 @@ kiln_result kiln_map_from_pixels(kiln_context *context, const kiln_pixels *pixel
     convert_job job = {pixels, pixels->row_stride ? pixels->row_stride : (ptrdiff_t)row_bytes,
                        image.pixels};
     ki_parallel_for(context, pixels->height, convert_row, &job);
-    result = ki_lay_out(context, &image, "pixels", pixels->layout, map, error);
+    result = ki_lay_out(context, &image, "pixels", pixels->layout, map, report, error);
     if (result == KILN_OK)
         result = ki_map_mend(context, "pixels", pixels->negative, map, report, error);
     if (result != KILN_OK) {

@@ -298,10 +298,15 @@ kiln_result ki_map_mend(kiln_context *context, const char *name, kiln_negative n
 }
 
 kiln_result ki_image_mend(kiln_context *context, const char *name, kiln_image *image,
-                          kiln_error *error)
+                          kiln_load_report *report, kiln_error *error)
 {
     plane p = {KILN_SHAPE_AUTO, image->height, image->width, image->height, image->pixels};
-    kiln_load_report unused = {0};
+    kiln_load_report found = {0};
     ki_light light = {0};
-    return mend_plane(context, name, &p, KILN_NEGATIVE_KEEP, &unused, &light, error);
+    kiln_result result = mend_plane(context, name, &p, KILN_NEGATIVE_KEEP, &found, &light, error);
+    if (report) {
+        report->infinite_count += found.infinite_count;
+        report->nan_count += found.nan_count;
+    }
+    return result;
 }

@@ -119,11 +119,15 @@ static void layouts_can_be_said(void **state)
         {2, 12, KILN_LAYOUT_STRIP, KILN_SHAPE_CUBE, NULL},
         {6, 6, KILN_LAYOUT_AUTO, 0,
          "is 6 x 6, its sides must be 2:1 (panorama), 4:3 or 3:4 (cross), 6:1 or 1:6 (strip); if "
-         "the square is an octahedron, say so by the layout"},
+         "the square is an octahedron, a light probe or a mirror ball, say so by the layout"},
         {7, 5, KILN_LAYOUT_AUTO, 0,
          "is 7 x 5, its sides must be 2:1 (panorama), 4:3 or 3:4 (cross), 6:1 or 1:6 (strip)"},
         {8, 4, KILN_LAYOUT_CROSS, 0, "is 8 x 4, its sides must be 4:3 or 3:4 for a cross"},
-        {8, 6, KILN_LAYOUT_PANORAMA, 0, "is 8 x 6, its sides must be 2:1 for a panorama"},
+        {8, 6, KILN_LAYOUT_PANORAMA, KILN_SHAPE_PANORAMA, NULL},
+        {6, 6, KILN_LAYOUT_PROBE, KILN_SHAPE_PANORAMA, NULL},
+        {6, 6, KILN_LAYOUT_BALL, KILN_SHAPE_PANORAMA, NULL},
+        {8, 4, KILN_LAYOUT_PROBE, 0, "is 8 x 4, its sides must be 1:1 for a light probe"},
+        {8, 4, KILN_LAYOUT_BALL, 0, "is 8 x 4, its sides must be 1:1 for a mirror ball"},
         {8, 4, KILN_LAYOUT_OCTAHEDRON, 0, "is 8 x 4, its sides must be 1:1 for an octahedron"},
         {8, 4, KILN_LAYOUT_STRIP, 0, "is 8 x 4, its sides must be 6:1 or 1:6 for a strip"},
     };
