@@ -1,9 +1,10 @@
 // Estimates the tables E(mu) and E_avg of the fourth assignment of the course GAMES202 by its
 // methods: Monte Carlo with cosine-distributed light, GGX importance sampling, and the split sum at
-// F0 = 1. In: the method, G, sizes and sample counts. Out: a square table of E, its row averages,
-// and a comparison with exact tables. mu = n.v and roughness are at texel centres, (i + 0.5) /
-// size. The view is (sqrt(1 - mu^2), 0, mu), the normal +z. docs/theory/assignment.md derives the
-// methods and lists their errors.
+// F0 = 1. E is the albedo of a GGX lobe with F = 1, and E_avg its average under diffuse light. In:
+// the method, the masking G, sizes and sample counts. Out: a square table of E, its row averages,
+// and a comparison with exact tables. mu = n.v and roughness are at texel centres,
+// (i + 0.5) / size. The view is (sqrt(1 - mu^2), 0, mu), the normal +z. docs/theory/assignment.md
+// derives the methods and lists their errors.
 #include "base/base.h"
 #include "brdf/brdf.h"
 #include "math/math.h"
@@ -11,7 +12,8 @@
 #include <kiln/course.h>
 #include <math.h>
 
-// The lower bound that the assignment's framework puts on the denominator of D.
+// Lower bound that the supplied code of the fourth GAMES202 assignment puts on the denominator of
+// GGX's D.
 static const double least_denominator = 1e-4;
 
 typedef struct assignment {
@@ -19,8 +21,10 @@ typedef struct assignment {
     const kiln_assignment_def *def;
     kiln_model model;
     kiln_image *table;
-    int side;        // number of strata along each side of the unit square, for Monte Carlo
-    double *cos_phi; // cosine of each sample's azimuth, for importance sampling
+    // number of strata along each side of the unit square of random numbers, for Monte Carlo
+    int side;
+    // cosine of the azimuth of each sample's half vector, for importance sampling
+    double *cos_phi;
 } assignment;
 
 // ------------------------------------------------------------------------------------- Monte Carlo
@@ -49,8 +53,9 @@ static double lobe(double alpha, const double v[2], const double l[3], bool uncl
     return KI_PI * a2 / denominator;
 }
 
-// Estimates E with light directions l of density (n.l) / pi, by the mean of f (n.l) pi / (n.l) = pi
-// D G / (4 (n.v) (n.l)). The index of the texel selects its part of the random sequence.
+// Estimates the albedo E with light directions l of density (n.l) / pi, by the mean over the
+// samples of (D G / (4 (n.v) (n.l))) (n.l) / ((n.l) / pi) = pi D G / (4 (n.v) (n.l)). The index of
+// the texel selects its part of the random sequence.
 static double monte_carlo(const assignment *r, double roughness, double mu, uint64_t texel)
 {
     double v[2] = {sqrt((1 - mu) * (1 + mu)), mu}, sum = 0;
@@ -70,7 +75,8 @@ static double monte_carlo(const assignment *r, double roughness, double mu, uint
 
 // ----------------------------------------------------------------------------- importance sampling
 
-// Estimates E with half vectors h of density D(h) (n.h) and l = 2 (v.h) h - v, by the mean of
+// Estimates the albedo E with half vectors h of density D(h) (n.h) and light l = 2 (v.h) h - v, by
+// the mean over the samples of
 //
 //     (v.h) G / ((n.v) (n.h)),        0 for l below the horizon.
 //
@@ -115,12 +121,12 @@ static void fill_row(void *data, int index)
             ab[0] = monte_carlo(r, roughness, mu, (uint64_t)index * (uint64_t)size + (uint64_t)x);
         else
             importance(r, roughness, mu, ab);
-        texel[x] = (float)(ab[0] + ab[1]); // E = A + B at F0 = 1
+        texel[x] = (float)(ab[0] + ab[1]); // the albedo E = A + B of the split sum at F0 = 1
     }
 }
 
-// Fills an allocated image of size x size with estimates of E. No field of `def` is 0 for a
-// default.
+// Fills an allocated image of size x size with estimates of the albedo E. The fields of `def` are
+// already complete: 0 no longer stands for a default value.
 static kiln_result fill_energy(kiln_context *context, kiln_assignment_method method,
                                const kiln_assignment_def *def, kiln_image *table, kiln_error *error)
 {
@@ -144,7 +150,8 @@ static kiln_result fill_energy(kiln_context *context, kiln_assignment_method met
     return whole ? KILN_OK : ki_fail_cancelled(error, names[method]);
 }
 
-// Fills each row with 2 / width times the sum of E mu over the row, an estimate of 2 int E mu dmu.
+// Fills each row of `average` with the average albedo at the row's roughness, 2 int E mu dmu: 2 /
+// width times the sum of E mu over the row of `energy`.
 static void fill_average(const kiln_image *energy, kiln_image *average)
 {
     size_t width = (size_t)energy->width;
@@ -160,9 +167,9 @@ static void fill_average(const kiln_image *energy, kiln_image *average)
 
 // --------------------------------------------------------------------------------------- comparing
 
-// Colours of the error map, sRGB, one for each power of ten of the error's size from 1e-4 to 1.
-// Each colour looks about as much darker than the one before. ramp[0], blue, is for a table that is
-// too dark, and ramp[1], red, for one that is too bright.
+// Colours of the map of a table's errors, sRGB 0 to 255, one for each power of ten of an error's
+// size from 1e-4 to 1. The colours darken by visually equal steps. ramp[0], blue, is for values
+// that are too low, and ramp[1], red, for values that are too high.
 enum { STOPS = 5 };
 static const double ramp[2][STOPS][3] = {
     {{247, 246, 243}, {150, 200, 230}, {70, 145, 200}, {30, 90, 160}, {12, 40, 90}},
@@ -179,8 +186,8 @@ static void error_color(double off, float color[3])
         color[c] = (float)((low[c] + (high[c] - low[c]) * (at - i)) / 255);
 }
 
-// Computes the differences table - exact. `map`, which may be NULL, receives the colours of the
-// differences.
+// Computes the largest, root mean square and mean difference `table` - `exact`. `map`, which may be
+// NULL, receives a colour for each difference.
 static kiln_difference compare_tables(const kiln_image *table, const kiln_image *exact,
                                       kiln_image *map)
 {

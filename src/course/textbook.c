@@ -45,8 +45,8 @@ static const float *nearest(const kiln_map *panorama, const double d[3])
     return panorama->level[0] + 3 * ((size_t)y * (size_t)width + (size_t)x);
 }
 
-// Sets d to the direction, in the textbook's axes, that a texel of the result stands for. On a
-// panorama column i is at u = i / (width - 1) and row j at v = j / (height - 1). A level of one
+// Sets d to the direction, in the textbook's axes, that a texel of the filtered map stands for. On
+// a panorama column i is at u = i / (width - 1) and row j at v = j / (height - 1). A level of one
 // row, for which v is 0 / 0, uses the horizon. Other shapes use kiln's texel centres.
 static void look_direction(const kiln_map *map, int level, int x, int row, int width, double d[3])
 {
@@ -91,7 +91,7 @@ typedef struct irradiance {
     kiln_map *map;
     int width, first_row;
     int phi_count, theta_count;
-    double (*phi)[2], (*theta)[2]; // sine and cosine of each grid angle
+    double (*phi)[2], (*theta)[2]; // sine and cosine of each angle of the grid
 } irradiance;
 
 // Sets texel[] to the irradiance E over pi of a surface with the normal `up`, by a sum over a grid
@@ -105,8 +105,8 @@ typedef struct irradiance {
 static void irradiance_texel(const irradiance *r, const double up[3], float texel[3])
 {
     double front[3] = {0, 0, 1}, right[3];
-    // The tangent frame needs another axis where `up` is along z. The textbook tests up.z without
-    // the absolute value, and divides 0 by 0 at up = -z.
+    // The tangent frame needs another axis than z where `up` is along z. The textbook tests up.z
+    // without the absolute value, and divides 0 by 0 at up = -z.
     if (!(fabs(up[2]) < 0.999)) {
         front[1] = -1;
         front[2] = 0;
@@ -147,8 +147,8 @@ static void irradiance_row(void *data, int index)
     }
 }
 
-// Fills level 0 of an allocated map with irradiance / pi, from phi_count x theta_count texels of
-// the panorama for each texel.
+// Fills level 0 of an allocated map with irradiance / pi. Each texel of the map is a sum over a
+// grid of phi_count x theta_count directions, in which the panorama is read.
 static kiln_result fill_irradiance(kiln_context *context, const kiln_map *panorama, int phi_count,
                                    int theta_count, kiln_map *map, kiln_error *error)
 {
@@ -184,9 +184,9 @@ typedef struct prefilter {
     double weight_sum;  // sum of n.l over the light directions
 } prefilter;
 
-// Computes the light directions of a level. In a frame whose z axis is a texel's normal the
-// directions are the same for every texel, because the method takes normal, view and reflection as
-// equal.
+// Computes the light directions and weights that prefilter a level. In a frame whose z axis is a
+// texel's normal the directions are the same for every texel, because the method takes normal, view
+// and reflection as equal.
 static void set_lights(prefilter *r, double roughness, int sample_count)
 {
     r->sample_count = 0;
@@ -247,8 +247,8 @@ static kiln_result fill_levels(kiln_context *context, const kiln_map *panorama, 
     if (!r.light)
         return ki_fail_memory(context, error, "the textbook's samples",
                               (size_t)sample_count * sizeof *r.light);
-    // Progress is counted in texels, because each level has a quarter of the texels of the level
-    // before.
+    // Progress is counted in texels, because the levels differ in size: each has a quarter of the
+    // texels of the level before.
     double from = 0, total = 0, texels[KILN_MAX_LEVELS] = {0};
     for (int k = 0; k < map->level_count; k++)
         total += texels[k] = (double)kiln_map_texels(map, k);
@@ -275,12 +275,12 @@ typedef struct brdf_table {
     int sample_count, first_row;
 } brdf_table;
 
-// Estimates A and B of the split sum (Karis 2013). With half vectors h of density D(h) (n.h), A is
-// the mean over the samples of 1 - F5, and B the mean of F5, each times
+// Estimates A and B of the split sum (albedo = F0 A + B; Karis 2013). With half vectors h of
+// density D(h) (n.h), A is the mean over the samples of 1 - F5, and B the mean of F5, each times
 //
 //     G(l, v) (v.h) / ((n.v) (n.h)),      F5 = (1 - v.h)^5.
 //
-// G is Schlick's with k = roughness^2 / 2. texel[0] is A, texel[1] is B.
+// G is Schlick's masking with k = roughness^2 / 2. texel[0] is A, texel[1] is B.
 static void brdf_texel(double roughness, double nov, int sample_count, float texel[2])
 {
     double alpha = roughness * roughness, k = ki_schlick_k_ibl(alpha);
@@ -311,8 +311,8 @@ static void brdf_row(void *data, int index)
     double roughness = (double)(size - 1 - row) / (size - 1);
     float *texel = r->image->pixels + 2 * (size_t)row * (size_t)size;
     for (int x = 0; x < size; x++, texel += 2) {
-        // At n.v = 0 the textbook divides 0 by 0. The column takes the value at n.v = 1e-4, which
-        // differs from the limit by about 1e-4.
+        // At n.v = 0 the textbook divides 0 by 0. The first column of the table takes the value at
+        // n.v = 1e-4, which differs from the limit by about 1e-4.
         double nov = x > 0 ? (double)x / (size - 1) : 1e-4;
         brdf_texel(roughness, nov, r->sample_count, texel);
     }
@@ -339,7 +339,9 @@ static kiln_result check_count(const char *name, int count, int limit, kiln_erro
     return KILN_OK;
 }
 
-// Fills the defaults in and makes the map that the result goes to.
+// Prepares a filtering by a textbook's method: checks `panorama` and the definition `given` (NULL
+// for all defaults), writes the definition with its zeros replaced by default sizes and counts to
+// *def, and allocates the map for the filtered light.
 static kiln_result start(kiln_context *context, const kiln_map *panorama,
                          const kiln_textbook_def *given, int level_count, kiln_textbook_def *def,
                          kiln_map *map, kiln_error *error)

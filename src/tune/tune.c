@@ -17,12 +17,12 @@
 #include <math.h>
 #include <string.h>
 
-// Degrees of harmonics with less than this share of the power of degree 0 are dropped. They are the
-// rounding of floats, which a mixture with negative weights would amplify.
+// Spherical harmonics of degrees with less than this share of the power of degree 0 are dropped.
+// They are the rounding errors of floats, which a mixture with negative weights would amplify.
 static const double rounding = 1e-14;
-// MOST_READS: greatest size of faces that are solved for bilinear reads. COARSE: greatest size of
-// faces that are compared with their target at 4 x 4 points per texel; larger faces are compared at
-// 2 x 2.
+// MOST_READS: greatest size of a cube level's faces, in texels, for which the texels are solved for
+// bilinear reads. COARSE: greatest size of faces that are compared with their target at 4 x 4
+// points per texel; larger faces are compared at 2 x 2 points.
 enum { MOST_READS = 256, COARSE = 32 };
 
 struct ki_tune {
@@ -34,20 +34,24 @@ struct ki_tune {
     ki_nodes nodes;
 };
 
-// The data of one execution: the environment, and the mixtures and levels that are computed for the
-// environment.
+// The data of one call of ki_tune_execute: the environment, and the mixtures and levels that are
+// computed for it.
 typedef struct run {
     kiln_context *context;
     const ki_tune *tune;
     const ki_legendre *legendre;
     const kiln_spectrum *spectrum;
     double rotation;
-    bool rehearses; // see ki_tune_execute
+    // every level is computed to its highest degree, see ki_tune_execute
+    bool rehearses;
     ki_mixtures mixtures;
-    // power of each degree of the spectrum: [degree + 1] without the suns, then with the suns
+    // power of each degree of the spectrum and channel: [degree + 1] without the suns, then [degree
+    // + 1] with the suns
     double (*power)[3];
-    kiln_map mirror; // level 0 of `map`, and its means over ever larger texels (ki_make_mirrors)
-    kiln_map *map;   // the levels that are written
+    // the unfiltered environment: level 0 of `map`, and its means over ever larger texels
+    // (ki_make_mirrors)
+    kiln_map mirror;
+    kiln_map *map; // map whose tuned levels are written
     // For each level that is solved for bilinear reads, the radiance that the level should show;
     // empty for levels that are not solved.
     kiln_map targets[KILN_MAX_LEVELS];
@@ -58,8 +62,9 @@ static int size_at(const ki_tune *t, int level)
     return ki_max(t->smallest, t->size >> level);
 }
 
-// The degree to which a level of this size is computed. The texels of a cube's face show degrees up
-// to twice its size; points between texels are computed to twice that degree.
+// The degree of harmonics to which a level with faces of `size` texels is computed. The texels of
+// such a face show degrees up to twice its size; points between texels are computed to twice that
+// degree.
 static int most_degree(int size)
 {
     return ki_min(ki_max(4 * size, KI_LEAST_DEGREE), KILN_MAX_DEGREE);
@@ -162,8 +167,8 @@ static double power_at(const run *r, int l)
     return r->power[l][0] + r->power[l][1] + r->power[l][2];
 }
 
-// Makes the kernel of a level from its mixture: the mixture as a function of the angle, and its
-// spectrum, cut at the degree beyond which the error is below the tolerance.
+// Makes the filter kernel of a tuned level from its mixture of lobes: the mixture as a function of
+// the angle, and its spectrum, cut off at the degree beyond which the error is below the tolerance.
 static kiln_result make_kernel(const run *r, int level, ki_zonal *zonal, ki_mixture *mixture,
                                ki_zonal_spectrum *spectrum, kiln_error *error)
 {
@@ -199,7 +204,8 @@ static kiln_result make_kernel(const run *r, int level, ki_zonal *zonal, ki_mixt
             spectrum->k[i] = 0;
     spectrum->degree = l;
     ki_mixture_create(mixture, alphas, weights, integrals, count);
-    // The width of a level's kernel is taken from its narrowest lobe with a considerable weight.
+    // The width of a level's kernel is taken from the narrowest lobe of its mixture with a weight
+    // above 0.01.
     double narrowest = 1;
     for (int n = 0; n < count; n++)
         if (fabs(weights[n]) > 0.01)
@@ -237,8 +243,8 @@ static kiln_result make_target(const run *r, int level, kiln_map *map, int index
     return result;
 }
 
-// Returns true if `level` is solved for bilinear reads. `level` may be one beyond the last level,
-// for which the function returns false.
+// Returns true if the texels of `level` are solved for bilinear reads. `level` may be one beyond
+// the last level, for which the function returns false.
 static bool is_read(const ki_tune *t, int level)
 {
     if (level >= t->level_count || level >= KILN_MAX_LEVELS)
@@ -273,9 +279,10 @@ static void correct_row(void *data, int row)
     }
 }
 
-// Makes a level by solving for bilinear reads. The goal is the level's mixture on a finer grid,
-// corrected to make up for the error that the next, coarser level has already. r->targets[level]
-// keeps the uncorrected goal for the next finer level.
+// Makes a level by solving for the texels whose bilinear reads come nearest to a goal. The goal is
+// the environment filtered by the level's mixture, on a finer grid, corrected to make up for the
+// error that the next, coarser level already has. r->targets[level] keeps the uncorrected goal for
+// the next finer level.
 static kiln_result make_read(run *r, int level, kiln_error *error)
 {
     const ki_tune *t = r->tune;
@@ -313,8 +320,8 @@ static kiln_result make_levels(run *r, kiln_error *error)
     if (result != KILN_OK)
         return result;
     ki_make_mirrors(r->context, r->map, &r->mirror);
-    // The order is from coarse to fine, because a fine level can make up for an error of a coarse
-    // level.
+    // Levels are made from coarse to fine, because a fine level can make up for the error of the
+    // next coarser one.
     for (int i = t->level_count - 1; i >= 0 && result == KILN_OK; i--) {
         if (is_read(t, i)) {
             result = make_read(r, i, error);

@@ -23,22 +23,23 @@
 
 #include "sphere/level.h"
 
-/// How an engine reads the levels.
+/// How an engine reads the levels of a prefiltered environment.
 typedef struct ki_reading {
-    double (*level)(double roughness, int level_count, int size); ///< fractional level that the
-                                                                  ///< engine reads
+    ///< fractional level that the engine reads at a roughness
+    double (*level)(double roughness, int level_count, int size);
     bool keep_last; ///< the engine reads diffuse light from the last level, which stays exact
     bool flat;      ///< the engine reads a picture made from the cube, not the cube's own texels
-    bool soft;      ///< level 0 may differ from the unfiltered environment
+    bool soft;      ///< level 0 is tuned too, and may differ from the unfiltered environment
 } ki_reading;
 
-/// The part of tuning that depends on the sizes and roughnesses of levels, but not on the
-/// environment. An execution changes nothing in the tuning.
+/// The plan of a tuning: the part that depends on the sizes and roughnesses of levels, but not on
+/// the environment. An execution changes nothing in the plan.
 typedef struct ki_tune ki_tune;
 
-/// Prepares tuning for a layout of levels. No field of `def` is 0 for a default: its lobe is GGX,
-/// its level 0 the unfiltered environment (a mirror), its size a power of two. roughness[] is that
-/// of the exact levels.
+/// Prepares tuning for a map of the sizes and number of levels in `def`. The fields of `def` are
+/// complete (0 no longer stands for a default value): the lobe is GGX, level 0 the unfiltered
+/// environment (a mirror), and the size a power of two. roughness[] has the roughness of each level
+/// where levels are exact.
 kiln_result ki_tune_create(kiln_context *context, const kiln_prefilter_def *def,
                            const float roughness[KILN_MAX_LEVELS], const ki_reading *reading,
                            ki_tune **tune, kiln_error *error);
@@ -48,17 +49,17 @@ int ki_tune_degree(const ki_tune *tune);
 /// Returns true if `level` is tuned. Before ki_tune_execute is called, the map must hold the exact
 /// content of all levels that are not tuned, and of level 0 in any case.
 bool ki_tune_makes(const ki_tune *tune, int level);
-/// Writes the tuned levels to `map`. `legendre` has been made for the degree ki_tune_degree or
-/// more. The environment is turned by `rotation` degrees about +Y. With `rehearses`, every level is
-/// computed to the highest degree that any environment may need, so that the execution takes as
-/// much memory as any other, except for the suns. Threads and memory are those of the spectrum's
-/// context.
+/// Writes the tuned levels to `map`. `legendre` reaches at least the degree ki_tune_degree. The
+/// environment is turned by `rotation` degrees about +Y. With `rehearses`, every level is computed
+/// to the highest degree that any environment may need, so that the execution takes as much memory
+/// as with any other environment, except for the suns. Threads and memory are those of the
+/// spectrum's context.
 kiln_result ki_tune_execute(const ki_tune *tune, const ki_legendre *legendre,
                             const kiln_spectrum *spectrum, double rotation, bool rehearses,
                             kiln_map *map, kiln_error *error);
 
-/// Returns the greatest number of bytes that an execution takes for `count` suns of a panorama of
-/// `source_size` rows.
+/// Returns the greatest number of bytes that ki_tune_execute allocates for `count` suns of a
+/// panorama of `source_size` rows.
 size_t ki_tune_suns_size(const ki_tune *tune, int source_size, size_t count);
 
 #endif

@@ -12,7 +12,8 @@ typedef struct halving {
     int width;
 } halving;
 
-// Task of one thread: computes a row of means of 2 x 2 texels.
+// Task of one thread: computes a row of a level whose texels are the means of 2 x 2 texels of the
+// level before.
 static void halve_row(void *data, int row)
 {
     const halving *h = data;
@@ -76,11 +77,13 @@ typedef struct clearing {
     float *level;
     int width, size;
     kiln_shape shape;
-    double (*sums)[2][3]; // sum of each row before and after negative texels become 0
+    // sums of the texels of each row by channel, [row]: before, and after negative texels become 0
+    double (*sums)[2][3];
     float scale[3];
 } clearing;
 
-// Task of one thread: sets the negative texels of a row to 0 and sums the row before and after.
+// Task of one thread: sets the negative texels of a row to 0, and sums the row's texels before and
+// after, weighted by solid angle.
 static void clear_row(void *data, int row)
 {
     clearing *c = data;
@@ -95,7 +98,8 @@ static void clear_row(void *data, int row)
     }
 }
 
-// Task of one thread: multiplies a row by the scale of each channel.
+// Task of one thread: multiplies the texels of a row by c->scale of their channel, which restores
+// the mean over the sphere.
 static void scale_row(void *data, int row)
 {
     const clearing *c = data;

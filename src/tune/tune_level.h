@@ -8,12 +8,12 @@
 /// Fills the allocated map `mirrors`, whose sizes are powers of two: its level 0 is a copy of level
 /// 0 of `map`, and each further level has the means of 2 x 2 texels of the level before.
 void ki_make_mirrors(kiln_context *context, const kiln_map *map, kiln_map *mirrors);
-/// Adds weight times the level of `mirrors` of the same size, or of the next smaller one, to
-/// `level` of `map`, whose size is a power of two.
+/// Adds `weight` times the unfiltered environment to `level` of `map`, whose size is a power of
+/// two. Reads the level of `mirrors` of the same size, or of the next smaller one.
 void ki_add_mirror(kiln_context *context, const kiln_map *mirrors, double weight, kiln_map *map,
                    int level);
 /// Sets negative texels of a level to 0, and scales each channel so that its mean over the sphere
-/// is unchanged.
+/// is what it was before.
 kiln_result ki_clear_negative(kiln_context *context, kiln_map *map, int level, kiln_error *error);
 
 #endif

@@ -1,8 +1,9 @@
-// Finds the mixtures of lobes of tuned levels. In: the nodes of roughness and the environment's
-// spectrum. Out: the weight of each lobe in each level. The normal equations of the least-squares
-// problem in tune.h are tridiagonal in the levels. They are solved once for each axis of the two
-// norms (tune_norms.h), and the components of the solutions along their axes are added.
-// docs/theory/tuning.md derives the method.
+// Finds the mixtures of lobes of tuned levels. In: quadrature nodes over roughness and the
+// environment's spectrum. Out: the weight of each lobe in each level. The normal equations of the
+// least-squares problem in tune.h are tridiagonal in the levels. The error is measured in two
+// norms, over the whole sphere and away from suns (tune_norms.h). The equations are solved once for
+// each common eigenvector ("axis") of the norms, and the components of the solutions along their
+// axes are added. docs/theory/tuning.md derives the method.
 #include "tune/tune_norms.h"
 
 #include "math/math.h"
@@ -13,20 +14,21 @@
 // Smallest roughness at which errors count for the tuning.
 static const double least_roughness = 0.05;
 // Regularisation: the weight of the equation that a level equals its exact content, relative to the
-// weight of the roughnesses that read the level. Without that equation, a level that hardly any
-// roughness in [0.05, 1] reads would be undetermined.
+// weight of the roughnesses at which an engine reads the level. Without that equation, a level that
+// hardly any roughness in [0.05, 1] reads would be undetermined.
 static const double prior = 1e-3;
-// The weight of the equation that level 0 equals the mirror, where level 0 is tuned. It is the
-// weight that an interval of roughness of this length has.
+// The weight of the equation that level 0 equals the mirror (the unfiltered environment), where
+// level 0 is tuned. It is as large as the weight of errors over an interval of roughness of length
+// 1e-3.
 static const double mirror_weight = 1e-3;
-// Weights of lobes smaller than this in absolute value are set to 0.
+// Weights of lobes in a mixture that are smaller than this in absolute value are set to 0.
 static const double least_weight = 1e-5;
-// The weight of errors away from suns (second norm) relative to errors on the whole sphere (first
-// norm).
+// The weight of errors away from suns (the second norm of tune_norms.h) relative to errors on the
+// whole sphere (the first norm).
 static const double far_weight = 30;
-// Errors away from suns are relative to the light there. This constant is added to the square of
+// Errors away from suns are divided by the light there. This constant is added to the square of
 // that light, in units of the squared mean radiance. Without it, the errors of a black sky around a
-// lamp would outweigh all others.
+// lamp would outweigh all other errors.
 static const double dark = 0.01;
 
 void ki_nodes_place(ki_nodes *nodes, double (*level)(double, int, int), int level_count, int size)
@@ -61,18 +63,19 @@ void ki_nodes_place(ki_nodes *nodes, double (*level)(double, int, int), int leve
 // --------------------------------------------------------------------------------------- equations
 
 typedef struct equations {
-    double diagonal[KILN_MAX_LEVELS]; // A_ii of the matrix A of the normal equations (tune.h)
-    double next[KILN_MAX_LEVELS];     // A_i,i+1 of the matrix A of the normal equations (tune.h)
-    // right-hand side of the equation of each level: the weight of each lobe in a mixture
+    // A_ii of the normal equations' matrix A (tune.h) for each level i
+    double diagonal[KILN_MAX_LEVELS];
+    double next[KILN_MAX_LEVELS]; // A_i,i+1 of the normal equations' matrix A (tune.h)
+    // right-hand side of the equation of each level: the coefficient of each lobe
     double right[KILN_MAX_LEVELS][KI_MOST_LOBES];
     // the solution: the weight of each lobe in the mixture of each level
     double weights[KILN_MAX_LEVELS][KI_MOST_LOBES];
 } equations;
 
-// Fills the normal equations. They are tridiagonal, because a roughness reads two neighbouring
-// levels, and have one right-hand side for each lobe. w[] is the weight of a unit of roughness at
-// each node, and its last element that of the mirror. If `coupling` is not NULL, sets coupling[i]
-// to A_i,i+1 / A_ii.
+// Fills the normal equations of the levels' mixtures. They are tridiagonal, because a roughness
+// reads two neighbouring levels, and have one right-hand side for each lobe. w[] is the weight of
+// errors per unit of roughness at each node; its last element is that of errors of the mirror, at
+// level 0. If `coupling` is not NULL, sets coupling[i] to A_i,i+1 / A_ii.
 static void set_up_equations(const ki_nodes *nodes, const double *w, double *coupling, equations *e)
 {
     int last = nodes->level_count - 1, mirror = nodes->count + 1;
@@ -130,7 +133,8 @@ static void solve_equations(const ki_nodes *nodes, equations *e)
         }
 }
 
-// Adds the component of a solution along one eigenvector of the two norms (axis) to `to`.
+// Adds to `to` the component of the mixtures e->weights along one common eigenvector ("axis") of
+// the two norms of tune_norms.h.
 static void add_part(const ki_norms *n, size_t axis, const equations *e, int level_count,
                      ki_mixtures *to)
 {
@@ -145,8 +149,9 @@ static void add_part(const ki_norms *n, size_t axis, const equations *e, int lev
     }
 }
 
-// Sets tiny weights to 0, because each weight costs the evaluation of a lobe. Scales the remaining
-// weights to sum to 1, so that a white environment stays white.
+// Sets the tiny weights of lobes in mixtures to 0, because each weight costs the evaluation of a
+// lobe. Scales the remaining weights of a mixture to sum to 1, so that a white environment stays
+// white.
 static void finish(const ki_nodes *nodes, ki_mixtures *mixtures)
 {
     int count = nodes->count + 2;
@@ -172,8 +177,8 @@ kiln_result ki_mixtures_find(kiln_context *context, const ki_nodes *nodes,
         return result;
     memset(mixtures, 0, sizeof *mixtures);
     for (int k = 0; k < n.count; k++) {
-        // The weight of a roughness r is 1 / |T_r|^2 in each norm, where T_r is the exact result.
-        // The errors that are minimised are therefore relative errors.
+        // The weight of a roughness r is 1 / |T_r|^2 in each norm, where T_r is the environment
+        // filtered exactly for r. The errors that are minimised are therefore relative errors.
         double w[KI_MOST_LOBES] = {0};
         equations e;
         for (int i = 0; i < n.count; i++)

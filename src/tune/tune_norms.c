@@ -1,8 +1,9 @@
-// Computes the two norms of tune_norms.h. In: the spectra of lobes and of the environment. Out: the
-// matrices of scalar products of lobes, and their common eigenvectors. The products over the sphere
-// come from the power per degree. Away from suns, the light of suns is integrated over the tails of
-// lobes. The generalised eigenproblem becomes an ordinary one by a Cholesky decomposition.
-// docs/theory/tuning.md.
+// Computes the two norms of tune_norms.h: of errors over the whole sphere, and of errors away from
+// suns. In: the spectra of lobes and of the environment. Out: the matrix of scalar products of
+// filtered environments in each norm, and the common eigenvectors of both matrices. The products
+// over the whole sphere come from the power per degree. Away from suns, the suns' light is
+// integrated over the tails of lobes. The generalised eigenproblem becomes an ordinary one by a
+// Cholesky decomposition. docs/theory/tuning.md.
 #include "tune/tune_norms.h"
 
 #include "math/math.h"
@@ -11,16 +12,17 @@
 #include <math.h>
 #include <string.h>
 
-// The relative amount that is added to the diagonals of both matrices. The lobes are nearly
-// linearly dependent, and rounding could make the matrices indefinite.
+// The relative amount that is added to the diagonal of each norm's matrix of scalar products. The
+// lobes are nearly linearly dependent, and rounding could make the matrices indefinite.
 static const double ridge = 1e-8;
-// The angle around each sun within which errors do not count in the second norm, in radians (8
-// degrees, a 200th of the sphere).
+// The angle around each sun within which errors do not count in the norm away from suns, in radians
+// (8 degrees; a circle of a 200th of the sphere).
 static const double aside = 0.1415;
 
-// Adds to products[i][j] the sum over degrees l of power_l k_i,l k_j,l, divided by `mean`, for all
-// pairs of lobes. k_i,l is the spectrum of lobe i. The last lobe is a mirror, with k = 1. `power`
-// is NULL for a black environment, for which the products are those of uniform light.
+// Adds to products[i][j] the scalar product of the environment filtered by lobe i and by lobe j:
+// the sum over degrees l of power_l k_i,l k_j,l, divided by `mean`. k_i,l are the Legendre
+// coefficients of lobe i; the last lobe is a mirror, with k = 1. `power` is NULL for a black
+// environment, for which the products are those of uniform light.
 static void add_power(const ki_nodes *nodes, const double (*power)[3], int degree, double mean,
                       double *products)
 {
@@ -42,8 +44,8 @@ static void add_power(const ki_nodes *nodes, const double (*power)[3], int degre
         }
 }
 
-// Sets *sum to the sum of the squared light of suns. Suns nearer to each other than `aside` count
-// as one sun.
+// Sets *sum to the sum over suns and channels of the squared light of a sun, its radiance times
+// solid angle. Suns nearer to each other than `aside` count as one sun.
 static kiln_result square_suns(kiln_context *context, const kiln_spectrum *spectrum, double *sum,
                                kiln_error *error)
 {
@@ -55,8 +57,8 @@ static kiln_result square_suns(kiln_context *context, const kiln_spectrum *spect
     kiln_result result = ki_points_create(spectrum, &any, 1, 0, &points, error);
     if (result != KILN_OK)
         return result;
-    // Suns near to each other form a group: each sun joins the first group that is near enough. A
-    // group keeps the direction of its first sun.
+    // Suns near to each other form a group: each sun joins the first group that is nearer than
+    // `aside`. A group keeps the direction of its first sun.
     double(*suns)[6] = ki_alloc(context, (size_t)spectrum->sun_count, sizeof *suns);
     int count = 0;
     for (int i = 0; i < spectrum->sun_count && suns; i++) {
@@ -82,9 +84,10 @@ static kiln_result square_suns(kiln_context *context, const kiln_spectrum *spect
     return result;
 }
 
-// Adds the light that the tails of lobes carry away from suns: `light` times the integral of the
-// product of two lobes over the angles from `aside` to 90 degrees, by the midpoint rule in the
-// logarithm of the angle. The mirror contributes nothing.
+// Adds to products[i][j] the light that the tails of lobes i and j carry away from suns: `light`,
+// the squared light of the suns, times the integral of the product of both lobes over the angles
+// from `aside` to 90 degrees, by the midpoint rule in the logarithm of the angle. The mirror has no
+// tail.
 static void add_tails(const ki_nodes *nodes, double light, double *products)
 {
     enum { STEPS = 128 };
@@ -137,8 +140,8 @@ static void divide(int count, const double *lower, double *a)
     }
 }
 
-// Converts eigenvectors q of L^-1 H L^-T, where L L' = G, to the lobes' basis: along = L^-T q and
-// across = L q.
+// Converts eigenvectors q of L^-1 H L^-T to the basis of lobes: along = L^-T q and across = L q. G
+// and H are the matrices of tune_norms.h, with L L' = G.
 static void turn_axes(ki_norms *n, const double *lower, const double *axes)
 {
     size_t count = (size_t)n->count;
@@ -177,8 +180,8 @@ kiln_result ki_norms_create(kiln_context *context, const ki_nodes *nodes,
     }
     double *away = lower + size, *axes = away + size;
     n->across = n->along + size;
-    // Products are relative to the mean radiance, so that no unit of radiance overflows. A black
-    // environment is treated as a white one.
+    // The scalar products are divided by the squared mean radiance, so that no unit of radiance
+    // overflows. A black environment is treated as a white one.
     bool dark = !(mean > 0);
     add_power(nodes, dark ? NULL : all, spectrum->degree, dark ? 1 : mean, lower);
     add_power(nodes, dark ? NULL : power, spectrum->degree, dark ? 1 : mean, away);

@@ -1,14 +1,15 @@
-// The two norms in which tuned levels minimise their error: over the whole sphere, and over the
-// sphere without 8 degrees around each sun. docs/theory/tuning.md.
+// The norms in which tuned levels minimise their error: over the whole sphere (the first norm), and
+// over the sphere without 8 degrees around each sun (the second norm). docs/theory/tuning.md.
 #ifndef KI_TUNE_NORMS_H
 #define KI_TUNE_NORMS_H
 
 #include "tune/tune_mix.h"
 
-/// The two norms in the basis of lobes. The scalar products of the environment filtered by lobe i
-/// and by lobe j form a symmetric matrix in each norm: G for the whole sphere, H away from suns.
-/// The generalised eigenvectors, H u = ratio G u, called axes, are orthonormal in the first norm
-/// and orthogonal in the second, in which axis u has the squared length `ratio`.
+/// The two norms of errors, as matrices over the lobes of mixtures. The scalar products of the
+/// environment filtered by lobe i and by lobe j form a symmetric matrix in each norm: G for the
+/// whole sphere, H away from suns. The generalised eigenvectors, H u = ratio G u, called axes, are
+/// orthonormal in the norm of G and orthogonal in the norm of H, in which axis u has the squared
+/// length `ratio`.
 typedef struct ki_norms {
     int count; // number of lobes, which is also the number of axes
     // squared norm over the whole sphere of the environment filtered by each lobe, over the squared
@@ -17,13 +18,16 @@ typedef struct ki_norms {
     // squared norm away from suns of the environment filtered by each lobe, over the squared mean
     // radiance
     double away[KI_MOST_LOBES];
-    double ratio[KI_MOST_LOBES]; // generalised eigenvalue that belongs to each axis (eigenvector)
-    double *along;               // [axis][lobe]: each axis is a mixture of lobes with these weights
-    // [axis][lobe]: scalar product over the whole sphere of an axis and a filtered environment
+    // generalised eigenvalue that belongs to each axis, an eigenvector u of H u = ratio G u
+    double ratio[KI_MOST_LOBES];
+    // [axis][lobe]: weights of the mixture of lobes that each axis is
+    double *along;
+    // [axis][lobe]: scalar product over the whole sphere of each axis and the environment filtered
+    // by each lobe
     double *across;
 } ki_norms;
 
-/// Computes the norms for an environment. `power` is described at ki_mixtures_find.
+/// Computes the norms of errors for an environment. `power` is described at ki_mixtures_find.
 kiln_result ki_norms_create(kiln_context *context, const ki_nodes *nodes,
                             const kiln_spectrum *spectrum, const double (*power)[3],
                             ki_norms *norms, kiln_error *error);

@@ -8,17 +8,18 @@
 #include <math.h>
 #include <string.h>
 
-// B x are the values that bilinear reads of the texels x give at the points, which are the
-// directions of the goal's texels; each read has four taps. W is the diagonal matrix of the points'
+// The points are the directions of the goal's texels. B x are the values that bilinear reads of the
+// texels x give at the points; each read has four taps. W is the diagonal matrix of the points'
 // solid angles. The normal equations B' W B x = B' W goal are solved by conjugate gradients,
-// preconditioned by their diagonal. The condition number of the matrix is about 9, so that STEPS
-// steps suffice. Texels that become negative are fixed at 0 and the others are solved for again, in
-// up to ROUNDS rounds. Tasks process CHUNK texels or points.
+// preconditioned by the diagonal of B' W B. The condition number of that matrix is about 9, so that
+// STEPS steps suffice. Texels that become negative are fixed at 0 and the others are solved for
+// again, in up to ROUNDS rounds. Tasks process CHUNK texels or points.
 enum { STEPS = 14, ROUNDS = 3, CHUNK = 2048 };
 
 typedef struct tap {
-    uint32_t at; // index of the texel that a point reads; in `reverse`, of the point that reads a
-                 // texel
+    // in `taps` the index of the texel that a point reads, in `reverse` the index of the point that
+    // reads a texel
+    uint32_t at;
     float weight;
 } tap;
 
@@ -28,17 +29,23 @@ typedef struct reads {
     size_t texel_count, point_count;
     // the four texels that a bilinear read at each point uses, with their weights: the matrix B
     tap (*taps)[4];
-    uint32_t *start; // [texels + 1], index in `reverse` of the first point that reads each texel
-    tap *reverse;    // the points that read each texel, with their weights: the transpose of B
-    float *solid;    // solid angle of each point of a face, up to a factor
+    // index in `reverse` of the first point that reads each texel, [texel_count + 1]
+    uint32_t *start;
+    // the points that read each texel, with their weights: the transpose of the matrix B
+    tap *reverse;
+    // solid angle of each point of one cube face, up to a constant factor
+    float *solid;
     // at each point, the interpolated value B x or the residual goal - B x, times the point's solid
     // angle
     double (*shown)[3];
-    // For each texel: the solution, the residual, the search direction, the matrix times that
-    // direction, the diagonal of the matrix, and whether the texel is fixed at 0.
+    // For each texel and channel: the solution x; the residual of the normal equations; the search
+    // direction; the matrix B' W B times that direction; the diagonal of the matrix (for each
+    // texel); and whether the texel is fixed at 0.
     double (*x)[3], (*residual)[3], (*direction)[3], (*product)[3], *diagonal;
     bool (*held)[3];
-    double (*sums)[2][3]; // two partial sums of each chunk of texels or points
+    // [chunk][2][channel]: for each chunk of texels or points, the two sums that the task writes
+    // which ran last; show_points, gather, take_step and hold say which.
+    double (*sums)[2][3];
     double scale[3];
 } reads;
 
@@ -141,8 +148,8 @@ static void release(reads *r)
     ki_free(r->sums);
 }
 
-// Task of one thread: for a chunk of texels, sets the diagonal of the matrix, and as the first
-// guess the weighted mean of the goal over the points that read the texel.
+// Task of one thread: for a chunk of texels, sets the diagonal of the matrix B' W B, and as the
+// first guess of x the weighted mean of the goal over the points that read the texel.
 static void begin(void *data, int index)
 {
     reads *r = data;
@@ -169,12 +176,12 @@ typedef struct product {
     reads *r;
     const double (*from)[3]; // one RGB value for each texel
     double (*to)[3];
-    // true: the residual B' W (goal - B from) is computed; false: the product B' W B from
+    // true: computes the residual B' W (goal - B from); false: the product B' W B from
     bool residual;
 } product;
 
-// Task of one thread: sets `shown` at a chunk of points to W B x or to W (goal - B x), and sums W
-// goal and W B x over the chunk.
+// Task of one thread: sets `shown` at a chunk of points to W B x or to the residual W (goal - B x),
+// where x is `from`. Writes to r->sums the sums over the chunk of W goal and of W B x.
 static void show_points(void *data, int index)
 {
     const product *a = data;
@@ -196,9 +203,9 @@ static void show_points(void *data, int index)
     }
 }
 
-// Task of one thread: multiplies r->shown by the transpose of B, and writes a chunk of texels of
-// `to`. Sums two products over the chunk: of `to` and `from`, and of `to` with itself over the
-// diagonal of the matrix.
+// Task of one thread: multiplies r->shown by the transpose of B, which gives a chunk of texels of
+// `to`. Writes to r->sums the sums over the chunk of `to` times `from`, and of `to` squared over
+// the diagonal of the matrix.
 static void gather(void *data, int index)
 {
     const product *a = data;
@@ -231,7 +238,8 @@ typedef struct step {
 } step;
 
 // Task of one thread: moves a chunk of texels along the search direction of the conjugate-gradient
-// method and updates their residual.
+// method and updates their residual. Writes to r->sums, as the second sum, that of the squared
+// residual over the diagonal of the matrix.
 static void take_step(void *data, int index)
 {
     const step *s = data;
@@ -258,8 +266,8 @@ static void turn_direction(void *data, int index)
                 r->residual[t][c] / r->diagonal[t] + s->turn[c] * r->direction[t][c];
 }
 
-// Solves for the texels that are not fixed, by STEPS steps of conjugate gradients in each colour
-// channel.
+// Solves for the texels that are not fixed at 0, by STEPS steps of preconditioned conjugate
+// gradients in each colour channel.
 static void solve(reads *r)
 {
     int texel_chunks = chunks(r->texel_count);
@@ -284,7 +292,7 @@ static void solve(reads *r)
 }
 
 // Task of one thread: sets the negative texels of a chunk to 0, fixes them at 0 for the next round,
-// and counts them.
+// and writes their number to r->sums.
 static void hold(void *data, int index)
 {
     reads *r = data;
