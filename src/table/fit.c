@@ -1,9 +1,9 @@
 // Searches a closed form with few coefficients for an integral of the reflection model, and
-// evaluates it. In: the kind, the model and the wanted error. Out: polynomials P or quotients P / Q
-// in x, a function of n.v and roughness, and y, the roughness scaled to [-1, 1]. The search tries
-// P and Q with more and more coefficients, and takes the first form whose measured error is small
-// enough. fit_points.c computes exact values and errors, fit_solve.c the coefficients.
-// docs/theory/fits.md describes the method.
+// evaluates it. In: the kind of integral, the model and the wanted error. Out: polynomials P or
+// quotients P / Q in x, a function of n.v and roughness, and y, the roughness scaled to [-1, 1].
+// The search tries P and Q with more and more coefficients, and takes the first form whose measured
+// error is small enough. fit_points.c computes exact values and errors, fit_solve.c the
+// coefficients. docs/theory/fits.md describes the method.
 #include "table/fit.h"
 
 #include "table/table_axis.h"
@@ -12,7 +12,7 @@
 
 // ------------------------------------------------------------------------------------------ checks
 
-// Replaces zeros in `def` by defaults and checks every field.
+// Replaces zeros in the definition `def` of a fit by default values, and checks every field.
 static kiln_result complete(kiln_fit_def *def, kiln_error *error)
 {
     if ((unsigned)def->kind > KILN_FIT_SHEEN)
@@ -44,7 +44,8 @@ static kiln_result complete(kiln_fit_def *def, kiln_error *error)
 
 // ------------------------------------------------------------------------------------------ search
 
-// A form that is tried, P or P / Q: P has x_count * y_count coefficients, and Q has as many.
+// A closed form that the search tries, P or P / Q: P has x_count * y_count coefficients, and Q has
+// as many.
 typedef struct candidate {
     kiln_fit_axis axis;
     bool rational;
@@ -53,8 +54,8 @@ typedef struct candidate {
 
 enum { AXES = 2, MAX_CANDIDATES = 2 * AXES * KILN_MAX_FIT_TERMS * KILN_MAX_FIT_TERMS };
 
-// Sets axes[] to the functions of n.v that are tried as x for a target function, and returns their
-// number.
+// Sets axes[] to the functions of n.v (and roughness) that are tried as the argument x of
+// polynomials for a target function, and returns their number.
 static int axes_of(ki_fit_target target, kiln_fit_axis axes[AXES])
 {
     switch (target) {
@@ -73,8 +74,8 @@ static int axes_of(ki_fit_target target, kiln_fit_axis axes[AXES])
     }
 }
 
-// Lists every allowed form P or P / Q, sorted by the number of coefficients. Returns the number of
-// forms.
+// Lists every form P or P / Q that `def` allows for a target function, sorted by the number of
+// coefficients. Returns the number of forms.
 static int list_candidates(const kiln_fit_def *def, ki_fit_target target, candidate *list)
 {
     kiln_fit_axis axes[AXES];
@@ -99,8 +100,9 @@ static int list_candidates(const kiln_fit_def *def, ki_fit_target target, candid
     return count;
 }
 
-// State of the search for one part of a fit, a P or P / Q. nodes[i] are the nodes for the i-th axis
-// that axes_of gives.
+// State of the search for one part of a fit, a P or P / Q. nodes[i] are the points to which the
+// part is fitted if its argument x is the i-th axis that axes_of gives. The part's error is
+// measured at `checks`.
 typedef struct search {
     ki_fit_points nodes[AXES], checks;
     double *scratch;
@@ -108,9 +110,10 @@ typedef struct search {
 } search;
 
 // Fits one form to the target function. A fit by least squares is cheap and comes first. If its
-// error is below `hopeful` times `wanted`, ROUNDS rounds of reweighting lower the greatest error.
-// Sets *reached to the greatest error at the points s->checks, or to infinity if the form is given
-// up earlier. Returns true if *reached is at most `wanted`.
+// error is below `hopeful` times `wanted`, the form is fitted again with ROUNDS rounds of
+// reweighting, which lower the greatest error. Sets *reached to the greatest error at the points
+// s->checks, or to infinity if the form is given up earlier. Returns true if *reached is at most
+// `wanted`.
 static bool try_candidate(search *s, const kiln_fit *fit, const candidate *c, double wanted,
                           kiln_fit_part *part, double *reached)
 {
@@ -132,7 +135,8 @@ static bool try_candidate(search *s, const kiln_fit *fit, const candidate *c, do
     return *reached <= wanted;
 }
 
-// Allocates the scratch memory and the points of a search.
+// Prepares the search of one part: allocates the scratch memory, and the points for fits and for
+// measuring errors.
 static kiln_result begin(kiln_context *context, const kiln_fit *fit, ki_fit_target target,
                          search *s, kiln_error *error)
 {
@@ -151,8 +155,8 @@ static kiln_result begin(kiln_context *context, const kiln_fit *fit, ki_fit_targ
     return result;
 }
 
-// Finds the form with the fewest coefficients whose error is at most `wanted`. Sets *part to the
-// fit of that form and *reached to the error of the fit.
+// Finds the form P or P / Q with the fewest coefficients whose error from the target function is at
+// most `wanted`. Sets *part to the fit of that form and *reached to the error of the fit.
 static kiln_result find_part(kiln_context *context, const kiln_fit *fit, ki_fit_target target,
                              double wanted, search *s, kiln_fit_part *part, double *reached,
                              kiln_error *error)
@@ -184,8 +188,8 @@ static kiln_result find_part(kiln_context *context, const kiln_fit *fit, ki_fit_
                    fit->def.max_coefficients, wanted, best, best_count);
 }
 
-// Searches the form for fit->def and sets the other fields of `fit`. Fails with
-// KILN_ERROR_UNSUPPORTED if no form has the wanted error.
+// Searches a closed form for the integral that fit->def describes, and sets the other fields of
+// `fit`. Fails with KILN_ERROR_UNSUPPORTED if no form has the wanted error.
 static kiln_result make_fit(kiln_context *context, kiln_fit *fit, kiln_error *error)
 {
     ki_fit_target target[2];

@@ -9,7 +9,8 @@
 
 #include <kiln/brdf.h>
 
-/// Returns the value of one part P or P / Q, in floats as kiln_fit_evaluate.
+/// Returns the value of one part, P or P / Q, of a closed form at (nov, roughness). Computes in
+/// floats, as kiln_fit_evaluate does.
 float ki_fit_evaluate_part(const kiln_fit_def *def, const kiln_fit_part *part, float nov,
                            float roughness);
 
@@ -23,12 +24,12 @@ typedef enum ki_fit_target {
     KI_FIT_SHEEN
 } ki_fit_target;
 
-/// Sets target[] to the functions that the parts of a kind of form approximate. Returns their
-/// number, 1 or 2.
+/// Sets target[] to the functions that the parts of a closed form of this kind approximate. Returns
+/// their number, 1 or 2.
 int ki_fit_targets(kiln_fit_kind kind, ki_fit_target target[2]);
 
-/// Points (n.v, roughness) and the exact values of a target there: either the nodes to which a part
-/// is fitted, or the points at which its error is measured.
+/// Points (n.v, roughness) and the exact values of a target function there: either the nodes to
+/// which a part (P or P / Q) is fitted, or the points at which its error is measured.
 typedef struct ki_fit_points {
     int count;
     double *x, *y; ///< arguments of the part's polynomials in [-1, 1]; set at nodes only
@@ -39,28 +40,30 @@ typedef struct ki_fit_points {
 /// Number of nodes along each side of the grid to which a form is fitted.
 enum { KI_FIT_GRID = 40 };
 
-/// Allocates the nodes for fits on one axis, a Chebyshev grid, and computes the target's exact
-/// values there.
+/// Allocates the nodes to which a part is fitted if its argument x is `axis`: a Chebyshev grid in x
+/// and the scaled roughness. Computes the target function's exact values there.
 kiln_result ki_fit_nodes(kiln_context *context, const kiln_fit_def *def, ki_fit_target target,
                          kiln_fit_axis axis, ki_fit_points *points, kiln_error *error);
-/// Allocates the points at which errors are measured, and computes the target's exact values there.
+/// Allocates the points at which the errors of a part are measured, and computes the target
+/// function's exact values there.
 kiln_result ki_fit_checks(kiln_context *context, const kiln_fit_def *def, ki_fit_target target,
                           ki_fit_points *points, kiln_error *error);
 void ki_fit_points_free(ki_fit_points *points);
 
-/// Returns the greatest absolute difference between a part and the exact values at `points`.
+/// Returns the greatest absolute difference between the values of a part, P or P / Q, and the exact
+/// values at `points`.
 double ki_fit_measure_part(const kiln_fit_def *def, const kiln_fit_part *part,
                            const ki_fit_points *points);
-/// Sets the greatest and the RMS error of the form. points[k] has the exact values of the function
-/// that part k approximates.
+/// Sets the greatest and the RMS error of a closed form. points[k] has the exact values of the
+/// function that part k of the form approximates.
 void ki_fit_measure(kiln_fit *fit, const ki_fit_points points[2]);
 
-/// Computes the coefficients of a part, whose axis, form and counts are set, so that the part
-/// approximates the values at the nodes. With rounds = 0 the fit is by least squares. Each
-/// further round reweights the nodes to lower the greatest error; rounds stop early if `wanted` is
-/// out of reach. `scratch` holds (2 * nodes->count + KILN_MAX_FIT) * KILN_MAX_FIT + 4 *
-/// nodes->count + KILN_MAX_FIT numbers. Returns the greatest error at the nodes, or infinity if
-/// every solution failed.
+/// Computes the coefficients of a part, P or P / Q, whose axis, form and counts are set, so that
+/// the part approximates the values at the nodes. With rounds = 0 the fit is by least squares. Each
+/// further round reweights the nodes to lower the greatest error; rounds stop early if the error
+/// `wanted` is out of reach. `scratch` has room for (2 * nodes->count + KILN_MAX_FIT) *
+/// KILN_MAX_FIT + 4 * nodes->count + KILN_MAX_FIT doubles. Returns the greatest error at the nodes,
+/// or infinity if every solution failed.
 double ki_fit_solve(const ki_fit_points *nodes, int rounds, double wanted, double *scratch,
                     kiln_fit_part *part);
 /// Returns true if the denominator Q of the part is proven to exceed 1/100 for all x and y in [-1,

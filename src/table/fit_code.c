@@ -1,6 +1,6 @@
-// Writes the source code of a closed form in C or GLSL. In: a fit and a name. Out: a function that
-// evaluates the fit's polynomials by Horner's rule in 32-bit floats, operation by operation as
-// ki_fit_evaluate.
+// Writes the source code of a closed form of the reflection model's integrals in C or GLSL. In: a
+// fit and a name. Out: a function that evaluates the fit's polynomials by Horner's rule in 32-bit
+// floats, with the same operations in the same order as ki_fit_evaluate_part.
 #include "table/fit_code.h"
 
 #include "base/file.h"
@@ -9,8 +9,8 @@
 
 #include <stddef.h>
 
-// The words that differ between C and GLSL: the type and the suffix of numbers, the name of the
-// square root, and what precedes a function.
+// The words that differ between C and GLSL in written code: the type and the suffix of numbers, the
+// name of the square root, and what precedes a function.
 typedef struct language {
     const char *number, *suffix, *root, *prefix;
 } language;
@@ -26,7 +26,7 @@ static void write_number(ki_writer *w, const language *l, float value)
 
 // ----------------------------------------------------------------------------------------- comment
 
-// Names the function that the form approximates, for the comment in the written code.
+// Names the integral that a closed form approximates, for the comment in the written code.
 static const char *what(const kiln_fit_def *def)
 {
     switch (def->kind) {
@@ -85,8 +85,8 @@ static void write_clamp(ki_writer *w, const language *l, const char *to, const c
     ki_write_text(w, ";\n");
 }
 
-// Writes the code that sets y, the scaled roughness, and the variables m and t from which parts
-// compute x.
+// Writes the code that sets y, the roughness scaled to [-1, 1], and the variables m and t,
+// functions of n.v and roughness, from which the parts of a fit compute their argument x.
 static void write_arguments(ki_writer *w, const kiln_fit *fit, const language *l)
 {
     const char *f = l->suffix, *number = l->number;
@@ -150,7 +150,7 @@ static void write_horner(ki_writer *w, const language *l, const float *c, int co
     ki_write_text(w, ";\n");
 }
 
-// Writes the code that sets the variable `name` to a polynomial of x and y.
+// Writes the code that sets the variable `name` to a part's polynomial of x and y.
 static void write_polynomial(ki_writer *w, const language *l, const kiln_fit_part *part,
                              const float *c, const char *name)
 {
@@ -167,7 +167,7 @@ static void write_polynomial(ki_writer *w, const language *l, const kiln_fit_par
     write_horner(w, l, NULL, part->y_count, "y", name);
 }
 
-// Writes the code that sets the variable `to` to the value of a part, P or P / Q.
+// Writes the code that sets the variable `to` to the value of one part of a fit, P or P / Q.
 static void write_part(ki_writer *w, const kiln_fit_part *part, const language *l, const char *to)
 {
     ki_write_text(w, "    %s %s;\n    {\n", l->number, to);

@@ -6,9 +6,9 @@
 
 #include <kiln/brdf.h>
 
-/// Appends a function `name` of mu = n.v and roughness in C (static inline), or with `glsl` in GLSL
-/// ES 3.00. The function computes, operation by operation, the values of kiln_fit_evaluate. Forms
-/// of E_avg have no argument mu.
+/// Appends to `w` a function `name` of mu = n.v and roughness in C (static inline), or with `glsl`
+/// in GLSL ES 3.00. The function computes the values of kiln_fit_evaluate with the same float
+/// operations in the same order. Forms of E_avg have no argument mu.
 void ki_fit_write_code(const kiln_fit *fit, const char *name, bool glsl, ki_writer *w);
 
 #endif

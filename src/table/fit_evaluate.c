@@ -1,5 +1,5 @@
-// Evaluates closed forms in floats, operation by operation as the source code written for them
-// does.
+// Evaluates closed forms of the reflection model's integrals in floats. The source code that
+// fit_code.c writes has the same operations in the same order.
 #include "table/fit.h"
 
 #include <math.h>
@@ -9,8 +9,8 @@ static float clamp(float x, float low)
     return x > low ? x < 1 ? x : 1 : low;
 }
 
-// t = nov (1 + c) / (nov + c). E changes fast for n.v below about c; in t that range has the same
-// width at every roughness. c is ki_grazing_scale without its lower bound.
+// t = nov (1 + c) / (nov + c), with c about alpha: ki_grazing_scale without its lower bound. The
+// albedo E changes fast for n.v below c; in t that range has the same width at every roughness.
 static float axis_t(const kiln_fit_def *def, float nov, float roughness)
 {
     float c = roughness * roughness;
@@ -22,7 +22,8 @@ static float axis_t(const kiln_fit_def *def, float nov, float roughness)
     return s > 0 ? nov * (1 + c) / s : 1;
 }
 
-// The argument x in [-1, 1] of the part's polynomials.
+// The argument x in [-1, 1] of a part's polynomials, a function of n.v and roughness that `axis`
+// names.
 static float axis_x(const kiln_fit_def *def, kiln_fit_axis axis, float nov, float roughness)
 {
     switch (axis) {
@@ -39,8 +40,8 @@ static float axis_x(const kiln_fit_def *def, kiln_fit_axis axis, float nov, floa
     }
 }
 
-// Evaluates a polynomial of the part's shape by Horner's rule, in x for each power of y, then in y.
-// c has a row of x_count coefficients for each power of y.
+// Evaluates a polynomial of the part's shape, P or Q, by Horner's rule: in x for each power of y,
+// then in y. c has a row of x_count coefficients for each power of y.
 static float horner(const kiln_fit_part *part, const float *c, float x, float y)
 {
     float value = 0;

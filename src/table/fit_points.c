@@ -1,8 +1,8 @@
-// The points at which closed forms are fitted and measured. In: a kind, a model and an axis. Out:
-// points with exact values of the fitted function, and the errors of a form at these points. The
-// nodes of a fit are a Chebyshev grid in the part's own arguments. The points of measurement are
-// regular grids and random points in (n.v, roughness) and in (sqrt t, roughness), t being the
-// argument that docs/theory/fits.md introduces.
+// The points at which closed forms are fitted and measured. In: a kind of integral, a model and an
+// axis. Out: points with exact values of the fitted function, and the errors of a form at these
+// points. The nodes of a fit are a Chebyshev grid in the arguments x and y of the form's
+// polynomials. Errors are measured on regular grids and at random points in (n.v, roughness) and in
+// (sqrt t, roughness). t is the function of n.v and roughness that docs/theory/fits.md introduces.
 #include "brdf/brdf.h"
 #include "brdf/energy.h"
 #include "brdf/sheen.h"
@@ -91,7 +91,8 @@ void ki_fit_points_free(ki_fit_points *points)
     *points = (ki_fit_points){0};
 }
 
-// Returns the n.v that belongs to the argument x in [-1, 1] on an axis.
+// Returns the n.v that belongs to the argument x in [-1, 1] of a part's polynomials at this
+// roughness, where x is the function of n.v that `axis` names.
 static double nov_of(const kiln_fit_def *def, kiln_fit_axis axis, double roughness, double x)
 {
     double u = ki_clamp((1 + x) / 2, 0, 1);
@@ -108,15 +109,16 @@ static double nov_of(const kiln_fit_def *def, kiln_fit_axis axis, double roughne
     }
 }
 
-// Returns the roughness that belongs to the argument y in [-1, 1].
+// Returns the roughness from def->roughness_min to 1 that belongs to the argument y in [-1, 1] of a
+// part's polynomials.
 static double roughness_of(const kiln_fit_def *def, double y)
 {
     return ki_clamp(def->roughness_min + (1 - def->roughness_min) * (1 + y) / 2, def->roughness_min,
                     1);
 }
 
-// Returns Chebyshev point i of `count` of the second kind on [-1, 1]: an extremum of a Chebyshev
-// polynomial, or an end of the interval.
+// Returns point i of the `count` Chebyshev points of the second kind on [-1, 1], in rising order:
+// the extrema of a Chebyshev polynomial and the ends of the interval.
 static double node(int i, int count)
 {
     return count > 1 ? -ki_cos(KI_PI * i / (count - 1)) : 0;
@@ -134,8 +136,8 @@ kiln_result ki_fit_nodes(kiln_context *context, const kiln_fit_def *def, ki_fit_
     for (int i = 0; i < points->count; i++) {
         points->x[i] = node(i % columns, columns);
         points->y[i] = node(i / columns, rows);
-        // At roughness 0 every x < 1 stands for n.v = 0. The node takes the limit from a small
-        // roughness.
+        // At roughness 0 every x < 1 stands for n.v = 0. The node takes the value at a small
+        // roughness, which is nearly the limit.
         points->roughness[i] = roughness_of(def, points->y[i]);
         if (points->roughness[i] < KI_GRAZING_MIN)
             points->roughness[i] = KI_GRAZING_MIN;
@@ -148,13 +150,14 @@ kiln_result ki_fit_nodes(kiln_context *context, const kiln_fit_def *def, ki_fit_
 
 static double uniform(uint64_t *state)
 {
-    *state = *state * 6364136223846793005u + 1442695040888963407u; // Knuth's generator for MMIX
+    // Knuth's linear congruential generator for MMIX
+    *state = *state * 6364136223846793005u + 1442695040888963407u;
     return ((double)(*state >> 32) + 0.5) / 4294967296.0;
 }
 
-// A quarter of the points is a regular grid over (n.v, roughness), and a quarter is a regular grid
-// over (sqrt t, roughness). A quarter is random and uniform over (n.v, roughness), and a quarter is
-// random and uniform over (sqrt t, roughness). n.v and roughness are rounded to floats, because a
+// Errors are measured at four sets of as many points: regular grids over (n.v, roughness) and over
+// (sqrt t, roughness), where t is the argument of KILN_FIT_AXIS_T, and uniform random points over
+// (n.v, roughness) and over (sqrt t, roughness). n.v and roughness are rounded to floats, because a
 // form receives floats.
 kiln_result ki_fit_checks(kiln_context *context, const kiln_fit_def *def, ki_fit_target target,
                           ki_fit_points *points, kiln_error *error)

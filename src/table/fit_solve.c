@@ -1,8 +1,9 @@
 // Fits one polynomial P or quotient P / Q of given shape to values at nodes. In: the nodes, the
-// shape, the number of rounds. Out: coefficients as floats. Method: each round solves a weighted
-// linear least-squares problem in products of Chebyshev polynomials. Sanathanan and Koerner's
-// iteration makes the residual of a quotient linear, and Lawson's weights turn least squares into a
-// small greatest error. A last step proves Q > 0. docs/theory/fits.md.
+// shape (numbers of coefficients in x and y), the number of rounds. Out: coefficients as floats.
+// Method: each round solves a weighted linear least-squares problem in products of Chebyshev
+// polynomials. Sanathanan and Koerner's iteration makes the residual of a quotient linear, and
+// Lawson's weights turn least squares into a small greatest error. A last step proves Q > 0.
+// docs/theory/fits.md.
 #include "math/math.h"
 #include "table/fit.h"
 
@@ -10,8 +11,8 @@
 
 enum { MAX_TERMS = KILN_MAX_FIT_TERMS };
 
-// The value that the denominator Q must exceed for all x and y in [-1, 1]. Q has a constant term of
-// 1.
+// The value that the denominator Q of a fit must exceed for all x and y in [-1, 1]. Q has a
+// constant term of 1.
 static const double LEAST_Q = 0.01;
 
 // Sets t[] to the Chebyshev polynomials T_0(x) to T_{count-1}(x).
@@ -21,11 +22,12 @@ static void chebyshev(double x, int count, double *t)
         t[i] = i == 0 ? 1 : i == 1 ? x : 2 * x * t[i - 1] - t[i - 2];
 }
 
-// Converts the Chebyshev series sum c[i * stride] T_i to coefficients of powers, in place, by
-// Clenshaw's recurrence on polynomials.
+// Converts the Chebyshev series sum c[i * stride] T_i(x) to coefficients of powers of x, in place,
+// by Clenshaw's recurrence on polynomials.
 static void to_powers(double *c, int count, size_t stride)
 {
-    double b1[MAX_TERMS + 1] = {0}, b2[MAX_TERMS + 1] = {0}; // polynomials b_{k+1} and b_{k+2}
+    // the polynomials b_{k+1} and b_{k+2} of the recurrence
+    double b1[MAX_TERMS + 1] = {0}, b2[MAX_TERMS + 1] = {0};
     for (int k = count - 1; k >= 0; k--) {
         double b[MAX_TERMS + 1];
         for (int i = 0; i <= MAX_TERMS; i++)
@@ -40,8 +42,8 @@ static void to_powers(double *c, int count, size_t stride)
         c[(size_t)i * stride] = b1[i];
 }
 
-// Converts a series in products of Chebyshev polynomials to powers of x and y, multiplies by
-// `scale` and rounds to floats.
+// Converts a series in products of Chebyshev polynomials, T_i(x) T_j(y), to coefficients of powers
+// of x and y, multiplies them by `scale` and rounds them to floats.
 static void round_powers(const kiln_fit_part *part, double *c, float *rounded, double scale)
 {
     size_t stride = (size_t)part->x_count;
@@ -53,23 +55,24 @@ static void round_powers(const kiln_fit_part *part, double *c, float *rounded, d
         rounded[i] = (float)(c[i] * scale);
 }
 
-// The linear least-squares problem of one round.
+// The weighted linear least-squares problem that one round of the fit solves, with the coefficients
+// of P and Q as unknowns.
 typedef struct equations {
     const ki_fit_points *nodes;
-    int terms;           // number of coefficients of P, and of Q with its constant 1
-    int columns;         // number of unknown coefficients of P and Q
-    int rows;            // number of equations: one for each node, one for each unknown of Q
-    double *matrix;      // coefficients of the equations, column after column
-    double *right;       // right-hand side, and after a round the error at each node
-    double *weight;      // weight of each node's squared error, with sum 1
+    int terms;      // number of coefficients of P, and of Q together with its constant 1
+    int columns;    // number of unknowns: the coefficients of P, and of Q without its constant 1
+    int rows;       // number of equations: one for each node, and one for each unknown of Q
+    double *matrix; // coefficients of the equations, column after column
+    double *right;  // right-hand side of each equation, and after a round the error at each node
+    double *weight; // weight of each node's squared error, with sum 1
     double *denominator; // Q of the previous round at each node
-    double *basis;       // products of Chebyshev polynomials, `terms` for each node
+    double *basis;       // products of Chebyshev polynomials T_i(x) T_j(y), `terms` for each node
     double ridge;        // weight that draws the coefficients of Q to 0, to keep Q positive
 } equations;
 
-// Sets up the equations. The row of a node with value f is sqrt(weight) / Q_previous (P - f Q),
-// with Q = 1 + ...; the division by Q of the previous round makes this the true residual P / Q - f
-// when the rounds converge (Sanathanan and Koerner 1963).
+// Sets up the equations of a round. That of a node with value f is sqrt(weight) / Q_previous * (P -
+// f Q) = 0, where Q = 1 + ... Dividing by Q_previous, the Q of the round before, turns P - f Q into
+// the true residual P / Q - f once the rounds have converged (Sanathanan and Koerner 1963).
 static void fill(const equations *s)
 {
     const ki_fit_points *nodes = s->nodes;
@@ -89,9 +92,9 @@ static void fill(const equations *s)
     }
 }
 
-// Evaluates the solution x at the nodes: writes each node's error to `right` and its Q to
-// `denominator`. Returns the greatest error. If Q is not well above 0 at every node, returns
-// infinity and writes nothing.
+// Evaluates P / Q with the coefficients x at the nodes: writes each node's error to `right` and its
+// Q to `denominator`. Returns the greatest error. If Q is not above 2 LEAST_Q at every node,
+// returns infinity and writes nothing.
 static double judge(const equations *s, const double *x)
 {
     const ki_fit_points *nodes = s->nodes;
@@ -129,7 +132,8 @@ static void reweight(const equations *s)
         s->weight[i] /= all;
 }
 
-enum { PATIENCE = 12 }; // reweighted rounds after which a shape with too large an error is given up
+// number of reweighted rounds after which a shape whose error is still too large is given up
+enum { PATIENCE = 12 };
 
 double ki_fit_solve(const ki_fit_points *nodes, int rounds, double wanted, double *scratch,
                     kiln_fit_part *part)
@@ -155,7 +159,7 @@ double ki_fit_solve(const ki_fit_points *nodes, int rounds, double wanted, doubl
         s.denominator[i] = 1;
     }
     double x[2 * KILN_MAX_FIT] = {0}, best[2 * KILN_MAX_FIT] = {0}, least = HUGE_VAL, floor = 0;
-    int first = part->rational ? 6 : 1; // number of rounds with equal node weights
+    int first = part->rational ? 6 : 1; // number of rounds in which all nodes have equal weights
     for (int round = 0; round < first + rounds; round++) {
         if (round == first + PATIENCE && least > 1.7 * wanted)
             break;
@@ -196,9 +200,9 @@ double ki_fit_solve(const ki_fit_points *nodes, int rounds, double wanted, doubl
 
 enum { DEPTH = 12 };
 
-// Returns true if q > LEAST_Q is proven on the square of half width h about (x, y). `slope` is an
-// upper bound of |dq/dx| + |dq/dy|. A square for which the bound does not suffice is divided in
-// four, up to `depth` times.
+// Returns true if the denominator q = Q(x, y) > LEAST_Q is proven on the square of half width h
+// about (x, y). `slope` is an upper bound of |dq/dx| + |dq/dy|. A square for which the bound does
+// not suffice is divided in four, up to `depth` times.
 static bool proven(const kiln_fit_part *part, double slope, double x, double y, double h, int depth)
 {
     double q = 0;
@@ -223,7 +227,7 @@ bool ki_fit_positive(const kiln_fit_part *part)
 {
     if (!part->rational)
         return true;
-    double slope = 0; // upper bound of |dq/dx| + |dq/dy| for |x|, |y| <= 1
+    double slope = 0; // upper bound of |dQ/dx| + |dQ/dy| for |x|, |y| <= 1
     for (int k = 0; k < part->x_count * part->y_count; k++) {
         int degrees = k % part->x_count + k / part->x_count;
         slope += degrees * fabs((double)part->q[k]);

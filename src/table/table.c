@@ -31,8 +31,9 @@ enum { CHUNK = 256, MAX_CHANNELS = 4 };
 
 typedef struct fill_job fill_job;
 
-// Computes the texels of one row and slice at `count` values of n.v, at most CHUNK, to
-// out[count][channels]. `third` is F0 or the ior of the slice.
+// Computes the values of one kind of table in one row and slice, at `count` cosines nov, at most
+// CHUNK, to out[count][channels]. `third` is the third argument of the kind: F0 or ior of the
+// slice.
 typedef void fill_chunk(const fill_job *job, double roughness, double third, const double *nov,
                         int count, double *out);
 
@@ -41,7 +42,9 @@ struct fill_job {
     kiln_table *table;
     const kiln_table_def *def;
     fill_chunk *fill;
-    const ki_surface *surface; // series of E for large tables; NULL: compute each texel's integral
+    // Chebyshev series of the albedo E, which replaces the integral of each texel of a large table;
+    // otherwise NULL
+    const ki_surface *surface;
     int channels;
 };
 
@@ -70,8 +73,8 @@ static void fill_dfg(const fill_job *job, double roughness, double third, const 
     ki_energy_values(job->context, &job->def->model, roughness, nov, count, true, out);
 }
 
-// The channels in Filament's order: B, A + B, and the albedo of Charlie sheen with Ashikhmin's
-// masking.
+// Computes the channels in Filament's order: B and A + B of the split sum, and the albedo of
+// Charlie sheen with Ashikhmin's masking.
 static void fill_multiscatter(const fill_job *job, double roughness, double third,
                               const double *nov, int count, double *out)
 {
@@ -191,7 +194,8 @@ kiln_result ki_table_complete(kiln_table_def *def, kiln_error *error)
     def->height = def->height ? def->height : has_depth ? 32 : 128;
     def->depth = def->depth ? def->depth : walks ? 20 : has_depth ? 32 : 1;
     if (walks) {
-        // These defaults keep the interpolated albedo within 2e-3: docs/theory/walk.md.
+        // With these default sizes, axis and number of paths the interpolated albedo errs by at
+        // most 2e-3: docs/theory/walk.md.
         def->axis = KILN_AXIS_GRAZING;
         def->corners = true;
         def->path_count = def->path_count ? def->path_count : 8192;
@@ -209,7 +213,7 @@ kiln_result ki_table_complete(kiln_table_def *def, kiln_error *error)
 
 // -------------------------------------------------------------------------------------------- rows
 
-// Fills row index % height of slice index / height.
+// Task of one thread: fills row index % height of slice index / height of a table.
 static void fill_row(void *data, int index)
 {
     const fill_job *job = data;
@@ -229,8 +233,8 @@ static void fill_row(void *data, int index)
     }
 }
 
-// Fills one row of KILN_TABLE_E_WALK in all slices, because one set of random walks serves every
-// F0.
+// Task of one thread: fills one row of a table of KILN_TABLE_E_WALK in all slices, because one set
+// of random walks serves every F0.
 static void fill_walk_row(void *data, int row)
 {
     const fill_job *job = data;
@@ -253,8 +257,8 @@ static void fill_walk_row(void *data, int row)
     }
 }
 
-// Returns true for tables of E whose number of texels is well above the number of integrals that a
-// Chebyshev series of E (surface.h) needs.
+// Returns true for tables of E that have more than four times as many texels as the Chebyshev
+// series of E (surface.h) needs integrals at most.
 static bool wants_surface(const kiln_table_def *def)
 {
     return def->kind == KILN_TABLE_E && def->model.d == KILN_D_GGX &&

@@ -10,7 +10,8 @@
 /// Returns the number of channels of a table of this kind, 1 to 4.
 int ki_table_channels(kiln_table_kind kind);
 
-/// Replaces zeros in `def` by defaults and checks every field. Fails with KILN_ERROR_ARGUMENT.
+/// Replaces zeros in `def` by default values for its kind of table and checks every field. Fails
+/// with KILN_ERROR_ARGUMENT.
 kiln_result ki_table_complete(kiln_table_def *def, kiln_error *error);
 
 #endif

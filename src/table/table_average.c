@@ -1,11 +1,12 @@
-// E_avg of a table of E as it is read, by linear interpolation between its texels.
+// The average E_avg of the albedo E in a table, which is read by linear interpolation between its
+// texels.
 #include "table/table.h"
 
 #include "math/math.h"
 #include "table/table_axis.h"
 
-// 2 int E(mu) mu dmu of one row of the interpolated table, by Gauss-Legendre quadrature between
-// neighbouring columns, where the interpolated E is smooth.
+// E_avg = 2 int E(mu) mu dmu at one roughness of an interpolated table of E, by Gauss-Legendre
+// quadrature between neighbouring columns, where the interpolated E is smooth.
 static double average_row(const kiln_table *table, double roughness)
 {
     enum { NODES = 6 };

@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-// One step of Newton's method from ki_pow, whose relative error is below 1e-14.
+// One step of Newton's method improves the root of ki_pow, whose relative error is below 1e-14.
 static double cube_root(double x)
 {
     if (!(x > 0))
@@ -37,7 +37,8 @@ double ki_texel_place(int index, int count, bool corners)
     return corners && count > 1 ? (double)index / (count - 1) : (index + 0.5) / count;
 }
 
-// Sets nov[i] to the n.v at the place u[i] in [0, 1] along an axis. c is that of KILN_AXIS_GRAZING.
+// Sets nov[i] to the n.v at the place u[i] in [0, 1] along an axis. c is ki_grazing_scale, which
+// only KILN_AXIS_GRAZING reads.
 static void to_nov(kiln_axis axis, double c, const double *u, int count, double *nov)
 {
     switch (axis) {
@@ -50,7 +51,7 @@ static void to_nov(kiln_axis axis, double c, const double *u, int count, double 
             nov[i] = u[i] * u[i] * u[i];
         break;
     case KILN_AXIS_GRAZING:
-        // Written in this way, n.v is exactly 1 at u = 1.
+        // This form of n.v = c u^2 / (1 + c - u^2) is exactly 1 at u = 1.
         for (int i = 0; i < count; i++)
             nov[i] = u[i] * u[i] * c / (c + (1 - u[i] * u[i]));
         break;

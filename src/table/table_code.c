@@ -1,7 +1,8 @@
-// Writes source code in C or GLSL that reads a table as ki_table_lookup does. In: the def, a name,
-// the kind of code. Out: text. The code has three steps with the table's size and axis written in
-// as constants: it maps arguments to places in [0, 1] (as table_axis.h), places to texels, and
-// interpolates the texels linearly. Tests compare its results with ki_table_lookup.
+// Writes source code in C or GLSL that reads a table as kiln_table_lookup does. In: the table's
+// kiln_table_def, a name, the kind of code. Out: text. The code has the table's size and axis
+// written in as constants and works in three steps. It maps arguments to places in [0, 1] (as
+// table_axis.h), maps places to texels, and interpolates the texels linearly. Tests compare the
+// code's results with kiln_table_lookup.
 #include "table/table_code.h"
 
 #include "table/table.h"
@@ -13,9 +14,9 @@ typedef struct code_writer {
     const kiln_table_def *def;
     ki_writer *w;
     const char *name;
-    bool c; // true: C; false: GLSL
+    bool c; // true: C is written; false: GLSL
     int channels;
-    bool nov; // true: the lookup function has the argument n.v, which only E_avg lacks
+    bool nov; // true: the lookup function has the argument n.v, which only tables of E_avg lack
     // Name of the lookup function's third argument, "ior" or "f0"; NULL if the function has no
     // third argument.
     const char *third;
@@ -56,8 +57,8 @@ static void write_result_comment(const code_writer *j)
 
 // --------------------------------------------------------------------------------------- arguments
 
-// Writes the code that sets u, v and w, places in [0, 1], from the arguments n.v, roughness and F0
-// or ior.
+// Writes the code that sets u, v and w, the places in [0, 1] along a table's axes, from the
+// arguments n.v, roughness and F0 or ior.
 static void write_places(const code_writer *j)
 {
     ki_writer *w = j->w;
@@ -72,7 +73,7 @@ static void write_places(const code_writer *j)
     if (j->nov && def->axis == KILN_AXIS_CBRT)
         ki_write_text(w, j->c ? "    u = cbrt(u);\n" : "    u = pow(u, 1.0 / 3.0);\n");
     if (j->nov && def->axis == KILN_AXIS_GRAZING) {
-        // The same formulas as in ki_grazing_scale.
+        // The written code sets c by the formulas of ki_grazing_scale.
         if (def->model.g == KILN_G_SCHLICK_TEXT)
             ki_write_text(w,
                           "    %s k = (r + 1.0) * (r + 1.0) / 8.0;\n"
@@ -100,7 +101,8 @@ static void write_parameters(const code_writer *j, const char *first)
 
 // ----------------------------------------------------------------------------------------------- C
 
-// Writes the functions that clamp, find the two nearest texels and interpolate.
+// Writes the C functions that clamp to [0, 1], find the two texels nearest to a place, and
+// interpolate.
 static void write_c_parts(const code_writer *j)
 {
     ki_write_text(
@@ -145,8 +147,8 @@ static void write_c_head(const code_writer *j)
     ki_write_text(j->w, ")\n{\n");
 }
 
-// Writes the code that interpolates between four texels of a slice, the first at t, into a variable
-// `name`.
+// Writes the code that interpolates between the four texels of a slice nearest to the arguments
+// into a variable `name`. The pointer t is at the first of them.
 static void write_c_slice(const code_writer *j, const char *name)
 {
     ki_writer *w = j->w;
@@ -262,7 +264,8 @@ static void write_glsl_array(const code_writer *j)
     ki_writer *w = j->w;
     const kiln_table_def *def = j->def;
     const char *type = vectors[j->channels - 1], *n = j->name;
-    // Writes two functions: one reads a texel, and one interpolates between four texels of a slice.
+    // Writes GLSL functions that read a texel, and that interpolate between the four texels of a
+    // slice.
     ki_write_text(w,
                   "%s %s_texel(int x, int y, int z)\n"
                   "{\n"

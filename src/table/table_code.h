@@ -13,8 +13,8 @@ typedef enum ki_table_code {
     KI_TABLE_GLSL_ARRAY
 } ki_table_code;
 
-/// Appends the code to `w`. The names of its functions begin with `name`. ki_table_complete has
-/// filled in `def`.
+/// Appends the code that reads a table to `w`. The names of its functions begin with `name`. `def`
+/// has been completed by ki_table_complete.
 void ki_table_write_code(const kiln_table_def *def, ki_table_code code, const char *name,
                          ki_writer *w);
 

@@ -1,5 +1,5 @@
-// Reads tables: the arguments of a texel, linear interpolation between texels, and the average
-// E_avg of an interpolated table of E.
+// Reads tables: the arguments (n.v, roughness, F0 or ior) of a texel, and linear interpolation
+// between texels.
 #include "table/table.h"
 
 #include "math/math.h"
@@ -20,9 +20,9 @@ void kiln_table_texel(const kiln_table *table, int x, int y, int slice, double *
         ki_third_from_w(ki_table_third(def->kind), ki_texel_place(slice, def->depth, def->corners));
 }
 
-// The two texels along one axis between which a place lies. `index` is the offset of the lower
-// texel in the pixels, index + step that of the upper (step is 0 at the last texel), and `share`
-// the upper texel's weight.
+// The two texels of a table along one axis between which a place in [0, 1] lies. `index` is the
+// offset of the lower texel in the table's pixels, index + step that of the upper (step is 0 at the
+// last texel), and `share` the upper texel's weight.
 typedef struct between {
     size_t index, step;
     double share;

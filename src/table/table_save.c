@@ -126,8 +126,8 @@ static kiln_result encode_hdr(const kiln_table *table, const char *path, ki_writ
     return result;
 }
 
-// Writes a PNG. KILN_TABLE_FORMAT_RGBD stores three numbers, which may exceed 1, in four channels
-// of 8 bits.
+// Writes a table as a PNG. KILN_TABLE_FORMAT_RGBD stores three numbers, which may exceed 1, in four
+// channels of 8 bits.
 static kiln_result encode_png(const kiln_table *table, kiln_table_format format, const char *path,
                               ki_writer *w, kiln_error *error)
 {
@@ -273,7 +273,8 @@ kiln_result kiln_table_lookup_save(kiln_context *context, const kiln_table_def *
     return put(KILN_OK, path, &w, error);
 }
 
-// Drops the fourth channel, which files with three channels of data have as padding.
+// Drops the fourth channel of a table's image. Files store tables of three channels with a fourth
+// one as padding.
 static void narrow(kiln_image *image)
 {
     size_t count = (size_t)image->width * (size_t)image->height;
@@ -282,8 +283,8 @@ static void narrow(kiln_image *image)
     image->channels = 3;
 }
 
-// Checks that a decoded file holds a table and that its description agrees with its image, and
-// moves the image to `table`.
+// Checks that a decoded file holds a table and that the file's description of the table agrees with
+// its image. Moves the image to `table`.
 static kiln_result take(const char *path, ki_decoded *decoded, const kiln_file_info *info,
                         kiln_table *table, kiln_error *error)
 {

@@ -135,8 +135,8 @@ kiln_result ki_table_write_header(const kiln_table *table, const char *path, con
     return result;
 }
 
-// Writes the values as 32-bit words in hexadecimal. A word holds two numbers of 16 bits or four
-// numbers of 8 bits. The first number is in the lowest bits.
+// Writes a table's numbers as an array of 32-bit words in hexadecimal. A word holds two numbers of
+// 16 bits or four numbers of 8 bits. The first number is in the lowest bits.
 static kiln_result write_words(const kiln_table *table, kiln_table_format format, size_t words,
                                ki_writer *w, kiln_error *error)
 {
@@ -155,7 +155,8 @@ static kiln_result write_words(const kiln_table *table, kiln_table_format format
     return KILN_OK;
 }
 
-// Writes the GLSL function that returns number i of the array of words.
+// Writes the GLSL function that returns number i of a table, which it unpacks from the array of
+// 32-bit words.
 static void write_unpacking(const char *name, kiln_table_format format, ki_writer *w)
 {
     ki_write_text(w, ");\n\nfloat %s_number(int i)\n{\n", name);

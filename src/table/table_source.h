@@ -6,7 +6,7 @@
 
 #include <kiln/brdf.h>
 
-/// The beginning of all names in written source code.
+/// The name with which all identifiers in a table's written source code begin.
 typedef struct ki_source_name {
     char text[64];
 } ki_source_name;
@@ -15,7 +15,8 @@ typedef struct ki_source_name {
 kiln_result ki_source_name_make(const char *path, const char *wanted, ki_source_name *name,
                                 kiln_error *error);
 
-/// Appends a C header with the table as an array of floats. `path` is used in error messages only.
+/// Appends a C header with the table as an array of floats, `name`_texels. `path` is used in error
+/// messages only.
 kiln_result ki_table_write_header(const kiln_table *table, const char *path, const char *name,
                                   ki_writer *w, kiln_error *error);
 /// Appends GLSL with the table as a constant array and the function that reads it. Halves, 16-bit

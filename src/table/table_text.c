@@ -48,8 +48,8 @@ void ki_table_describe(const kiln_table_def *def, char text[KI_TABLE_TEXT])
              def->flip, def->width, def->height, def->depth, def->path_count);
 }
 
-// Reads "KEY=WORD " and sets *value to the index of WORD in `words`. Returns the text that follows,
-// or NULL if `text` does not begin so.
+// Reads "KEY=WORD ", where KEY is `key`, and sets *value to the index of WORD in `words`. Returns
+// the text that follows, or NULL if `text` does not begin in this way or is NULL.
 static const char *parse_word(const char *text, const char *key, const char *const *words,
                               int *value)
 {

@@ -25,7 +25,7 @@
 
 /// How an engine reads the levels of a prefiltered environment.
 typedef struct ki_reading {
-    ///< fractional level that the engine reads at a roughness
+    /// fractional level that the engine reads at a roughness
     double (*level)(double roughness, int level_count, int size);
     bool keep_last; ///< the engine reads diffuse light from the last level, which stays exact
     bool flat;      ///< the engine reads a picture made from the cube, not the cube's own texels
