@@ -147,8 +147,8 @@ typedef struct dds_header {
     const ki_pixel_format *pixel;
 } dds_header;
 
-// Checks the size, the number of levels and the pixel format that the header states, and sets the
-// row of h's format. `format` is the number for the pixel format in the file's header.
+// Checks the size, the number of levels and the pixel format that the header states. `format` is
+// the header's number for the pixel format, which the error message names.
 static kiln_result check_header(dds_header *h, uint32_t format, const char *name, kiln_error *error)
 {
     if (!h->pixel)

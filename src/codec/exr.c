@@ -21,15 +21,15 @@ typedef struct exr_file {
     kiln_context *context;
     const char *name;
     ki_exr_header header;
-    const ki_exr_part *part; // the part that is read
+    const ki_exr_part *part; // the part that is read: a file may hold several pictures
     int part_index;
     ki_exr_picture picture;
     ki_exr_chunk *chunks;
     int chunk_count;
     uint16_t *dwa_table;
     int task_count, first_task;
-    uint8_t results[TASKS]; // the kiln_result of each task
-    int damaged[TASKS];     // the chunk at which each task failed
+    uint8_t results[TASKS]; // the kiln_result of each task that decodes chunks
+    int damaged[TASKS];     // index of the chunk at which each task failed
 } exr_file;
 
 // ------------------------------------------------------------------------------- part and channels
@@ -45,8 +45,8 @@ static int find_channel(const ki_exr_part *p, const char *layer, size_t layer_le
     return -1;
 }
 
-// Chooses the channels of one layer: R, G and B, or else Y. Returns false if the layer has none of
-// these.
+// Chooses the channels of one layer that become red, green and blue: R, G and B, or else Y for all
+// three. Returns false if the layer has none of these channels.
 static bool choose_in_layer(const ki_exr_part *p, const char *layer, size_t length, int source[3])
 {
     static const char *const colours[3] = {"R", "G", "B"};
@@ -60,7 +60,8 @@ static bool choose_in_layer(const ki_exr_part *p, const char *layer, size_t leng
     return source[0] >= 0 || any;
 }
 
-// Chooses channels without a layer, or else those of the first layer that has R, G, B or Y.
+// Chooses the channels that become red, green and blue: those whose names have no layer, or else
+// those of the first layer that has R, G, B or Y.
 static bool choose_channels(const ki_exr_part *p, int source[3])
 {
     if (choose_in_layer(p, "", 0, source))
@@ -110,7 +111,7 @@ static kiln_result choose_part(exr_file *f, kiln_error *error)
                    "%s: has no channel R, G, B or Y; its channels are %s", f->name, names);
 }
 
-// Fails unless the chosen channels hold red, green and blue without subsampling.
+// Fails unless red, green and blue have channels, and these channels are not subsampled.
 static kiln_result check_channels(const exr_file *f, kiln_error *error)
 {
     const ki_exr_part *p = f->part;
@@ -179,7 +180,8 @@ static kiln_result open_file(exr_file *f, const uint8_t *bytes, size_t size, kil
 
 // ------------------------------------------------------------------------------------- description
 
-// Copies the text of a string attribute, truncated to `room`; "" if the part has no such attribute.
+// Copies the text of a part's string attribute to `text`, truncated to `room` bytes; "" if the part
+// has no such attribute.
 static void read_string(const ki_exr_part *p, const char *name, char *text, size_t room)
 {
     size_t size = 0;
@@ -190,7 +192,7 @@ static void read_string(const ki_exr_part *p, const char *name, char *text, size
     text[size] = 0;
 }
 
-// Fills in `info` from kiln's own attributes.
+// Fills in `info` from kiln's own attributes: the shape, the roughness, the engine or the table.
 static void describe_attributes(const exr_file *f, kiln_file_info *info)
 {
     char text[sizeof info->table];
@@ -238,8 +240,8 @@ static void describe(const exr_file *f, kiln_file_info *info)
 
 // ------------------------------------------------------------------------------------------ pixels
 
-// Task of one thread: decodes neighbouring chunks. The task allocates memory for the largest of its
-// chunks.
+// Task of one thread: decodes chunks that follow one another in the file. The task allocates memory
+// for the largest of its chunks.
 static void decode_chunks(void *data, int index)
 {
     exr_file *f = data;

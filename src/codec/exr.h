@@ -33,31 +33,36 @@ typedef struct ki_exr_channel {
     int type; // type of the samples, a ki_exr_type
     int bytes;
     int x_sampling, y_sampling;
-    bool linear; // true: stored without DWA's transfer function
+    // true: the file marks the channel as "perceptually linear"; DWA then stores it without a
+    // transfer function, B44 stores exp(x / 8) for x
+    bool linear;
 } ki_exr_channel;
 
-/// A window of pixels from (left, top) to (right, bottom), both included.
+/// A rectangle of pixels from (left, top) to (right, bottom), both included.
 typedef struct ki_exr_window {
     int32_t left, top, right, bottom;
 } ki_exr_window;
 
-/// One part of a file: a picture with a header of its own.
+/// One part of an EXR file: a picture with a header of its own.
 typedef struct ki_exr_part {
-    const uint8_t *attributes, *attributes_end; // the bytes of the attributes within the file
+    // the bytes of the part's attributes within the file
+    const uint8_t *attributes, *attributes_end;
     ki_exr_channel *channels;
     int channel_count;
     ki_exr_window data, display;
-    int compression; // number of the compression method in the file; the method may be unknown
+    // number of the compression method as in the file, which may be one that kiln does not know
+    int compression;
     bool tiled, deep;
     uint32_t tile_width, tile_height; // size of a tile; 0 if the header does not state it
-    int32_t stated_chunks;            // stated number of chunks; -1 if the header does not state it
+    int32_t stated_chunks; // number of chunks that the header states; -1 if it states none
 } ki_exr_part;
 
 typedef struct ki_exr_header {
     const uint8_t *bytes; // bytes of the whole file, into which names and attributes point
     size_t size;
     bool multipart;
-    // Position of the first table of chunk offsets; the tables of the parts follow one another.
+    // Position in the file of the first part's table of chunk offsets. The tables of the other
+    // parts follow.
     size_t tables;
     int part_count;
     ki_exr_part *parts;
@@ -74,61 +79,64 @@ void ki_exr_header_free(ki_exr_header *header);
 const uint8_t *ki_exr_attribute(const ki_exr_part *part, const char *name, const char *type,
                                 size_t *size);
 
-/// Returns the part of a channel's name after the last dot: "R" for "beauty.R".
+/// Returns the part of a channel's name after the last dot: "R" for the channel "beauty.R".
 const char *ki_exr_suffix(const char *name);
 
 // ------------------------------------------------------------------------------------------- boxes
 
-/// A box of pixels as stored in a file: line by line, and in each line channel by channel in the
-/// file's order, the samples whose x and y are multiples of the channel's sampling.
+/// A box of pixels as a decompressed chunk holds it: line by line, and in each line channel by
+/// channel in the file's order. Of each channel the box has the samples whose x and y are multiples
+/// of the channel's sampling.
 typedef struct ki_exr_box {
     int x, y, width, height; // position (in the file's coordinates) and size in pixels
     const ki_exr_channel *channels;
     int channel_count;
 } ki_exr_box;
 
-/// Return the number of samples of a channel on each of its lines, and the number of lines of the
-/// box that have samples of the channel.
+/// ki_exr_columns: number of samples of a channel on each of its lines in the box. ki_exr_rows:
+/// number of lines of the box that have samples of the channel.
 int ki_exr_columns(const ki_exr_box *box, const ki_exr_channel *channel);
 int ki_exr_rows(const ki_exr_box *box, const ki_exr_channel *channel);
 /// Returns whether a channel has samples on line `y`, in the file's coordinates.
 bool ki_exr_line_has(const ki_exr_channel *channel, int y);
-/// Returns the number of bytes of a box, or 0 if the number exceeds size_t.
+/// Returns the number of bytes of a box's samples, or 0 if the number exceeds size_t.
 size_t ki_exr_box_size(const ki_exr_box *box);
-/// Reorders planes to the lines of a box. In planes all samples of one channel precede all samples
-/// of the next channel.
+/// Reorders samples from planes, in which all samples of one channel precede all samples of the
+/// next channel, to the lines of a box, in which the channels alternate line by line.
 void ki_exr_lines_from_planes(const ki_exr_box *box, const uint8_t *planes, uint8_t *raw);
 
 // ----------------------------------------------------------------------------------------- methods
 
-/// What a decompression method uses besides the chunk. `scratch` has as many bytes as the
+/// What a decompression method uses besides the packed bytes. `scratch` has as many bytes as the
 /// decompressed chunk.
 typedef struct ki_exr_workspace {
     kiln_context *context;
     uint8_t *scratch;
-    const uint16_t *dwa_table; // for DWAA and DWAB, filled by ki_exr_dwa_table
+    const uint16_t *dwa_table; // table by ki_exr_dwa_table, used by the methods DWAA and DWAB only
 } ki_exr_workspace;
 
 /// Decompresses the `packed` bytes of a chunk into exactly `size` bytes, which is the size of the
 /// chunk's box. Returns KILN_OK, KILN_ERROR_FORMAT or KILN_ERROR_MEMORY and writes no error
-/// message. The file exr_NAME.c has method NAME.
+/// message. Each function is defined in the file exr_METHOD.c of its method.
 typedef kiln_result ki_exr_decompress(const ki_exr_workspace *work, const ki_exr_box *box,
                                       const uint8_t *packed, size_t packed_size, uint8_t *raw,
                                       size_t size);
 ki_exr_decompress ki_exr_decompress_rle, ki_exr_decompress_zip, ki_exr_decompress_piz,
     ki_exr_decompress_pxr24, ki_exr_decompress_b44, ki_exr_decompress_dwa;
 
-/// Fills the table of 65536 entries from half floats as DWA stores them to linear half floats.
+/// Fills DWA's table of 65536 entries, which turns a half float as DWA stores it, by a curve close
+/// to perception, into a linear half float.
 void ki_exr_dwa_table(kiln_context *context, uint16_t *table);
 
-/// Decompresses EXR's byte runs to at most `size` bytes. Returns the number of bytes written, or
-/// SIZE_MAX if the data are damaged.
+/// Decompresses the byte runs of EXR's method RLE to at most `size` bytes. Returns the number of
+/// bytes written, or SIZE_MAX if the data are damaged.
 size_t ki_exr_unpack_runs(const uint8_t *packed, size_t packed_size, uint8_t *raw, size_t size);
-/// Decompresses ZIP: zlib data whose bytes were sorted by parity and replaced by their differences.
-/// `scratch` has `size` bytes. Returns false if the data are damaged.
+/// Decompresses EXR's method ZIP: zlib data of bytes that were sorted into even and odd ones and
+/// then replaced by their differences. `scratch` has `size` bytes. Returns false if the data are
+/// damaged.
 bool ki_exr_unzip(const uint8_t *packed, size_t packed_size, uint8_t *raw, size_t size,
                   uint8_t *scratch);
-/// Decodes exactly `count` symbols of 16 bits from the Huffman codes that PIZ and DWA use.
+/// Decodes exactly `count` symbols of 16 bits from the Huffman codes of EXR's methods PIZ and DWA.
 kiln_result ki_exr_unpack_huffman(kiln_context *context, const uint8_t *packed, size_t packed_size,
                                   uint16_t *symbols, size_t count);
 
@@ -137,10 +145,10 @@ kiln_result ki_exr_unpack_huffman(kiln_context *context, const uint8_t *packed, 
 typedef struct ki_exr_chunk {
     ki_exr_box box;
     const uint8_t *packed;
-    size_t packed_size, size; // size of the packed chunk, and of its box, in bytes
+    size_t packed_size, size; // size in bytes of the packed chunk, and of the samples in its box
 } ki_exr_chunk;
 
-/// Returns the name of a known compression, for example "zip".
+/// Returns the name of a compression method that kiln knows, for example "zip".
 const char *ki_exr_compression_name(int compression);
 
 /// Finds the chunks of a part and checks all their sizes, so that the texels of the data window
@@ -159,7 +167,8 @@ const uint8_t *ki_exr_chunk_samples(const ki_exr_workspace *work, int compressio
 // ----------------------------------------------------------------------------------------- picture
 
 typedef struct ki_exr_picture {
-    int left, top, width, height; // display window, in the file's coordinates
+    // the display window, which the picture fills, in the file's coordinates
+    int left, top, width, height;
     int source[3]; // indices of the channels that become red, green and blue; -1 for no channel
     float *pixels; // width * height * 3 floats
 } ki_exr_picture;

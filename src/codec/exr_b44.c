@@ -8,7 +8,8 @@
 
 #include <string.h>
 
-// Returns x for a stored half exp(x / 8), the form of channels that are "perceptually linear".
+// Returns x for a half that stores exp(x / 8). B44 stores channels in this form that the file marks
+// as "perceptually linear".
 static uint16_t logarithm(uint16_t half)
 {
     if (half == 0)
@@ -25,18 +26,19 @@ static uint64_t load_high_first(const uint8_t *bytes)
     return __builtin_bswap64(value);
 }
 
-// Stored numbers have the order of the halfs' values: negative halfs had all bits inverted, other
-// halfs had the highest bit inverted.
+// Undoes the coding by which stored numbers have the same order as the values of the halfs:
+// negative halfs had all bits inverted, other halfs had the highest bit inverted.
 static void halfs_from_ordered(const uint16_t ordered[16], uint16_t halfs[16])
 {
     for (int i = 0; i < 16; i++)
         halfs[i] = (uint16_t)(ordered[i] ^ (ordered[i] >> 15 ? 0x8000 : 0xffff));
 }
 
-// Decodes a block to sixteen halfs, row by row. The block is 16 bits of the first value, 6 bits of
-// a shift, then 15 differences of 6 bits, down the first column and from there to the right. A
-// shift of 13 or more stands for three bytes with sixteen equal values. Returns the number of
-// bytes, or 0 if fewer are left.
+// Decodes a block of 4 x 4 halfs, row by row. A block is 16 bits of the first value, 6 bits of a
+// shift, then 15 differences of 6 bits: each is the difference from the value above in the first
+// column, from the value to the left in the other columns. A shift of 13 or more marks a block of
+// three bytes whose sixteen values are equal. Returns the number of bytes that the block takes, or
+// 0 if only fewer are left.
 static size_t undo_block(const uint8_t *bytes, size_t left, uint16_t halfs[16])
 {
     if (left < 3)
@@ -67,7 +69,7 @@ static size_t undo_block(const uint8_t *bytes, size_t left, uint16_t halfs[16])
     return flat ? 3 : 14;
 }
 
-// Decodes a plane of `width` x `height` halfs.
+// Decodes one channel of a chunk, `width` x `height` halfs in blocks of 4 x 4.
 static bool undo_plane(ki_reader *r, bool linear, int width, int height, uint8_t *plane)
 {
     for (int y = 0; y < height; y += 4)
@@ -80,7 +82,7 @@ static bool undo_plane(ki_reader *r, bool linear, int width, int height, uint8_t
                 block[i] = logarithm(block[i]);
             uint8_t *to = plane + 2 * ((size_t)y * (size_t)width + (size_t)x);
             for (int j = 0; j < ki_min(4, height - y); j++, to += 2 * (size_t)width) {
-                if (width - x >= 4) // compilers make a copy of constant size fast
+                if (width - x >= 4) // a copy whose size the compiler knows is fast
                     memcpy(to, block + (ptrdiff_t)4 * j, 8);
                 else
                     memcpy(to, block + (ptrdiff_t)4 * j, 2 * (size_t)(width - x));

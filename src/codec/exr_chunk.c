@@ -6,11 +6,11 @@
 
 typedef struct method {
     const char *name;
-    int lines; // lines in a chunk of scan lines
-    /// Greatest number of bytes that a packed byte can become, so that a short file cannot ask for
-    /// a huge picture. RLE makes at most 128 bytes of 2, deflate 1032 of 1, PIZ 255 samples of 9
-    /// bits, B44 16 samples of 3 bytes. DWA makes at most 516 bytes of block means of a deflated
-    /// byte, and each mean a block of 256 bytes.
+    int lines; // number of scan lines in a chunk
+    /// Greatest number of bytes that one packed byte can become, by which the size of the file
+    /// bounds the size of the picture. RLE makes at most 128 bytes of 2, deflate 1032 of 1, PIZ 255
+    /// samples of 9 bits, B44 16 samples of 3 bytes. DWA makes at most 516 bytes of block means of
+    /// a deflated byte, and each mean a block of 256 bytes.
     size_t growth;
     ki_exr_decompress *decompress;
 } method;
@@ -33,7 +33,8 @@ const char *ki_exr_compression_name(int compression)
     return methods[compression].name;
 }
 
-// Returns the number of lines in a chunk of scan lines; 0 for an unknown compression.
+// Returns the number of scan lines that a compression method puts in a chunk; 0 for an unknown
+// method.
 static int chunk_lines(int compression)
 {
     return compression < KI_EXR_COMPRESSIONS ? methods[compression].lines : 0;
@@ -41,7 +42,7 @@ static int chunk_lines(int compression)
 
 // ----------------------------------------------------------------------------------------- finding
 
-// The size of the data window and of the chunks into which it is cut.
+// The size of the data window, and of the chunks into which it is cut: tiles or groups of lines.
 typedef struct grid {
     int64_t width, height, chunk_width, chunk_height; // sizes in pixels; 0 if the header is wrong
     int64_t across, down;
@@ -60,8 +61,8 @@ static grid make_grid(const ki_exr_part *p)
     return g;
 }
 
-// Returns the number of entries in a part's table of chunks. In a part with mip levels only the
-// entries of level 0 count, which come first. Returns 0 if the header is wrong.
+// Returns the number of entries in a part's table of chunk offsets. In a part with mip levels only
+// the entries of level 0 count, which come first. Returns 0 if the header is wrong.
 static int32_t chunk_count(const ki_exr_part *part)
 {
     grid g = make_grid(part);
@@ -82,12 +83,13 @@ typedef struct search {
     const ki_exr_part *part;
     int part_index, entry_count;
     grid grid;
-    uint64_t table; // position of the part's offsets
+    uint64_t table; // position in the file of the part's table of chunk offsets
     size_t left;    // bytes of the file that belong to no chunk so far
 } search;
 
-// Returns a reader of chunk `index` of the table, after the numbers that identify the chunk. The
-// reader has failed if the table or the chunk contradicts `column` and `row`.
+// Returns a reader of the chunk that entry `index` of the offset table points to, after the numbers
+// that identify the chunk. The reader has failed if the table is too short, or the chunk does not
+// identify itself as that at tile or line group (`column`, `row`).
 static ki_reader open_chunk(const search *s, int64_t index, int column, int row)
 {
     const ki_exr_header *h = s->header;
@@ -123,7 +125,7 @@ static kiln_result find_chunk(search *s, const char *name, int column, int row, 
     ki_reader r = open_chunk(s, index, column, row);
     c->packed_size = ki_read_u32(&r);
     c->packed = ki_read_bytes(&r, c->packed_size);
-    // A size above the rest of the file means that chunks overlap.
+    // A chunk's size above what the chunks before have left of the file means that chunks overlap.
     if (!c->packed || c->packed_size > s->left)
         return ki_fail(error, KILN_ERROR_FORMAT, "%s: chunk %lld is missing or damaged", name,
                        (long long)index);

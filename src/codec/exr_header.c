@@ -11,11 +11,12 @@
 
 #include <string.h>
 
-enum { TILED = 0x200, DEEP = 0x800, MULTIPART = 0x1000 }; // flags stored together with the version
+// flags in the four bytes that also hold the file's version
+enum { TILED = 0x200, DEEP = 0x800, MULTIPART = 0x1000 };
 
 // -------------------------------------------------------------------------------------- attributes
 
-// Returns text up to its NUL, or NULL if there is no NUL.
+// Reads text up to its NUL and advances past the NUL. Returns NULL if there is no NUL.
 static const char *read_text(ki_reader *r)
 {
     size_t left = ki_reader_left(r);
@@ -29,8 +30,8 @@ typedef struct attribute {
     size_t size;
 } attribute;
 
-// Reads the next attribute. Returns false at the NUL that ends a header, with the name "", and
-// after the end of the file, with the name NULL.
+// Reads the next attribute of a header. Returns false at the NUL that ends the header, where
+// a->name is "", and after the end of the file, where a->name is NULL.
 static bool next_attribute(ki_reader *r, attribute *a)
 {
     *a = (attribute){.name = read_text(r)};
@@ -77,8 +78,8 @@ static bool read_channel(ki_reader *r, ki_exr_channel *c)
     return true;
 }
 
-// Reads a list of channels, which ends with a NUL. Returns NULL on success, else a text that says
-// what is wrong.
+// Reads the attribute that lists a part's channels; the list ends with a NUL. Returns NULL on
+// success, else a text that says what is wrong.
 static const char *read_channels(kiln_context *context, const attribute *a, ki_exr_part *p,
                                  bool *starved)
 {
@@ -136,7 +137,8 @@ static void read_storage(const attribute *a, ki_exr_part *p)
 
 enum { HAS_COMPRESSION = 1, HAS_DATA = 2, HAS_DISPLAY = 4 };
 
-// Reads an attribute. Returns the flag of the required attribute that it is, or 0.
+// Takes what kiln needs from an attribute. Returns the attribute's flag if it is one of the three
+// that every part must have (compression, data window, display window), or 0.
 static int read_attribute(const attribute *a, ki_exr_part *p)
 {
     ki_reader r = ki_reader_make(a->bytes, a->size);
@@ -163,8 +165,8 @@ static int read_attribute(const attribute *a, ki_exr_part *p)
     return 0;
 }
 
-// Reads one header, up to the NUL that ends it. Returns NULL on success, else a text that says what
-// is wrong.
+// Reads the header of one part, up to the NUL that ends it. Returns NULL on success, else a text
+// that says what is wrong.
 static const char *read_part(kiln_context *context, ki_reader *r, uint32_t flags, ki_exr_part *p,
                              bool *starved)
 {
@@ -192,11 +194,12 @@ static const char *read_part(kiln_context *context, ki_reader *r, uint32_t flags
                                         : NULL;
 }
 
-// Makes room for one more part.
+// Makes room for one more part in the header's array of parts.
 static bool grow(kiln_context *context, ki_exr_header *h)
 {
     size_t count = (size_t)h->part_count;
-    if (count & (count - 1)) // there is room for one more part until the count is a power of two
+    // the array is full only when the count is a power of two; the room is then doubled
+    if (count & (count - 1))
         return true;
     ki_exr_part *parts = ki_alloc(context, count ? 2 * count : 1, sizeof *parts);
     if (!parts)

@@ -9,27 +9,32 @@
 
 enum {
     SYMBOLS = 65537,
-    // Longest code; the format allows 58 bits, which no chunk is long enough to need.
+    // Longest code in bits. The format allows 58 bits, but no chunk is long enough to need more
+    // than these.
     LONGEST = 56,
-    SHORT_ZEROS = 59, // lengths 59 to 62 stand for 2 to 5 symbols that do not occur
-    LONG_ZEROS = 63,  // length 63 and 8 more bits stand for 6 to 261 symbols that do not occur
+    SHORT_ZEROS = 59, // stored code lengths 59 to 62 mean that 2 to 5 symbols do not occur
+    // the stored code length 63, with 8 more bits, means that 6 to 261 symbols do not occur
+    LONG_ZEROS = 63,
     TABLE_BITS = 13,
 };
 
 typedef struct decoder {
     uint8_t length[SYMBOLS];
-    uint32_t symbol[SYMBOLS]; // symbols by code length, then by value
-    // Entries symbol << 6 | length for short codes, and 0 for codes longer than TABLE_BITS.
+    // all symbols that occur, sorted by the length of their codes, the longest first, then by
+    // number
+    uint32_t symbol[SYMBOLS];
+    // The code at the head of TABLE_BITS bits: an entry is symbol << 6 | length, or 0 where the
+    // code is longer than TABLE_BITS.
     uint32_t table[1 << TABLE_BITS];
-    uint64_t first[LONGEST + 1]; // lowest code of each length
+    uint64_t first[LONGEST + 1]; // lowest code of each length in bits
     uint32_t count[LONGEST + 1], start[LONGEST + 1];
 } decoder;
 
-// The bits of the input, most significant first. After the end of the input zeros are read, which
-// are counted.
+// The input as bits, the most significant bit of each byte first. After the end of the input zeros
+// are read; `spent` counts all bits that were used.
 typedef struct bits {
     const uint8_t *at, *end;
-    uint64_t held; // bits that are held, from the top
+    uint64_t held; // bits that were read but not used, from the highest bit on
     int held_count;
     uint64_t spent;
 } bits;
@@ -71,7 +76,7 @@ static inline uint32_t take(bits *b, int count)
     return value;
 }
 
-// Reads the code lengths of the symbols low .. high.
+// Reads the lengths of the codes of the symbols low .. high.
 static bool read_lengths(bits *b, uint32_t low, uint32_t high, decoder *d)
 {
     memset(d->length, 0, sizeof d->length);
@@ -91,7 +96,8 @@ static bool read_lengths(bits *b, uint32_t low, uint32_t high, decoder *d)
     return true;
 }
 
-// Computes the lowest code of each length, sorts the symbols and fills the table of short codes.
+// From the codes' lengths, computes the lowest code of each length, sorts the symbols and fills the
+// table of codes of at most TABLE_BITS bits.
 static bool build(decoder *d, uint32_t low, uint32_t high)
 {
     memset(d->count, 0, sizeof d->count);

@@ -1,13 +1,13 @@
 // Converts samples of an EXR file (half, float or unsigned integer) to the pixels of a picture,
-// three floats each, which keep negative, infinite and not-a-number values. A channel that is not in
-// the file is 0.
+// three floats each, which keep negative, infinite and not-a-number values. A channel that is not
+// in the file is 0.
 #include "base/vector.h"
 #include "codec/exr.h"
 #include "image/pack.h"
 
 #include <string.h>
 
-enum { STRETCH = 256 }; // number of samples that are converted at a time
+enum { STRETCH = 256 }; // number of samples of a line that are converted at a time
 
 static void to_floats(const uint8_t *restrict samples, int type, int count, float *restrict values)
 {
@@ -24,7 +24,7 @@ static void to_floats(const uint8_t *restrict samples, int type, int count, floa
     }
 }
 
-// Interleaves three channels to RGB, four texels at a time.
+// Interleaves a line of red, green and blue to RGB texels, four texels at a time.
 static void interleave(const float *restrict r, const float *restrict g, const float *restrict b,
                        int count, float *restrict rgb)
 {
@@ -50,7 +50,8 @@ static void interleave(const float *restrict r, const float *restrict g, const f
     }
 }
 
-// Converts one line of three channels to RGB. A missing channel is NULL.
+// Converts one line of the channels that become red, green and blue to RGB texels. samples[c] is
+// NULL where the file has no channel for colour c.
 static void put_line(const uint8_t *const samples[3], const ki_exr_channel *const channel[3],
                      int count, float *rgb)
 {

@@ -8,8 +8,8 @@
 
 #include <string.h>
 
-// Recover two values from their mean and difference, the Haar coefficients: of 14 bits, or of 16
-// bits modulo 2^16.
+// Recover the values a and b from their mean and their difference, the coefficients of PIZ's Haar
+// wavelet: pair14 for values below 2^14, pair16 for 16 bits with differences modulo 2^16.
 static inline void pair14(uint16_t mean, uint16_t difference, uint16_t *a, uint16_t *b)
 {
     int m = (int16_t)mean, d = (int16_t)difference;
@@ -68,8 +68,9 @@ static void undo_wavelet(uint16_t *plane, int width, ptrdiff_t step, int height,
     }
 }
 
-// Reads the values that occur, a bitmap from byte `first` to `last`. table[i] is the i-th value.
-// Returns the greatest i, or -1 if the data are damaged.
+// Reads which of the 65536 possible values occur: a bitmap of which the file holds the bytes
+// `first` to `last`. table[i] becomes the i-th value that occurs; 0 always counts. Returns the
+// greatest i, or -1 if the data are damaged.
 static int read_values(ki_reader *r, uint16_t *table)
 {
     uint8_t bitmap[8192] = {0};

@@ -10,8 +10,9 @@ static size_t stored_bytes(const ki_exr_channel *channel)
     return channel->type == KI_EXR_FLOAT ? 3 : (size_t)channel->bytes;
 }
 
-// Decodes one line of one channel with `width` samples. `from` holds the bytes in order of
-// significance, the highest of all samples first.
+// Decodes one line of one channel with `width` samples. `from` holds the samples' bytes in order of
+// significance: the most significant byte of every sample, then the next byte of every sample, and
+// so on.
 static void undo_line(const uint8_t *from, size_t width, const ki_exr_channel *channel,
                       uint8_t *raw)
 {

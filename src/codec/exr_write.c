@@ -38,8 +38,8 @@ static void window(ki_writer *w, const char *name, int width, int height)
     ki_write_u32(w, (uint32_t)height - 1);
 }
 
-// Names of the channels in the file, which are in alphabetical order, and the index of each channel
-// in a pixel.
+// For 1 to 4 channels: the names of the channels, in the alphabetical order that the file requires,
+// and the index of each of these channels in a pixel.
 static const char *const names[4][4] = {{"Y"}, {"G", "R"}, {"B", "G", "R"}, {"A", "B", "G", "R"}};
 static const int places[4][4] = {{0}, {1, 0}, {2, 1, 0}, {3, 2, 1, 0}};
 
@@ -95,10 +95,11 @@ static void header(ki_writer *w, int width, int height, int channels, const ki_e
     const char *version = kiln_version();
     attribute(w, "software", "string", (uint32_t)strlen(version) + 5);
     ki_write_text(w, "kiln %s", version);
-    ki_write_u8(w, 0); // the end of the header
+    ki_write_u8(w, 0); // a NUL instead of an attribute's name ends the header
 }
 
-// Reorders lines of pixels as the file stores them: in each line, channel by channel.
+// Reorders the pixels of a chunk's lines as the file stores them: in each line, all values of one
+// channel, then all values of the next. `plane` has room for one channel of a line.
 static void gather(const float *pixels, int width, int lines, int channels, bool half, float *plane,
                    uint8_t *raw)
 {
@@ -118,8 +119,9 @@ static void gather(const float *pixels, int width, int lines, int channels, bool
     }
 }
 
-// Stores the even bytes first, then the odd bytes, and replaces each byte after the first by its
-// difference from the byte before.
+// Prepares a chunk's bytes for deflate, as EXR's method ZIP does: stores the even bytes first, then
+// the odd bytes, and replaces each byte after the first by its difference from the byte before,
+// plus 128.
 static void predict(const uint8_t *raw, size_t size, uint8_t *restrict bytes)
 {
     size_t half = (size + 1) / 2;
@@ -133,25 +135,26 @@ static void predict(const uint8_t *raw, size_t size, uint8_t *restrict bytes)
         bytes[i] = (uint8_t)(bytes[i] - bytes[i - 1] + 128);
 }
 
-// Memory in which one chunk is compressed, and what became of the chunk.
+// Memory in which one chunk is compressed, and the chunk as the file stores it.
 typedef struct lane {
     ki_deflater *deflater;
-    float *plane;                  // one line of one channel
-    uint8_t *raw, *sorted, *other; // a chunk as gathered, after predict(), and compressed
-    const uint8_t *bytes;          // the `size` bytes that the file stores
+    float *plane;                  // room for one channel of a line
+    uint8_t *raw, *sorted, *other; // the chunk's bytes by gather(), by predict(), and compressed
+    // the `size` bytes that the file stores: compressed, or uncompressed where that is shorter
+    const uint8_t *bytes;
     size_t size;
 } lane;
 
-// The chunks are compressed in batches: as many at once as there are lanes.
+// The state of writing. Chunks are compressed in batches: as many at once as there are lanes.
 typedef struct packer {
     const float *pixels;
     int width, height, channels;
     bool half;
-    size_t line, most; // bytes of a line, and of a chunk of LINES lines
+    size_t line, most; // number of bytes of a line of pixels, and of a chunk of LINES lines
     size_t chunks;
     lane *lanes;
-    int count;    // number of lanes
-    size_t first; // the chunk in the first lane
+    int count;    // number of lanes: chunks that are compressed at once
+    size_t first; // index of the chunk in the first lane
 } packer;
 
 static void free_lanes(packer *p)
@@ -184,8 +187,8 @@ static bool make_lanes(kiln_context *context, packer *p, int count)
     return complete;
 }
 
-// Returns the number of lanes to try first: two for each thread, so that a thread whose chunk is
-// done early takes a second one.
+// Returns the number of lanes, each with memory for one chunk, to try first: two for each thread,
+// so that a thread whose chunk is done early takes a second chunk.
 static int most_lanes(kiln_context *context, size_t chunks)
 {
     int threads = ki_context_threads(context), count = threads > 1 ? 2 * threads : 1;
@@ -201,8 +204,8 @@ static void pack_chunk(void *data, int index)
     gather(p->pixels + (size_t)y * (size_t)p->width * (size_t)p->channels, p->width, lines,
            p->channels, p->half, l->plane, l->raw);
     predict(l->raw, size, l->sorted);
-    // The compressed data get less room than `size` bytes, because a chunk that does not become
-    // smaller is stored uncompressed.
+    // The room for the compressed chunk is one byte less than `size`, because a chunk that
+    // compression does not make smaller is stored uncompressed.
     size_t packed = ki_deflate(l->deflater, l->sorted, size, l->other, size - 1);
     l->bytes = packed ? l->other : l->raw;
     l->size = packed ? packed : size;
@@ -231,7 +234,8 @@ static kiln_result write_chunks(packer *p, size_t file_start, ki_writer *w)
     return w->failed ? KILN_ERROR_MEMORY : KILN_OK;
 }
 
-// Appends the file by this number of lanes, or nothing on failure. Writes no error message.
+// Appends an EXR file, whose chunks are compressed `lanes` at a time, or nothing on failure. Writes
+// no error message.
 static kiln_result write_by(packer *p, int lanes, const ki_exr_options *options, ki_writer *w)
 {
     size_t start = w->size;
@@ -260,9 +264,10 @@ kiln_result ki_exr_encode(const float *pixels, int width, int height, int channe
                 .chunks = ((size_t)height + LINES - 1) / LINES};
     int lanes = most_lanes(writer->context, p.chunks);
     if (writer->failed)
-        lanes = 0; // a write has failed, so no more chunks are added
+        lanes = 0; // an earlier write has failed, so that nothing is written
     kiln_result result = lanes ? write_by(&p, lanes, options, writer) : KILN_ERROR_MEMORY;
-    // Where memory is too short for the file and all lanes, the file is begun again with fewer.
+    // If memory is too short for the file and `lanes` chunks at once, the file is begun again with
+    // fewer lanes.
     for (; result == KILN_ERROR_MEMORY && lanes > 1;
          result = write_by(&p, lanes, options, writer)) {
         lanes /= 2;

@@ -10,13 +10,13 @@
                  22 - (n), 23 - (n), 24 - (n), 25 - (n), 26 - (n), 27 - (n), 28 - (n), 29 - (n),   \
                  30 - (n), 31 - (n))
 
-// Undoes the differences: each byte was stored as its difference from the byte before, plus 128.
-// Sixteen running sums are computed at a time; the steps add the sums of the bytes 1, 2, 4 and 8
-// places to the left.
+// Undoes the differences of EXR's method ZIP: each byte was stored as its difference from the byte
+// before, plus 128. Sixteen running sums are computed at a time, in four steps that add to each
+// byte the sum 1, 2, 4 and 8 places to its left.
 static void undo_differences(uint8_t *bytes, size_t size)
 {
     size_t i = 0;
-    uint8_t last = 128; // the first byte is stored unchanged
+    uint8_t last = 128; // with 128 before it, the first byte stays as it is stored
     for (; i + 16 <= size; i += 16) {
         ki_bytes16 v;
         memcpy(&v, bytes + i, sizeof v);
@@ -33,7 +33,8 @@ static void undo_differences(uint8_t *bytes, size_t size)
         bytes[i] = last = (uint8_t)(last + bytes[i] - 128);
 }
 
-// Merges the even bytes, which come first, with the odd bytes after them.
+// Merges the even bytes of a chunk, which are stored first, with the odd bytes, which are stored
+// after them.
 static void interleave(const uint8_t *halves, uint8_t *restrict raw, size_t size)
 {
     const uint8_t *odd = halves + (size + 1) / 2;
@@ -69,7 +70,8 @@ size_t ki_exr_unpack_runs(const uint8_t *packed, size_t packed_size, uint8_t *ra
     size_t in = 0, out = 0;
     while (in < packed_size) {
         size_t code = packed[in++];
-        if (code > 127) { // the next 256 - code bytes are literals
+        // a code above 127 means that the next 256 - code bytes stand for themselves
+        if (code > 127) {
             size_t count = 256 - code;
             if (packed_size - in < count || size - out < count)
                 return SIZE_MAX;

@@ -422,11 +422,11 @@ void ki_faces_note(const ki_face_set *set, kiln_load_report *report)
                        : "");
 }
 
-// Quake and Source have axes x, y and z with z up, which kiln turns to (x, z, -y). Seen from inside,
-// the picture ft is to the right of rt, the picture up joins rt at its bottom edge, and dn at its
-// top edge. The sides of a cube in OpenGL's orientation are these pictures with left and right
-// swapped; the top is the picture with rows and columns swapped, and the bottom the picture with
-// rows and columns swapped and counted from the other end.
+// Quake and Source have axes x, y and z with z up, which kiln turns to (x, z, -y). Seen from
+// inside, the picture ft is to the right of rt, the picture up joins rt at its bottom edge, and dn
+// at its top edge. The sides of a cube in OpenGL's orientation are these pictures with left and
+// right swapped; the top is the picture with rows and columns swapped, and the bottom the picture
+// with rows and columns swapped and counted from the other end.
 static size_t quake_source(int face, size_t n, size_t x, size_t y)
 {
     if (face == 2)

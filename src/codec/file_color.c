@@ -1,10 +1,9 @@
 // Colours of files. In: stored samples, and what the file says about them. Out: linear light in
-// Rec. 709, where 1 is the white of sRGB, or of a reference white of 203 cd/m2 for PQ and HLG (ITU-R
-// BT.2408). Method: a table gives the linear value of each sample; the picture is then converted
-// texel by texel where the primaries are not Rec. 709's.
-//
-// HLG stores light as a camera sees it. ITU-R BT.2100 shows that light on a display with the peak
-// 1000 cd/m2 by the system gamma 1.2, so that HLG and PQ of the same picture give the same values.
+// Rec. 709, where 1 is the white of sRGB, or of a reference white of 203 cd/m2 for PQ and HLG
+// (ITU-R BT.2408). Method: a table gives the linear value of each sample; the picture is then
+// converted texel by texel where the primaries are not Rec. 709's.  HLG stores light as a camera
+// sees it. ITU-R BT.2100 shows that light on a display with the peak 1000 cd/m2 by the system gamma
+// 1.2, so that HLG and PQ of the same picture give the same values.
 #include "codec/file_color.h"
 
 #include "image/pack.h"

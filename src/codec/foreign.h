@@ -4,8 +4,8 @@
 
 #include "base/base.h"
 
-/// Fails with the name of the format and a program that converts the file, or returns KILN_OK if the
-/// bytes are of no such format.
+/// Fails with the name of the format and a program that converts the file, or returns KILN_OK if
+/// the bytes are of no such format.
 kiln_result ki_refuse_foreign(const uint8_t *bytes, size_t size, const char *name,
                               kiln_error *error);
 

@@ -77,8 +77,8 @@ static inline bool ki_file_holds(const ki_file_format *format, unsigned holds)
     return format && (format->holds & holds);
 }
 
-/// Checks the compression level of a file of this format: 0 for none, or 1 to 22 for KTX2 in a build
-/// with zstd.
+/// Checks the compression level of a file of this format: 0 for none, or 1 to 22 for KTX2 in a
+/// build with zstd.
 kiln_result ki_check_zstd(const char *path, const ki_file_format *file, int level,
                           kiln_error *error);
 

@@ -1,8 +1,8 @@
 // The header of Radiance HDR files. In: lines of text. Out: the picture's size and orientation, and
 // what its values must be divided and multiplied by to be radiance in Rec. 709. Lines are taken as
-// Radiance's own reader takes them (header.c, resolu.c and color.h of Radiance): a line counts if it
-// begins with its keyword, EXPOSURE and COLORCORR may stand several times and are multiplied, and
-// blanks may stand around each value.
+// Radiance's own reader takes them (header.c, resolu.c and color.h of Radiance): a line counts if
+// it begins with its keyword, EXPOSURE and COLORCORR may stand several times and are multiplied,
+// and blanks may stand around each value.
 #include "codec/hdr.h"
 
 #include "codec/decimal.h"

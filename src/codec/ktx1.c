@@ -21,9 +21,10 @@ enum {
     GL_R11F_G11F_B10F = 0x8c3a,
 };
 
-// The fields glType, glTypeSize, glFormat, glInternalFormat and glBaseInternalFormat. The packed
-// format has the values that Filament's cmgen writes and Filament's reader requires. By the KTX
-// specification glType would be 0x8c3b, glTypeSize 4 and glBaseInternalFormat RGB.
+// The header's fields glType, glTypeSize, glFormat, glInternalFormat and glBaseInternalFormat for
+// halves, and below for b10g11r11. The values for b10g11r11 are those that Filament's cmgen writes
+// and Filament's reader requires. By the KTX specification glType would be 0x8c3b, glTypeSize 4 and
+// glBaseInternalFormat RGB.
 static const uint32_t half_types[5] = {GL_HALF_FLOAT, 2, GL_RGBA, GL_RGBA16F, GL_RGBA};
 static const uint32_t packed_types[5] = {GL_R11F_G11F_B10F, 1, GL_RGB, GL_R11F_G11F_B10F,
                                          GL_R11F_G11F_B10F};
@@ -46,9 +47,9 @@ static void write_header(ki_writer *w, const uint32_t types[5], int size, int le
 
 // ----------------------------------------------------------------------------------------- writing
 
-// Begins a key-value pair, and returns its position. A pair is its size, its key and value, each
-// with a terminating NUL, and zeros up to a multiple of 4 bytes. The caller writes the value after
-// begin_pair.
+// Begins a key-value pair of the metadata, and returns its position for end_pair. A pair is its
+// size, its key and value, each with a terminating NUL, and zeros up to a multiple of 4 bytes. The
+// caller writes the value before end_pair.
 static size_t begin_pair(ki_writer *w, const char *key)
 {
     size_t pair = w->size;
@@ -91,8 +92,8 @@ kiln_result ki_ktx1_encode(const kiln_map *map, const kiln_sh *sh, const char *e
     write_header(writer, packed ? packed_types : half_types, map->size, map->level_count);
     write_pairs(writer, map, sh, engine);
     for (int k = 0; k < map->level_count; k++) {
-        // The stated size of a cube's level is that of one face. Faces with 4 or 8 bytes a texel
-        // need no padding.
+        // By the KTX specification the size before a level of a cube is that of one face. Faces
+        // with 4 or 8 bytes a texel need no padding to a multiple of 4.
         int n = kiln_map_level_size(map, k);
         size_t size = (size_t)ki_pixels_size(pixel, n, n);
         ki_write_u32(writer, (uint32_t)size);
@@ -121,7 +122,7 @@ static kiln_result read_header(ki_reader *r, const char *name, header *h, kiln_e
         types[i] = ki_read_u32(r);
     h->width = ki_read_u32(r);
     h->height = ki_read_u32(r);
-    for (int i = 0; i < 3; i++) // the fields depth, array elements and faces
+    for (int i = 0; i < 3; i++) // skips the fields for depth, array elements and faces
         counts[i] = ki_read_u32(r);
     h->level_count = ki_read_u32(r);
     h->pair_bytes = ki_read_u32(r);
@@ -158,8 +159,8 @@ static void read_pair(const char *key, const char *value, kiln_file_info *info)
         ki_engine_text_read(value, info);
 }
 
-// Reads the key-value pairs. Returns false if they do not fill their bytes. Pairs whose value is
-// not text are skipped.
+// Reads the key-value pairs of the metadata into `info`. Returns false if the pairs are longer or
+// shorter than `size`. Pairs whose value is not text are skipped.
 static bool read_pairs(const uint8_t *bytes, size_t size, kiln_file_info *info)
 {
     ki_reader r = ki_reader_make(bytes, size);
@@ -180,7 +181,7 @@ static bool has_levels(ki_reader *r, const header *h)
 {
     for (uint32_t k = 0; k < h->level_count; k++) {
         uint64_t size = ki_pixels_size(h->pixel, (int)h->width >> k, (int)h->width >> k);
-        // Six faces may have more bytes than a size_t of 32 bits counts.
+        // The bytes of six faces may exceed a size_t of 32 bits.
         if (ki_read_u32(r) != size || 6 * size > ki_reader_left(r))
             return false;
         ki_read_bytes(r, (size_t)(6 * size));

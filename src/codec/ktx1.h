@@ -4,8 +4,9 @@
 
 #include "codec/codec.h"
 
-/// Appends a file with a cube as RGBA16F or B10G11R11 and the name of the engine that reads the
-/// file. `sh`, of radiance, may be NULL and is stored in Filament's form.
+/// Appends a KTX 1 file with a cube as RGBA16F or B10G11R11 and the name of the engine that reads
+/// the file. `sh`, radiance in spherical harmonics, may be NULL and is stored as Filament's nine
+/// factors.
 kiln_result ki_ktx1_encode(const kiln_map *map, const kiln_sh *sh, const char *engine,
                            kiln_format format, ki_writer *writer, kiln_error *error);
 kiln_result ki_ktx1_describe(const uint8_t *bytes, size_t size, const char *name,

@@ -8,8 +8,8 @@
 
 // ----------------------------------------------------------------------------------------- writing
 
-/// Channel numbers of the model RGBSDA in the Khronos Data Format, and flags that are added to
-/// them.
+/// Channels by their numbers in the colour model RGBSDA of the Khronos Data Format, and flags that
+/// are added to such a number.
 enum {
     KI_KTX2_ALPHA = 15,
     KI_KTX2_EXPONENT = 0x20,
@@ -22,10 +22,11 @@ typedef struct ki_ktx2_sample {
     uint32_t lower, upper;
 } ki_ktx2_sample;
 
-/// The values of the header and of the data format descriptor.
+/// The values of a KTX2 file's header and of its data format descriptor.
 typedef struct ki_ktx2_file {
     uint32_t vk;
-    // Size in bytes of the unit that is swapped for byte order, and of a texel or block.
+    // type_size: bytes of a number that is swapped for byte order; texel_size: bytes of a texel, or
+    // of a BC6H block.
     int type_size, texel_size;
     // Side of a BC6H block in texels; 0 or 1 for formats of single texels.
     int block;
@@ -42,23 +43,26 @@ typedef struct ki_ktx2_writer {
     size_t start, index, levels, metadata;
 } ki_ktx2_writer;
 
-/// Writes the header and the descriptor. The caller then writes the metadata entries in the byte
-/// order of their keys, the end of the metadata, and the levels, smallest first.
+/// Writes the file's header and its data format descriptor. The caller then writes the metadata
+/// entries in the byte order of their keys, ends the metadata, and writes the levels, smallest
+/// first.
 void ki_ktx2_begin(ki_writer *writer, const ki_ktx2_file *file, ki_ktx2_writer *k);
-/// Begin and end a metadata entry. Its value is the text that the caller writes in between.
+/// ki_ktx2_begin_entry begins a metadata entry and returns its position for ki_ktx2_end_entry. The
+/// entry's value is the text that the caller writes in between.
 size_t ki_ktx2_begin_entry(ki_writer *w, const char *key);
 void ki_ktx2_end_entry(ki_writer *w, size_t entry);
-/// Writes the entries KTXorientation and KTXwriter.
+/// Writes the metadata entries KTXorientation, for example "rd", and KTXwriter, kiln's version.
 void ki_ktx2_write_common(ki_writer *w, const char *orientation);
 kiln_result ki_ktx2_end_metadata(ki_ktx2_writer *k, kiln_error *error);
-/// Packs the texels of a level into `bytes`. Returns false if a progress report asks to stop.
+/// A function that writes the texels of a level, in the file's format, to `bytes`. Returns false if
+/// a progress report asks to stop.
 typedef bool ki_ktx2_pack(kiln_context *context, const void *data, int level, uint8_t *bytes);
 kiln_result ki_ktx2_write_level(ki_ktx2_writer *k, int level, size_t size, ki_ktx2_pack *pack,
                                 const void *data, kiln_error *error);
 
 // ----------------------------------------------------------------------------------------- reading
 
-/// A file that is being read. Once the header is read, `reader` is at the level index.
+/// A KTX2 file that is being read. Once the header is read, `reader` is at the index of levels.
 typedef struct ki_ktx2_source {
     const uint8_t *bytes;
     size_t size;
@@ -74,20 +78,21 @@ typedef struct ki_ktx2_level {
     size_t size, plain_size;
 } ki_ktx2_level;
 
-/// Reads the header, and the metadata into `info`.
+/// Reads a file's header into `source`, and its metadata into `info`.
 kiln_result ki_ktx2_open(ki_ktx2_source *source, const uint8_t *bytes, size_t size,
                          const char *name, kiln_file_info *info, kiln_error *error);
-/// Reads the next level of the index, whose texels take `wanted` bytes. Its offset and size are
-/// checked before any memory is allocated.
+/// Reads the next entry of the file's index of levels, that of level k, whose texels take `wanted`
+/// bytes. Its offset and size are checked before any memory is allocated.
 kiln_result ki_ktx2_find_level(ki_ktx2_source *source, uint32_t k, uint64_t wanted,
                                ki_ktx2_level *level, kiln_error *error);
-/// Sets *plain to the uncompressed bytes of a level: within the file, or decompressed into
-/// *unpacked, which the caller frees.
+/// Sets *plain to the uncompressed bytes of a level. They lie within the file, or are decompressed
+/// into *unpacked, which the caller frees.
 kiln_result ki_ktx2_unpack(kiln_context *context, const ki_ktx2_source *source, int k,
                            const ki_ktx2_level *level, const uint8_t **plain, uint8_t **unpacked,
                            kiln_error *error);
 
-/// Decode a source with six faces as a cube, and a source with one face as a table.
+/// Decode a file with six faces as a cube, and a file with one face as a table of the reflection
+/// model.
 kiln_result ki_ktx2_decode_cube(kiln_context *context, ki_ktx2_source *source, kiln_map *map,
                                 kiln_file_info *info, kiln_error *error);
 kiln_result ki_ktx2_decode_table(kiln_context *context, ki_ktx2_source *source, kiln_image *image,

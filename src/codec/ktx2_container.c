@@ -23,13 +23,13 @@ static void write_format(ki_writer *w, const ki_ktx2_file *file)
     enum { MODEL_RGBSDA = 1, MODEL_BC6H = 133, PRIMARIES_BT709 = 1, TRANSFER_LINEAR = 1 };
     uint32_t block = 24 + 16 * (uint32_t)file->sample_count;
     ki_write_u32(w, 4 + block);
-    ki_write_u32(w, 0); // the descriptor's vendor is Khronos, its type the basic format
-    // version 1.3 of the descriptor, and size of its block in bytes
+    ki_write_u32(w, 0); // descriptor block: vendor Khronos, type "basic format"
+    // version of the descriptor block, 2 for Khronos Data Format 1.3, and the block's size in bytes
     ki_write_u32(w, 2 | block << 16);
     ki_write_u8(w, file->block > 1 ? MODEL_BC6H : MODEL_RGBSDA);
     ki_write_u8(w, PRIMARIES_BT709);
     ki_write_u8(w, TRANSFER_LINEAR);
-    ki_write_u8(w, 0); // flags: alpha is straight
+    ki_write_u8(w, 0); // flags: alpha is not multiplied into the colours
     uint32_t less = (uint32_t)ki_max(file->block, 1) - 1;
     // Dimensions of a texel block, each less 1: `less` x `less` x 0 x 0.
     ki_write_u32(w, less | less << 8);
@@ -59,9 +59,11 @@ void ki_ktx2_begin(ki_writer *w, const ki_ktx2_file *file, ki_ktx2_writer *k)
     ki_write_u32(w, (uint32_t)file->level_count);
     ki_write_u32(w, file->zstd ? SCHEME_ZSTD : SCHEME_NONE);
     k->index = w->size;
-    for (int i = 0; i < 4; i++) // offsets and lengths of descriptor and metadata, filled in later
+    // offsets and lengths of the data format descriptor and of the metadata, filled in later
+    for (int i = 0; i < 4; i++)
         ki_write_u32(w, 0);
-    ki_write_u64(w, 0); // offset and length of global data, which these compression schemes lack
+    // offset and length of global data, which only other compression schemes have
+    ki_write_u64(w, 0);
     ki_write_u64(w, 0);
     k->levels = w->size;
     for (int i = 0; i < 3 * file->level_count; i++)
@@ -113,7 +115,8 @@ kiln_result ki_ktx2_write_level(ki_ktx2_writer *k, int level, size_t size, ki_kt
 {
     ki_writer *w = k->w;
     int zstd = k->file->zstd;
-    // The alignment of a level is the least common multiple of 4 and the size of a texel.
+    // An uncompressed level begins at a multiple of the least common multiple of 4 and the bytes of
+    // a texel.
     if (!zstd)
         ki_write_align(w, (size_t)ki_max(4, k->file->texel_size));
     uint64_t start = w->size;
@@ -146,7 +149,7 @@ static kiln_result read_header(ki_ktx2_source *s, kiln_error *error)
     ki_reader *r = &s->reader;
     ki_read_bytes(r, sizeof identifier);
     s->vk = ki_read_u32(r);
-    ki_read_u32(r); // type size
+    ki_read_u32(r); // skips the field typeSize
     s->width = ki_read_u32(r);
     s->height = ki_read_u32(r);
     s->depth = ki_read_u32(r);
@@ -154,7 +157,7 @@ static kiln_result read_header(ki_ktx2_source *s, kiln_error *error)
     s->face_count = ki_read_u32(r);
     s->level_count = ki_read_u32(r);
     uint32_t scheme = ki_read_u32(r);
-    ki_read_u32(r); // the data format descriptor, which repeats what vkFormat says
+    ki_read_u32(r); // skips the data format descriptor, which repeats what vkFormat says
     ki_read_u32(r);
     s->metadata_offset = ki_read_u32(r);
     s->metadata_size = ki_read_u32(r);
@@ -234,7 +237,8 @@ static void read_sh(const char *text, kiln_file_info *info)
         bands > KILN_MAX_BANDS)
         return;
     info->sh_irradiance = strstr(text, "\nirradiance 1\n") != NULL;
-    for (int line = 0; line < 3 && text; line++) { // skips the line of the window
+    // skips the lines "bands", "irradiance" and "window", after which the coefficients begin
+    for (int line = 0; line < 3 && text; line++) {
         text = strchr(text, '\n');
         text = text ? text + 1 : NULL;
     }
@@ -244,7 +248,7 @@ static void read_sh(const char *text, kiln_file_info *info)
         text = text ? ki_parse_number(text + (*text == '\n'), &value) : NULL;
         info->sh[i / 3][i % 3] = ki_info_number(value);
     }
-    if (text) // true if all coefficients were present
+    if (text) // text is not NULL if all coefficients were present
         info->sh_bands = (int)bands;
     else
         memset(info->sh, 0, sizeof info->sh);

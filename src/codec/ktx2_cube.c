@@ -9,14 +9,15 @@
 
 // ----------------------------------------------------------------------------------------- writing
 
-// Finds the samples of the data format descriptor: one for each channel, and for the shared
-// exponent another for each channel.
+// Sets the samples of the file's data format descriptor, which say where the bits of each channel
+// lie, and returns their number. A shared exponent is a further sample for each of its channels.
 static int find_samples(const ki_pixel_format *pixel, ki_ktx2_sample samples[6])
 {
     const uint32_t minus_one = 0xbf800000, one = 0x3f800000;
     switch (pixel->format) {
     case KILN_FORMAT_RGB9E5:
-        // The upper and lower limits are those in the specification's table for this format.
+        // The lower and upper limits, the last two numbers of a sample, are those of the KTX
+        // specification for VK_FORMAT_E5B9G9R9_UFLOAT_PACK32.
         for (int c = 0; c < 3; c++) {
             samples[2 * (size_t)c] = (ki_ktx2_sample){9 * c, 9, c, 0, 8448};
             samples[2 * (size_t)c + 1] = (ki_ktx2_sample){27, 5, c | KI_KTX2_EXPONENT, 15, 31};
@@ -41,7 +42,7 @@ static int find_samples(const ki_pixel_format *pixel, ki_ktx2_sample samples[6])
     return 4;
 }
 
-// Writes the metadata entries in the byte order of their keys.
+// Writes the metadata entries of a cube, in the byte order of their keys.
 static void write_metadata(ki_writer *w, const kiln_map *map, const kiln_save_def *def)
 {
     ki_ktx2_write_common(w, "rd");

@@ -60,8 +60,9 @@ static bool pack_rows(kiln_context *context, const void *data, int level, uint8_
     return true;
 }
 
-// Finds the samples of the data format descriptor, one for each channel. The limits of floats are
-// stated as -1 and 1.
+// Sets the samples of the file's data format descriptor, which say where the bits of each channel
+// lie. Their limits are -1 and 1 for floats, as the KTX specification requires, and 0 and the
+// largest integer for integers.
 static void find_samples(const table_texel *texel, ki_ktx2_file *file)
 {
     int bits = 8 * ki_component_bytes(texel->format);

@@ -37,12 +37,13 @@ void ki_cut_face(const kiln_image *image, int x, int y, int size, bool turned, f
     }
 }
 
-// Column and row of a face in a cross or strip, counted in faces.
+// Place of a cube face in a picture that shows a cross or strip: column and row, counted in faces.
 typedef struct face_place {
     int x, y;
 } face_place;
 
-// Places of the faces +X -X +Y -Y +Z -Z. In the tall cross -Z lies below -Y, upside down.
+// Places of the faces +X -X +Y -Y +Z -Z in each layout. In the tall cross -Z lies below -Y, upside
+// down.
 static const face_place wide_cross[6] = {{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {3, 1}};
 static const face_place tall_cross[6] = {{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {1, 3}};
 
@@ -59,7 +60,8 @@ static kiln_result make_cube(kiln_context *context, const kiln_image *image, int
     return result;
 }
 
-// Makes a map that takes over the memory of the picture.
+// Makes a map of one level whose texels are those of the picture; the picture's memory becomes the
+// map's.
 static kiln_result take_over(kiln_image *image, kiln_shape shape, int size, kiln_map *map)
 {
     *map = (kiln_map){.shape = shape, .size = size, .level_count = 1, .owner = image->owner};

@@ -1,7 +1,7 @@
-// Loading of maps and pictures. In: a path to a file, a folder, or a pattern for six face files; six
-// paths; or bytes in memory. Out: a map on the sphere, or a flat picture, and a report. The content
-// of a file decides its format, and the ratio of its sides its layout unless the caller names a
-// layout.
+// Loading of maps and pictures. In: a path to a file, a folder, or a pattern for six face files;
+// six paths; or bytes in memory. Out: a map on the sphere, or a flat picture, and a report. The
+// content of a file decides its format, and the ratio of its sides its layout unless the caller
+// names a layout.
 #include "base/file.h"
 #include "base/os.h"
 #include "codec/engine_text.h"
@@ -26,7 +26,8 @@ static kiln_result check_def(const kiln_load_def *def, kiln_error *error)
     return KILN_OK;
 }
 
-// Replaces a definition that is NULL by the defaults, checks it, and empties the outputs.
+// Begins a public function that loads a map: replaces a load definition that is NULL by the
+// defaults, checks the definition, and empties the outputs.
 static kiln_result begin(const kiln_load_def **def, kiln_map *map, kiln_error *error)
 {
     static const kiln_load_def defaults = {0};
@@ -37,8 +38,8 @@ static kiln_result begin(const kiln_load_def **def, kiln_map *map, kiln_error *e
     return check_def(*def, error);
 }
 
-// Mends a map that was read, if `result` says that it was, and hands out its report. On failure
-// frees the map.
+// Ends a public function that loads a map, whose result so far is `result`. If the map was read,
+// replaces its values that are no radiance and hands out the report. On failure frees the map.
 static kiln_result finish(kiln_context *context, const char *name, const kiln_load_def *def,
                           kiln_result result, kiln_load_report *report, kiln_map *map,
                           kiln_error *error)
@@ -77,7 +78,8 @@ static kiln_result place(kiln_context *context, ki_decoded *decoded, const kiln_
     return result;
 }
 
-// Makes a map from a decoded file, mends the map, and frees what was decoded.
+// Makes a map from a decoded file, replaces its values that are no radiance, and frees what was
+// decoded.
 static kiln_result take_map(kiln_context *context, ki_decoded *decoded, const kiln_file_info *info,
                             const char *name, const kiln_load_def *def, kiln_map *map,
                             kiln_error *error)
@@ -102,7 +104,8 @@ kiln_result kiln_map_decode(kiln_context *context, const void *bytes, size_t siz
     return result;
 }
 
-// Reads a flat picture with the values of its file.
+// Decodes a file to a flat picture, whose values stay as in the file. Fails if the file holds a
+// cube.
 static kiln_result load_image(kiln_context *context, const char *path, ki_decoded *decoded,
                               kiln_file_info *info, kiln_error *error)
 {
@@ -140,7 +143,7 @@ kiln_result kiln_file_describe(kiln_context *context, const char *path, kiln_fil
 
 // -------------------------------------------------------------------------------------- six files
 
-// Fails where a picture cannot be a face of the map; the first face gives the map its size.
+// Fails where a picture cannot be a face of the cube `map`. The first face gives the cube its size.
 static kiln_result check_face(const char *path, const kiln_image *image, const kiln_map *map,
                               kiln_error *error)
 {

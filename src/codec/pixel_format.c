@@ -19,8 +19,9 @@ const char *const *kiln_format_names(void)
     return ki_format_names;
 }
 
-// One row for each kiln_format, in the order of the enum; the first row, for KILN_FORMAT_AUTO, is
-// that of RGBA16F. The last three formats are for PNG and have no Vulkan or DXGI number.
+// One row for each kiln_format, in the order of the enum. The first row, for KILN_FORMAT_AUTO, has
+// the values of RGBA16F. The last three formats exist only in PNG files and have no Vulkan or DXGI
+// number.
 static const ki_pixel_format formats[] = {
     {KILN_FORMAT_RGBA16F, KI_HALF_MAX, 97, 10, 8, 2, 1, 4, NULL},
     {KILN_FORMAT_RGBA16F, KI_HALF_MAX, 97, 10, 8, 2, 1, 4, NULL},
@@ -167,8 +168,8 @@ void ki_pixels_unpack(const ki_pixel_format *pixel, const uint8_t *bytes, int wi
 
 // ------------------------------------------------------------------------------------- packed levels
 
-// Finds the number of rows of texels or blocks of a level, its faces one below the other, and the
-// bytes of a row. Returns false for a format or level that cannot be packed.
+// Finds how a level of a map is packed, its faces one below the other: the number of rows of texels
+// or blocks, and the bytes of a row. Returns false for a format or level that cannot be packed.
 static bool packed_rows(const kiln_map *map, int level, kiln_format format, size_t *rows,
                         size_t *row_bytes)
 {

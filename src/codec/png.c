@@ -1,14 +1,11 @@
 // Reading of PNG files. In: the bytes of a file. Out: a picture of three linear floats a pixel.
 // Every colour type, depth and filter is read, interlaced or not, by the specification (W3C,
 // "Portable Network Graphics", third edition). png_color.c finds what the samples mean. Alpha and
-// tRNS are ignored.
-//
-// kiln has its own PNG code so that kiln can be built without libpng and writes the same bytes on
-// every system. The tests compare the code with libpng, oiiotool and a browser.
-//
+// tRNS are ignored.  kiln has its own PNG code so that kiln can be built without libpng and writes
+// the same bytes on every system. The tests compare the code with libpng, oiiotool and a browser.
 // The IDAT chunks are joined and decompressed at once, the filters of the rows are undone in place,
-// and a table for each channel gives the linear value of every sample. Sizes are checked against the file's before
-// memory is allocated.
+// and a table for each channel gives the linear value of every sample. Sizes are checked against
+// the file's before memory is allocated.
 #include "codec/png.h"
 #include "codec/codec.h"
 #include "codec/deflate.h"
@@ -22,7 +19,7 @@
 // x_step-th column and every y_step-th row.
 typedef struct pass {
     int x, y, x_step, y_step;
-    size_t width, height, row; // size in pixels; bytes of a row without its filter byte
+    size_t width, height, row; // size in pixels, and bytes of a row without its filter byte
 } pass;
 
 enum { PASSES = 7 };
@@ -40,7 +37,7 @@ typedef struct png_file {
     const uint8_t *packed; // content of all IDAT chunks, joined
     uint8_t *joined;       // memory of the joined content if there are several IDAT chunks
     size_t packed_size;
-    uint64_t raw_size; // size that the data must decompress to
+    uint64_t raw_size; // number of bytes that the IDAT data must decompress to
     uint8_t *raw;
     ki_png_meaning meaning;
     float *table[3], *pixels; // table: the linear value of every sample of a channel
@@ -130,7 +127,7 @@ static kiln_result read_head(png_file *f, kiln_error *error)
     return KILN_OK;
 }
 
-// Reads the palette. Entries that the file does not have stay black.
+// Reads the palette. Entries that the file lacks are black.
 static bool read_palette(png_file *f, const chunk *c)
 {
     if (!(f->color & KI_PNG_PALETTE))
@@ -143,7 +140,7 @@ static bool read_palette(png_file *f, const chunk *c)
     return true;
 }
 
-// Joins the consecutive IDAT chunks, of which `c` is the first.
+// Joins the data of consecutive IDAT chunks, of which `c` is the first.
 static kiln_result join_data(png_file *f, chunk *c, kiln_error *error)
 {
     ki_reader first = f->reader;
@@ -180,7 +177,8 @@ static kiln_result read_chunks(png_file *f, kiln_error *error)
     for (;;) {
         if (!next_chunk(f, &c))
             return damaged(f, error, "the file ends too early");
-        bool critical = !(c.type[0] & 32); // a capital letter marks a critical chunk
+        // a capital first letter marks a critical chunk, which a reader must understand
+        bool critical = !(c.type[0] & 32);
         if (!critical)
             continue;
         if (!c.intact)
@@ -221,7 +219,8 @@ static void find_passes(png_file *f)
         add_pass(f, 0, 0, 1, 1);
         return;
     }
-    // Passes of Adam7: the pixels of each 8 x 8 square, one of the sixty-four in the first pass.
+    // Passes of Adam7, as first column, first row, column step and row step. The first pass has one
+    // of the 64 pixels of each 8 x 8 square, the last pass every second row.
     static const uint8_t from[PASSES][4] = {{0, 0, 8, 8}, {4, 0, 8, 8}, {0, 4, 4, 8}, {2, 0, 4, 4},
                                             {0, 2, 2, 4}, {1, 0, 2, 2}, {0, 1, 1, 2}};
     for (int i = 0; i < PASSES; i++)
@@ -230,8 +229,8 @@ static void find_passes(png_file *f)
 
 // ----------------------------------------------------------------------------------------- filters
 
-// Undo the four filters of a row of `size` bytes with `step` bytes a pixel. With a constant step
-// the compiler keeps the bytes of a pixel in separate registers.
+// Undo the filters Sub, Up, Average and Paeth of a row of `size` bytes with `step` bytes a pixel.
+// With a constant step the compiler keeps the bytes of a pixel in separate registers.
 static inline void undo_sub(uint8_t *row, size_t size, size_t step)
 {
     for (size_t i = step; i < size; i++)
@@ -276,8 +275,8 @@ static inline bool undo_filter(int filter, uint8_t *row, const uint8_t *above, s
     return filter < KI_PNG_FILTERS;
 }
 
-// Undoes the filters of a pass's rows, each of which follows its filter byte. `zeros` stands for
-// the row above the first.
+// Undoes the filters of all rows of a pass, each of which follows its filter byte. `zeros` is a row
+// of zeros that stands for the row above the first.
 static bool undo_filters(uint8_t *raw, const pass *p, size_t step, const uint8_t *zeros)
 {
     const uint8_t *above = zeros;
@@ -309,7 +308,8 @@ static bool make_tables(png_file *f)
     return f->table[0] != NULL;
 }
 
-// Returns sample i of a row, whose bits are stored highest first.
+// Returns sample i of a row, of `depth` bits, whose samples are stored in each byte from the
+// highest bit on.
 static inline unsigned sample(const uint8_t *row, size_t i, int depth)
 {
     if (depth == 8)
@@ -320,7 +320,8 @@ static inline unsigned sample(const uint8_t *row, size_t i, int depth)
     return (unsigned)(row[bit / 8] >> (8 - depth - (int)(bit % 8))) & ((1U << depth) - 1);
 }
 
-// Converts a row of a pass to pixels that are `step` floats apart.
+// Converts a row of a pass to three floats a pixel. The row's pixels are `step` floats apart in the
+// picture.
 static inline void put_row(const png_file *f, const uint8_t *row, size_t width, int depth,
                            float *rgb, size_t step)
 {
@@ -384,7 +385,8 @@ static kiln_result put_all(png_file *f, kiln_error *error)
 
 static kiln_result unpack(png_file *f, kiln_error *error)
 {
-    // Deflate makes a byte into 1032 at most: a short file cannot ask for a huge picture.
+    // Deflate makes at most 1032 bytes of one byte, so that a short file cannot ask for memory for
+    // a huge picture.
     if (f->raw_size / 1032 > f->packed_size)
         return damaged(f, error, "its data is too short for its size");
     size_t size = (size_t)f->raw_size, step = (size_t)(f->channels * f->depth + 7) / 8;

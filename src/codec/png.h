@@ -11,18 +11,21 @@ enum { KI_PNG_PALETTE = 1, KI_PNG_COLOR = 2, KI_PNG_ALPHA = 4 };
 /// bytes. The text is "rgbm", "rgbd" or "rgbp".
 #define KI_PNG_TEXELS_KEY "kiln:texels"
 
-/// Filters of a row, whose bytes are stored as differences from a prediction.
+/// PNG's filters: a row's bytes are stored as differences from what the filter predicts.
 typedef enum ki_png_filter {
     KI_PNG_NONE,
-    KI_PNG_SUB,     ///< predicts the byte one pixel to the left
-    KI_PNG_UP,      ///< predicts the byte above
-    KI_PNG_AVERAGE, ///< predicts the mean of left and above, rounded down
-    KI_PNG_PAETH,   ///< predicts the left, upper or upper left byte, by ki_png_paeth
+    KI_PNG_SUB, ///< predicts each byte to be that one pixel to the left
+    KI_PNG_UP,  ///< predicts each byte to be that in the row above
+    /// predicts each byte to be the mean of the bytes to the left and above, rounded down
+    KI_PNG_AVERAGE,
+    /// predicts each byte to be that to the left, above, or above left, whichever ki_png_paeth
+    /// returns
+    KI_PNG_PAETH,
     KI_PNG_FILTERS
 } ki_png_filter;
 
-/// Returns that of the three bytes which is nearest to left + above - corner. Ties are decided in
-/// the order left, above, corner.
+/// Returns the one of the bytes left, above and corner (above left) that is nearest to left + above
+/// - corner. Ties are decided in this order.
 static inline uint8_t ki_png_paeth(int left, int above, int corner)
 {
     int to_left = above - corner, to_above = left - corner, to_corner = to_left + to_above;

@@ -1,9 +1,8 @@
-// What the samples of a PNG mean. In: the chunks before the picture's data. Out: curves and a matrix
-// to linear Rec. 709, or the coding by which kiln stored radiance in four bytes.
-//
-// By the third edition of the specification (W3C, "Portable Network Graphics", section 11.3.2), the
-// first of these chunks decides: cICP, iCCP, sRGB, then gAMA and cHRM. A file without any of them
-// counts as sRGB. kiln's own text chunk "kiln:texels" comes before all.
+// What the samples of a PNG mean. In: the chunks before the picture's data. Out: curves and a
+// matrix to linear Rec. 709, or the coding by which kiln stored radiance in four bytes.  By the
+// third edition of the specification (W3C, "Portable Network Graphics", section 11.3.2), the first
+// of these chunks decides: cICP, iCCP, sRGB, then gAMA and cHRM. A file without any of them counts
+// as sRGB. kiln's own text chunk "kiln:texels" comes before all.
 #include "codec/png_color.h"
 
 #include "base/bytes.h"

@@ -7,8 +7,8 @@
 
 /// How the samples of a PNG become radiance.
 typedef struct ki_png_meaning {
-    /// Function that gives radiance from the four samples of a pixel; NULL if the samples are colours
-    /// as `color` says.
+    /// Function that gives radiance from the four samples of a pixel; NULL if the samples are
+    /// colours as `color` says.
     ki_from_rgbx *unpack;
     ki_file_color color;
     const char *name; ///< short name of the coding, for example "srgb"

@@ -6,8 +6,8 @@
 
 #include <string.h>
 
-// Bytes of the signature, of the signature with the chunk IHDR that begins every PNG file, and of a
-// chunk's size, type and CRC.
+// Numbers of bytes. SIGNATURE: PNG's signature. HEADER: the signature and the chunk IHDR, with
+// which every file begins. AROUND: what surrounds a chunk's data, its size, type and CRC.
 enum { SIGNATURE = 8, HEADER = SIGNATURE + 25, AROUND = 12 };
 
 static void put_high_first(uint8_t *to, uint32_t value)
@@ -37,8 +37,8 @@ void ki_png_add_text(ki_writer *w, size_t start, const char *key, const char *te
     put_high_first(chunk + 8 + data, ki_crc32(&table, 0, chunk + 4, data + 4));
 }
 
-// Copies the text of a chunk with this key, with a NUL at its end. Returns false if the chunk has
-// another key.
+// Copies the text of a tEXt chunk's data to `text`, with a NUL at its end, if the chunk's key is
+// `key`. Otherwise returns false.
 static bool is_text(const uint8_t *data, size_t size, const char *key, char *text, size_t room)
 {
     size_t key_size = strlen(key) + 1;

@@ -15,14 +15,15 @@ typedef struct png_writer {
     ki_writer *out;
     ki_crc32_table crc;
     ki_deflater *deflater;
-    size_t row, step;  // bytes of a row and of a pixel
-    uint8_t *above;    // the row above, zeros for the first row
-    uint8_t *current;  // the row that is filtered next
-    uint8_t *filtered; // the current row after each of the filters
-    // HISTORY bytes that were already compressed, then the bytes that are to be compressed.
+    size_t row, step;  // number of bytes of a row and of a pixel
+    uint8_t *above;    // the unfiltered row above `current`; zeros for the first row
+    uint8_t *current;  // the unfiltered row that is filtered next
+    uint8_t *filtered; // the current row after each of the five filters, one after the other
+    // Filtered rows: `history` bytes that were already compressed, then `waiting` bytes that are
+    // not.
     uint8_t *rows;
     size_t history, waiting;
-    int place; // flags of the next part, KI_DEFLATE_FIRST or 0
+    int place; // KI_DEFLATE_FIRST until the first part is compressed, then 0
 } png_writer;
 
 // ------------------------------------------------------------------------------------------ chunks
@@ -126,7 +127,8 @@ static void filter_row(const png_writer *p, ki_png_filter filter, uint8_t *restr
     }
 }
 
-// Sums the differences as absolute values of numbers from -128 to 127.
+// Sums the absolute values of a filtered row's bytes, read as numbers from -128 to 127. The filter
+// with the smallest sum is taken to compress best.
 static uint32_t sum_of(const uint8_t *bytes, size_t size)
 {
     uint32_t sum = 0;
@@ -135,8 +137,8 @@ static uint32_t sum_of(const uint8_t *bytes, size_t size)
     return sum;
 }
 
-// Adds the row in `current`, with its best filter, to the waiting rows. The row becomes the row
-// above.
+// Adds the row in `current`, filtered by its best filter, to the waiting rows. `current` becomes
+// the row above the next row.
 static void add_row(png_writer *p)
 {
     int best = 0;
@@ -159,7 +161,8 @@ static void add_row(png_writer *p)
 
 // ----------------------------------------------------------------------------------------- samples
 
-// Sets thresholds[k] to the linear value from which on the 8-bit sRGB value k + 1 is nearer than k.
+// Sets the rounding thresholds of 8-bit sRGB: a linear value of at least thresholds[k] is nearer to
+// k + 1 than to k.
 static void make_thresholds(float thresholds[255])
 {
     for (int i = 0; i < 255; i++)
@@ -185,7 +188,8 @@ static uint8_t to_byte(float value, const float *thresholds)
     return (uint8_t)low;
 }
 
-// Converts one row of `count` values; 16-bit values are stored with the high byte first.
+// Converts one row of `count` values to the bytes of a PNG row. 16-bit values are stored with the
+// high byte first.
 static void to_row(const float *values, size_t count, ki_png_coding coding, const float *thresholds,
                    uint8_t *row)
 {

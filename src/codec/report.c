@@ -38,7 +38,7 @@ void ki_report_add(kiln_load_report *sum, const kiln_load_report *report)
 
 // --------------------------------------------------------------------------------------- sentences
 
-// Says what happened to some of the texels: "3 of 512 texels are " and what follows.
+// Makes a note such as "3 of 512 texels are WHAT". Returns false if `count` is 0.
 static bool say_count(const kiln_load_report *report, size_t count, kiln_note_kind kind,
                       bool warning, const char *what, kiln_note *note)
 {
@@ -50,7 +50,8 @@ static bool say_count(const kiln_load_report *report, size_t count, kiln_note_ki
     return true;
 }
 
-// Makes the note about the counts of one kind; returns false if nothing was counted.
+// Makes the note about texels of one kind, such as infinite ones; returns false if no such texel
+// was counted.
 static bool say_kind(const kiln_load_report *report, int kind, kiln_note *note)
 {
     char negative[128];

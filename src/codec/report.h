@@ -8,8 +8,8 @@
 /// NULL.
 void ki_note(kiln_load_report *report, kiln_note_kind kind, bool warning, const char *format, ...)
     KI_PRINTF(4, 5);
-/// Adds the counts that readers fill in (missing_count) and the notes of one file to those of a set
-/// of files.
+/// Adds the counts of one file's report that its reader fills in (missing_count), and its notes, to
+/// the report of a set of files.
 void ki_report_add(kiln_load_report *sum, const kiln_load_report *report);
 
 #endif

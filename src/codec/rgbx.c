@@ -9,15 +9,15 @@ static float largest_of(const float rgb[3])
     return fmaxf(rgb[0], fmaxf(rgb[1], rgb[2]));
 }
 
-// Sets the colours to the square roots of the channels divided by a scale, clamped to [0, 1].
+// Sets the stored colours: the square roots of radiance divided by `scale`, clamped to [0, 1].
 static void put_roots(const float rgb[3], double scale, float color[3])
 {
     for (int c = 0; c < 3; c++)
         color[c] = rgb[c] > 0 ? (float)ki_clamp(sqrt((double)rgb[c]) / scale, 0, 1) : 0;
 }
 
-// In steps of 1/255, the alpha of RGBM is rounded up, so that no colour exceeds 1, and clamped to 1
-// to 255 steps.
+// RGBM multiplies stored colours by 8 alpha. Alpha, in steps of 1/255, is rounded up, so that no
+// colour exceeds 1, and is at least one step and at most 255.
 void ki_rgbm_from_float(const float rgb[3], float rgbm[4])
 {
     double root = sqrt(fmax((double)largest_of(rgb), 0));
@@ -26,8 +26,8 @@ void ki_rgbm_from_float(const float rgb[3], float rgbm[4])
     rgbm[3] = (float)(steps / 255);
 }
 
-// RGBP multiplies colours by 8 - 7 alpha, which must not be too small for the largest colour. The
-// alpha is therefore rounded down.
+// RGBP multiplies stored colours by 8 - 7 alpha, which must not be too small for the largest
+// colour. Alpha is therefore rounded down to a step of 1/255.
 void ki_rgbp_from_float(const float rgb[3], float rgbp[4])
 {
     double root = sqrt(fmax((double)largest_of(rgb), 0));
@@ -36,8 +36,8 @@ void ki_rgbp_from_float(const float rgb[3], float rgbp[4])
     rgbp[3] = (float)(steps / 255);
 }
 
-// RGBD divides colours by alpha. The alpha is the greatest of the numbers 1/255, 2/255, ..., 1 for
-// which the largest channel times alpha is at most 1.
+// RGBD divides decoded colours by alpha. Alpha is the greatest of the numbers 1/255, 2/255, ..., 1
+// for which the largest channel of radiance times alpha is at most 1.
 void ki_rgbd_from_float(const float rgb[3], float rgbd[4])
 {
     float largest = largest_of(rgb);

@@ -1,5 +1,5 @@
-// Radiance in four bytes: colours are stored by a root, and alpha holds the number by which they
-// are multiplied or divided.
+// Radiance in four bytes a texel (RGBM, RGBP, RGBD): the three colours are stored by a root, and
+// alpha holds the number by which they are multiplied or divided.
 #ifndef KI_RGBX_H
 #define KI_RGBX_H
 

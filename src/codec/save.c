@@ -29,7 +29,8 @@ static kiln_result check_def(kiln_shape shape, const kiln_save_def *def, kiln_er
     return ki_sh_check(def->sh, error);
 }
 
-// Returns the format of a path; files in a folder are EXR.
+// Returns the file format that a path's ending selects. A path that ends in a slash is a folder of
+// EXR files.
 static const ki_file_format *format_of(const char *path)
 {
     return ki_file_format_of_path(ki_ends_with(path, "/") ? "a.exr" : path);
@@ -85,8 +86,9 @@ double kiln_map_save_limit(const char *path, kiln_format format)
 
 // ------------------------------------------------------------------------------------------- names
 
-// Writes a template for the names of all files: the caller's path with {face} and {level} in place
-// of the face and the level. If the path has no place for one of the two, a place is added.
+// Writes a template for the paths of all files of a map: the caller's path with {face} and {level}
+// in place of `%s` and `%d`. If the map has faces or levels and the path has no place for them, a
+// place is added before the ending.
 static kiln_result make_template(const char *path, const kiln_map *map, ki_writer *w,
                                  kiln_error *error)
 {
@@ -111,7 +113,7 @@ static kiln_result make_template(const char *path, const kiln_map *map, ki_write
     return w->failed ? ki_fail_memory(w->context, error, path, length + 32) : KILN_OK;
 }
 
-// Writes the path of one file to `w`.
+// Writes the path of the file of one face and level, made from the template, to `w`.
 static bool expand(const char *template, int face, int level, ki_writer *w)
 {
     w->size = 0;

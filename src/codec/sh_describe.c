@@ -10,8 +10,8 @@
 
 enum { MOST = KILN_MAX_BANDS * KILN_MAX_BANDS };
 
-// The beginning of a file as text that ends in NUL. The room exceeds the longest text that kiln
-// writes.
+// A file's text, cut after the room of the struct and ended by NUL. The room exceeds the longest
+// text that kiln writes.
 typedef struct text {
     char bytes[8192];
 } text;
@@ -93,8 +93,9 @@ kiln_result ki_sh_json_describe(const uint8_t *bytes, size_t size, const char *n
     return finish("json", count, name, info, error);
 }
 
-// Reads three numbers from each line and ignores the text around the numbers. Stops at the first
-// line without three numbers, at which *at then points. Returns the number of lines read.
+// Reads three numbers from each line of *at into info->sh, and ignores the text around the numbers.
+// Stops at the first line without three numbers, at which *at then points. Returns the number of
+// lines read.
 static int read_lines(const char **at, kiln_file_info *info)
 {
     int count = 0;
@@ -124,7 +125,8 @@ kiln_result ki_sh_lines_describe(const uint8_t *bytes, size_t size, const char *
     }
     const char *at = t.bytes;
     int count = read_lines(&at, info);
-    // If text remains, a line had no three numbers, and the count 0 makes finish() fail.
+    // Text that remains after the last coefficient is an error, which finish() reports for a count
+    // of 0.
     return finish("text", *at ? 0 : count, name, info, error);
 }
 

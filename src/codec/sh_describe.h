@@ -4,8 +4,8 @@
 
 #include "base/base.h"
 
-/// Return whether bytes begin like a file of kiln_sh_save: its JSON, its lines (or Filament's
-/// lines), or its C array.
+/// Return whether bytes begin like a file of kiln_sh_save: its JSON, its lines (or those of
+/// Filament's sh.txt), or its C array.
 bool ki_sh_json_begins(const uint8_t *bytes, size_t size);
 bool ki_sh_lines_begin(const uint8_t *bytes, size_t size);
 bool ki_sh_array_begins(const uint8_t *bytes, size_t size);

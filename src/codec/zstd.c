@@ -11,7 +11,8 @@ kiln_result ki_zstd_known(const char *name, kiln_error *error)
     return KILN_OK;
 }
 
-// Returns the room for compressed data: zstd's own bound and one byte more.
+// Returns the number of bytes that compressed data may need: the zstd library's own bound and one
+// byte more.
 size_t ki_zstd_bound(size_t size)
 {
     return ZSTD_compressBound(size) + 1;
