@@ -24,17 +24,19 @@
 #include <string.h>
 
 enum {
-    // Degree for irradiance. The cosine lobe is cut off at degree 303, where its terms are below
-    // 1e-7 of the sum.
+    // Degree of the spectrum from which irradiance is filtered. The series of the cosine lobe is
+    // cut off at degree 303, where its remaining terms are below 1e-7 of the sum.
     IRRADIANCE_DEGREE = 320,
-    // Smallest degree of an analysis; the harmonics need degree KILN_MAX_BANDS - 1.
+    // Smallest degree of a panorama's analysis for the harmonics, which need degree KILN_MAX_BANDS
+    // - 1.
     SH_DEGREE = 8,
     // Number of suns that a plan has memory for from the beginning. A sun is a single texel that
-    // holds a thousandth of all light.
+    // holds more than a thousandth of all light.
     RESERVED_SUNS = 64
 };
 
-// What executions of a separate, low analysis work on, and the spectrum of the last execution.
+// The memory of a separate analysis of the panorama to a low degree, for harmonics or irradiance,
+// and the spectrum of the last execution.
 typedef struct low_workspace {
     ki_analysis_workspace *analysis;
     kiln_spectrum *spectrum;
@@ -42,32 +44,36 @@ typedef struct low_workspace {
 
 // The memory that the executions of a plan use, one execution after the other.
 typedef struct plan_workspace {
-    // the mirrored and exposed source; empty if the plan neither mirrors nor exposes
+    // the mirrored and exposed copy of the source; empty if the plan neither mirrors nor exposes
     kiln_map changed;
     // the panorama that is made from a source of another shape; empty if the source is a panorama
     kiln_map panorama;
     ki_prefilter_workspace prefilter;
-    low_workspace for_sh, for_irradiance; // empty where the plan has no such analysis
+    // workspaces of the separate analyses for harmonics and for irradiance; empty where the plan
+    // has no such analysis
+    low_workspace for_sh, for_irradiance;
     bool has_scratch;
     ki_scratch scratch; // memory that one execution uses and frees, see ki_scratch
 } plan_workspace;
 
-// All fields but `workspace` are constant after the plan is made.
+// No field but `workspace` changes after the plan is made.
 struct kiln_plan {
     kiln_context *context;
     kiln_shape source_shape;
     int source_size;
     bool mirror;
     double exposure, rotation;
-    // Size of the irradiance map, or 0 for no map, and number of bands of harmonics, or 0 for no
+    // Size of the irradiance map, or 0 for no such map; number of bands of harmonics, or 0 for no
     // harmonics.
     int irradiance_size, sh_bands;
-    ki_resample_plan *to_panorama; // NULL if the source is a panorama
+    // resampling of the source to a panorama; NULL if the source is a panorama
+    ki_resample_plan *to_panorama;
     ki_prefilter *prefilter;
-    // The low analyses for harmonics and for irradiance; NULL where the spectrum of `prefilter` is
-    // used.
+    // The separate analyses to a low degree for harmonics and for irradiance; NULL where the
+    // spectrum of `prefilter` serves instead.
     ki_analysis *for_sh, *for_irradiance;
-    ki_level *irradiance; // the level that is filtered by the cosine lobe
+    // the irradiance map as a level that is filtered by the cosine lobe; NULL for no such map
+    ki_level *irradiance;
     plan_workspace workspace;
 };
 
@@ -81,7 +87,7 @@ static void low_free(low_workspace *w)
 }
 
 // Creates an analysis of panoramas of `size` rows to a low degree, and its workspace. The caller
-// frees the two, also on failure.
+// frees *analysis and *w, also on failure.
 static kiln_result low_create(kiln_context *context, int size, int degree, ki_analysis **analysis,
                               low_workspace *w, kiln_error *error)
 {
@@ -95,8 +101,8 @@ static kiln_result low_create(kiln_context *context, int size, int degree, ki_an
     return result;
 }
 
-// Returns the spectrum that a low analysis computes from the panorama, or that of the prefilter if
-// `analysis` is NULL.
+// Returns the spectrum that `analysis`, to a low degree, computes from the panorama, or the
+// spectrum of the prefiltered levels if `analysis` is NULL.
 static const kiln_spectrum *find_spectrum(const plan_workspace *w, const ki_analysis *analysis,
                                           const low_workspace *low, const kiln_map *panorama)
 {
@@ -108,8 +114,8 @@ static const kiln_spectrum *find_spectrum(const plan_workspace *w, const ki_anal
 
 // -------------------------------------------------------------------------------------------- plan
 
-// Returns the number of rows of the panorama for a source. A cube of n texels gets 2 n rows, since
-// half a turn crosses two faces.
+// Returns the number of rows of the panorama that a source is converted to. A cube with faces of
+// n x n texels gets 2 n rows, since half a turn, from pole to pole, crosses two faces.
 static int panorama_rows(kiln_shape shape, int size)
 {
     return shape == KILN_SHAPE_PANORAMA ? size : ki_min(2 * size, KILN_MAX_SIZE / 2);
@@ -158,7 +164,8 @@ static kiln_result plan_source(kiln_plan *p, kiln_error *error)
     return result;
 }
 
-// Plans the levels, and allocates what their executions and the conversion to a panorama work on.
+// Plans the prefiltered levels. Allocates the memory that their executions and the conversion of
+// the source to a panorama work on.
 static kiln_result plan_levels(kiln_plan *p, const ki_plan_def *def, int rows, kiln_error *error)
 {
     kiln_map source = {.shape = def->source_shape, .size = def->source_size, .level_count = 1};
@@ -326,7 +333,7 @@ static kiln_result check_target(const kiln_plan *p, const kiln_environment *envi
 }
 
 // Mirrors and exposes the source and converts the result to a panorama, as far as the plan says.
-// *source then points to the changed map.
+// *source then points to the mirrored and exposed map.
 static kiln_result take_source(const kiln_plan *p, plan_workspace *w, const kiln_map **source,
                                const kiln_map **panorama, kiln_error *error)
 {
@@ -373,8 +380,8 @@ static kiln_result execute_all(const kiln_plan *p, plan_workspace *w, const kiln
     return result;
 }
 
-// Executes a plan for a checked source and environment. Memory for the execution comes from the
-// workspace's scratch, if the workspace has one.
+// Executes a plan for a source and an environment whose sizes have been checked. Memory that the
+// execution allocates comes from the workspace's scratch, if the workspace has one.
 static kiln_result execute(const kiln_plan *p, plan_workspace *w, const kiln_map *source,
                            bool rehearses, kiln_environment *environment, kiln_error *error)
 {
@@ -387,8 +394,8 @@ static kiln_result execute(const kiln_plan *p, plan_workspace *w, const kiln_map
     if (!w->has_scratch)
         return result;
     ki_scratch_end(p->context);
-    // With more suns than ever before, some memory came from the context. The scratch grows, so
-    // that the next execution allocates nothing.
+    // An execution with more suns than ever before takes some memory from the context, outside of
+    // the scratch. The scratch then grows, so that the next execution allocates nothing.
     if (w->scratch.memory && w->scratch.peak > w->scratch.capacity)
         (void)ki_scratch_reserve(p->context, &w->scratch, 0);
     return result;
@@ -407,7 +414,8 @@ kiln_result kiln_plan_execute(kiln_plan *plan, const kiln_map *source,
 
 // ----------------------------------------------------------------------------------------- scratch
 
-// Fills a source with noise, which gives every degree of the spectrum light, and a sun.
+// Fills a source with noise, which gives light to every degree of the spectrum, and one texel so
+// bright that it is a sun.
 static void fill_rehearsal(kiln_map *source)
 {
     uint32_t state = 1;
@@ -419,7 +427,8 @@ static void fill_rehearsal(kiln_map *source)
     source->level[0][count / 2] = (float)count;
 }
 
-// Executes the plan while its scratch is empty, which measures the memory that executions need.
+// Executes the plan for a made-up source while its scratch is empty, which measures the memory that
+// executions need.
 static kiln_result rehearse(kiln_plan *p, kiln_error *error)
 {
     kiln_map source = {.shape = p->source_shape, .size = p->source_size, .level_count = 1};

@@ -4,12 +4,14 @@
 
 #include "bake/prefilter.h"
 
-/// The parameters of a plan, with every default filled in.
+/// The parameters of a plan. Unlike in kiln_bake_def, 0 never stands for a default number.
 typedef struct ki_plan_def {
     kiln_shape source_shape;
     int source_size;
-    const kiln_prefilter_def *levels; ///< definition of the levels; NULL for the defaults
-    const ki_reading *reading;        ///< how an engine reads tuned levels; NULL for exact levels
+    /// definition of the prefiltered levels; NULL for its default values
+    const kiln_prefilter_def *levels;
+    /// how an engine reads the levels, for which they are tuned; NULL for exact levels
+    const ki_reading *reading;
     bool mirror;
     double exposure;     ///< exposure in stops: the source is multiplied by 2^exposure
     int irradiance_size; ///< size of the irradiance map; 0 for no irradiance
@@ -19,8 +21,8 @@ typedef struct ki_plan_def {
 kiln_result ki_plan_create(kiln_context *context, const ki_plan_def *def, kiln_plan **plan,
                            kiln_error *error);
 
-/// Allocates what executions need, so that executions allocate nothing. For tuned levels this takes
-/// as long as an execution.
+/// Allocates all memory that executions of a plan need, so that executions allocate nothing. For
+/// tuned levels the call takes as long as an execution.
 kiln_result ki_plan_reserve(kiln_plan *plan, kiln_error *error);
 
 #endif

@@ -86,9 +86,10 @@ kiln_result ki_prefilter_resolve(const kiln_prefilter_def *def, kiln_prefilter_d
     return KILN_OK;
 }
 
-// Plans a mirror level. A mirror is resampled directly from the source, which keeps a source cube
-// as sharp as it was. If the texels of the source are much finer than those of the level, the
-// panorama is used instead: it contains every texel of the source, and the level is as sharp.
+// Plans a mirror level, which shows the environment unfiltered. It is resampled directly from the
+// source, which keeps a source cube as sharp as it was. If the texels of the source are much finer
+// than those of the level, the level is resampled from the panorama instead. The panorama contains
+// every texel of the source, so that the level is as sharp.
 static kiln_result plan_mirror(kiln_context *context, ki_prefilter *p, int level,
                                const kiln_map *source, kiln_error *error)
 {
@@ -144,8 +145,8 @@ kiln_result ki_prefilter_create(kiln_context *context, int panorama_size, const 
     if (result != KILN_OK)
         goto done;
 
-    // Least degree of the analysis. Short spectra cost little, and with the larger number of
-    // latitude rings a constant environment stays constant to the last bit of a float.
+    // Least degree to which the panorama is analysed. Low degrees cost little, and with the larger
+    // number of latitude rings a constant environment stays constant to the last bit of a float.
     int degree = p->def.tolerance < 1e-3 ? 192 : 64;
     if (reading) {
         result = plan_tuning(context, p, reading, &lobes[0], error);
@@ -217,8 +218,8 @@ void ki_prefilter_workspace_free(ki_prefilter_workspace *workspace)
     *workspace = (ki_prefilter_workspace){0};
 }
 
-// Computes level `index` if the level is a mirror or is filtered exactly. Tuned levels are computed
-// after these levels.
+// Computes level `index` if it is a mirror or is filtered exactly. Leaves tuned levels alone:
+// ki_tune_execute computes them later.
 static kiln_result execute_level(const ki_prefilter *p, ki_prefilter_workspace *w,
                                  const kiln_map *panorama, const kiln_map *source, int index,
                                  const ki_progress_range *range, kiln_map *map, kiln_error *error)

@@ -21,11 +21,12 @@
 #include <string.h>
 
 enum {
-    GROUP = 8,  // number of directions that are summed in one pass over the rows
+    GROUP = 8,  // number of directions for which one pass over the panorama's rows sums
     BATCH = 16, // number of groups of directions between two progress reports
 };
 
-// Gauss-Legendre nodes on [-1, 1] and weights whose sum is 1.
+// Nodes of the Gauss-Legendre rules on [-1, 1]: the positive one of two nodes, and all of four
+// nodes.
 static const double pair_node = 0.57735026918962576451;
 static const double quad_node[4] = {-0.86113631159405257522, -0.33998104358485626480,
                                     0.33998104358485626480, 0.86113631159405257522};
@@ -41,11 +42,12 @@ static void set_rows(ki_reference *r)
         ki_sincos(step * y, &s0, &c0);
         ki_sincos(step * (y + 1), &s1, &c1);
         ki_sincos(centre, &row->sin_centre, &row->cos_centre);
-        // The difference of the cosines of the row's edges, by cos a - cos b = 2 sin((a + b) / 2)
-        // sin((b - a) / 2), which avoids cancellation.
+        // The row's height is the difference of the cosines of its edges.
+        // cos a - cos b = 2 sin((a + b) / 2) sin((b - a) / 2) avoids the cancellation of that
+        // difference.
         double height = 2 * row->sin_centre * ki_sin(step / 2);
         row->area = height * (2 * KI_PI / r->width);
-        // Means of cos theta and sin theta over the row, weighted by sin theta.
+        // Means of cos theta and sin theta over the solid angle of the row.
         row->cos_mean = row->cos_centre * ki_cos(step / 2);
         row->sin_mean = (step - (s1 * c1 - s0 * c0)) / (2 * height);
         for (int k = 0; k < 2; k++)
@@ -115,9 +117,9 @@ static void set_rule(ki_reference *r, const ki_reference_rule *rule)
     r->rule.quads = rule->quads > 0 ? rule->quads : 0.5;
     r->rule.edge = rule->edge;
     if (!(rule->edge > 0)) {
-        // Relative to the integral of the lobe, GGX at the horizon has at most 4 alpha^2 / (1 +
-        // alpha^2)^2 times the weight of Lambert, so that larger cells may cross the horizon of a
-        // narrow lobe.
+        // Default size of cells that the lobe's horizon crosses. Relative to its integral, a GGX
+        // lobe at the horizon has at most 4 alpha^2 / (1 + alpha^2)^2 times the weight of the
+        // Lambert lobe, so that larger cells may cross the horizon of a narrow lobe.
         r->rule.edge = 0.0025;
         if (r->rational)
             r->rule.edge = ki_clamp(0.0025 * (1 + r->a2) / (2 * sqrt(r->a2)), 0, 0.01);
@@ -126,24 +128,28 @@ static void set_rule(ki_reference *r, const ki_reference_rule *rule)
 
 // -------------------------------------------------------------------------------------- row by row
 
-// A direction in which the lobe looks, while the rows are summed. The part of the cosine between
-// that direction and a texel that varies along a row is sin theta of the row times `along`.
+// The lobe's axis d, and sums over the rows for the light that the lobe gathers. d . w for a
+// texel's direction w is d[1] cos theta + sin theta `along`, where theta, the angle of w to +Y, is
+// constant in a row, and `along` depends on the column.
 typedef struct ray_sums {
     double d[3], sin_theta;
-    // Column of the direction's azimuth, in texels; texel centres are whole numbers.
+    // Column of the axis' azimuth, in texels; texel centres are whole numbers.
     double column;
-    double *along[3]; // `along` at the columns' means and at their two nodes
-    double sum[4];    // weighted sums of the three channels, and the sum of the weights
+    // d[0] sin phi - d[2] cos phi at each column's azimuth phi: for the mean of sine and cosine
+    // over the column, and for two Gauss nodes.
+    double *along[3];
+    // sums of weight times radiance for three channels, and the sum of the weights
+    double sum[4];
 } ray_sums;
 
-// A range of columns, counted from the azimuth of the direction; the range may extend over the
-// picture's edge.
+// A range of columns about the azimuth of the lobe's axis, which may extend over the picture's
+// edge.
 typedef struct span {
     int first, last;
 } span;
 
-// Returns the range of columns of one row whose centres have a cosine above `threshold` to the
-// direction of `ray`.
+// Returns the range of columns of one row in which the direction of a texel's centre has a cosine
+// above `threshold` to the lobe's axis, that of `ray`.
 static span columns_above(const ki_reference *r, const ray_sums *ray, const ki_row_geometry *row,
                           double threshold)
 {
@@ -168,7 +174,7 @@ static int wrap(const ki_reference *r, int x)
     return x < 0 ? x + r->width : x >= r->width ? x - r->width : x;
 }
 
-// Sets weight[x] to the mean of the lobe over 2 x 2 nodes of the texel in column x.
+// Sets weight[x] to the mean of the lobe over the texel in column x, by 2 x 2 Gauss nodes.
 static void fill_pairs(const ki_reference *r, const ray_sums *ray, const ki_row_geometry *row,
                        int first, int last, double *restrict weight)
 {
@@ -224,7 +230,8 @@ static void fill_means(const ki_reference *r, const ray_sums *ray, const ki_row_
 
 typedef double lanes __attribute__((vector_size(32), aligned(8)));
 
-// Adds weight times radiance for the columns first .. last, in four lanes that start at `first`.
+// Adds weight times radiance for the columns first .. last to the sums of `ray`. Sums in four lanes
+// that start at `first`, so that the bits do not depend on the instruction set.
 static void gather(ray_sums *ray, const double *weight, const double *const plane[3], int first,
                    int last, double area)
 {
@@ -268,9 +275,10 @@ static void refine(const ki_reference *r, const ray_sums *ray, const ki_row_geom
     }
 }
 
-// Returns whether one value a texel suffices in a row, where the row is nearest to the lobe's peak;
-// otherwise texels need 2 x 2 nodes. *near receives the cosine of the distance from the peak within
-// which 2 x 2 nodes do not suffice either.
+// Returns true if in a row the lobe need be evaluated only once for each texel; otherwise texels
+// need 2 x 2 nodes. The decision is for the part of the row that is nearest to the lobe's peak.
+// *near receives the cosine of the distance from the peak below which even 2 x 2 nodes do not
+// suffice.
 static bool means_suffice(const ki_reference *r, const ray_sums *ray, const ki_row_geometry *row,
                           double *near)
 {
@@ -280,7 +288,7 @@ static bool means_suffice(const ki_reference *r, const ray_sums *ray, const ki_r
     double c = ray->d[1] * row->cos_centre + ray->sin_theta * row->sin_centre;
     double nearest = ki_acos(ki_clamp(c, -1, 1)) - 0.5 * theta_size;
 
-    // 2 x 2 nodes suffice where the lobe changes little over this length
+    // 2 x 2 nodes suffice where the lobe changes over this length in radians or a greater one
     double length = size / r->rule.pairs;
     *near = 2;
     if (r->rational) {
@@ -309,8 +317,8 @@ static void row_of_ray(const ki_reference *r, ray_sums *ray, const ki_row_geomet
 
     double near;
     bool means = means_suffice(r, ray, row, &near);
-    // The range of columns is summed in three pieces: left of the picture's edge, inside the
-    // picture, and right of its edge.
+    // The range of columns in which the lobe is above 0 is summed in three pieces: left of the
+    // picture's edge, inside the picture, and right of its edge.
     int w = r->width;
     span piece[3] = {{outer.first + w, ki_min(outer.last, -1) + w},
                      {ki_max(outer.first, 0), ki_min(outer.last, w - 1)},

@@ -1,31 +1,33 @@
-// The mean of a lobe over one texel, for reference.c. In: the direction, and the rectangle in
-// (theta, phi) of a texel or a part of one. Out: the mean of lobe times sin theta. The rectangle is
-// cut into four as often as the lobe changes too fast across it, and each part gets 4 x 4
-// Gauss-Legendre nodes.
+// The mean of a lobe over one texel, for the brute-force filter of reference.c. In: the direction
+// of the lobe's axis, and the rectangle in (theta, phi) of a texel or a part of one. Out: the mean
+// of lobe times sin theta. A rectangle is cut into four if the lobe changes too fast across it, and
+// so are its parts. A part that is not cut gets 4 x 4 Gauss-Legendre nodes.
 #include "bake/reference_state.h"
 
 #include "sphere/lobe.h"
 
 #include <math.h>
 
-// Gauss-Legendre weights whose sum is 1, for the nodes in reference.c.
+// Weights of the Gauss-Legendre rule of four nodes, scaled to the sum 1. The nodes are quad_node in
+// reference.c.
 static const double quad_weight[4] = {0.17392742256872692869, 0.32607257743127307131,
                                       0.32607257743127307131, 0.17392742256872692869};
 
-// Returns the length over which the lobe changes at a distance from its peak.
+// Returns the length in radians over which the lobe changes at this distance from its peak.
 double ki_reference_scale(const ki_reference *r, double distance)
 {
     if (r->rational)
         return sqrt(r->lobe_width * r->lobe_width + distance * distance);
     if (r->lobe.kind == KILN_LOBE_CHARLIE && distance < r->lobe_width)
-        return distance; // Charlie is a power of the distance, and not always a smooth one
+        // the Charlie lobe is a power of the distance from its axis, and not always a smooth one
+        return distance;
     if (r->lobe.kind == KILN_LOBE_CUSTOM && distance > 4 * r->lobe_width)
         return distance / 4;
     return r->lobe_width;
 }
 
-// Returns the mean over a cell's rectangle in (theta, phi) of k sin theta, k being the lobe, by 4 x
-// 4 nodes.
+// Returns the mean over a cell's rectangle in (theta, phi) of k sin theta, where k is the lobe with
+// the axis d, by 4 x 4 Gauss-Legendre nodes.
 static double cell_nodes(const ki_reference *r, const double d[3], const ki_cell_geometry *cell,
                          double sin_theta, double cos_theta, double sin_phi, double cos_phi)
 {
@@ -40,8 +42,8 @@ static double cell_nodes(const ki_reference *r, const double d[3], const ki_cell
         double ct = cos_theta * cell->theta_cos[i] - sin_theta * cell->theta_sin[i];
         double dy = d[1] - ct;
         sines[i] = st;
-        // 1 - cos of the angle between the directions d and l is |d - l|^2 / 2, which is precise
-        // for small angles.
+        // far: 1 - cos of the angle between the directions d and l is |d - l|^2 / 2, which is
+        // precise for small angles.
         for (int k = 0; k < 4; k++) {
             double dx = d[0] - st * px[k], dz = d[2] - st * pz[k];
             far[i][k] = 0.5 * (dx * dx + dy * dy + dz * dz);

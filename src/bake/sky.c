@@ -54,8 +54,9 @@ static void colour_matching(double w, double xyz[3])
 
 // --------------------------------------------------------------------------------------------- sun
 
-// Spectra from 380 to 750 nm in steps of 10, from table 2: radiance of the sun above the atmosphere
-// in 100 W / (m^2 sr nm), and absorption of ozone (1/cm) and water vapour (1/cm).
+// Spectra from 380 to 750 nm in steps of 10 nm, from table 2 of Preetham et al. 1999: radiance of
+// the sun above the atmosphere in 100 W / (m^2 sr nm), and absorption of ozone (1/cm) and water
+// vapour (1/cm).
 enum { BANDS = 38 };
 static const double sun_above[BANDS] = {
     165.5, 162.3, 211.2, 258.8, 258.2, 242.3, 267.6, 296.6, 305.4, 300.6, 306.6, 288.3, 287.1,
@@ -68,8 +69,9 @@ static const double ozone[BANDS] = {
 static const double water[BANDS] = {
     [31] = 0.016, [32] = 0.024, [33] = 0.0125, [34] = 1.0, [35] = 0.87, [36] = 0.061, [37] = 0.001};
 
-// Computes the radiance of the sun through the atmosphere by the appendix "Sun Spectral Radiance".
-// Mixed gases absorb only from 760 nm on and are therefore left out.
+// Computes the radiance of the sun, at `theta` from the zenith, through the atmosphere by Preetham
+// et al. 1999, appendix "Sun Spectral Radiance". Mixed gases absorb only from 760 nm on and are
+// therefore left out.
 static void sun_radiance(double theta, double turbidity, double rgb[3])
 {
     double degrees = theta * (180 / KI_PI);
@@ -78,25 +80,26 @@ static void sun_radiance(double theta, double turbidity, double rgb[3])
     double xyz[3] = {0};
     for (int i = 0; i < BANDS; i++) {
         double nm = 380 + 10 * i, um = nm / 1000, match[3];
-        double depth = 0.008735 * ki_pow(um, -4.08) * mass; // Rayleigh scattering
-        depth += aerosols * ki_pow(um, -1.3) * mass;        // aerosols, by Angstrom's formula
-        depth += ozone[i] * 0.35 * mass;                    // absorption by 0.35 cm of ozone
-        double w = water[i] * 2 * mass;                     // amount of water: 2 cm
+        double depth = 0.008735 * ki_pow(um, -4.08) * mass; // optical depth of Rayleigh scattering
+        depth += aerosols * ki_pow(um, -1.3) * mass;        // optical depth of aerosols (Angstrom)
+        depth += ozone[i] * 0.35 * mass;                    // optical depth of 0.35 cm of ozone
+        double w = water[i] * 2 * mass; // absorption times the amount of water, 2 cm
         depth += 0.2385 * w / ki_pow(1 + 20.07 * w, 0.45);
         double radiance = sun_above[i] * 100 * ki_exp(-depth);
         colour_matching(nm, match);
         for (int k = 0; k < 3; k++)
             xyz[k] += radiance * match[k];
     }
-    // The factors are 10 nm per sample of the spectrum, 683 lm/W, and 1e-3 for kcd.
+    // Turns the sum into luminance: 10 nm between the samples of the spectrum, 683 lm/W, and 1e-3
+    // for kcd.
     for (int k = 0; k < 3; k++)
         xyz[k] *= 10 * 683 * 1e-3;
     rgb_from_xyz(xyz, rgb);
     into_gamut(xyz[1], rgb);
 }
 
-// Returns half the width in azimuth of the sun's disc on the circle at angle `theta` from the
-// zenith.
+// Returns half the width in azimuth of the part of the sun's disc that lies on the circle of
+// directions at the angle `theta` from the zenith.
 static double disc_half_width(double sun_theta, double theta)
 {
     double s = ki_sin(theta) * ki_sin(sun_theta), numerator;
@@ -106,9 +109,10 @@ static double disc_half_width(double sun_theta, double theta)
     return ki_acos(ki_clamp(numerator / s, -1, 1));
 }
 
-// Circles of constant theta across the part of the disc between two angles from the zenith. They
-// are evenly spaced in the arcsine of their distance from the disc's centre, so that the square
-// root of the chord's length at the disc's edge does not slow the convergence of the sum.
+// Number of circles of constant theta over which the sun's disc is summed, between two angles theta
+// from the zenith. The circles are evenly spaced in the arcsine of their distance from the disc's
+// centre, so that the square root of the chord's length at the disc's edge does not slow the
+// convergence of the sum.
 enum { CIRCLES = 128 };
 
 static bool disc_circles(double sun_theta, double low, double high, double theta[CIRCLES],
@@ -128,9 +132,9 @@ static bool disc_circles(double sun_theta, double low, double high, double theta
     return true;
 }
 
-// Adds the part of the disc within a row to the row's texels: radiance times the share of each
-// texel that the disc covers. The share is found from the overlap of the circles' arcs with the
-// texel's columns.
+// Adds the part of the sun's disc within a row to the row's texels: radiance times the share of
+// each texel that the disc covers. The share is found from the overlap of the disc's arcs of
+// constant theta with the texel's columns.
 static void paint_disc(const ki_sky *sky, double low, double high, double area, int width,
                        float *texel)
 {
@@ -154,8 +158,8 @@ static void paint_disc(const ki_sky *sky, double low, double high, double area, 
     }
 }
 
-// Returns the irradiance of the ground from a disc of radiance 1: the integral of cos theta over
-// the part of the disc above the horizon.
+// Returns the irradiance of the ground from a sun's disc of radiance 1: the integral of cos theta
+// over the part of the disc above the horizon.
 static double disc_on_ground(double sun_theta)
 {
     double theta[CIRCLES], step[CIRCLES], sum = 0;
@@ -169,8 +173,8 @@ static double disc_on_ground(double sun_theta)
 
 // --------------------------------------------------------------------------------------------- sky
 
-// Perez's function, eq. 2, is the product of a factor of the angle from the zenith and a factor of
-// the angle gamma from the sun.
+// Perez's function F, Preetham et al. 1999, eq. 2, is the product of a factor of the angle from the
+// zenith and a factor of the angle gamma from the sun.
 static double perez_height(const double p[5], double cos_theta)
 {
     double f = 1 + p[0] * ki_exp(p[1] / (cos_theta > 1e-3 ? cos_theta : 1e-3));
@@ -188,8 +192,8 @@ static double cubic(const double c[4], double x)
     return ((c[0] * x + c[1]) * x + c[2]) * x + c[3];
 }
 
-// Sets the coefficients of Perez's function for Y, x and y and the luminance and chromaticity of
-// the zenith, from the appendix.
+// Sets the coefficients of Perez's function for the luminance Y and the chromaticities x and y, and
+// their values at the zenith, at turbidity t, from the appendix of Preetham et al. 1999.
 static void set_perez(ki_sky *sky, double t, double sun_theta)
 {
     static const double slope[3][5] = {{0.1787, -0.3554, -0.0227, 0.1206, -0.0670},
@@ -221,8 +225,9 @@ static void set_perez(ki_sky *sky, double t, double sun_theta)
     }
 }
 
-// Computes the radiance of the sky. `height` holds the factors that depend only on the angle from
-// the zenith, which are constant along a row.
+// Computes the radiance of the sky, without the sun's disc, in a direction. `height` holds the
+// factors of Perez's function that depend only on the angle from the zenith, which are constant
+// along a row.
 static void radiance(const ki_sky *sky, const double height[3], const double direction[3],
                      double rgb[3])
 {
@@ -254,7 +259,8 @@ static void sky_on_ground(const ki_sky *sky, double irradiance[3])
     ki_gauss_legendre(HEIGHTS, node, weight);
     irradiance[0] = irradiance[1] = irradiance[2] = 0;
     for (int j = 0; j < HEIGHTS; j++) {
-        // The quadrature is in cos^2 theta, whose differential is 2 cos theta sin theta dtheta.
+        // The integral of radiance times cos theta over the hemisphere is a quadrature in cos^2
+        // theta, whose differential is 2 cos theta sin theta dtheta.
         double square = 0.5 * (1 + node[j]), cos_theta = sqrt(square), sin_theta = sqrt(1 - square);
         for (int i = 0; i < AZIMUTHS; i++) {
             double sine, cosine, rgb[3];
@@ -282,8 +288,8 @@ void ki_sky_prepare(ki_sky *sky, double elevation, double azimuth, double turbid
     sky->sun[1] = ki_cos(sky->sun_theta);
     sky->sun[2] = -ki_sin(sky->sun_theta) * cosine;
 
-    // The model ends where the sun is on the horizon; the sky's part of the model also ends at
-    // turbidity 2.
+    // The sun's model holds until the sun is on the horizon, and that of the sky also only from
+    // turbidity 2 on. Outside of these ranges the nearest value in range is used.
     double theta = sky->sun_theta < KI_PI / 2 ? sky->sun_theta : KI_PI / 2;
     set_perez(sky, turbidity > 2 ? turbidity : 2, theta);
     if (elevation < 0)

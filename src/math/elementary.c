@@ -137,7 +137,7 @@ double ki_log(double x)
                         log2_low = 1.90821492927058770002e-10;
     int exponent = 0;
     if (x < 2.2250738585072014e-308) {
-        x *= 18014398509481984.0; // 2^54
+        x *= 18014398509481984.0; // 2^54, for subnormal x
         exponent = -54;
     }
     uint64_t bits;
@@ -149,7 +149,8 @@ double ki_log(double x)
         x *= 0.5;
         exponent++;
     }
-    // log x = 2 artanh(s) with s = (x - 1) / (x + 1), by the power series to s^21; |s| <= 0.1716.
+    // log x = 2 artanh(s) with s = (x - 1) / (x + 1), by the power series of artanh to s^21; |s| <=
+    // 0.1716.
     double f = x - 1, s = f / (x + 1), y = s * s, p = 1.0 / 21;
     for (int k = 19; k >= 3; k -= 2)
         p = p * y + 1.0 / k;

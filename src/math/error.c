@@ -4,7 +4,7 @@
 #include <math.h>
 
 // (1 + 2 x) erfcx x is smooth in y = (x - 3) / (x + 3) for x in [0, infinity), and is evaluated as
-// a Chebyshev series in y. The omitted terms are below 3e-18. This form is Shepherd and
+// a Chebyshev series in y. The terms left out are below 3e-18. This form is Shepherd and
 // Laframboise's (Math. Comp. 36, 1981); the coefficients were computed with 40 digits.
 double ki_erfcx(double x)
 {
@@ -31,8 +31,8 @@ double ki_erf(double x)
 {
     double a = fabs(x), y = x * x;
     if (a < 0.75) {
-        // erf x = 2 / sqrt(pi) times the sum of (-1)^n x^(2n+1) / (n! (2n+1)). The first omitted
-        // term is below 2e-18.
+        // For small x, erf x = 2 / sqrt(pi) times the sum over n of (-1)^n x^(2n+1) / (n! (2n+1)).
+        // The first omitted term is below 2e-18.
         double term = 1, sum = 0;
         for (int n = 1; n <= 14; n++) {
             term *= -y / n;

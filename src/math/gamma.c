@@ -2,10 +2,9 @@
 // Binet's function as its remainder.
 #include "math/math.h"
 
-// Binet's function for x >= 1: the remainder log Gamma(x) - ((x - 1/2) log x - x + log(2 pi) / 2)
-// of Stirling's formula. x times the function is smooth in 1/x on [0, 1], and is evaluated as a
-// polynomial in 2/x - 1. The first omitted term is below 3e-14. The coefficients were computed with
-// 30 digits.
+// Binet's function b(x) for x >= 1: the remainder log Gamma(x) - ((x - 1/2) log x - x + log(2 pi) /
+// 2) of Stirling's formula. x b(x) is smooth in 1/x on [0, 1], and is evaluated as a polynomial in
+// 2/x - 1. The first omitted term is below 3e-14. The coefficients were computed with 30 digits.
 static double binet(double x)
 {
     static const double c[] = {
@@ -29,8 +28,8 @@ static double log1p_positive(double x)
 }
 
 // log B(a, b) = log Gamma(a) + log Gamma(b) - log Gamma(a + b) by Stirling's formula. For a > b the
-// large terms of log Gamma(a) and log Gamma(a + b) cancel, and are combined before rounding into
-// `rise`.
+// large terms of log Gamma(a) and log Gamma(a + b) cancel. `rise` is their difference, combined
+// before rounding, without Binet's function.
 double ki_beta(double a, double b)
 {
     if (a < b) {

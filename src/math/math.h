@@ -36,17 +36,18 @@ double ki_erfcx(double x);
 /// error is below the greater of 1e-12 and 1e-15 min(a, b) (1 + log max(a, b)).
 double ki_beta(double a, double b);
 
-/// Fills the `count` nodes, increasing, and weights of the Gauss-Legendre rule on [-1, 1], which is
-/// exact for polynomials to degree 2 count - 1. The errors of nodes and weights are below 4e-16 for
-/// count <= 4096.
+/// Sets `nodes`, increasing, and `weights` to those of the Gauss-Legendre rule of `count` nodes on
+/// [-1, 1], which is exact for polynomials to degree 2 count - 1. The errors of nodes and weights
+/// are below 4e-16 for count <= 4096.
 void ki_gauss_legendre(int count, double *nodes, double *weights);
 /// The Gauss-Legendre rules of ki_gauss_legendre with 8 and with 16 nodes, as constants.
 extern const double ki_gauss8_nodes[8], ki_gauss8_weights[8];
 extern const double ki_gauss16_nodes[16], ki_gauss16_weights[16];
-/// Fills the nodes and weights of the double exponential rule on [0, 1]; count is odd. The nodes
-/// are so dense near both ends that singularities of the integrand there do no harm. The first node
-/// is at exp(-pi sinh reach): 4e-17 for reach = 3.2, 8e-11 for 2.7. nodes[count - 1 - i] is 1 -
-/// nodes[i], the distance of node i from 1; near 1 this is more precise than the difference.
+/// Sets `nodes` and `weights` to those of the double exponential rule of `count` nodes on [0, 1];
+/// count is odd. The nodes are so dense near both ends that singularities of the integrand there do
+/// no harm. The first node is at exp(-pi sinh reach): 4e-17 for reach = 3.2, 8e-11 for reach = 2.7.
+/// nodes[count - 1 - i] is 1 - nodes[i], the distance of node i from 1; near 1 this is more precise
+/// than the difference.
 void ki_double_exponential(int count, double reach, double *nodes, double *weights);
 
 /// Sets x[columns] to the vector that minimises |A x - b|, for rows >= columns. a is A, stored

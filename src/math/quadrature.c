@@ -52,8 +52,8 @@ void ki_gauss_legendre(int count, double *nodes, double *weights)
     }
 }
 
-// The trapezoidal rule in t on [-reach, reach] after the substitution x = 1 / (1 + exp(-pi sinh
-// t)), by Takahasi and Mori 1974.
+// The double exponential rule is the trapezoidal rule in t on [-reach, reach] after the
+// substitution x = 1 / (1 + exp(-pi sinh t)), by Takahasi and Mori 1974.
 void ki_double_exponential(int count, double reach, double *nodes, double *weights)
 {
     double step = 2 * reach / (count - 1);

@@ -1,5 +1,5 @@
 // Eigenvalues and eigenvectors of a small symmetric matrix, by Jacobi's method (1846): rotations in
-// pairs of coordinates that make the off-diagonal elements vanish one after another.
+// the planes of two coordinates that make the off-diagonal elements vanish one after another.
 #include "math/math.h"
 
 #include <math.h>
