@@ -10,9 +10,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-// The x87 keeps doubles with more bits than memory holds, so that a result is rounded twice.
-// Results would then differ from those of other machines, and loops that compare sums might never
-// end.
+// An x87 processor keeps doubles with more bits than memory holds, so that results are rounded
+// twice. They would then differ from those of other machines, and loops that compare sums might
+// never end.
 _Static_assert(FLT_EVAL_METHOD == 0,
                "kiln needs arithmetic in the precision of its types: on 32-bit x86 compile with "
                "-msse2 -mfpmath=sse");
@@ -30,8 +30,8 @@ _Static_assert(FLT_EVAL_METHOD == 0,
 /// Writes the result and an error message (printf's format) to `error`, unless `error` is NULL.
 void ki_describe(kiln_error *error, kiln_result result, const char *format, ...) KI_PRINTF(3, 4);
 
-/// Writes the message as ki_describe does and evaluates to `result`. A macro, so that compilers see
-/// that the value is not KILN_OK.
+/// Writes the message as ki_describe does and evaluates to `result`. This is a macro, so that
+/// compilers see at each call that the value is not KILN_OK.
 #define ki_fail(error, result, ...) (ki_describe((error), (result), __VA_ARGS__), (result))
 
 // ------------------------------------------------------------------------------------------ memory
@@ -44,7 +44,8 @@ void *ki_alloc_raw(kiln_context *context, size_t count, size_t size);
 /// Frees memory from ki_alloc or ki_alloc_raw; the memory itself records its context. `memory` may
 /// be NULL.
 void ki_free(void *memory);
-/// Writes the error message "out of memory: WHAT needs N bytes, ...".
+/// Writes the error message "out of memory: WHAT needs N bytes", with the context's memory limit if
+/// it has one.
 void ki_describe_memory(kiln_context *context, kiln_error *error, const char *what,
                         size_t byte_count);
 /// Fails with the message of ki_describe_memory.
@@ -61,7 +62,7 @@ size_t ki_block_size(size_t count, size_t size);
 /// A block of memory that can grow. {0} is an empty buffer.
 typedef struct ki_buffer {
     void *memory;
-    size_t size; ///< in bytes
+    size_t size; ///< size of `memory` in bytes
 } ki_buffer;
 
 /// Makes a buffer at least `count` times `size` bytes large. A buffer that must grow loses its
@@ -69,22 +70,24 @@ typedef struct ki_buffer {
 bool ki_buffer_reserve(kiln_context *context, ki_buffer *buffer, size_t count, size_t size);
 void ki_buffer_free(ki_buffer *buffer);
 
-/// Memory for one execution of a plan, so that the execution allocates nothing from the context.
+/// Memory from which one execution of a plan allocates, so that it takes nothing from the context.
 /// Between ki_scratch_begin and ki_scratch_end, ki_alloc takes blocks from this memory one after
 /// the other, and only the calling thread may allocate. The bytes of a freed block are used again
-/// once all blocks after that block are freed too. Blocks that do not fit are allocated by the
+/// once all blocks taken after it are freed too. Blocks that do not fit are allocated by the
 /// context as usual. With capacity 0 the scratch only measures how much memory is wanted.
 typedef struct ki_scratch {
     uint8_t *memory;
-    size_t capacity, peak; ///< size of `memory` in bytes, and the largest size that was wanted
-    struct ki_block *top;  ///< the last block taken and not yet dropped
+    /// size of `memory` in bytes, and the largest size that executions have wanted
+    size_t capacity, peak;
+    struct ki_block *top; ///< the block that was taken last of those not given back
 } ki_scratch;
 
 void ki_scratch_begin(kiln_context *context, ki_scratch *scratch);
 /// Ends the use of the scratch. The caller has freed all blocks taken from the scratch.
 void ki_scratch_end(kiln_context *context);
-/// Enlarges the scratch to the largest size that was ever wanted, and `more` bytes. Returns false
-/// if memory runs out. Must not be called between ki_scratch_begin and ki_scratch_end.
+/// Enlarges the scratch's memory to the largest size that executions have ever wanted plus `more`
+/// bytes. Returns false if memory runs out. Must not be called between ki_scratch_begin and
+/// ki_scratch_end.
 bool ki_scratch_reserve(kiln_context *context, ki_scratch *scratch, size_t more);
 void ki_scratch_free(ki_scratch *scratch);
 
@@ -104,13 +107,15 @@ void ki_parallel_for(kiln_context *context, int count, ki_task *task, void *data
 void ki_parallel_workers(kiln_context *context, int count,
                          void (*task)(void *data, int worker, int index), void *data);
 
-/// Reports progress to the caller of the library. Returns false if the caller wants to stop. May be
-/// called only on the thread on which the library was called. `stage` is a string literal.
+/// Reports progress to the caller of the library: `fraction`, 0 to 1, of the work called `stage`, a
+/// string literal, is done. Returns false if the caller wants to stop. May be called only on the
+/// thread on which the library was called.
 bool ki_progress(kiln_context *context, const char *stage, double fraction);
 /// Repeats the last report of progress, so that long work with many small steps can be stopped.
 /// Returns false if the caller wants to stop.
 bool ki_go_on(kiln_context *context);
-/// The range of fractions that a part of the work covers in progress reports.
+/// The range of fractions, within 0 to 1, that a part of the work covers in the progress reports of
+/// a stage.
 typedef struct ki_progress_range {
     const char *name;
     double from, to;
@@ -125,7 +130,7 @@ kiln_result ki_fail_cancelled(kiln_error *error, const char *stage);
 
 // --------------------------------------------------------------------------------------- processor
 
-/// Returns the instruction set by which kernels are chosen.
+/// Returns the instruction set for which the variants of vectorised functions are chosen.
 enum kiln_cpu ki_context_cpu(const kiln_context *context);
 int ki_context_threads(const kiln_context *context);
 

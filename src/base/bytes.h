@@ -4,8 +4,8 @@
 
 #include "base/base.h"
 
-/// The bytes that remain to be read. Reading past the end gives zeros and sets `failed`, which
-/// stays set: a parser can read a whole header and check once.
+/// Bytes that are read from `at` to `end`. Reading past the end gives zeros and sets `failed`,
+/// which stays set: a parser can read a whole header and check once.
 typedef struct ki_reader {
     const uint8_t *at, *end;
     bool failed;
@@ -21,7 +21,8 @@ static inline size_t ki_reader_left(const ki_reader *r)
     return (size_t)(r->end - r->at);
 }
 
-/// Returns the next `size` bytes and advances, or returns NULL if fewer are left.
+/// Returns a pointer to the next `size` bytes and advances past them, or returns NULL if fewer
+/// bytes are left.
 static inline const uint8_t *ki_read_bytes(ki_reader *r, size_t size)
 {
     if (r->failed || ki_reader_left(r) < size) {
@@ -52,7 +53,8 @@ static inline uint64_t ki_read_u64(ki_reader *r)
     return low | (uint64_t)ki_read_u32(r) << 32;
 }
 
-/// A growing array of bytes. A failed allocation sets `failed`, and later writes do nothing.
+/// An array of bytes that grows by writing. A failed allocation sets `failed`, and later writes do
+/// nothing.
 typedef struct ki_writer {
     kiln_context *context;
     uint8_t *bytes;
@@ -68,7 +70,7 @@ void ki_write_u8(ki_writer *w, uint8_t value);
 void ki_write_u16(ki_writer *w, uint16_t value);
 void ki_write_u32(ki_writer *w, uint32_t value);
 void ki_write_u64(ki_writer *w, uint64_t value);
-/// Writes text by printf's format, without its NUL.
+/// Appends text made by printf's format, without its terminating NUL.
 void ki_write_text(ki_writer *w, const char *format, ...) KI_PRINTF(2, 3);
 /// Appends zeros until the size is a multiple of `alignment`.
 void ki_write_align(ki_writer *w, size_t alignment);

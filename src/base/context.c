@@ -1,6 +1,6 @@
-// The context. In: its definition (allocator, limit, threads, progress callback). Out: memory
-// blocks. Every allocation is counted against the limit with atomic operations, so that any thread
-// may allocate.
+// The context of the library: where memory comes from. In: the context's definition (allocator,
+// memory limit, threads, progress callback). Out: memory blocks. Every allocation is counted
+// against the limit by atomic operations, so that any thread may allocate.
 #include "base/context.h"
 #include "base/base.h"
 
@@ -17,16 +17,17 @@ const char *kiln_version(void)
     return KI_STR(KILN_VERSION_MAJOR) "." KI_STR(KILN_VERSION_MINOR) "." KI_STR(KILN_VERSION_PATCH);
 }
 
-// A header of 64 bytes before every memory block says where the block came from. The blocks taken
-// during an execution of a plan form a list from the last to the first (`below`).
+// A header of 64 bytes before every memory block, by which the block is freed. The blocks taken
+// from a plan's scratch memory form a list from the last to the first (`below`).
 typedef struct ki_block {
     alignas(64) ki_heap *heap;
-    size_t size; // size of the block in bytes, with this header
+    size_t size; // size of the memory block in bytes, with this header
     ki_scratch *scratch;
     struct ki_block *below;
-    size_t offset; // position in the scratch's memory, which may be beyond its end
-    // is_freed: the block is freed, but later blocks of the scratch are not. is_inside: the block
-    // lies in the scratch's memory.
+    // position of the block in the scratch memory; beyond its end for a block that did not fit
+    size_t offset;
+    // is_freed: the block is freed, but not all blocks taken from the scratch memory after it.
+    // is_inside: the block lies in the scratch memory.
     bool is_freed, is_inside;
 } ki_block;
 
@@ -62,7 +63,8 @@ static ki_heap *heap_create(const kiln_context_def *def)
     return heap;
 }
 
-// Drops one owner of the heap. The last owner frees the heap.
+// Drops one owner of the heap: the context, or a block that is freed. The last owner frees the
+// heap.
 static void heap_leave(ki_heap *heap)
 {
     if (atomic_fetch_sub(&heap->owners, 1) == 1)

@@ -1,4 +1,4 @@
-// The fields of a context. Only files in src/base read them.
+// The fields of a context, which only files in src/base read.
 #ifndef KI_CONTEXT_H
 #define KI_CONTEXT_H
 
@@ -13,15 +13,16 @@ typedef struct ki_pool {
     ki_os_mutex mutex;
     ki_os_condition work, done;
     ki_os_thread thread[KI_MAX_THREADS];
-    ki_os_work helper; // the function that each thread runs, and its data
+    ki_os_work helper; // the function that each helper thread runs, and its data
     int thread_count;  // number of helper threads; the calling thread works too
     void (*task)(void *data, int index);
     void *data;
     int count;
-    atomic_int next; // the next index that no thread has taken
-    int running;     // number of helpers that have not finished
-    unsigned round;  // number of calls of ki_parallel_for so far
-    bool in_use;     // true while ki_parallel_for runs; only the calling thread uses the flag
+    atomic_int next; // the lowest index of ki_parallel_for that no thread has taken
+    // number of helper threads that have not finished the current call of ki_parallel_for
+    int running;
+    unsigned round; // number of calls of ki_parallel_for so far
+    bool in_use;    // true while ki_parallel_for runs; read and written by the calling thread only
     bool stop;
 } ki_pool;
 
@@ -31,16 +32,16 @@ typedef struct ki_heap {
     void *(*allocate)(void *user, size_t size);
     void (*release)(void *user, void *memory, size_t size);
     void *user;
-    size_t limit; // greatest number of bytes held at once, 0 for no limit
+    size_t limit; // greatest number of bytes that blocks may take at the same time, 0 for no limit
     atomic_size_t held, peak;
-    atomic_size_t owners; // number of owners: the context and every block
+    atomic_size_t owners; // number of owners that keep the heap alive: the context and every block
 } ki_heap;
 
 struct kiln_context {
     kiln_context_def def;
     ki_heap *heap;
     ki_scratch *scratch;    // scratch of the plan execution that runs; NULL if no execution runs
-    ki_progress_range said; // the last progress report, repeated by ki_go_on
+    ki_progress_range said; // stage and range of the last progress report, which ki_go_on repeats
     ki_pool pool;
 };
 

@@ -42,8 +42,8 @@ kiln_result ki_file_read(kiln_context *context, const char *path, uint8_t **byte
     uint8_t *buffer = NULL;
     size_t filled = 0, capacity = 0;
     uint64_t expected = ki_os_size(fd);
-    // The buffer has one byte more than the file, so that the end of a regular file is found
-    // without growing the buffer.
+    // The buffer has one byte more than the file's size: the read that meets the end of a regular
+    // file then needs no larger buffer.
     capacity = expected ? (size_t)(expected < SIZE_MAX ? expected : SIZE_MAX - 1) + 1 : 65536;
     buffer = ki_alloc_raw(context, capacity, 1);
     if (!buffer) {
@@ -88,14 +88,16 @@ done:
     return result;
 }
 
-// A member of a set: a file under its temporary name, a folder that was created, or a file in
-// memory.
+// A member of a set of files that appear together: a file under its temporary name, a folder that
+// was created, or a file in memory.
 typedef struct set_entry {
     struct set_entry *next;
-    // target: the path behind all symbolic links, to which the temporary file is renamed. Both are
-    // NULL for entries that are not renamed.
+    // path: the caller's path. temporary: the temporary file. target: what the temporary file is
+    // renamed to, the path behind all symbolic links. `target` and `temporary` are NULL for entries
+    // that are not renamed.
     char *path, *target, *temporary;
-    int file; // descriptor of the temporary file, open until the file has its final name
+    // descriptor of the temporary file, which stays open until the file has its final name
+    int file;
     bool is_folder;
     uint8_t *bytes;
     size_t size;
@@ -107,7 +109,7 @@ struct ki_file_set {
     set_entry *first, **last;
 };
 
-// Creates an entry that holds a copy of its path and `room` more bytes after the path.
+// Creates an entry of a set that holds a copy of its path and has `room` more bytes after the path.
 static set_entry *create_entry(ki_file_set *set, const char *path, size_t room, kiln_error *error)
 {
     size_t length = strlen(path) + 1;
@@ -137,7 +139,8 @@ kiln_result ki_file_set_make_folder(ki_file_set *set, const char *path, kiln_err
     if (!entry)
         return KILN_ERROR_MEMORY;
     entry->is_folder = true;
-    // Without separators at its end, so that the part before the name is the folder above.
+    // Removes separators at the end of the path, so that the part before the name is the folder
+    // above.
     for (size_t n = strlen(path); n > 1 && ki_os_is_separator(path[n - 1]); n--)
         entry->path[n - 1] = 0;
     if (ki_os_make_folder(path)) {
@@ -151,12 +154,12 @@ kiln_result ki_file_set_make_folder(ki_file_set *set, const char *path, kiln_err
                                       path, strerror(reason));
 }
 
-// Large files are synchronised to disk during writing too. The last synchronisation cannot be
-// interrupted and is therefore short.
+// Large files are synchronised to disk after every 64 MiB too, because the caller cannot stop a
+// synchronisation, and the last one would otherwise take long.
 enum { WRITE_STEP = 4 << 20, SYNC_STEP = 64 << 20 };
 
-// Writes all bytes and synchronises. On failure returns false with errno set, to ECANCELED if the
-// progress callback asked to stop.
+// Writes all bytes and synchronises them to disk. On failure returns false with errno set; errno is
+// ECANCELED if the progress callback asked to stop.
 static bool write_all(kiln_context *context, int fd, const uint8_t *bytes, size_t size)
 {
     for (size_t done = 0; done < size;) {
@@ -191,14 +194,15 @@ static kiln_result add_in_memory(ki_file_set *set, const char *path, const void 
     return KILN_OK;
 }
 
-// Returns whether two paths name files of the same folder.
+// Returns whether two paths of files lead to the same folder, as far as their texts say.
 static bool same_folder(const char *a, const char *b)
 {
     size_t length = ki_folder_length(a);
     return length == ki_folder_length(b) && !memcmp(a, b, length);
 }
 
-// Removes what killed runs left in the folder of an entry, unless an earlier entry did that.
+// Removes the temporary files that killed runs left in the folder of an entry's target, unless an
+// earlier entry of the set has the same folder.
 static void sweep(const ki_file_set *set, const set_entry *entry)
 {
     for (const set_entry *e = set->first; e; e = e->next)
@@ -207,7 +211,8 @@ static void sweep(const ki_file_set *set, const set_entry *entry)
     ki_temporary_sweep(entry->target);
 }
 
-// Creates the entry of a file that will be renamed, with room for its three paths.
+// Creates the entry of a file that is written under a temporary name and then renamed, with room
+// for its three paths (path, target and temporary).
 static kiln_result create_target(ki_file_set *set, const char *path, set_entry **entry,
                                  kiln_error *error)
 {
@@ -228,7 +233,7 @@ static kiln_result create_target(ki_file_set *set, const char *path, set_entry *
     return KILN_OK;
 }
 
-// Closes and removes the temporary file of an entry.
+// Closes and removes an entry's temporary file.
 static void remove_temporary(const set_entry *entry)
 {
     ki_os_close(entry->file);
@@ -282,7 +287,7 @@ static void remove_folders(const ki_file_set *set)
             ki_os_remove_folder(entry->path);
 }
 
-// Copies the folder of a path: "." for a file of the current folder.
+// Copies the path of the folder in which a file lies: "." for a file of the current folder.
 static void copy_folder(const char *path, char folder[KI_OS_PATH])
 {
     size_t length = ki_folder_length(path);
@@ -292,7 +297,8 @@ static void copy_folder(const char *path, char folder[KI_OS_PATH])
         strcpy(folder, ".");
 }
 
-// Locks the folder of a set's first file, so that of two sets with the same names one stays whole.
+// Locks the folder of a set's first file while the set is renamed: if two processes write files of
+// the same names, the files that remain are all from one of them.
 static int enter_folder(const ki_file_set *set)
 {
     char folder[KI_OS_PATH];
@@ -305,7 +311,7 @@ static int enter_folder(const ki_file_set *set)
     return -1;
 }
 
-// Synchronises the folders in which a set has created or renamed something, each run of entries
+// Synchronises to disk the folders in which a set has created or renamed files, each run of entries
 // with the same folder once.
 static kiln_result sync_folders(const ki_file_set *set, kiln_error *error)
 {
@@ -326,7 +332,7 @@ static kiln_result sync_folders(const ki_file_set *set, kiln_error *error)
     return KILN_OK;
 }
 
-// Renames all files, or removes them all if `result` is a failure.
+// Renames all temporary files of a set, or removes them all if `result` is a failure.
 static kiln_result rename_all(const ki_file_set *set, kiln_result result, kiln_error *error)
 {
     for (const set_entry *entry = set->first; entry; entry = entry->next) {
@@ -349,7 +355,7 @@ static kiln_result rename_all(const ki_file_set *set, kiln_result result, kiln_e
 // Renames all files of a set and frees the set, on failure too.
 static kiln_result commit(ki_file_set *set, kiln_error *error)
 {
-    // The last report at which the caller can stop before any file is renamed.
+    // The last progress report at which the caller can stop before any file is renamed.
     kiln_result result = KILN_OK;
     if (!ki_progress(set->context, "writing", 1))
         result = ki_fail_cancelled(error, "writing");
@@ -362,7 +368,7 @@ static kiln_result commit(ki_file_set *set, kiln_error *error)
     return result;
 }
 
-// Removes all temporary files and frees the set.
+// Removes all temporary files of a set and frees the set.
 static void abandon(ki_file_set *set)
 {
     for (set_entry *entry = set->first; entry; entry = entry->next)
@@ -372,8 +378,8 @@ static void abandon(ki_file_set *set)
     free_entries(set);
 }
 
-// Moves the files of a set in memory to `files` and frees the set, on failure too. The entries of
-// the set become the owners of the files; the list is a separate block.
+// Moves the files of a set that is kept in memory to `files` and frees the set, on failure too. The
+// entries of the set become the owners of the files' bytes; the list of files is a separate block.
 static kiln_result take(ki_file_set *set, kiln_files *files, kiln_error *error)
 {
     size_t count = 0, at = 0;

@@ -12,16 +12,18 @@ bool ki_ends_with(const char *path, const char *ending);
 /// `bytes`.
 kiln_result ki_file_read(kiln_context *context, const char *path, uint8_t **bytes, size_t *size,
                          kiln_error *error);
-/// Writes a temporary file in the folder of `path`, synchronises it to disk and renames it. A file
-/// that is replaced hands on its permissions; a symbolic link stays, and the file to which the link
-/// leads is replaced. On failure the file at `path` is unchanged and the temporary file is removed.
+/// Writes a file that appears completely or not at all: writes a temporary file in the folder of
+/// `path`, synchronises it to disk and renames it. A file that is replaced hands on its
+/// permissions. A symbolic link stays, and the file to which the link leads is replaced. On failure
+/// the file at `path` is unchanged and the temporary file is removed.
 kiln_result ki_file_write(kiln_context *context, const char *path, const void *bytes, size_t size,
                           kiln_error *error);
 
 /// A set of files that appear together: all files are written and synchronised under temporary
 /// names before the first is renamed. A set in memory keeps its files in memory instead.
 typedef struct ki_file_set ki_file_set;
-/// A function that adds files to a set, from what `data` points to.
+/// A function that adds files to a set of files; `data` is what the caller passed to
+/// ki_file_set_make.
 typedef kiln_result ki_add_files(ki_file_set *set, void *data, kiln_error *error);
 /// Makes one set of files: calls `add` once, then renames all files of the set, or moves them to
 /// `files`, in the order in which they were added, if `files` is not NULL. On failure no file

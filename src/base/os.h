@@ -30,8 +30,8 @@ int ki_os_standard_input(void);
 /// EEXIST. The file is locked until the descriptor is closed, which also happens when the process
 /// is killed, and may be renamed meanwhile.
 int ki_os_create(const char *path);
-/// Removes a file that ki_os_create made, unless some descriptor still locks the file or the file
-/// system has no locks.
+/// Removes a temporary file that ki_os_create made and whose process ended without removing it.
+/// Does nothing if a descriptor still locks the file or the file system has no locks.
 void ki_os_remove_abandoned(const char *path);
 /// Gives an open file the permissions of the file at `path`, if there is a file.
 bool ki_os_copy_mode(int file, const char *path);
@@ -81,16 +81,17 @@ void ki_os_release(void *memory);
 // ----------------------------------------------------------------------------------------- threads
 
 #if defined(_WIN32)
-typedef void *ki_os_thread;       // a HANDLE
-typedef void *ki_os_mutex[1];     // an SRWLOCK
-typedef void *ki_os_condition[1]; // a CONDITION_VARIABLE
+typedef void *ki_os_thread;       // holds a HANDLE of Windows
+typedef void *ki_os_mutex[1];     // holds an SRWLOCK of Windows
+typedef void *ki_os_condition[1]; // holds a CONDITION_VARIABLE of Windows
 #else
 typedef pthread_t ki_os_thread;
 typedef pthread_mutex_t ki_os_mutex;
 typedef pthread_cond_t ki_os_condition;
 #endif
 
-/// The function and data of a thread. The object must exist until ki_os_thread_join has returned.
+/// The function and data of a thread. The object must exist until ki_os_thread_join has returned
+/// for the thread.
 typedef struct ki_os_work {
     void (*run)(void *data);
     void *data;

@@ -3,7 +3,7 @@
 #define _POSIX_C_SOURCE 200809L
 #define _FILE_OFFSET_BITS 64
 #if defined(__APPLE__)
-#define _DARWIN_C_SOURCE // declares _SC_NPROCESSORS_ONLN
+#define _DARWIN_C_SOURCE // makes macOS declare _SC_NPROCESSORS_ONLN
 #endif
 #include "base/os.h"
 
@@ -52,8 +52,9 @@ int ki_os_standard_input(void)
     return STDIN_FILENO;
 }
 
-// The file gets the permissions of an ordinary new file. Another process may take the file for
-// abandoned and remove it between its creation and its locking; the name then counts as in use.
+// The new file gets the permissions that the process's umask allows. Another process may take the
+// file for an abandoned one and remove it between its creation and its locking; the name then
+// counts as in use.
 int ki_os_create(const char *path)
 {
     int file = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
@@ -81,7 +82,8 @@ void ki_os_remove_abandoned(const char *path)
     close(file);
 }
 
-// Bits that run a program as another user are not copied, since the owner may be another one now.
+// The set-user-ID and set-group-ID bits are not copied, because the new file may have another
+// owner.
 bool ki_os_copy_mode(int file, const char *path)
 {
     struct stat status;
@@ -111,8 +113,8 @@ bool ki_os_close(int file)
     return close(file) == 0;
 }
 
-// Replaces a path by what the symbolic link at this path holds, which is relative to the link's
-// folder unless it begins with a slash.
+// Replaces a path by the target `link` of the symbolic link at this path. The target is relative to
+// the link's folder unless it begins with a slash.
 static bool follow_once(char path[KI_OS_PATH], const char *link)
 {
     char *slash = strrchr(path, '/');
@@ -253,7 +255,7 @@ void ki_os_thread_join(ki_os_thread *thread)
 
 uintptr_t ki_os_this_thread(void)
 {
-    // Pthread_t is an integer in some C libraries, a pointer in others.
+    // The type pthread_t is an integer in some C libraries and a pointer in others.
     return (uintptr_t)pthread_self();
 }
 

@@ -114,8 +114,8 @@ static bool lock(HANDLE file)
     return LockFileEx(file, LOCKFILE_EXCLUSIVE_LOCK | LOCKFILE_FAIL_IMMEDIATELY, 0, 1, 0, &at);
 }
 
-// Another process may take the file for abandoned and remove it between its creation and its
-// locking; the name then counts as in use.
+// Another process may take the new file for an abandoned one and remove it between its creation and
+// its locking; the name then counts as in use.
 int ki_os_create(const char *path)
 {
     wchar_t wide[ROOM];
@@ -151,7 +151,8 @@ void ki_os_remove_abandoned(const char *path)
     CloseHandle(file);
 }
 
-// A new file of Windows takes its access list from the folder, like every file there.
+// Nothing is copied: a new file of Windows takes its access list from its folder, as every file
+// there does.
 bool ki_os_copy_mode(int file, const char *path)
 {
     (void)file;
@@ -185,7 +186,8 @@ bool ki_os_close(int file)
     return _close(file) == 0;
 }
 
-// Copies the path that Windows found for the open file of a link. Returns false with errno set.
+// Copies the path that Windows reports for an open file, behind all links, to `target`. Returns
+// false with errno set.
 static bool copy_final_path(HANDLE file, char target[KI_OS_PATH])
 {
     wchar_t wide[ROOM];
@@ -227,14 +229,15 @@ bool ki_os_replace(const char *from, const char *to)
            failed();
 }
 
-// MOVEFILE_WRITE_THROUGH has synchronised the names.
+// Nothing is left to do: ki_os_replace renames with MOVEFILE_WRITE_THROUGH, which waits for the
+// disk.
 bool ki_os_sync_folder(const char *path)
 {
     (void)path;
     return true;
 }
 
-// Windows locks no folders.
+// Windows cannot lock folders, so the caller goes on without a lock.
 int ki_os_enter_folder(const char *path)
 {
     (void)path;
@@ -306,8 +309,8 @@ void ki_os_release(void *memory)
 
 // ----------------------------------------------------------------------------------------- threads
 
-// A lock is one pointer that is initially zero, so that the header can declare it without
-// <windows.h>.
+// Windows defines each of these objects as one pointer that is initially zero, so that os.h can
+// declare them without <windows.h>.
 _Static_assert(sizeof(ki_os_mutex) == sizeof(SRWLOCK), "ki_os_mutex holds an SRWLOCK");
 _Static_assert(sizeof(ki_os_condition) == sizeof(CONDITION_VARIABLE),
                "ki_os_condition holds a CONDITION_VARIABLE");

@@ -6,8 +6,8 @@ bool ki_progress(kiln_context *context, const char *stage, double fraction)
     context->said = (ki_progress_range){stage, fraction, fraction};
     if (!context->def.progress)
         return true;
-    // The callback may allocate from this context. Its memory must not come from the scratch of the
-    // execution that reports progress.
+    // The callback may call the library with this context. Memory that it allocates must not come
+    // from the scratch memory of the plan execution that reports progress.
     ki_scratch *scratch = context->scratch;
     context->scratch = NULL;
     bool go_on = context->def.progress(context->def.progress_user, stage, fraction);

@@ -33,7 +33,7 @@ static const char *skip_digits(const char *text)
     return count ? text + count : NULL;
 }
 
-// Returns whether a name is exactly of the form "kiln-PROCESS-NUMBER.tmp".
+// Returns whether a file's name is exactly of the form "kiln-PROCESS-NUMBER.tmp".
 static bool is_temporary(const char *name)
 {
     if (strncmp(name, before, strlen(before)) != 0)

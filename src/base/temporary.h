@@ -1,4 +1,4 @@
-// Files under temporary names, and the leftovers of runs that were killed.
+// Files under temporary names, and the temporary files that killed runs have left.
 #ifndef KI_TEMPORARY_H
 #define KI_TEMPORARY_H
 
@@ -11,8 +11,8 @@ enum { KI_TEMPORARY_ROOM = 64 };
 /// The length is 0 for a file of the current folder.
 size_t ki_folder_length(const char *path);
 /// Creates a file with a temporary name in the folder of `path` and returns its descriptor, or -1
-/// with errno set. `name` has room for the folder and KI_TEMPORARY_ROOM bytes. The name is short, so
-/// that `path` may be as long as the file system allows. Other runs do not remove the file while
+/// with errno set. `name` has room for the folder and KI_TEMPORARY_ROOM bytes. The name is short,
+/// so that `path` may be as long as the file system allows. Other runs do not remove the file while
 /// the descriptor is open.
 int ki_temporary_create(const char *path, char *name, size_t room);
 /// Removes the temporary files in the folder of `path` that no running process holds.

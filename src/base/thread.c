@@ -1,6 +1,7 @@
-// Threads that wait for work. In: a task and a number of indices. Out: every index has been run
-// once. Method: each thread takes the next index by an atomic counter. The assignment of indices to
-// threads is left to chance, but the work of an index does not depend on its thread.
+// Threads that wait for work. In: a task and a number of indices. Out: the task has been run once
+// for every index. Method: each thread takes the next index from an atomic counter. Which thread
+// runs an index is left to chance, but what the task does for an index does not depend on its
+// thread.
 #include "base/base.h"
 #include "base/context.h"
 
@@ -87,7 +88,8 @@ void ki_parallel_for(kiln_context *context, int count, ki_task *task, void *data
 {
     ki_pool *pool = &context->pool;
     bool own = !context->def.parallel_for;
-    // The other threads are busy if a progress callback, which runs during a task, calls kiln.
+    // The helper threads are busy if a progress callback, which the library calls during a task,
+    // calls the library again. The calling thread then does the work alone.
     if (pool->in_use || (own && (pool->thread_count == 0 || count < 2))) {
         for (int i = 0; i < count; i++)
             task(data, i);
@@ -133,15 +135,15 @@ typedef struct steps {
     const ki_progress_range *range;
     uintptr_t caller;
     int count, told;
-    double asked; // time of the last report, in seconds
+    double asked; // time of the last progress report, in seconds
     atomic_int done;
     atomic_bool stopped;
 } steps;
 
 enum { REPORTS = 64 };
 
-// Longest time in seconds between two progress reports, apart from the duration of one task. Long
-// work can therefore be stopped as quickly as short work.
+// Longest time in seconds between two progress reports, unless one task takes longer. A caller can
+// therefore stop the work within this time.
 static const double silence = 0.05;
 
 static void step(void *data, int index)

@@ -6,8 +6,8 @@
 
 #include "base/base.h"
 
-/// Selects the variant of a kernel for the context's instruction set: the best that is built of
-/// NAME_scalar, NAME_simd128 (vectors of 128 bits: SSE2, NEON, WebAssembly), NAME_avx2 and
+/// Selects a variant of a vectorised function by the context's instruction set: the best that is
+/// built of NAME_scalar, NAME_simd128 (vectors of 128 bits: SSE2, NEON, WebAssembly), NAME_avx2 and
 /// NAME_avx512.
 #if defined(KILN_HAVE_AVX)
 #define KI_FASTEST(context, name)                                                                  \

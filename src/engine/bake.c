@@ -6,8 +6,8 @@
 #include "engine/engine.h"
 #include "image/image.h"
 
-// Sets *reading to the description, stored in `room`, of how an engine reads the levels that are
-// tuned for this engine. Sets *reading to NULL for exact levels.
+// Sets *reading to how an engine's shader reads levels (sizes, roughness, interpolation), stored in
+// `room`, if the levels are to be tuned for this engine. Sets *reading to NULL for exact levels.
 static kiln_result find_reading(const kiln_prefilter_def *def, ki_reading *room,
                                 const ki_reading **reading, kiln_error *error)
 {
@@ -32,7 +32,7 @@ static bool decides_itself(const kiln_prefilter_def *levels)
            levels->tune_for || levels->tune_soft;
 }
 
-// Sets *levels to the definition of the levels: the caller's own, or that of the engine for the
+// Sets *levels to what is prefiltered: the caller's own definition, or the engine's levels for the
 // caller's size.
 static kiln_result find_levels(const kiln_bake_def *def, float roughness[KILN_MAX_LEVELS],
                                kiln_prefilter_def *levels, kiln_error *error)
@@ -107,7 +107,7 @@ kiln_result kiln_plan_create(kiln_context *context, kiln_shape source_shape, int
     return result;
 }
 
-// Computes an environment by a plan that is used once and destroyed.
+// Computes an environment by a plan that is created for one execution and then destroyed.
 static kiln_result execute_once(kiln_plan *plan, const kiln_map *source,
                                 kiln_environment *environment, kiln_error *error)
 {

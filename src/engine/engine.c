@@ -147,8 +147,8 @@ kiln_result kiln_engine_format(const kiln_engine *engine, kiln_format *format, k
                    known ? ki_format_names[*format] : "unknown", names);
 }
 
-// The levels and directions for kiln_engine_show: level `level` and the next level are mixed by
-// `mix`.
+// What kiln_engine_show computes: values in `count` directions, read from level `level` of a cube
+// and from the next level, which are mixed by `mix` (0: `level` alone).
 typedef struct view {
     const kiln_map *map;
     int level;
@@ -160,7 +160,7 @@ typedef struct view {
 
 enum { VIEW_CHUNK = 1024 };
 
-// Task of one thread: computes the values of one chunk of directions.
+// Task of one thread: computes the values of one chunk of VIEW_CHUNK directions.
 static void show(void *data, int index)
 {
     const view *v = data;
@@ -198,7 +198,7 @@ kiln_result kiln_engine_show(kiln_context *context, const kiln_engine *engine, c
     return KILN_OK;
 }
 
-// Fails unless the path has the ending of the engine's files.
+// Fails unless a path has the ending of the files that the engine reads.
 static kiln_result check_path(const ki_recipe *recipe, const char *path, kiln_error *error)
 {
     const char *ending = kiln_path_ending(path), *wanted = recipe->about.ending;
@@ -229,7 +229,8 @@ static kiln_result check_map(const ki_recipe *recipe, const kiln_map *map, const
     return check_levels(recipe, map->size, map->level_count, error);
 }
 
-// Turns a cube and harmonics to the engine's axes and calls the function that writes the files.
+// Turns a cube and harmonics from kiln's axes to the engine's and calls the function that writes
+// the engine's files.
 static kiln_result write_turned(ki_export *to, const ki_recipe *recipe, const kiln_map *map,
                                 const kiln_sh *sh, kiln_error *error)
 {

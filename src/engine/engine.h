@@ -8,20 +8,21 @@
 #include "base/file.h"
 #include "image/image.h"
 
-/// A signed permutation of axes. An engine that samples a cube in direction e shall show the light
-/// that arrives from direction d, with d[i] = sign[i] e[axis[i]]. The engine then shows a panorama
-/// in the orientation that the engine's own loader would give the panorama.
+/// The axes of an engine as a signed permutation of kiln's. Where the engine samples a cube in its
+/// direction e, it shall show the light that arrives from kiln's direction d, with d[i] = sign[i]
+/// e[axis[i]]. The engine then shows a panorama where its own loader would show it.
 typedef struct ki_axes {
     int axis[3], sign[3];
 } ki_axes;
 
-/// The arguments of the function that writes an engine's files. The map and the harmonics (three
+/// The arguments of the function that writes an engine's files. The cube and the harmonics (three
 /// bands of radiance) are already turned to the engine's axes.
 typedef struct ki_export {
     kiln_context *context;
     const kiln_map *map;
     const kiln_sh *sh;
-    // One of the formats that the engine reads, or KILN_FORMAT_AUTO if there is no choice.
+    // The texel format of the files, one of those that the engine reads; KILN_FORMAT_AUTO if there
+    // is no choice.
     kiln_format format;
     const char *path;
     ki_file_set *set;
@@ -33,9 +34,9 @@ typedef struct ki_recipe {
     kiln_engine about;
     ki_axes axes;
     int size_min, size_max;
-    int last_size;       ///< size at which the default number of levels ends
-    int smallest;        ///< smallest size of a level, 0 for no bound
-    int extra_levels;    ///< number of levels that repeat the last size
+    int last_size;       ///< default number of levels: they are halved in size down to this size
+    int smallest;        ///< smallest size of a level in texels, 0 for no bound
+    int extra_levels;    ///< number of further levels, all of the size last_size
     int level_count_max; ///< greatest default number of levels; 0 for no limit
     /// Smallest number of levels that a caller may choose; 0 if the number is fixed.
     int level_count_min;
@@ -64,21 +65,22 @@ extern const ki_recipe ki_three, ki_babylon, ki_babylon_dds, ki_filament, ki_pla
 /// Returns the settings of the engine at an index of the list, NULL after the last engine.
 const ki_recipe *ki_recipe_at(int index);
 const ki_recipe *ki_recipe_of(const kiln_engine *engine);
-/// Returns the default number of levels of a cube of `size`. The size is halved from level to level
-/// down to `last_size`, and `extra_levels` more levels repeat that size.
+/// Returns the default number of levels of a cube whose level 0 has `size` texels along an edge.
+/// The size is halved from level to level down to `last_size`, and `extra_levels` more levels
+/// repeat that size.
 int ki_recipe_levels(const ki_recipe *recipe, int size);
 
-/// Copies the texels of a cube to the engine's directions. `turned` has the shape and sizes of
-/// `source`.
+/// Copies the texels of a cube from kiln's directions to the engine's. `turned` has the shape and
+/// sizes of `source`.
 void ki_turn_cube(const kiln_map *source, const ki_axes *axes, kiln_map *turned);
-/// Turns harmonics of at most three bands to the engine's directions.
+/// Turns harmonics of at most three bands from kiln's directions to the engine's.
 void ki_turn_sh(const kiln_sh *source, const ki_axes *axes, kiln_sh *turned);
 
 /// Adds a file with the content `bytes` to the files that an export writes.
 kiln_result ki_export_add(ki_export *to, const char *path, const ki_writer *bytes,
                           kiln_error *error);
 
-/// Writes a cube as a single .dds file in the format of the export.
+/// Writes the cube of an export as a single .dds file in the texel format of the export.
 kiln_result ki_export_dds(ki_export *to, kiln_error *error);
 
 /// Adds the files that kiln_engine_save writes to a set. `report` may be NULL.

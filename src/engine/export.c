@@ -35,8 +35,8 @@ void ki_turn_cube(const kiln_map *source, const ki_axes *axes, kiln_map *turned)
 }
 
 // Turns harmonics by evaluating the series in the turned directions and projecting the values onto
-// the basis again. The quadrature of 4 Gauss nodes times 8 angles integrates products of two
-// harmonics of degree 2 exactly.
+// the spherical harmonics again. The quadrature of 4 Gauss nodes in z times 8 longitudes integrates
+// products of two harmonics of degree 2 exactly.
 void ki_turn_sh(const kiln_sh *source, const ki_axes *axes, kiln_sh *turned)
 {
     double nodes[4], weights[4];

@@ -13,8 +13,8 @@
 
 #include <string.h>
 
-// Writes the name of a file to `w`: PATH followed by `ending`, or sh.txt in the same folder if
-// `ending` is NULL.
+// Writes the path of one of Filament's files to `w`: PATH followed by `ending`, for example
+// "_ibl.ktx", or sh.txt in the folder of PATH if `ending` is NULL.
 static void write_name(ki_writer *w, const char *path, const char *ending)
 {
     const char *slash = strrchr(path, '/');

@@ -1,4 +1,5 @@
-// The two mappings from levels to roughness that several engines share, and their inverses.
+// The two mappings from levels to roughness that several engines share, and their inverses: levels
+// at equal steps of the roughness r, or of r (2 - r).
 #include "engine/engine.h"
 
 #include <math.h>

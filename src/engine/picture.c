@@ -5,8 +5,8 @@
 
 #include <math.h>
 
-// WANTED: floats of a sample in the first array, the wanted RGB and the weight. REMAINDER: floats of a
-// sample in the second array, the remainder of RGB.
+// WANTED: floats of a sample in the array of wanted values, RGB and a weight. REMAINDER: floats of
+// a sample in the array of remainders, wanted minus interpolated RGB.
 enum { WANTED = 4, REMAINDER = 3 };
 
 static ptrdiff_t samples_across(const ki_picture *p)
@@ -35,7 +35,7 @@ static double to_stored(const ki_picture *p, double radiance)
     return p->roots ? sqrt(radiance) : radiance;
 }
 
-// Sets the texels of a row to the mean radiance over each texel.
+// Sets the texels of a row of the picture to the mean radiance over each texel's area.
 static void average_row(void *data, int row)
 {
     const ki_picture *p = data;
@@ -71,7 +71,7 @@ static void read_row(void *data, int row)
 }
 
 // Sets the remainder of each sample of a row: the wanted value minus the value that the shader
-// interpolates there, times the sample's weight.
+// interpolates from the texels there, times the sample's weight, its solid angle.
 static void compare_row(void *data, int row)
 {
     const ki_picture *p = data;
@@ -91,8 +91,9 @@ static void compare_row(void *data, int row)
     }
 }
 
-// Corrects the texels of a row by the mean remainder of the samples around each texel, weighted by
-// the share with which bilinear interpolation reads the texel at the sample.
+// One step towards the least error: adds to each texel of a row the mean remainder of the samples
+// around the texel, weighted by the share that the texel has in the shader's bilinear interpolation
+// at the sample.
 static void correct_row(void *data, int row)
 {
     const ki_picture *p = data;

@@ -26,7 +26,7 @@
 
 enum { ATLAS = 512, LEVELS = 6, STEPS = 12 };
 
-// The level of a cube that an equirectangular picture shows.
+// The level of a cube that one of the atlas's equirectangular pictures shows.
 typedef struct view {
     const kiln_map *map;
     int level;
@@ -36,11 +36,11 @@ static double read_picture(const void *data, double u, double v, double rgb[3])
 {
     const view *w = data;
     double d[3];
-    if (v < 0 || v > 1) { // the point lies across a pole
+    if (v < 0 || v > 1) { // (u, v) lies beyond the picture's upper or lower edge, across a pole
         v = v < 0 ? -v : 2 - v;
         u += 0.5;
     }
-    // The picture has +Z in the centre and -X to its right: a panorama of kiln turned by 180
+    // Panoramas of PlayCanvas have +Z in the centre and -X to its right: kiln's turned by 180
     // degrees.
     ki_panorama_direction(u - floor(u), v, d);
     const double at[3] = {-d[0], d[1], -d[2]};
@@ -53,10 +53,10 @@ typedef struct atlas {
     ki_export *to;
     bool roots;
     float *pixels; // the atlas: size x size x 4 floats
-    float *texels; // texels of the picture that is being drawn
-    float *room;   // scratch memory of the picture, see ki_picture
-    // Copies of level 0 of the cube at smaller sizes: level k of `halves` has 2 << k times fewer
-    // texels along an edge than the cube.
+    float *texels; // texels of the atlas's picture that is being drawn
+    float *room;   // scratch memory of ki_picture_draw for the picture
+    // Level 0 of the cube at smaller sizes: level k of `halves` has 2 << k times fewer texels along
+    // an edge.
     kiln_map halves;
 } atlas;
 
@@ -70,8 +70,9 @@ static void halve(const kiln_map *map, int level, float *to)
     }
 }
 
-// Draws a picture of a level into the rectangle at (x, y), `width` wide and half as high, which
-// includes the border. The texels of `sharp` pictures are means over their areas.
+// Draws one level of a cube as an equirectangular picture into the atlas's rectangle at (x, y),
+// `width` wide and half as high, which includes the border. True `sharp`: texels are means over
+// their areas; false: texels are refined for bilinear interpolation.
 static bool draw(const atlas *a, const kiln_map *map, int level, int x, int y, int width,
                  bool sharp)
 {
@@ -113,7 +114,8 @@ static bool draw_all(const atlas *a)
                draw(a, map, k, 0, size - width, width, false);
         at += width / 2;
     }
-    // The GGX lobe of roughness 1 is the cosine lobe, so the last level is irradiance / pi.
+    // The GGX lobe of roughness 1 is the cosine lobe, so the last level is irradiance / pi, which
+    // the shader reads here.
     return good && draw(a, map, LEVELS - 1, 128 * unit, 384 * unit, 64 * unit, false);
 }
 
@@ -148,8 +150,8 @@ static kiln_result write_atlas(ki_export *to, bool roots, kiln_error *error)
     if (result != KILN_OK)
         return result;
     a.pixels = ki_alloc(to->context, count, 4 * sizeof *a.pixels);
-    // The largest unfiltered picture covers half of the atlas. The largest picture that is refined
-    // covers an eighth, with 4 samples for each texel.
+    // texels: the largest picture, the unfiltered one, covers half of the atlas. room: the largest
+    // picture that is refined covers an eighth of the atlas, with 4 samples for each texel.
     a.texels = ki_alloc_raw(to->context, count / 2, 3 * sizeof *a.texels);
     a.room = ki_alloc_raw(to->context, count / 2, 7 * sizeof *a.room);
     if (!a.pixels || !a.texels || !a.room)

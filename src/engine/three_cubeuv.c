@@ -18,15 +18,16 @@
 #include <math.h>
 #include <string.h>
 
-// FINER: each face of the atlas is read from a cube of twice the face's size. LAST: size of the
-// smallest faces. EXTRA: number of mips below 4. STEPS: steps of refinement of a picture.
+// FINER: the cube has FINER times as many texels along an edge as the faces of the atlas's largest
+// level. LAST: texels along the smallest faces. EXTRA: number of mips below 4. STEPS: number of
+// refinement steps of a face for bilinear interpolation.
 enum { FINER = 2, LAST = 16, EXTRA = 6, STEPS = 12 };
 
-// Roughness of the mips 4 to -2. The mips m above 4 have roughness 2^(-m / 2) / 1.16. Both are from
-// the shader's function roughnessToMip.
+// Roughness of the atlas's mips 4 to -2, in this order. The mips m above 4 have roughness 2^(-m /
+// 2) / 1.16. Both are from three.js' shader function roughnessToMip.
 static const double coarse[] = {0.21, 0.305, 0.4, 0.4 + 0.4 / 3, 0.4 + 0.8 / 3, 0.8, 1};
 
-// Returns the largest mip, M.
+// Returns the number of the atlas's largest mip, M, for a cube of `size`.
 static int largest_mip(int size)
 {
     int mip = 4;
@@ -44,8 +45,8 @@ static double roughness(int level, int level_count, int size)
     return mip > 4 ? ki_exp(-mip * ki_log(2) / 2) / 1.16 : coarse[4 - mip];
 }
 
-// Returns the level that the shader reads. three.js clamps the roughness of materials to at least
-// 0.0525.
+// Returns the level, with its fraction, that three.js' shader reads. three.js clamps the roughness
+// of materials to at least 0.0525.
 static double level(double roughness, int level_count, int size)
 {
     (void)level_count;
@@ -64,8 +65,8 @@ typedef struct face {
     int level, face;
 } face;
 
-// Inverts the shader's function getUV: the faces are in the order +X +Y +Z -X -Y -Z, and v grows
-// upwards.
+// Inverts the function getUV of three.js' shader for one face: the faces are in the order +X +Y +Z
+// -X -Y -Z, and v grows upwards.
 static double read_picture(const void *data, double u, double v, double rgb[3])
 {
     const face *f = data;
@@ -80,7 +81,7 @@ static double read_picture(const void *data, double u, double v, double rgb[3])
 typedef struct sheet {
     const kiln_map *map;
     int width, height;
-    float *pixels; // the atlas: height x width x 3 floats, the last row first
+    float *pixels; // the atlas: height x width x 3 floats, the upper row first
     float *texels, *room;
 } sheet;
 
@@ -115,8 +116,9 @@ static kiln_result write_files(ki_export *to, kiln_error *error)
     kiln_result result = KILN_OK;
     s.pixels = ki_alloc(to->context, count, 3 * sizeof *s.pixels);
     s.texels = ki_alloc_raw(to->context, face_count, 3 * sizeof *s.texels);
-    // The room for the refinement of a face: the largest refined face has a quarter of face_count
-    // texels and 4 samples for each texel. A face of 16 x 16 texels has 16 samples for each texel.
+    // Scratch memory of ki_picture_draw. The largest face that is refined has a quarter of
+    // face_count texels and 4 samples for each texel. A face of 16 x 16 texels has 16 samples for
+    // each texel.
     s.room = ki_alloc_raw(to->context, face_count + (size_t)16 * LAST * LAST, 7 * sizeof *s.room);
     bool good = s.pixels && s.texels && s.room;
     if (!good)
