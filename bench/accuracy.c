@@ -1,6 +1,6 @@
 // The accuracy case. In: eight panoramas and a sky. Out: the relative errors of every prefiltered
-// level against the sum over every texel of the panorama (kiln_reference_filter), as RMS and as the
-// largest error.
+// level against brute force, a sum over every texel of the panorama (kiln_reference_filter): the
+// RMS and the largest error.
 #include "bench.h"
 
 #include <math.h>
@@ -11,7 +11,8 @@ static const char *const names[] = {"sky",   "city",   "courtyard", "forest", "i
 enum { NAME_COUNT = sizeof names / sizeof *names, TEXELS = 256 };
 static const double rms_bar = 1e-4, largest_bar = 2e-3;
 
-// Compares all texels of a small level, or TEXELS random texels of a larger one, with brute force.
+// Compares all texels of a small level, or TEXELS random texels of a larger one, with brute force
+// (kiln_reference_filter).
 bool bench_check_level(bench *b, kiln_context *context, const kiln_map *source, const kiln_map *map,
                        int level, bench_figures *f)
 {
@@ -56,7 +57,7 @@ static double check_mirror(const kiln_map *source, const kiln_map *map)
     }
     int edge = map->size;
     for (size_t i = 0; i < kiln_map_texels(map, 0); i++) {
-        // The solid angle of a cube face's texel is computed from its four corners.
+        // The solid angle of a cube face's texel, from its four corners.
         size_t column = i % (size_t)edge, row = i / (size_t)edge % (size_t)edge;
         double angle = 0;
         for (int c = 0; c < 4; c++) {

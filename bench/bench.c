@@ -168,7 +168,7 @@ bool bench_city(bench *b, kiln_context *context, int size, kiln_map *map)
 
 unsigned long long bench_hash(const kiln_map *map)
 {
-    unsigned long long hash = 14695981039346656037ULL; // FNV-1a
+    unsigned long long hash = 14695981039346656037ULL; // the FNV-1a hash of 64 bits
     for (int k = 0; k < map->level_count; k++) {
         const unsigned char *bytes = (const unsigned char *)map->level[k];
         size_t size = kiln_map_texels(map, k) * 3 * sizeof(float);

@@ -15,7 +15,7 @@ typedef struct bench {
     const char *kiln;    ///< path of the command kiln
     int runs;
     FILE *csv;   ///< CSV file of the case that runs; NULL for no file
-    bool missed; ///< true: a value missed its bar, so bench fails
+    bool missed; ///< true: a value missed the bar it must reach, so bench exits with failure
     kiln_error error;
 } bench;
 
@@ -39,7 +39,8 @@ bool bench_memory(bench *b);
 bool bench_tables(bench *b);
 bool bench_tune(bench *b);
 
-/// Return the seconds of CPU time that all threads have used, and the seconds of a clock.
+/// bench_cpu returns the seconds of CPU time that all threads of the process have used, bench_wall
+/// the seconds of a clock.
 double bench_cpu(void);
 double bench_wall(void);
 
@@ -47,18 +48,18 @@ enum { BENCH_MAX_RUNS = 64 };
 typedef struct bench_times {
     double median, minimum;
 } bench_times;
-/// Sorts `seconds`.
+/// Sorts the `count` times in `seconds` and returns their median and minimum.
 bench_times bench_sum_up(double *seconds, int count);
 
-/// Writes a row of the case's CSV file: name, unit, median and minimum.
+/// Writes a row of the running case's CSV file: name, unit, median and minimum of a measured time.
 void bench_row(bench *b, const char *name, const char *unit, bench_times times);
 void bench_value(bench *b, const char *name, const char *unit, double value);
-/// Prints a value and the bar that the value must reach. Notes in `missed` if the value does not
-/// reach the bar.
+/// Prints a measured value and the bar that it must reach: at least or at most `bar`. Sets
+/// b->missed if it does not.
 void bench_bar(bench *b, const char *what, double value, const char *unit, double bar,
                bool at_least);
-/// Prints a value and its ratio to `aim`, which the value should not exceed. A value above the aim
-/// is no failure.
+/// Prints a measured value and its ratio to `aim`, which the value should not exceed. A value above
+/// the aim is no failure.
 void bench_aim(const char *what, double value, const char *unit, double aim);
 
 /// Sets b->error to a formatted message and returns false.
@@ -68,16 +69,18 @@ bool bench_fail(bench *b, const char *format, ...) __attribute__((format(printf,
 /// multiples, and averaged for fewer rows.
 bool bench_city(bench *b, kiln_context *context, int size, kiln_map *map);
 
-/// Relative errors of a level: the RMS error, and the largest error of a value.
+/// Errors of a level: the RMS error relative to the RMS of the exact values, and the largest error
+/// of a value relative to its exact value.
 typedef struct bench_figures {
     double rms, largest;
 } bench_figures;
 
-/// Compares a level filtered by GGX with brute force and sets `f` to its errors.
+/// Compares the texels of a level that is filtered by GGX with brute force (kiln_reference_filter)
+/// and sets `f` to the level's errors.
 bool bench_check_level(bench *b, kiln_context *context, const kiln_map *source, const kiln_map *map,
                        int level, bench_figures *f);
 
-/// Returns a hash of the bits of all levels.
+/// Returns a hash of the bits of all texels of a map's levels.
 unsigned long long bench_hash(const kiln_map *map);
 
 #endif

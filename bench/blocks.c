@@ -1,9 +1,11 @@
-// The program bench_blocks, which bench/blocks/blocks.mjs calls for kiln's part of the comparison.
+// The program bench_blocks, which bench/blocks/blocks.mjs calls for kiln's part of the comparison
+// of BC6H encoders.
 //     bench_blocks save PANORAMA TRUTH.ktx2 BLOCKS.dds
 //         bakes, writes the levels as floats and as BC6H, and prints the least CPU time of the
 //         encoding in microseconds for each texel
 //     bench_blocks error TRUTH.ktx2 LEVEL PICTURE
-//         prints the errors of a picture of six faces, one below the other
+//         prints the errors of a picture of six faces, one below the other, from a level of TRUTH:
+//         the RMS difference of half floats' bits and the relative RMS error
 #include <kiln/kiln.h>
 
 #include <math.h>
@@ -45,8 +47,8 @@ static kiln_result save(kiln_context *context, char **argv, kiln_error *error)
     return result;
 }
 
-// Returns the bits of a half float as a number, interpolated between half floats: 1024 numbers for
-// each factor of two.
+// Returns the bits of a half float as a number, interpolated between neighbouring half floats. Each
+// factor of two in value has 1024 such numbers.
 static double code(double value)
 {
     int exponent;

@@ -240,15 +240,16 @@ bool bench_files(bench *b)
 
 // ------------------------------------------------------------------------------------------ scaling
 
-// The terms of the model of a bake's time: number of texels read, number of texels written, and
-// degree^3.
+// The terms of the model of a bake's time: number of texels read, number of texels written, and the
+// third power of the spectrum's degree.
 enum { TERMS = 3 };
 typedef struct sample {
     double terms[TERMS], seconds;
 } sample;
 
-// Sets cost[] to the seconds for each unit of a term, none negative, that give the least relative
-// errors of the modelled times. Solves the normal equations for one unknown after another.
+// Fits the model of a bake's time to samples: sets cost[] to the seconds for a unit of each term,
+// none negative, that give the least relative errors. Solves the normal equations for one unknown
+// after another, over and over.
 static void fit(const sample *s, int count, double cost[TERMS])
 {
     double matrix[TERMS][TERMS] = {{0}}, right[TERMS] = {0};
@@ -270,8 +271,8 @@ static void fit(const sample *s, int count, double cost[TERMS])
         }
 }
 
-// Returns the slope of log seconds over the logarithm of the modelled time. The slope is 1 if the
-// measured time grows as the model does.
+// Returns the slope of the logarithm of measured seconds over the logarithm of the modelled time.
+// The slope is 1 if the measured time grows as the model does.
 static double exponent(const sample *s, int count, const double cost[TERMS])
 {
     double x = 0, y = 0, xx = 0, xy = 0;

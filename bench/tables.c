@@ -1,6 +1,6 @@
 // The case tables. In: the four masking functions. Out: time and largest error of a 128 x 128 table
-// of E by kiln, and by importance sampling with 1024 samples that is vectorised and optimised as
-// far as possible; also the time of 512 x 512 tables. All on one thread.
+// of the albedo E by kiln, and by importance sampling with 1024 samples that is vectorised and
+// optimised as far as possible; also the time of 512 x 512 tables. All on one thread.
 #include "bench.h"
 
 #include <kiln/brdf.h>
@@ -14,11 +14,12 @@ static const char *const names[] = {"smith", "smith-uncorrelated", "schlick-k2",
 
 // -------------------------------------------------------------------------------------- the sampler
 
-// The samples of one roughness: the components x and z of the half vectors, which are all that the
-// integrand uses, and 1 / z.
+// The samples of importance sampling at one roughness: the components x and z of the half vectors,
+// which are all that the integrand uses, and 1 / z.
 typedef struct samples {
     float azimuth[SAMPLES],
-        xi[SAMPLES]; // the Hammersley points: the cosine of the azimuth, and the other coordinate
+        // Hammersley points: the cosine of the azimuth, and the second coordinate
+        xi[SAMPLES];
     float x[SAMPLES], z[SAMPLES], inverse[SAMPLES];
 } samples;
 
@@ -51,8 +52,8 @@ static inline __attribute__((always_inline)) void samples_set(samples *s, float 
     }
 }
 
-// Estimates E as the mean of G (v.h) / ((n.v) (n.h)) over the samples. Factors that do not depend
-// on the sample are taken out of the loop.
+// Estimates the albedo E at one cosine n.v as the mean of G (v.h) / ((n.v) (n.h)) over the samples.
+// Factors that do not depend on the sample are taken out of the loop.
 static inline __attribute__((always_inline)) float energy(const sampler *m, const samples *s,
                                                           float nov)
 {
@@ -90,7 +91,8 @@ static inline __attribute__((always_inline)) void fill(kiln_g g, samples *s, flo
     }
 }
 
-// Calls fill() with a constant g, so that the compiler removes the tests of g from the loops.
+// Calls fill() with a constant masking g, so that the compiler removes the tests of g from the
+// loops.
 static inline __attribute__((always_inline)) void fill_each(kiln_g g, samples *s, float *e)
 {
     switch (g) {

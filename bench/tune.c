@@ -7,15 +7,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-// The panoramas, from even to sunny light, after courtyard (even) and sunrise (sunny), which have
-// bars.
+// The panoramas. The first two, courtyard (even light) and sunrise (a sun), have bars that their
+// errors must reach; the others go from even to sunny light.
 static const char *const names[] = {"courtyard", "sunrise", "city",   "interior",
                                     "studio",    "forest",  "sunset", "night"};
 enum { NAME_COUNT = sizeof names / sizeof *names };
 
 typedef struct layout {
     const char *engine, *title;
-    int size, level_count; // size and number of levels; 0 for the engine's defaults
+    int size, level_count; // size and number of levels; 0 for the engine's default value
 } layout;
 static const layout layouts[] = {
     {"three", "three of 9 levels from 1024", 1024, 9},
@@ -25,7 +25,7 @@ static const layout layouts[] = {
 };
 enum { LAYOUT_COUNT = sizeof layouts / sizeof *layouts };
 
-// Exact levels, and the two kinds of tuned levels.
+// How levels are made: exact, or tuned with level 0 exact (SHARP) or tuned too (SOFT).
 enum { NONE, SHARP, SOFT, TUNINGS };
 static const char *const tunings[] = {"none", "sharp", "soft"};
 static const double bar = 0.6, aim = 0.5, soft_aim = 0.25;
@@ -39,11 +39,14 @@ typedef struct tuning {
     kiln_spectrum *spectrum;
     kiln_map maps[LAYOUT_COUNT][TUNINGS];
     double seconds[LAYOUT_COUNT][TUNINGS];
-    // errors; `rms` holds the mean square until report() takes the root
+    // relative errors; until report() takes the root, `rms` holds the mean square
     bench_figures figures[LAYOUT_COUNT][TUNINGS];
-    double far[LAYOUT_COUNT][TUNINGS];  // RMS error without the brightest 200th of the directions
-    double seen[LAYOUT_COUNT][TUNINGS]; // RMS error of x / (x + mean) for radiance x
-    double mean;                        // mean radiance of the environment
+    // relative RMS error of the directions without the brightest 200th of them
+    double far[LAYOUT_COUNT][TUNINGS];
+    // RMS error of x / (x + mean) for each radiance x, which is about what is seen after a tone
+    // curve
+    double seen[LAYOUT_COUNT][TUNINGS];
+    double mean; // mean radiance of the environment
     double (*directions)[3], (*values)[3];
 } tuning;
 
@@ -93,8 +96,8 @@ static double find_bright(const kiln_map *truth)
     return bright;
 }
 
-// Adds the relative errors of each map at one roughness. The narrower the lobe, the more directions
-// are compared.
+// Adds the relative errors of what the engines show of each map at one roughness. The narrower the
+// lobe, the more directions are compared.
 static bool compare(bench *b, tuning *d, double roughness)
 {
     int size = roughness < 0.08 ? 1024 : roughness < 0.15 ? 512 : roughness < 0.4 ? 256 : 128;
@@ -104,8 +107,8 @@ static bool compare(bench *b, tuning *d, double roughness)
     float one[1] = {(float)roughness};
     kiln_prefilter_def def = {.shape = KILN_SHAPE_OCTAHEDRON, .size = size, .level_count = 1};
     def.roughness = one;
-    // The spectrum of the narrowest lobe is cut off at the greatest degree, where its error is
-    // somewhat larger than for other lobes.
+    // The tolerance is for the narrowest lobe, whose spectrum is cut off at the greatest degree
+    // with a somewhat larger error than that of other lobes.
     def.tolerance = 5e-4;
     bool done =
         roughness < 0.06
@@ -138,7 +141,7 @@ static bool compare(bench *b, tuning *d, double roughness)
                 far_whole += far ? weight * wanted * wanted : 0;
             }
         }
-        // Weight of this roughness by the trapezoidal rule.
+        // Weight of this roughness in the mean over roughness, by the trapezoidal rule.
         double part = (roughness < 0.051 || roughness > 0.999 ? 0.5 : 1) / (ROUGHNESS_COUNT - 1);
         d->figures[i][v].rms += part * off / whole;
         d->far[i][v] += part * far_off / far_whole;
@@ -173,7 +176,7 @@ static void report(bench *b, tuning *d, const char *name)
         puts("");
     }
     fflush(stdout);
-    // Only courtyard (even light) and sunrise (sun) have bars.
+    // Only courtyard (even light) and sunrise (sun) have bars that their errors must reach.
     if (strcmp(name, "courtyard") != 0 && strcmp(name, "sunrise") != 0)
         return;
     const bench_figures *f = d->figures[0];
@@ -197,7 +200,8 @@ static bool check_environment(bench *b, tuning *d, const char *name)
     if (!power)
         done = bench_fail(b, "no memory");
     done = done && !kiln_spectrum_power(d->spectrum, power, &b->error);
-    // The power of degree 0 is 4 pi times the squared mean of each channel.
+    // The power of degree 0 of the spectrum is 4 pi times the squared mean radiance of each
+    // channel.
     if (done && power)
         d->mean = sqrt((power[0][0] + power[0][1] + power[0][2]) / (12 * acos(-1)));
     free(power);

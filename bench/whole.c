@@ -11,8 +11,9 @@
 #include <unistd.h>
 
 typedef struct usage {
-    double user, system, wall; ///< seconds
-    double peak;               ///< bytes
+    /// CPU time in user and system mode, and time of a clock, in seconds
+    double user, system, wall;
+    double peak; ///< greatest memory in bytes
 } usage;
 
 static double timeval_seconds(struct timeval t)
@@ -20,8 +21,8 @@ static double timeval_seconds(struct timeval t)
     return (double)t.tv_sec + 1e-6 * (double)t.tv_usec;
 }
 
-// Runs a command and discards its output. The peak memory is that of the process alone, as the
-// kernel measures it.
+// Runs a command, discards its output and measures it. The peak memory is that of the command's
+// process alone, as the kernel measures it.
 static bool run_command(bench *b, const char *const *command, usage *u)
 {
     *u = (usage){0};
@@ -75,7 +76,7 @@ bool bench_peer(bench *b)
                                                 "cmgen --sh=3", "cmgen --ibl-irradiance --size=64"};
     double user[COMMANDS][BENCH_MAX_RUNS], all[COMMANDS][BENCH_MAX_RUNS];
     double peak[COMMANDS] = {0};
-    // The commands run in turn, so that other load on the machine affects all commands alike.
+    // The commands are run in turn, so that other load on the machine affects all of them alike.
     for (int i = 0; i < b->runs; i++)
         for (int k = 0; k < COMMANDS; k++) {
             usage u;

@@ -11,7 +11,7 @@ enum { SIZE = 128, MC = 0, FREE, IS, SPLIT, EXACT, TABLES };
 typedef struct assignment {
     demo_page page;
     kiln_error *error;
-    // the masking function for exact tables; `taught` is the same function for the GAMES202
+    // the masking function G: `g` for exact tables, `taught` the same function for the GAMES202
     // assignment's methods
     kiln_g g;
     kiln_assignment_g taught;
@@ -24,7 +24,8 @@ static const char *const captions[TABLES] = {
     "<b>importance sampling</b>: bonus 1, figure 2", "<b>split sum</b>: bonus 2",
     "<b>exact</b>: the integral"};
 
-// Number of significant digits for a percentage: two, or three from 100 on.
+// Returns the number of significant digits with which a percentage is shown: two, or three from 100
+// on.
 static int digits(double number)
 {
     return number < 100 ? 2 : 3;
@@ -67,8 +68,8 @@ static double row_mean(const kiln_image *table, int row)
 
 // ----------------------------------------------------------------------------------------- pictures
 
-// Shows a table as the GAMES202 assignment's framework writes it in bytes. With `figure3` the
-// picture shows 1 - E with roughness 0 in the top row.
+// Shows a table with the bytes that the GAMES202 assignment's supplied code writes. With `figure3`
+// the picture shows 1 - E with roughness 0 in the top row.
 static kiln_result show_table(assignment *a, const kiln_image *table, bool figure3,
                               const char *caption)
 {

@@ -14,14 +14,16 @@
 #include <time.h>
 
 enum {
-    SOFT = 64,     // smallest edge, in texels, of a cube that a ball is drawn from
+    SOFT = 64,     // smallest edge, in texels, of the cubes that balls mirror
     BALL = 240,    // diameter of a ball in pixels
     CROSS = 128,   // largest edge of a cubemap face in pixels, in pictures of unfolded cubes
     COMPARED = 16, // edge in texels of the cubes whose errors are measured
     COMPARED_TEXELS = 6 * COMPARED * COMPARED,
-    SAMPLES = 1024, // samples a texel of the importance-sampled prefilter
-    STEPS = 100,    // steps in phi and in theta of the irradiance by quadrature
-    TIMED = 64, // edge in texels of the cubes that both methods bake for the comparison of times
+    SAMPLES = 1024, // samples for each texel of the textbook's importance-sampled prefilter
+    STEPS = 100,    // steps in phi and in theta of the textbook's irradiance
+    // edge in texels of the cubes that kiln and the textbook's loops bake for the comparison of
+    // times
+    TIMED = 64,
     TIMED_LEVELS = 7,
 };
 
@@ -29,11 +31,11 @@ static const float compared_roughness[] = {0.125F, 0.25F, 0.5F, 1.0F};
 enum { COMPARED_LEVELS = sizeof compared_roughness / sizeof *compared_roughness };
 
 typedef struct demo_time {
-    double wall, cpu; ///< seconds
+    double wall, cpu; ///< seconds of a clock and of CPU time
 } demo_time;
 
 typedef struct demo_figures {
-    double rms, max; ///< relative errors
+    double rms, max; ///< RMS and largest relative error
 } demo_figures;
 
 typedef struct demo {
@@ -46,7 +48,7 @@ typedef struct demo {
     int index;
     kiln_map source;
     kiln_environment environment;
-    /// the levels below SOFT texels, filtered again with more texels
+    /// the levels with fewer than SOFT texels a side, filtered again with SOFT texels a side
     kiln_map soft[KILN_MAX_LEVELS];
     demo_level balls[KILN_MAX_LEVELS];
     kiln_plan *plan;
@@ -56,7 +58,7 @@ typedef struct demo {
 
     // Data of the whole demo, for all environments.
     bool has_gallery;
-    kiln_image row; ///< picture of the balls of the first environment
+    kiln_image row; ///< picture of the first environment's row of balls
     demo_figures worst_exact, worst_textbook;
     double first_bake, first_textbook_ratio;
 } demo;
@@ -103,7 +105,7 @@ static const char *time_text(double seconds, char text[64])
     return text;
 }
 
-// Writes a picture with a caption, which is HTML.
+// Writes a picture with a caption. The caption is HTML.
 static kiln_result figure(demo *d, kiln_image *image, const char *style_class, const char *alt,
                           const char *caption)
 {
@@ -313,8 +315,8 @@ static kiln_result show_textbook(demo *d)
         printf("  roughness %g\n", r);
         kiln_prefilter_def def = {
             .size = COMPARED, .level_count = 1, .roughness = &compared_roughness[i]};
-        // The sampled method spaces roughness evenly over the levels: with this number of levels,
-        // level 1 has roughness r.
+        // The textbook's prefilter spaces roughness evenly over the levels: with this number of
+        // levels, level 1 has roughness r.
         kiln_textbook_def taught = {.shape = KILN_SHAPE_CUBE,
                                     .size = 2 * COMPARED,
                                     .level_count = 1 + (int)lround(1 / r),
@@ -514,8 +516,8 @@ static kiln_result bake(demo *d)
     if (result)
         return result;
     d->spectrum = kiln_plan_spectrum(d->plan);
-    // Small levels show their texels on a ball: levels with fewer than SOFT texels a side are
-    // filtered again onto larger faces.
+    // A ball that mirrors a small level would show the level's texels as squares: levels with fewer
+    // than SOFT texels a side are filtered again onto larger faces.
     for (int k = 0; k < d->environment.levels.level_count && !result; k++) {
         double r = (double)d->environment.levels.roughness[k];
         kiln_lobe lobe = kiln_lobe_ggx(r * r);
@@ -573,7 +575,8 @@ static const char *base_name(const char *path)
     return slash ? slash + 1 : path;
 }
 
-// Writes the section of the panorama in file `path`, or of the computed sky if `path` is NULL.
+// Writes the page's section about the panorama in the file `path`, or about the computed sky if
+// `path` is NULL.
 static kiln_result show_environment(demo *d, const char *path)
 {
     const char *title = path ? base_name(path) : "A computed sky";

@@ -8,7 +8,7 @@
 
 // ---------------------------------------------------------------------------------------- pictures
 
-/// Exposure of the pictures, and the direction from which the balls are seen.
+/// The exposure of the demo's pictures, and the direction from which balls are seen.
 typedef struct demo_view {
     double exposure; ///< factor on the radiance before the tone curve
     double yaw;      ///< rotation of the viewer about +Y, radians
@@ -20,28 +20,29 @@ typedef struct demo_level {
     int level;
 } demo_level;
 
-/// Chooses the view of a panorama. The exposure makes the middle of the arithmetic and the
-/// geometric mean luminance a middle grey; the viewer is turned so that the main light comes from
-/// the side.
+/// Chooses the view of a panorama. The exposure maps the geometric mean of its arithmetic and its
+/// geometric mean luminance to 0.2, a middle grey. The viewer is turned so that the main light
+/// comes from the side.
 kiln_result demo_view_choose(kiln_context *context, const kiln_map *panorama,
                              const kiln_spectrum *spectrum, demo_view *view, kiln_error *error);
 
-/// Radiance of a cube's level in a direction: bilinear interpolation, also across the edges of
-/// faces.
+/// Sets `value` to the radiance of a cube's level in a direction, by bilinear interpolation, also
+/// across the edges of faces.
 void demo_cube_sample(const kiln_map *cube, int level, const double direction[3], double value[3]);
 
 /// Draws the panorama, scaled to `height` rows.
 kiln_result demo_picture_panorama(kiln_context *context, const kiln_map *panorama, int height,
                                   const demo_view *view, kiln_image *image, kiln_error *error);
-/// Draws a cube's level unfolded as a cross: one pixel a texel, with faces of at most `largest`
-/// pixels.
+/// Draws a cube's level unfolded as a cross: one pixel for each texel, but faces of at most
+/// `largest` pixels a side.
 kiln_result demo_picture_cross(kiln_context *context, const kiln_map *cube, int level, int largest,
                                const demo_view *view, kiln_image *image, kiln_error *error);
-/// Draws the error of each texel of a cube with edge `size` in the colours of demo_error_color.
+/// Draws the unfolded faces of a cube of edge `size`: the relative error of each texel in the
+/// colours of demo_error_colors.
 kiln_result demo_picture_errors(kiln_context *context, const double *errors, int size,
                                 kiln_image *image, kiln_error *error);
-/// Draws a ball. It mirrors the level; with `matte` each point shows the level's value in the
-/// direction of the normal.
+/// Draws a ball. It mirrors the radiance of a cube's level; with `matte` each point shows the
+/// level's value in the direction of the normal.
 kiln_result demo_picture_ball(kiln_context *context, demo_level level, bool matte, int diameter,
                               const demo_view *view, kiln_image *image, kiln_error *error);
 /// Draws spherical harmonics as a panorama; negative values are black.
@@ -50,15 +51,15 @@ kiln_result demo_picture_sh(kiln_context *context, const kiln_sh *sh, int height
 /// Draws a matte ball lit by the spherical harmonics of irradiance.
 kiln_result demo_picture_sh_ball(kiln_context *context, const kiln_sh *sh, int diameter,
                                  const demo_view *view, kiln_image *image, kiln_error *error);
-/// Draws a row of balls in front of the environment, blurred by level 2.
+/// Draws a row of balls, one for each of `levels`, in front of the environment, blurred by level 2.
 kiln_result demo_picture_row(kiln_context *context, const demo_level *levels, int count, int width,
                              int height, const demo_view *view, kiln_image *image,
                              kiln_error *error);
-/// Draws a table of two channels as red and green.
+/// Draws a table of A and B of the split sum: its two channels as red and green.
 kiln_result demo_picture_table(kiln_context *context, const kiln_image *table, kiln_image *image,
                                kiln_error *error);
 
-/// Colour scale of relative errors: logarithmic, dark for 1e-7, light for 1.
+/// Colours of relative errors, one for each power of ten or so from 1e-7 (dark) to 1 (light).
 enum { DEMO_ERROR_COLORS = 7 };
 extern const unsigned char demo_error_colors[DEMO_ERROR_COLORS][3];
 
@@ -70,19 +71,20 @@ typedef struct demo_page {
     kiln_context *context;
 } demo_page;
 
-/// Writes the HTML before the first section: head, style and title.
+/// Writes the HTML of a page before its first section: head, style and title.
 void demo_page_head(FILE *file);
-/// Writes the end of the page; `words` are the footer's text.
+/// Writes the HTML of a page after its last section; `words` are the footer's text.
 void demo_page_foot(FILE *file, const char *words);
-/// Writes text with &, < and > escaped.
+/// Writes text as HTML, with &, < and > escaped.
 void demo_page_text(FILE *file, const char *text);
-/// Writes an <img> that contains the picture, and frees the picture.
+/// Writes an <img> element that contains the picture, and frees the picture.
 kiln_result demo_page_picture(demo_page *page, kiln_image *image, const char *style_class,
                               const char *alt, kiln_error *error);
-/// Writes the colour scale of the error maps.
+/// Writes a legend of the colours of demo_error_colors.
 void demo_page_legend(FILE *file);
 
-/// Writes the colour scale of the maps of kiln_assignment_compare, for differences of both signs.
+/// Writes a legend of the colours in which kiln_assignment_compare draws differences, for both
+/// signs.
 kiln_result demo_signed_legend(demo_page *page, kiln_error *error);
 /// demo_page_open creates a page's file in `folder`; it returns NULL on failure. demo_page_close
 /// prints the file's name and returns `result`, or the failure to write.
@@ -96,8 +98,8 @@ kiln_result demo_assignment_page(kiln_context *context, const char *folder, cons
 kiln_result demo_tables_page(kiln_context *context, const char *folder, const char *scratch,
                              kiln_error *error);
 
-/// Name of the file that gallery.mjs writes in `folder`. If it exists, gallery.html is made from
-/// it.
+/// Name of the file that gallery.mjs writes in the demo's folder. If the file exists, gallery.html
+/// is made from it.
 #define DEMO_GALLERY "gallery.part"
 kiln_result demo_gallery_page(const char *folder, bool *made, kiln_error *error);
 

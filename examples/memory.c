@@ -19,7 +19,7 @@ static void release(void *user, void *memory, size_t size)
     free(memory);
 }
 
-// Draws the kind of picture that a renderer has: RGBA floats, bottom row first.
+// Draws a sky as a renderer stores it: RGBA floats, bottom row first.
 static void draw_sky(float *rgba)
 {
     for (int y = 0; y < HEIGHT; y++)
@@ -32,8 +32,8 @@ static void draw_sky(float *rgba)
         }
 }
 
-// Packs each level as rgb9e5 with rows 256 bytes apart, as Direct3D 12 requires. `all` receives the
-// total number of bytes.
+// Packs each level as rgb9e5 with rows at multiples of 256 bytes, as Direct3D 12 requires. `all`
+// receives the total number of bytes.
 static kiln_result pack_levels(kiln_context *context, const kiln_map *levels, size_t *all,
                                kiln_error *error)
 {

@@ -101,7 +101,8 @@ static const char style_of_parts[] =
     ".card{padding:14px}.card strong{font-size:1.45rem}}\n"
     "</style>\n</head>\n<body>\n";
 
-// Lays the balls of a section on top of each other; a slider fades between neighbouring balls.
+// Script of the pages: lays the balls of a section on top of each other; a slider fades between
+// neighbouring balls.
 static const char script[] =
     "<script>\n"
     "for (const turn of document.querySelectorAll('.turn')) {\n"
@@ -182,7 +183,8 @@ static void write_base64(FILE *file, const unsigned char *bytes, size_t size)
     }
 }
 
-// Writes the PNG to a scratch file and reads it back, because kiln_image_save writes to files.
+// Writes the picture as a PNG to a scratch file and reads it back, because kiln_image_save writes
+// to files only.
 kiln_result demo_page_picture(demo_page *page, kiln_image *image, const char *style_class,
                               const char *alt, kiln_error *error)
 {

@@ -14,7 +14,8 @@ static double luminance(const double c[3])
     return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
 }
 
-// The filmic curve that Narkowicz fitted to ACES (2015), then the sRGB curve.
+// Returns a screen's value for linear radiance: the filmic curve that Narkowicz fitted to ACES
+// (2015), then the sRGB curve.
 static float screen(double radiance, double exposure)
 {
     double x = radiance > 0 ? radiance * exposure : 0;
@@ -72,7 +73,8 @@ kiln_result demo_view_choose(kiln_context *context, const kiln_map *panorama,
 
 // ------------------------------------------------------------------------------------------- cubes
 
-// The direction of a point (s, t) in [-1, 1] of a face, right and down, as OpenGL orients faces.
+// Sets d to the direction of the point (s, t) of a face, not normalised. s and t in [-1, 1] grow to
+// the right and down, and the faces lie as OpenGL orients them.
 static void face_direction(int face, double s, double t, double d[3])
 {
     const double table[6][3] = {{1, -t, -s}, {-1, -t, s}, {s, 1, t},
@@ -103,8 +105,8 @@ static int clamp(int value, int high)
     return value < 0 ? 0 : value > high ? high : value;
 }
 
-// A texel whose coordinates may lie one step outside of its face: then the nearest texel of the
-// neighbouring face is used.
+// Returns a texel of a face. If (x, y) lies one step outside of the face, returns the nearest texel
+// of the neighbouring face.
 static const float *texel(const kiln_map *cube, int level, int face, int x, int y)
 {
     int n = kiln_map_level_size(cube, level);
@@ -207,7 +209,8 @@ static void cube_radiance(const void *data, const double direction[3], double va
     demo_cube_sample(at->cube, at->level, direction, value);
 }
 
-// Irradiance / pi: the radiance that a white matte surface reflects.
+// Computes irradiance / pi, the radiance that a white matte surface reflects, from harmonics of
+// irradiance.
 static void sh_irradiance(const void *data, const double direction[3], double value[3])
 {
     kiln_sh_evaluate(data, direction, value);
@@ -223,7 +226,8 @@ static void turn(const demo_view *view, const double v[3], double d[3])
     d[2] = c * v[2] - s * v[0];
 }
 
-// Blends a ball over the picture by parallel projection. The eye looks along -z of its own frame.
+// Draws a ball over the picture in parallel projection, with soft edges. The eye looks along -z in
+// its own frame, which view->yaw turns about +Y.
 static void draw_ball(kiln_image *image, double center_x, double center_y, double radius,
                       bool matte, radiance_function radiance, const void *data,
                       const demo_view *view)
@@ -249,8 +253,8 @@ static void draw_ball(kiln_image *image, double center_x, double center_y, doubl
                 const double mirrored[3] = {2 * nz * nx, 2 * nz * ny, 2 * nz * nz - 1};
                 turn(view, matte ? normal : mirrored, d);
                 radiance(data, d, value);
-                // The sun may fill a single subpixel: the limit keeps a subpixel's share of its
-                // pixel reasonable.
+                // The sun's reflection may fill a single subpixel: the limit BRIGHTEST keeps its
+                // share of the pixel reasonable.
                 for (int c = 0; c < 3; c++)
                     sum[c] += fmin(value[c] * view->exposure, BRIGHTEST);
                 hits++;

@@ -24,7 +24,7 @@ static void render(const kiln_map *cube, double azimuth)
 int main(void)
 {
     static float texels[6 * SIZE * SIZE * 3];
-    // The cube's texels are in the program's own memory.
+    // The cube's texels are in an array of the program's own.
     kiln_map cube = {.shape = KILN_SHAPE_CUBE, .size = SIZE, .level_count = 1, .level = {texels}};
     kiln_bake_def def = {.levels = {.size = SIZE, .level_count = 5, .tolerance = 0.01},
                          .irradiance_size = KILN_NO_IRRADIANCE};

@@ -21,7 +21,7 @@ static const char *const model_names[4] = {"smith", "smith-uncorrelated", "schli
 
 // ------------------------------------------------------------------------------------------- pictures
 
-// Draws a table: one channel as grey, two channels as red and green.
+// Draws a table as a picture: one channel as grey, two channels as red and green.
 static kiln_result show_table(tables *t, const kiln_table_def *def, const char *caption)
 {
     kiln_table table;
@@ -77,7 +77,8 @@ static kiln_result show_kinds(tables *t)
 
 // ------------------------------------------------------------------------------------------- furnace
 
-// Rounds to the nearest half float: 11 significant bits, multiples of 2^-24 at least.
+// Rounds a number to the nearest half float: 11 significant bits, but never finer than multiples of
+// 2^-24.
 static float to_half(float x)
 {
     int exponent;
@@ -98,17 +99,17 @@ typedef struct storage {
     const char *caption;
 } storage;
 
-// n.v of a map's column. The horizontal coordinate is cbrt(n.v) from 0 to 1, which gives grazing
-// angles more room.
+// Returns the n.v of a column of an error map. The horizontal coordinate is cbrt(n.v) from 0 to 1,
+// which gives grazing angles more room.
 static double map_nov(int column)
 {
     double x = (column + 0.5) / MAP;
     return x * x * x;
 }
 
-// Light that a white surface reflects in a uniformly white environment: the single bounce E, plus
-// Kulla and Conty's lobe. That lobe integrates to 1 - E as the table stores it, because E_avg is
-// computed from the same table.
+// Computes the light that a white surface reflects in a uniformly white environment, which would be
+// 1 without errors: the single bounce E, plus Kulla and Conty's lobe. That lobe integrates to 1 - E
+// as the table stores it, because E_avg is computed from the same table.
 static kiln_result furnace(tables *t, kiln_g g, const storage *s, kiln_image *light)
 {
     kiln_table table;

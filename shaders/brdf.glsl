@@ -8,15 +8,16 @@
 const float PI = 3.14159265358979;
 
 // Names of the masking function G. The values are those of kiln's enum kiln_g.
-const int SMITH = 0;             // Smith, height-correlated
+const int SMITH = 0;             // Smith, of correlated heights
 const int SMITH_UNCORRELATED = 1;
 const int SCHLICK_K2 = 2;        // Schlick with k = roughness^2 / 2
 const int SCHLICK_TEXT = 3;      // Schlick with k = (roughness + 1)^2 / 8
 
 // ------------------------------------------------------------------------------------ distribution
 
-// The GGX distribution D of microfacet normals, per steradian (Walter et al. 2007, eq. 33). d is a
-// sum of positive terms, because the published difference cancels near n.h = 1.
+// The GGX distribution D of microfacet normals, per steradian (Walter et al. 2007, eq. 33). d is
+// the denominator's (n.h)^2 (alpha^2 - 1) + 1, written as a sum of positive terms, because the
+// difference cancels near n.h = 1.
 float ggx_d(float alpha, float noh)
 {
     float a2 = alpha * alpha;
@@ -32,19 +33,19 @@ float smith_g1_schlick(float k, float nox)
     return nox / (nox * (1.0 - k) + k);
 }
 
-// Schlick's masking of view and light.
+// Schlick's masking G of view and light: the product of G1(nov) and G1(nol).
 float smith_g_schlick(float k, float nov, float nol)
 {
     return smith_g1_schlick(k, nov) * smith_g1_schlick(k, nol);
 }
 
-// Schlick's k for image-based light (Karis 2013).
+// Schlick's k for image-based light, alpha / 2 (Karis 2013).
 float schlick_k_ibl(float alpha)
 {
     return alpha / 2.0;
 }
 
-// Schlick's k for point lights (Karis 2013).
+// Schlick's k for point lights, (roughness + 1)^2 / 8 (Karis 2013).
 float schlick_k_direct(float roughness)
 {
     return (roughness + 1.0) * (roughness + 1.0) / 8.0;
@@ -57,14 +58,15 @@ float ggx_root(float alpha, float x)
     return sqrt(x * x + alpha * alpha * ((1.0 - x) * (1.0 + x)));
 }
 
-// Smith's masking G1 of one direction over its cosine nox. The quotient is finite at nox = 0.
+// Smith's masking G1 for GGX of one direction over its cosine nox (n.v or n.l). The quotient is
+// finite at nox = 0.
 float smith_g1_over_cosine(float alpha, float nox)
 {
     return 2.0 / (nox + ggx_root(alpha, nox));
 }
 
-// G / (nov nol), which is finite at grazing angles. g is one of the four names of G above. The
-// specular BRDF is F D visibility / 4.
+// The masking G over nov nol, which is finite at grazing angles. g is one of the names of G: SMITH
+// and the following constants. The specular BRDF is F D visibility / 4.
 float visibility(int g, float roughness, float nov, float nol)
 {
     float alpha = roughness * roughness;

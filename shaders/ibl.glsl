@@ -15,7 +15,7 @@ vec3 sh_irradiance(vec3 c[9], vec3 n)
 }
 
 // The fractional mip level whose roughness is `roughness`. of_level has the roughness of each of
-// `count` levels, increasing from 0, four levels in each vec4.
+// `count` levels, increasing from 0, packed four to a vec4.
 float environment_level(vec4 of_level[4], int count, float roughness)
 {
     float level = 0.0;
@@ -26,9 +26,9 @@ float environment_level(vec4 of_level[4], int count, float roughness)
     return level;
 }
 
-// The direction to look up for a rough surface, not normalised. The specular lobe of a rough
-// surface leans from the mirror direction r towards the normal n (Lagarde and de Rousiers 2014,
-// section 4.9.3).
+// The direction, not normalised, in which a rough surface looks up prefiltered radiance. The
+// specular lobe of a rough surface leans from the mirror direction r towards the normal n (Lagarde
+// and de Rousiers 2014, section 4.9.3).
 vec3 bent_reflection(vec3 n, vec3 r, float roughness)
 {
     float alpha = roughness * roughness;
@@ -44,8 +44,8 @@ float ball_occlusion(vec3 n, vec3 offset, float r)
     return 1.0 - clamp(dot(n, offset), 0.0, sqrt(d2)) * r * r / (d2 * sqrt(d2));
 }
 
-// The share of specular light that reaches the point, from the share `ambient` of diffuse light
-// (ball_occlusion): Lagarde and de Rousiers 2014, section 4.10.2.
+// The share of specular light that reaches a surface point, from the share `ambient` of diffuse
+// light that does (ball_occlusion): Lagarde and de Rousiers 2014, section 4.10.2.
 float specular_occlusion(float nov, float ambient, float roughness)
 {
     float alpha = roughness * roughness;

@@ -4,39 +4,42 @@
 // of kiln's C functions in src/brdf/compensate.c.
 // SPDX-License-Identifier: MIT
 
-// Names of the factor that colours Kulla and Conty's lobe, where f is F_avg and E is E_avg. The
+// Names of the factor that colours Kulla and Conty's lobe, where f is F_avg, the average
+// reflectance of a microfacet, and E is E_avg, the average albedo of the lobe with F = 1. The
 // values are those of kiln's enum kiln_f_add.
 const int F_ADD_BOUNCES = 0;    // f^2 E / (1 - f (1 - E)): the bounces from the second on
 const int F_ADD_ASSIGNMENT = 1; // f E / (1 - f (1 - E)), as GAMES202 teaches: counts the first
                                 // bounce too
 
-// Kulla and Conty's lobe for F = 1 and a view o and a light i. The arguments are 1 - E(o), 1 - E(i)
-// and 1 - E_avg, because a table of 1 - E keeps its precision where E is near 1.
+// Kulla and Conty's lobe for F = 1, a view o and a light i, from the albedo E of the specular lobe.
+// The arguments are 1 - E(o), 1 - E(i) and 1 - E_avg, because a table of 1 - E keeps its precision
+// where E is near 1.
 float kulla_conty_missing(float missing_o, float missing_i, float missing_average)
 {
     return missing_average > 0.0 ? missing_o * missing_i / (PI * missing_average) : 0.0;
 }
 
-// Kulla and Conty's lobe for F = 1 from E(o), E(i) and E_avg.
+// Kulla and Conty's lobe for F = 1, from the albedos E(o) and E(i) of the specular lobe for view
+// and light, and E_avg.
 float kulla_conty(float e_o, float e_i, float e_average)
 {
     return kulla_conty_missing(1.0 - e_o, 1.0 - e_i, 1.0 - e_average);
 }
 
-// The factor to Kulla and Conty's lobe for a material whose average reflectance F_avg is f.
+// The factor on Kulla and Conty's lobe for a material whose average reflectance F_avg is f.
 vec3 kulla_conty_fresnel(int form, vec3 f, vec3 e_average)
 {
     vec3 sum = f * e_average / max((1.0 - f) + f * e_average, 1e-30);
     return form == F_ADD_ASSIGNMENT ? sum : f * sum;
 }
 
-// Turquin's factor to the specular lobe, where e is the lobe's albedo E(n.v) for F = 1.
+// Turquin's factor on the specular lobe, where e is the lobe's albedo E(n.v) for F = 1.
 vec3 turquin(vec3 f0, float e)
 {
     return 1.0 + f0 * (1.0 - e) / e;
 }
 
-// Fdez-Aguera's factors: `single` to prefiltered radiance, for the first bounce, and `multiple` to
+// Fdez-Aguera's factors: `single` on prefiltered radiance, for the first bounce, and `multiple` on
 // irradiance / pi, for the further bounces. a and b are A and B of the split sum.
 void fdez_aguera(vec3 f0, float a, float b, out vec3 single, out vec3 multiple)
 {
@@ -52,7 +55,7 @@ void fdez_aguera(vec3 f0, float a, float b, out vec3 single, out vec3 multiple)
 // kiln_axis; AXIS_GRAZING_TEXT is KILN_AXIS_GRAZING of a table for SCHLICK_TEXT.
 const int AXIS_LINEAR = 0, AXIS_SQRT = 1, AXIS_CBRT = 2, AXIS_GRAZING = 3, AXIS_GRAZING_TEXT = 4;
 
-// The place u in [0, 1] of n.v along a table's axis.
+// The place u in [0, 1] of n.v along a table's axis, which is named by an AXIS_ constant.
 float table_axis(int axis, float nov, float roughness)
 {
     if (axis == AXIS_LINEAR)
@@ -78,9 +81,9 @@ vec2 table_place(vec4 layout_, ivec2 size, float nov, float roughness)
     return clamp(at, vec2(0.0), last);
 }
 
-// Reads the first two channels of a table by linear interpolation between four texels. The
-// interpolation is done here because a GL sampler may interpolate with 8 bits only, and need not
-// filter 32-bit floats.
+// Reads the first two channels of a table by linear interpolation between the four nearest texels.
+// The interpolation is done here because a GL sampler may interpolate with 8 bits only, and need
+// not filter 32-bit floats.
 vec2 table_read(sampler2D table, vec4 layout_, float nov, float roughness)
 {
     ivec2 size = textureSize(table, 0);
@@ -92,7 +95,8 @@ vec2 table_read(sampler2D table, vec4 layout_, float nov, float roughness)
     return mix(low, high, t.y);
 }
 
-// Reads 1 - E from a table of E or, with `complement`, of 1 - E.
+// Reads 1 - E, E being the albedo of the specular lobe, from a table of E or, if its flag
+// complement is set, of 1 - E.
 float table_missing(sampler2D table, vec4 layout_, float nov, float roughness)
 {
     float value = table_read(table, layout_, nov, roughness).r;

@@ -1,7 +1,7 @@
 // Tone curves and encoding: functions from linear radiance to the values that a screen takes.
 // SPDX-License-Identifier: MIT
 
-// The tone curve of the GAMES202 assignment: c / (c + 1), then the power 1 / 2.2.
+// The tone curve of the GAMES202 assignment: c / (c + 1), raised to the power 1 / 2.2.
 vec3 tone_assignment(vec3 c)
 {
     return pow(c / (c + 1.0), vec3(1.0 / 2.2));
