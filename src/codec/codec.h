@@ -41,6 +41,9 @@ kiln_result ki_hdr_decode(kiln_context *context, const uint8_t *bytes, size_t si
 kiln_result ki_png_decode(kiln_context *context, const uint8_t *bytes, size_t size,
                           const char *name, kiln_image *image, kiln_file_info *info,
                           kiln_load_report *report, kiln_error *error);
+kiln_result ki_jpeg_decode(kiln_context *context, const uint8_t *bytes, size_t size,
+                           const char *name, kiln_image *image, kiln_file_info *info,
+                           kiln_load_report *report, kiln_error *error);
 /// Decode a KTX2 file, which holds a cube or a table, or a DDS file, which holds a cube. A DDS file
 /// may also hold an atlas, one flat picture with all levels for an engine: with `decoded` NULL the
 /// file is described in `info`, otherwise the function fails. `info` must not be NULL.

@@ -131,6 +131,7 @@ static const ki_file_format formats[] = {
      .limit = 1,
      .read_picture = read_png,
      .write_picture = write_png},
+    {.name = "jpeg", .first = "\xff\xd8\xff", .first_count = 3, .read_picture = ki_jpeg_decode},
     {.name = "ktx1",
      .endings = {".ktx"},
      .first = "\xabKTX 11\xbb\r\n\x1a\n",
@@ -282,9 +283,10 @@ static kiln_result read_bytes(kiln_context *context, const uint8_t *bytes, size_
     if (!format && ki_refuse_foreign(bytes, size, name, error))
         return KILN_ERROR_UNSUPPORTED;
     if (!format)
-        return ki_fail(error, KILN_ERROR_FORMAT,
-                       "%s: its %zu bytes do not begin like a file of EXR, HDR, PNG, KTX2 or DDS",
-                       name, size);
+        return ki_fail(
+            error, KILN_ERROR_FORMAT,
+            "%s: its %zu bytes do not begin like a file of EXR, HDR, PNG, JPEG, KTX2 or DDS", name,
+            size);
     if (format->describe && decoded)
         return ki_fail(error, KILN_ERROR_UNSUPPORTED,
                        "%s: is a %s file, which kiln writes and describes but does not read", name,

@@ -1,0 +1,223 @@
+// Reading of JPEG files. In: the bytes of a file. Out: a picture of three linear floats a pixel in
+// Rec. 709. Samples become linear light by the file's ICC profile, or by the curve of sRGB. A gain
+// map in the file (ISO 21496-1, Ultra HDR) is applied in full. Exif's orientation is honoured.
+#include "codec/codec.h"
+#include "codec/gain_map.h"
+#include "codec/icc.h"
+#include "codec/jpeg_pixels.h"
+#include "codec/report.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { PICTURES_MOST = 8 }; // number of pictures in a file that may be its gain map
+
+typedef struct jpeg_file {
+    kiln_context *context;
+    const char *name;
+    ki_span file;
+    ki_jpeg_head head, gain_head;
+    ki_span gain_picture;
+    ki_gain_map gain;
+    bool has_gain;
+    ki_file_color color;
+} jpeg_file;
+
+// ----------------------------------------------------------------------------------------- header
+
+static kiln_result check_head(const ki_jpeg_head *head, const char *name, kiln_error *error)
+{
+    if (head->components != 1 && head->components != 3)
+        return ki_fail(error, KILN_ERROR_UNSUPPORTED,
+                       "%s: the JPEG has %d components, as CMYK has, kiln reads 1 (grey) and 3 "
+                       "(colours); convert it by: oiiotool IN -o OUT.png",
+                       name, head->components);
+    if (head->precision != 8)
+        return ki_fail(error, KILN_ERROR_UNSUPPORTED,
+                       "%s: the JPEG has samples of %d bits, kiln reads those of 8 bits", name,
+                       head->precision);
+    if (head->width > KILN_MAX_SIZE || head->height > KILN_MAX_SIZE)
+        return ki_fail(error, KILN_ERROR_UNSUPPORTED, "%s: the picture is %d x %d, the limit is %d",
+                       name, head->width, head->height, KILN_MAX_SIZE);
+    return KILN_OK;
+}
+
+static void read_color(jpeg_file *f, kiln_load_report *report)
+{
+    size_t size;
+    uint8_t *profile = ki_jpeg_profile(f->context, &f->head, &size);
+    if (profile)
+        ki_icc_read(profile, size, &f->color, report);
+    else if (f->head.profile_parts)
+        ki_note(report, KILN_NOTE_ASSUMPTION, true,
+                "the ICC profile of %d parts is damaged, so sRGB was assumed",
+                f->head.profile_parts);
+    else
+        ki_note(report, KILN_NOTE_ASSUMPTION, false,
+                "no ICC profile says how values are coded, so sRGB was assumed");
+}
+
+// Finds the picture with the numbers of a gain map.
+static kiln_result find_gain_map(jpeg_file *f, kiln_error *error)
+{
+    ki_span pictures[PICTURES_MOST];
+    int count =
+        ki_jpeg_other_pictures(f->file.bytes, f->file.size, &f->head, pictures, PICTURES_MOST);
+    for (int i = 0; i < count && !f->has_gain; i++) {
+        kiln_result result = ki_jpeg_read_head(f->context, pictures[i].bytes, pictures[i].size,
+                                               f->name, &f->gain_head, error);
+        if (result == KILN_ERROR_CANCELLED)
+            return result;
+        f->has_gain = result == KILN_OK && check_head(&f->gain_head, f->name, NULL) == KILN_OK &&
+                      ki_gain_map_read(&f->gain_head, &f->gain);
+        f->gain_picture = pictures[i];
+    }
+    return KILN_OK;
+}
+
+static void note_gain_map(jpeg_file *f, kiln_load_report *report)
+{
+    const ki_gain_map *g = &f->gain;
+    double most = fmax(g->high[0], fmax(g->high[1], g->high[2]));
+    if (!f->has_gain) {
+        ki_note(report, KILN_NOTE_ASSUMPTION, true,
+                "the file announces a gain map, but has none that kiln can read, so values end at "
+                "1");
+    } else if (g->base_headroom > g->other_headroom) {
+        f->has_gain = false;
+        ki_note(report, KILN_NOTE_CHOICE, false,
+                "the gain map was not applied, because it leads to a picture of lower range");
+    } else {
+        ki_note(report, KILN_NOTE_CONVERSION, false,
+                "a gain map of %d x %d was applied in full, with gains to 2^%.4g",
+                f->gain_head.width, f->gain_head.height, most);
+    }
+}
+
+static kiln_result read_head(jpeg_file *f, kiln_load_report *report, kiln_error *error)
+{
+    kiln_result result =
+        ki_jpeg_read_head(f->context, f->file.bytes, f->file.size, f->name, &f->head, error);
+    if (result == KILN_OK)
+        result = check_head(&f->head, f->name, error);
+    if (result == KILN_OK && ki_gain_map_announced(&f->head)) {
+        result = find_gain_map(f, error);
+        if (result == KILN_OK)
+            note_gain_map(f, report);
+    }
+    if (result == KILN_OK)
+        read_color(f, report);
+    if (result == KILN_OK && f->head.orientation != 1)
+        ki_note(report, KILN_NOTE_CONVERSION, false,
+                "the picture was turned upright by Exif's orientation %d", f->head.orientation);
+    return result;
+}
+
+// --------------------------------------------------------------------------------------- pixels
+
+static void to_linear(const jpeg_file *f, const uint8_t *samples, kiln_image *image)
+{
+    float tables[3][256];
+    size_t channels = (size_t)f->head.components;
+    size_t count = (size_t)f->head.width * (size_t)f->head.height;
+    for (int c = 0; c < 3; c++)
+        ki_file_color_fill(&f->color, c, tables[c], 256);
+    for (size_t i = 0; i < count; i++)
+        for (size_t c = 0; c < 3; c++)
+            image->pixels[3 * i + c] = tables[c][samples[channels * i + (channels == 3 ? c : 0)]];
+}
+
+static kiln_result apply_gain_map(jpeg_file *f, kiln_image *image, kiln_error *error)
+{
+    uint8_t *samples;
+    const ki_jpeg_head *head = &f->gain_head;
+    kiln_result result =
+        ki_jpeg_samples(f->context, f->gain_picture, head, f->name, &samples, error);
+    if (result == KILN_OK)
+        result = ki_gain_map_apply(f->context, &f->gain, samples, head->width, head->height,
+                                   head->components, image, error);
+    ki_free(samples);
+    return result;
+}
+
+// Turns the picture by Exif's orientation: from 5 on rows and columns are exchanged. Pixel (x, y) of
+// the upright picture is then read from the left or the right, and from the top or the bottom.
+static kiln_result turn_upright(jpeg_file *f, kiln_image *image, kiln_error *error)
+{
+    int o = f->head.orientation, w = image->width, h = image->height;
+    bool exchanged = o >= 5, from_right = o == 2 || o == 3 || o == 7 || o == 8;
+    bool from_bottom = o == 3 || o == 4 || o == 6 || o == 7;
+    kiln_image upright = {.width = exchanged ? h : w, .height = exchanged ? w : h, .channels = 3};
+    kiln_result result = ki_image_allocate(f->context, &upright, error);
+    if (result != KILN_OK)
+        return result;
+    for (int y = 0; y < upright.height; y++)
+        for (int x = 0; x < upright.width; x++) {
+            int from_x = exchanged ? y : x, from_y = exchanged ? x : y;
+            from_x = from_right ? w - 1 - from_x : from_x;
+            from_y = from_bottom ? h - 1 - from_y : from_y;
+            memcpy(upright.pixels + 3 * ((size_t)y * (size_t)upright.width + (size_t)x),
+                   image->pixels + 3 * ((size_t)from_y * (size_t)w + (size_t)from_x),
+                   3 * sizeof(float));
+        }
+    kiln_image_free(image);
+    *image = upright;
+    return KILN_OK;
+}
+
+static kiln_result read_pixels(jpeg_file *f, kiln_image *image, kiln_error *error)
+{
+    uint8_t *samples;
+    *image = (kiln_image){.width = f->head.width, .height = f->head.height, .channels = 3};
+    kiln_result result = ki_jpeg_samples(f->context, f->file, &f->head, f->name, &samples, error);
+    if (result == KILN_OK)
+        result = ki_image_allocate(f->context, image, error);
+    if (result == KILN_OK)
+        to_linear(f, samples, image);
+    ki_free(samples);
+    if (result == KILN_OK && f->has_gain)
+        result = apply_gain_map(f, image, error);
+    if (result == KILN_OK)
+        ki_file_color_finish(f->context, &f->color, image);
+    if (result == KILN_OK && f->head.orientation != 1)
+        result = turn_upright(f, image, error);
+    if (result != KILN_OK)
+        kiln_image_free(image);
+    return result;
+}
+
+static void describe(const jpeg_file *f, kiln_file_info *info)
+{
+    bool exchanged = f->head.orientation >= 5;
+    snprintf(info->format, sizeof info->format, "jpeg");
+    snprintf(info->encoding, sizeof info->encoding, "8 bits %s, %s%s%s",
+             f->head.components == 3 ? "rgb" : "grey", f->color.profile ? "icc" : "srgb",
+             f->has_gain ? ", gain map" : "", f->head.progressive ? ", progressive" : "");
+    info->width = exchanged ? f->head.height : f->head.width;
+    info->height = exchanged ? f->head.width : f->head.height;
+    info->channel_count = f->head.components;
+    info->level_count = 1;
+}
+
+kiln_result ki_jpeg_decode(kiln_context *context, const uint8_t *bytes, size_t size,
+                           const char *name, kiln_image *image, kiln_file_info *info,
+                           kiln_load_report *report, kiln_error *error)
+{
+    if (image)
+        *image = (kiln_image){0};
+    jpeg_file *f = ki_alloc(context, 1, sizeof *f);
+    if (!f)
+        return ki_fail_memory(context, error, name, sizeof *f);
+    f->context = context;
+    f->name = name;
+    f->file = (ki_span){bytes, size};
+    kiln_result result = read_head(f, report, error);
+    if (result == KILN_OK && info)
+        describe(f, info);
+    if (result == KILN_OK && image)
+        result = read_pixels(f, image, error);
+    ki_file_color_free(&f->color);
+    ki_free(f);
+    return result;
+}

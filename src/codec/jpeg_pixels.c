@@ -1,0 +1,130 @@
+// Decoding of JPEG pictures by libjpeg-turbo. In: the bytes of a picture. Out: 8-bit samples.
+// libjpeg's errors end the decoding by longjmp. Data that end too early or are damaged fail, because
+// libjpeg would fill the rest with grey.
+#include "codec/jpeg_pixels.h"
+
+#include "codec/file_info.h"
+
+#include <setjmp.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <jerror.h>
+#include <jpeglib.h>
+
+// A progressive picture may have any number of scans, each of which costs the time of a picture.
+// libjpeg's own writer makes 10, and the others that are known make fewer than 30.
+enum { SCANS_MOST = 100 };
+
+typedef struct decoder {
+    struct jpeg_decompress_struct jpeg;
+    struct jpeg_error_mgr errors;
+    struct jpeg_progress_mgr progress;
+    jmp_buf stop;
+    kiln_context *context;
+    bool cancelled, too_many_scans;
+    char fault[JMSG_LENGTH_MAX];
+} decoder;
+
+static _Noreturn void stop(j_common_ptr jpeg)
+{
+    decoder *d = jpeg->client_data;
+    char text[JMSG_LENGTH_MAX];
+    jpeg->err->format_message(jpeg, text);
+    ki_copy_printable(d->fault, sizeof d->fault, text);
+    longjmp(d->stop, 1);
+}
+
+// Called for warnings (level below 0) and traces. Damaged data are an error, and so is an early end.
+static void take_message(j_common_ptr jpeg, int level)
+{
+    int code = jpeg->err->msg_code;
+    if (level < 0 && (code == JWRN_JPEG_EOF || code == JWRN_HIT_MARKER ||
+                      code == JWRN_HUFF_BAD_CODE || code == JWRN_MUST_RESYNC))
+        stop(jpeg);
+}
+
+static void watch(j_common_ptr jpeg)
+{
+    decoder *d = jpeg->client_data;
+    d->cancelled = !ki_go_on(d->context);
+    d->too_many_scans = d->jpeg.input_scan_number > SCANS_MOST;
+    if (d->cancelled || d->too_many_scans)
+        longjmp(d->stop, 1);
+}
+
+static void begin(decoder *d, kiln_context *context)
+{
+    d->context = context;
+    d->jpeg.err = jpeg_std_error(&d->errors);
+    d->errors.error_exit = stop;
+    d->errors.emit_message = take_message;
+    d->jpeg.client_data = d;
+}
+
+// Returns false where libjpeg stopped.
+static bool decode(decoder *d, ki_span picture, const ki_jpeg_head *head, uint8_t *samples)
+{
+    struct jpeg_decompress_struct *jpeg = &d->jpeg;
+    if (setjmp(d->stop))
+        return false;
+    jpeg_create_decompress(jpeg);
+    jpeg->client_data = d;
+    d->progress.progress_monitor = watch;
+    jpeg->progress = &d->progress;
+    jpeg_mem_src(jpeg, picture.bytes, picture.size);
+    jpeg_read_header(jpeg, TRUE);
+    jpeg->out_color_space = head->components == 1 ? JCS_GRAYSCALE : JCS_RGB;
+    jpeg->dct_method = JDCT_ISLOW; // the same bits on every processor
+    jpeg_start_decompress(jpeg);
+    if (jpeg->output_width != (JDIMENSION)head->width ||
+        jpeg->output_height != (JDIMENSION)head->height ||
+        jpeg->output_components != head->components)
+        return false;
+    size_t line = (size_t)head->width * (size_t)head->components;
+    while (jpeg->output_scanline < jpeg->output_height) {
+        JSAMPROW row = samples + line * jpeg->output_scanline;
+        jpeg_read_scanlines(jpeg, &row, 1);
+    }
+    jpeg_finish_decompress(jpeg);
+    return true;
+}
+
+static kiln_result fail(const decoder *d, const char *name, kiln_error *error)
+{
+    if (d->cancelled)
+        return ki_fail_cancelled(error, "reading");
+    if (d->too_many_scans)
+        return ki_fail(error, KILN_ERROR_UNSUPPORTED,
+                       "%s: the JPEG has more than %d scans, the limit of kiln", name, SCANS_MOST);
+    return ki_fail(error, KILN_ERROR_FORMAT, "%s: the JPEG is damaged: %s", name,
+                   d->fault[0] ? d->fault : "its size changes");
+}
+
+kiln_result ki_jpeg_samples(kiln_context *context, ki_span picture, const ki_jpeg_head *head,
+                            const char *name, uint8_t **samples, kiln_error *error)
+{
+    size_t count = (size_t)head->width * (size_t)head->height * (size_t)head->components;
+    decoder *d = ki_alloc(context, 1, sizeof *d);
+    *samples = ki_alloc_raw(context, count, 1);
+    // libjpeg takes the coefficients of a progressive picture from malloc. A block of their size,
+    // which nobody touches, makes the context's memory limit count them.
+    uint8_t *reserve = head->progressive ? ki_alloc_raw(context, count, 2) : *samples;
+    kiln_result result = KILN_OK;
+    if (!d || !*samples || !reserve) {
+        result = ki_fail_memory(context, error, name, 3 * count);
+    } else {
+        begin(d, context);
+        if (!decode(d, picture, head, *samples))
+            result = fail(d, name, error);
+        jpeg_destroy_decompress(&d->jpeg);
+    }
+    if (reserve != *samples)
+        ki_free(reserve);
+    if (result != KILN_OK) {
+        ki_free(*samples);
+        *samples = NULL;
+    }
+    ki_free(d);
+    return result;
+}
