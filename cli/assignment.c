@@ -233,7 +233,8 @@ int assignment_write(cli_work *work, const assignment_def *def)
     else if (code == CLI_DONE && !def->quiet)
         print_figures(&a);
     if (code != CLI_DONE && made)
-        os_remove_folder(def->folder); // fails, as wanted, if the folder already holds a picture
+        // removes the folder if it is empty, and leaves it if it already holds a picture
+        os_remove_folder(def->folder);
 done:
     for (int t = 0; t < ASSIGNMENT_TABLES; t++) {
         kiln_image_free(&a.table[t]);

@@ -46,10 +46,12 @@ enum {
 typedef struct assignment {
     cli_work *work;
     const assignment_def *def;
-    kiln_image table[ASSIGNMENT_TABLES]; ///< one channel; roughness 1 in the top row
+    /// the tables, of one channel each, with roughness 1 in the top row
+    kiln_image table[ASSIGNMENT_TABLES];
     /// map of each table's error, for tables whose error map is written
     kiln_image map[ASSIGNMENT_TABLES];
-    kiln_difference difference[ASSIGNMENT_TABLES]; ///< difference from the exact table
+    /// statistics of each table's difference from the exact table
+    kiln_difference difference[ASSIGNMENT_TABLES];
     int file_count;
 } assignment;
 

@@ -26,7 +26,7 @@ static const cli_option options[] = {
 };
 
 typedef struct pictures {
-    char by[128]; ///< name of the OpenGL renderer, or of the CPU's integrator
+    char by[128]; ///< name of what drew the balls: the OpenGL renderer or the CPU's integrator
     bool on_cpu;  ///< true: OpenGL is not available, and the CPU shaded the balls
     /// largest difference, in steps of 255, between balls drawn with the 8-bit tables and with
     /// exact tables

@@ -25,7 +25,8 @@ typedef struct bake {
     /// names of the output folders with a final slash, which the user may omit
     char folder[2][4096];
     const kiln_engine *engine; ///< engine of --for; NULL without --for
-    /// has_roughness: --roughness is given; stores_sh: the file's metadata holds harmonics
+    /// has_roughness: --roughness is given; stores_sh: the output file's metadata holds spherical
+    /// harmonics
     bool has_roughness, stores_sh;
     float roughness[KILN_MAX_LEVELS];
 

@@ -62,7 +62,7 @@ static void report_cut(const char *key, const kiln_cut *cut, const kiln_save_rep
     json_end(j);
 }
 
-// What was found in the input, and what was cut off in the output.
+// Prints notes on what was found in the input and what was cut off in the output.
 static void report_losses(const bake *b, json *j)
 {
     const kiln_load_report *loaded = &b->work.loaded;

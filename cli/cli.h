@@ -46,8 +46,9 @@ struct cli_command {
     const char *about;
     const char *(*word)(int index); ///< words of the first argument, NULL after the last; or NULL
     const char *list_title;         ///< heading of that list in the help, such as "Quantities"
-    /// Lists what the first argument may be: writes the word of an index and what it takes to
-    /// `left`, and returns its description, or NULL after the last word. The function may be NULL.
+    /// Lists what the first argument may be: writes the word of an index, with the arguments that
+    /// follow the word, to `left`, and returns its description, or NULL after the last word. The
+    /// function may be NULL.
     const char *(*list)(int index, char left[64]);
     const char *more;            ///< further paragraphs that only the manual shows; may be NULL
     const cli_example *examples; ///< array that ends in {NULL, NULL}

@@ -25,7 +25,8 @@ typedef enum argument {
     K,
     REFLECTIVITY,
     EDGE_TINT,
-    ARGUMENTS, // number of arguments; the options after them are not arguments
+    // number of options that are arguments of quantities; the options from here on are none
+    ARGUMENTS,
     D = ARGUMENTS,
     G,
     SHEEN,
@@ -239,7 +240,7 @@ typedef struct eval {
     choices choices;
     bool json;
     double given[ARGUMENTS]; // values of the arguments, indexed by option
-    // values of the quantity's arguments that are options, in the quantity's order
+    // values of those arguments of the quantity that are given as options, in the quantity's order
     double fixed[MAX_ARGUMENTS];
     int column_count; // number of arguments that each line holds
     int column[MAX_ARGUMENTS];

@@ -25,7 +25,7 @@ static void print_blanks(int count)
 // Prints words until the next word would reach `width`, then starts a new line.
 void cli_print_wrapped(const char *text, int column, int indent, int width)
 {
-    bool first = true; // no word stands before this word on its line
+    bool first = true; // true while the output line has no word after its indentation
     while (*text) {
         int length = (int)strcspn(text, " \n");
         if (!first && column + 1 + length >= width) {

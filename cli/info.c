@@ -70,7 +70,7 @@ static void print_roughness_json(json *j, const kiln_file_info *info)
     json_end(j);
 }
 
-// Writes the three channels of each coefficient.
+// Writes the spherical harmonics of a file as JSON: three channels for each coefficient.
 static void print_sh_json(json *j, const kiln_file_info *info)
 {
     json_array(j, info->sh_irradiance ? "sh_irradiance" : "sh_radiance");
@@ -127,7 +127,7 @@ static int describe(const cli_arguments *a, bool as_json, cli_work *work)
         if (kiln_file_describe(work->context, a->rest[i], &info, &work->error)) {
             if (!cli_interrupted())
                 cli_fail("%s", work->error.message);
-            work->error.message[0] = 0; // the message is already printed
+            work->error.message[0] = 0; // keeps cli_end_work from printing the message again
             code = CLI_FAILED;
         } else if (as_json) {
             print_json(&j, a->rest[i], &info);

@@ -26,7 +26,7 @@ int cli_check_input(const cli_command *command, const char **names, int count)
     return CLI_GO;
 }
 
-// Says what the loader found and changed.
+// Says on standard error what the loader found and changed in the input.
 static void say_report(cli_work *work, const char *name, const kiln_load_report *report)
 {
     kiln_note note;

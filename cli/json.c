@@ -17,8 +17,8 @@ static void indent(int depth)
 
 static void print_text(const char *text);
 
-// Prints what precedes a value: a comma after a previous value, inside an object a line break, and
-// the key.
+// Prints what precedes a JSON value: a comma if a value stands before it, a line break inside an
+// object, and the key.
 static void begin(json *j, const char *key)
 {
     bool array = j->array[j->depth];

@@ -1,5 +1,5 @@
-// The operating system of the command: POSIX.1-2008.
-#define _DEFAULT_SOURCE // declares TIOCGWINSZ
+// The functions of os.h, what the command needs from the operating system, by POSIX.1-2008.
+#define _DEFAULT_SOURCE // makes <sys/ioctl.h> declare TIOCGWINSZ
 #include "os.h"
 
 #include <errno.h>

@@ -14,7 +14,7 @@
 #include <shellapi.h>
 #include <stdlib.h>
 
-enum { ROOM = 4096 }; // UTF-16 units of a path, including the final zero
+enum { ROOM = 4096 }; // greatest number of UTF-16 units of a path, with its final zero
 
 static bool widen(const char *path, wchar_t wide[ROOM])
 {
@@ -71,7 +71,8 @@ bool os_begin(int *argc, char ***argv)
 
 bool os_is_terminal(os_stream stream)
 {
-    return _isatty((int)stream) != 0; // the values of os_stream are the file descriptors 0, 1 and 2
+    // the values of os_stream are the file descriptors 0, 1 and 2 of the standard streams
+    return _isatty((int)stream) != 0;
 }
 
 int os_columns(void)
@@ -92,11 +93,12 @@ double os_seconds(void)
 
 // ----------------------------------------------------------------------------------------- signals
 
-enum { INTERRUPT = 2, BROKEN_PIPE = 13 }; // the signal numbers of POSIX
+enum { INTERRUPT = 2, BROKEN_PIPE = 13 }; // numbers that these signals have in POSIX
 
 static volatile LONG caught;
 
-// Windows calls this in a separate thread. A second event ends the process.
+// Windows calls this function in a separate thread when the user presses Ctrl-C or closes the
+// console. The second such event ends the process.
 static BOOL WINAPI on_event(DWORD event)
 {
     (void)event;

@@ -210,7 +210,7 @@ typedef struct scene_setup {
                          "N",                                                                      \
                          .help = "texels along the edge of a face of the baked environment"},      \
     [SCENE_NEGATIVE] = CLI_NEGATIVE_ROW(scene_setup)
-/// Words of the choices in the shared rows.
+/// Returns the word of --diffuse with this index, or NULL after the last word.
 const char *scene_diffuse_word(int index);
 
 /// Converts and checks the shared options after cli_read_arguments. `may_change`: the user can

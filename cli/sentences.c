@@ -54,7 +54,7 @@ int cli_close_output(int code)
         return code;
     int gone = os_reader_gone(errno);
     if (gone)
-        return gone; // the reader closed the pipe and needs no message
+        return gone; // no message: the reader of standard output closed the pipe
     if (code == CLI_DONE)
         cli_fail("standard output: %s", errno ? strerror(errno) : "cannot be written");
     return code == CLI_DONE ? CLI_FAILED : code;

@@ -102,7 +102,7 @@ static kiln_result ask_textbook(void *user, view_renderer *renderer, bool wait, 
     show *s = user;
     textbook *t = &s->textbook;
     kiln_result result = t->begun ? KILN_OK : begin_textbook(s, renderer, error);
-    // at most 1000/1001: 1 means that the environment is set
+    // at most 1000/1001, because 1 says that the sampled environment is set too
     *done = atomic_load(&t->thousandths) / 1001.0;
     if (result != KILN_OK || (!wait && !atomic_load(&t->finished)))
         return result;

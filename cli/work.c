@@ -50,8 +50,8 @@ static void create_context(void *user)
         .thread_count = work->threads,
         .progress = cli_progress,
         .progress_user = work,
-        // If a bake needed more than the physical memory, the system would kill it without an error
-        // message.
+        // A bake that needs more than the physical memory fails with an error message. Without a
+        // limit the system would kill it.
         .memory_limit = os_physical_memory(),
     };
     work->error.result = kiln_context_create(&def, &work->context, &work->error);

@@ -9,15 +9,15 @@ typedef struct cli_work {
     kiln_context *context;
     kiln_error error;
     int threads;
-    double began; ///< time at which the work began, by os_seconds
-    /// time of the last drawing of the progress line, by os_seconds; 0 before the first
+    double began; ///< time at which the command's work began, by os_seconds
+    /// time at which the progress line was last drawn, by os_seconds; 0 before the first time
     double drawn;
     bool quiet; ///< true: nothing but errors is printed
     /// true: progress is drawn, because standard error is a terminal and --quiet is absent
     bool on_terminal;
     const char *stage;       ///< name of the last reported stage, a string constant
-    double furthest;         ///< largest fraction reported of that stage, 0 to 1
-    kiln_load_report loaded; ///< counts of what cli_load found and changed in the input
+    double furthest;         ///< largest fraction reported of the stage, 0 to 1
+    kiln_load_report loaded; ///< counts of what cli_load found and changed in the input file
 } cli_work;
 
 /// Creates the context. `threads`: 0 for one thread a core. `quiet`: no progress line. Returns

@@ -44,7 +44,8 @@ static void colour(float pixel[3])
     pixel[2] = (float)(mean < 0 ? 1 : 1 - strength);
 }
 
-// Sums over the three channels of all pixels of one ball.
+// Sums over the pixels of one ball and their three channels: the number of values, the true values,
+// and the squared differences from the true values, in radiance and on the screen.
 typedef struct sums {
     double count, truth, squares, screen;
 } sums;

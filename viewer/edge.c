@@ -11,7 +11,8 @@
 
 #include <math.h>
 
-// ACROSS x DOWN: nodes on one half of the cap, whose other half is the mirror image
+// SIZE: texels along each side of the table of C. ACROSS x DOWN: quadrature nodes on one half of
+// the spherical cap, whose other half is its mirror image.
 enum { SIZE = 48, ACROSS = 16, DOWN = 32 };
 
 static double root(double alpha, double x)

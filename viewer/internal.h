@@ -16,14 +16,15 @@ void view_describe(kiln_error *error, kiln_result result, const char *format, ..
 /// precision lines. Each ends in NUL.
 extern const char view_shader_screen_vert[], view_shader_scene_frag[];
 
-/// A metal's Fresnel reflectance in linear Rec. 709 under daylight, and the cosine-weighted mean 2
-/// int F(mu) mu dmu. Values are clamped to [0, 1].
+/// Set a metal's Fresnel reflectance, in linear Rec. 709 under daylight, at v.h, and its
+/// cosine-weighted mean 2 int F(mu) mu dmu. Values are clamped to [0, 1].
 void view_metal_fresnel(view_material metal, double voh, double f[3]);
 void view_metal_average(view_material metal, double average[3]);
 
-/// Returns the split sum's third term, int f / F voh (1 - voh)^6 (n.l) dl with GGX and
-/// height-correlated Smith shadowing, with an error of at most 1e-4. view_edge_create makes a table
-/// of this term: one channel, 48 x 48 texels at corners, KILN_AXIS_SQRT.
+/// Returns the split sum's third term: the integral over l of D G / (4 n.v n.l) voh (1 - voh)^6
+/// (n.l), with GGX and height-correlated Smith shadowing, with an error of at most 1e-4.
+/// view_edge_create makes a table of this term: one channel, 48 x 48 texels at corners,
+/// KILN_AXIS_SQRT.
 double view_edge(double roughness, double nov);
 KILN_CHECKED kiln_result view_edge_create(kiln_context *context, kiln_table *table,
                                           kiln_error *error);

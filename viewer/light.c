@@ -1,7 +1,7 @@
 // The environment as a light source. In: a map of any shape and its rotation. Out: the radiance
-// from a direction, and directions drawn with a density proportional to |r| + |g| + |b|, since texels
-// may be negative, by inverting the cumulated power of the panorama's rows and then of one row's texels. The random numbers of
-// view_random are here too.
+// from a direction, and directions drawn with a density proportional to |r| + |g| + |b|, since
+// texels may be negative, by inverting the cumulated power of the panorama's rows and then of one
+// row's texels. The random numbers of view_random are here too.
 #include "internal.h"
 #include "trace.h"
 
@@ -127,8 +127,8 @@ double view_light_pdf(const view_light *light, const double d[3])
     return light->total > 0 ? power(texel_at(light, d)) / light->total : 0;
 }
 
-// Binary search in cumulated sums: returns the last i < count with sums[i] <= value. `rest`
-// receives the position of `value` between sums[i] and sums[i + 1], 0 to 1.
+// Binary search in sums that never fall: returns the last i < count with sums[i] <= value. `rest`
+// receives where `value` lies between sums[i] (0) and sums[i + 1] (1).
 static int find(const double *sums, int count, double value, double *rest)
 {
     int low = 0, high = count;

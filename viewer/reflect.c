@@ -80,7 +80,8 @@ static double edge_of(double f0, double f82)
 void view_point_prepare(const view_ball *ball, const view_energy *energy, view_point *point)
 {
     double ab[2], edge, average = energy->average[point->ball];
-    if (!energy->split.image.pixels) // view_reflect_light needs no split sum
+    // only view_reflect_light has no split sum, and it uses none of the factors set here
+    if (!energy->split.image.pixels)
         return;
     kiln_table_lookup(&energy->split, point->v[2], ball->roughness, 0, ab);
     kiln_table_lookup(&energy->edge, point->v[2], ball->roughness, 0, &edge);
@@ -96,7 +97,8 @@ void view_point_prepare(const view_ball *ball, const view_energy *energy, view_p
             point->lobe[c] = average < 1 ? factor * (1 - e) / (1 - average) : 0;
             multiple = factor * (1 - e);
         } else if (ball->method == VIEW_METHOD_FDEZ_AGUERA) {
-            // The formula of kiln_fdez_aguera, with the ball's own F_avg.
+            // This is the formula of kiln_fdez_aguera with the F_avg of the ball instead of
+            // Schlick's.
             multiple = single * (1 - e) / e *
                        kiln_kulla_conty_fresnel(KILN_F_ADD_ASSIGNMENT, ball->f_average[c], e);
         } else if (ball->method == VIEW_METHOD_TURQUIN) {

@@ -61,7 +61,8 @@ static void set_table(view_renderer *r, int place, const kiln_table *table)
     float *layout = r->block.table_layout[place];
     layout[0] = (float)table->def.axis;
     if (table->def.axis == KILN_AXIS_GRAZING && table->def.model.g == KILN_G_SCHLICK_TEXT)
-        layout[0]++; // the shader's AXIS_GRAZING_TEXT
+        // KILN_AXIS_GRAZING of KILN_G_SCHLICK_TEXT has a number of its own in the shader
+        layout[0]++;
     layout[1] = table->def.corners;
     layout[2] = table->def.complement;
     layout[3] = table->def.flip;
@@ -260,7 +261,8 @@ static void fill_block(block *b, const view_options *o, int width, int height, b
     b->right[3] = (float)(slope * width / height);
     b->up[3] = (float)slope;
     b->back[3] = (float)exp2(o->exposure);
-    b->light[2] = b->light[3] = 1; // direction (0, 0, 1), radiance 1
+    // the light comes from the direction (0, 0, 1) and has radiance 1
+    b->light[2] = b->light[3] = 1;
     b->turn[0] = (float)cos(o->rotation * degree);
     b->turn[1] = (float)sin(o->rotation * degree);
     b->turn[2] = (float)o->split;

@@ -16,7 +16,7 @@ typedef struct view_random {
 } view_random;
 
 void view_random_start(view_random *random, uint64_t stream);
-/// Uniform in (0, 1).
+/// Returns a random number, uniformly distributed in (0, 1).
 double view_random_next(view_random *random);
 
 // ----------------------------------------------------------------------------------------- the light
@@ -30,7 +30,8 @@ typedef struct view_light {
     double cos_turn, sin_turn;
 } view_light;
 
-/// `rotation` is view_options.rotation. A NULL `source` means a uniform white environment.
+/// Makes an environment a light source that can be sampled. `rotation` is view_options.rotation. A
+/// NULL `source` means a uniform white environment.
 KILN_CHECKED kiln_result view_light_create(kiln_context *context, const kiln_map *source,
                                            double rotation, view_light *light, kiln_error *error);
 void view_light_free(view_light *light);
@@ -68,12 +69,14 @@ KILN_CHECKED kiln_result view_energy_create(kiln_context *context, const view_op
                                             view_energy *energy, kiln_error *error);
 void view_energy_free(view_energy *energy);
 
-/// The ball's Fresnel reflectance at v.h: Schlick's formula, or the measured metal's curve.
+/// Sets f to the ball's Fresnel reflectance at v.h: Schlick's formula, or the measured metal's
+/// curve.
 void view_fresnel(const view_ball *ball, const view_energy *energy, double voh, double f[3]);
-/// Computes specular, lobe and diffuse of a point whose ball, n, t, b and v are set.
+/// Computes the factors `specular`, `lobe` and `diffuse` of a point whose ball, n, t, b and v are
+/// set.
 void view_point_prepare(const view_ball *ball, const view_energy *energy, view_point *point);
-/// The BRDF times n.l for light from l, given in the frame (t, b, n), with view_fresnel's F. The
-/// peak of a perfect mirror (roughness 0) is left out.
+/// Computes the BRDF times n.l, with the Fresnel reflectance of view_fresnel, for light from l,
+/// given in the frame (t, b, n). The peak of a perfect mirror (roughness 0) is left out.
 void view_reflect(const view_ball *ball, const view_energy *energy, const view_point *point,
                   const double l[3], double f[3]);
 /// The arguments of view_walk_add, which adds an estimate, by one random walk, of the light that

@@ -105,11 +105,11 @@ typedef struct view_options {
     bool cube_diffuse;
 } view_options;
 
-/// Camera, method, material and settings that suit the scene.
+/// Returns the camera, method, material and settings that suit the scene.
 view_options view_defaults(view_scene scene);
 
-/// Names for command lines and addresses: "assignment", "kulla-conty", "gold", "level". NULL for an
-/// index beyond the last name.
+/// Return names for command lines and addresses, such as "assignment", "kulla-conty", "gold" and
+/// "level", or NULL for an index beyond the last name.
 const char *view_scene_name(int scene);
 const char *view_method_name(int method);
 const char *view_material_name(int material);
@@ -127,14 +127,15 @@ typedef struct view_ball {
     double f_average[3]; ///< cosine-weighted mean reflectance, 2 int F(mu) mu dmu
     double albedo[3];    ///< albedo of the diffuse base; 0 for metals
     view_method method;
-    /// the share `metallic` of F comes from the metal's measured indices of refraction
+    /// true: the share `metallic` of the Fresnel reflectance comes from the metal's measured
+    /// indices of refraction
     bool measured;
 } view_ball;
 
-/// Fills `balls` with the balls of the view; returns their number.
+/// Fills `balls` with the balls of the view, and returns their number.
 int view_balls(const view_options *options, view_ball balls[VIEW_MAX_BALLS]);
-/// World position of the camera and its axes: right, up, backwards. The axes are orthogonal unit
-/// vectors.
+/// Sets the world position of the camera, `eye`, and the camera's axes right, up and backwards. The
+/// axes are orthogonal unit vectors.
 void view_camera_axes(const view_camera *camera, double eye[3], double right[3], double up[3],
                       double back[3]);
 
@@ -167,7 +168,7 @@ KILN_CHECKED kiln_result view_create(kiln_context *context, view_lookup *lookup,
                                      view_renderer **renderer, kiln_error *error);
 /// Destroys a renderer, whose GL context must be current. `renderer` may be NULL.
 void view_destroy(view_renderer *renderer);
-/// The GL_RENDERER string of the driver, such as "llvmpipe (LLVM 15.0.6, 256 bits)".
+/// Returns the GL_RENDERER string of the driver, such as "llvmpipe (LLVM 15.0.6, 256 bits)".
 const char *view_gl_name(const view_renderer *renderer);
 
 typedef enum view_slot {
@@ -177,9 +178,9 @@ typedef enum view_slot {
     VIEW_SLOT_COUNT
 } view_slot;
 
-/// Uploads an environment. `levels`: a cube of GGX levels with roughness[] rising from 0. `sh`:
-/// harmonics of the radiance with 3 bands or more. `irradiance`: a cube of irradiance / pi; NULL
-/// keeps the present irradiance cube.
+/// Uploads an environment into a slot. `levels`: a cube of GGX levels with roughness[] rising from
+/// 0. `sh`: spherical harmonics of the radiance with 3 bands or more. `irradiance`: a cube of
+/// irradiance / pi; NULL keeps the irradiance cube that the slot has.
 KILN_CHECKED kiln_result view_set_environment(view_renderer *renderer, view_slot slot,
                                               const kiln_map *levels, const kiln_sh *sh,
                                               const kiln_map *irradiance, kiln_error *error);

@@ -289,7 +289,7 @@ static kiln_result ask_textbook(window *w, const view_window_def *def, view_rend
 static kiln_result loop(window *w, kiln_context *context, const view_window_def *def,
                         view_renderer *renderer, kiln_error *error)
 {
-    double textbook = 0; // finished share of the sampled bake
+    double textbook = 0; // finished share of the sampled bake, 0 to 1
     w->stale = true;
     while (!w->glfw.WindowShouldClose(w->handle) && (!def->go_on || def->go_on(def->user))) {
         int width, height;

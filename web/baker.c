@@ -16,7 +16,7 @@ struct baker {
     kiln_context *context;
     kiln_error error;
     kiln_map source;
-    kiln_load_report report; // about the source
+    kiln_load_report report; // what was found in the source picture
     kiln_note note;          // the sentence that baker_note returned last
     kiln_environment baked, scenery;
     kiln_image truth;

@@ -15,7 +15,7 @@
 typedef struct baker baker;
 
 BAKER baker *baker_create(void);
-/// Message of the last failure.
+/// Returns the error message of the last function that failed.
 BAKER const char *baker_message(const baker *b);
 BAKER const char *baker_cpu(const baker *b);
 /// Decodes an image file from memory as the source. On failure the previous source stays.
@@ -30,12 +30,12 @@ BAKER bool baker_bake(baker *b, int size, int levels, double rotation, double ex
 BAKER int baker_level_count(const baker *b);
 BAKER int baker_level_size(const baker *b, int level);
 BAKER double baker_roughness(const baker *b, int level);
-/// What was found in the source and cut off by the last bake, in sentences without a full stop;
-/// NULL behind the last. The text stays until the next call.
+/// Returns sentence number `index`, without a full stop, about what was found in the source and
+/// what the last bake cut off; NULL after the last sentence. The text stays until the next call.
 BAKER const char *baker_note(baker *b, int index);
-/// The six faces of a baked level, as RGB floats.
+/// Returns the six faces of a baked level, as RGB floats.
 BAKER const float *baker_texels(const baker *b, int level);
-/// Spherical harmonics of the baked radiance: coefficients [9][3].
+/// Returns the spherical harmonics of the baked radiance: coefficients [9][3].
 BAKER const double *baker_harmonics(const baker *b);
 /// Bakes the textures that light the view, as `kiln render` does: levels down to 8 texels a side
 /// and an irradiance cube. With `samples` above 0 the levels come from importance sampling with

@@ -18,12 +18,12 @@ STAGE stage *stage_create(const char *canvas);
 STAGE bool stage_ready(const stage *s);
 STAGE const char *stage_message(const stage *s);
 STAGE const char *stage_gl_name(const stage *s);
-/// The array of view numbers (view_numbers.h) that stage_draw and the functions below read.
+/// Returns the array of view numbers (view_numbers.h) that stage_draw and the functions below read.
 STAGE double *stage_numbers(stage *s);
 /// Sets the array of view numbers to the scene's defaults.
 STAGE void stage_defaults(stage *s, int scene);
-/// Name of entry `index` of the scenes (kind 0), methods (1), materials (2) or debug views (3);
-/// NULL for an index beyond the last entry.
+/// Returns the name of entry `index` of the scenes (kind 0), methods (1), materials (2) or debug
+/// views (3); NULL for an index beyond the last entry.
 STAGE const char *stage_word(int kind, int index);
 
 /// Allocates an environment: six faces of RGB floats for each level (stage_texels; level -1 is the

@@ -269,12 +269,14 @@ typedef struct kiln_table_def {
     /// Size of the table in texels, 1 to KILN_MAX_TABLE. 0 selects 128 x 128, or 32 x 32 x 32 for a
     /// 3-D table, or 40 x 32 x 20 for KILN_TABLE_E_WALK. A table of E_avg is one texel wide.
     int width, height, depth;
-    /// How u depends on n.v; KILN_TABLE_E_WALK always has the grazing axis and corners.
+    /// How the column's coordinate u depends on n.v. KILN_TABLE_E_WALK always has KILN_AXIS_GRAZING
+    /// and `corners`.
     kiln_axis axis;
     /// true: texel i of n lies at i / (n - 1) of each axis; false: at (i + 1/2) / n.
     bool corners;
     bool complement; ///< true: stores 1 - value, since 1 - E keeps its precision where E is near 1
-    bool flip;       ///< true: row 0 holds roughness 1, for loaders that flip pictures vertically
+    /// true: row 0 holds roughness 1 instead of 0, for loaders that flip pictures vertically
+    bool flip;
     /// Number of random walks per texel, only for KILN_TABLE_E_WALK, rounded as in kiln_walk_def; 0
     /// for 8192.
     int path_count;
@@ -329,9 +331,9 @@ typedef struct kiln_fit_def {
     kiln_fit_kind kind;
     kiln_model model;
     kiln_fit_form form;
-    double error; ///< largest allowed error, 1e-6 to 0.5; 0 for 1e-3
-    /// Smallest roughness for which the form is fitted, 0 to 0.9, at least 0.1 for sheen. The form
-    /// clamps a smaller roughness to this value.
+    double error; ///< largest absolute error of the form, 1e-6 to 0.5; 0 for 1e-3
+    /// Smallest roughness for which the closed form is fitted, 0 to 0.9, at least 0.1 for sheen.
+    /// The form clamps a smaller roughness to this value.
     double roughness_min;
     /// Largest number of coefficients of each part of the form, 1 to KILN_MAX_FIT; 0 for
     /// KILN_MAX_FIT.
@@ -367,7 +369,8 @@ typedef struct kiln_fit {
     int part_count;
     kiln_fit_part part[2];
     int coefficient_count;
-    double max_error, rms_error; ///< errors of the form, evaluated in floats, against the integrals
+    /// absolute errors of the closed form, evaluated in floats, against the exact integrals
+    double max_error, rms_error;
 } kiln_fit;
 
 /// Finds the closed form with the fewest coefficients whose error is at most def->error at some
@@ -375,7 +378,7 @@ typedef struct kiln_fit {
 /// `def` may be NULL.
 KILN_API KILN_CHECKED kiln_result kiln_fit_create(kiln_context *context, const kiln_fit_def *def,
                                                   kiln_fit *fit, kiln_error *error);
-/// Evaluates a form. `values` receives A and B for KILN_FIT_DFG, else one number.
+/// Evaluates a closed form. `values` receives A and B for KILN_FIT_DFG, else one number.
 KILN_API void kiln_fit_evaluate(const kiln_fit *fit, float nov, float roughness, float *values);
 /// Writes a closed form as a C function (.h) or a GLSL ES 3.00 function (.glsl). `name` is the
 /// identifier of the function; NULL for kiln_e, kiln_e_average, kiln_dfg or kiln_sheen.
@@ -393,8 +396,8 @@ typedef enum kiln_table_format {
     KILN_TABLE_FORMAT_F16,
     KILN_TABLE_FORMAT_U16, ///< 0 to 1 in 65535 steps; other values are clamped
     KILN_TABLE_FORMAT_U8,  ///< 0 to 1 in 255 steps; other values are clamped
-    /// Babylon.js' format: a PNG of three channels c, stored as (c D)^(1 / 2.2), and D, with values
-    /// up to 255.
+    /// Babylon.js' format: a PNG with three channels x, stored as (x D)^(1 / 2.2), and D as the
+    /// fourth. Values are at most 255.
     KILN_TABLE_FORMAT_RGBD
 } kiln_table_format;
 
@@ -405,8 +408,8 @@ typedef struct kiln_table_save_def {
     const char *name; ///< beginning of the names in .h and .glsl; NULL for the file's own name
 } kiln_table_save_def;
 
-/// Fails, with the error of kiln_table_save, if a table cannot be saved to this path with these
-/// options. `def` may be NULL.
+/// Fails, with the error of kiln_table_save, if a table cannot be saved to this path with the
+/// options `def`, which may be NULL.
 KILN_API KILN_CHECKED kiln_result kiln_table_save_check(const char *path,
                                                         const kiln_table_save_def *def,
                                                         kiln_error *error);

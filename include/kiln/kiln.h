@@ -62,7 +62,7 @@ typedef enum kiln_result {
     KILN_ERROR_MEMORY,      ///< the allocator refused, or the context's limit is reached
     KILN_ERROR_IO,          ///< a file cannot be opened, read, written or renamed
     KILN_ERROR_FORMAT,      ///< a file's content is damaged or not what its name says
-    KILN_ERROR_UNSUPPORTED, ///< valid, but not something kiln reads or writes
+    KILN_ERROR_UNSUPPORTED, ///< valid, but of a kind that kiln does not read or write
     KILN_ERROR_CANCELLED,   ///< the progress callback returned false
 } kiln_result;
 
@@ -97,8 +97,9 @@ typedef struct kiln_context_def {
     void *(*allocate)(void *user, size_t size);
     void (*release)(void *user, void *memory, size_t size);
     void *allocator_user;
-    size_t memory_limit; ///< number of bytes that may be held at once; 0 for no limit
-    int thread_count;    ///< number of threads, 1 to 256; 0 for one per core
+    /// number of bytes that the context's objects may hold at once; 0 for no limit
+    size_t memory_limit;
+    int thread_count; ///< number of threads, 1 to 256; 0 for one per core
     /// Runs task(data, i) for each i from 0 to count - 1, in any order on any threads, and returns
     /// when every call has returned. NULL: the context starts threads of its own.
     void (*parallel_for)(void *user, int count, void (*task)(void *data, int index), void *data);
@@ -223,8 +224,8 @@ typedef enum kiln_layout {
     KILN_LAYOUT_STRIP,
     KILN_LAYOUT_OCTAHEDRON,
     KILN_LAYOUT_PROBE, ///< a square angular map around -Z; the map becomes a panorama
-    KILN_LAYOUT_BALL ///< the square photograph of a mirror ball, by a camera that looks along -Z;
-                     ///< the map becomes a panorama
+    KILN_LAYOUT_BALL   ///< the square photograph of a mirror ball, by a camera that looks along -Z;
+                       ///< the map becomes a panorama
 } kiln_layout;
 
 /// What becomes of negative texels. Lossy compression leaves such texels beside bright ones, and so
@@ -280,9 +281,10 @@ typedef struct kiln_load_report {
 /// true. Returns false if the report has no such sentence.
 KILN_API bool kiln_load_report_note(const kiln_load_report *report, int index, kiln_note *note);
 
-/// Puts into a sentence what a bake cut off from a source with this report: sets *note and returns
-/// true. Returns false if nothing was cut off, or only by rounding, because the source had no
-/// negative texels or these became 0.
+/// Makes a sentence about the values below zero that a bake set to 0, `cut`, for a source that was
+/// loaded with the report `source`: sets *note and returns true. Returns false if there were no
+/// such values, or only values that rounding made, because the source had no negative texels or
+/// these became 0.
 KILN_API bool kiln_cut_note(const kiln_load_report *source, const kiln_cut *cut, kiln_note *note);
 
 /// Options for loading a map. {0} selects the default of each option.
@@ -296,9 +298,9 @@ typedef struct kiln_load_def {
 /// linear), from a KTX2 or DDS cube that kiln wrote, or from six face files. Six faces are given by
 /// a folder or by a path with `%s` or `{face}` in place of the face, with any of the names in
 /// docs/conventions.md: px nx py ny pz nz and the like. A folder that holds two sets of faces is
-/// refused. The content of a file decides its format, never the ending of its name. Texels that are infinite or not a number are
-/// replaced as kiln_load_report says. A picture in which no texel is a number is refused. `def` may
-/// be NULL.
+/// refused. The content of a file decides its format, never the ending of its name. Texels that are
+/// infinite or not a number are replaced as kiln_load_report says. A picture in which no texel is a
+/// number is refused. `def` may be NULL.
 KILN_API KILN_CHECKED kiln_result kiln_map_load(kiln_context *context, const char *path,
                                                 const kiln_load_def *def, kiln_map *map,
                                                 kiln_error *error);
@@ -316,8 +318,8 @@ KILN_API KILN_CHECKED kiln_result kiln_map_load_faces(kiln_context *context,
                                                       const kiln_load_def *def, kiln_map *map,
                                                       kiln_error *error);
 /// Sets order[face] to the index of the file of each of the faces +X -X +Y -Y +Z -Z, by the names
-/// of six files, or to 0 to 5 if the names do not tell the faces. Returns false if the names of some
-/// files are those of a face, but do not make up a set.
+/// of six files, or to 0 to 5 if the names do not tell the faces. Returns false if the names of
+/// some files are those of a face, but do not make up a set.
 KILN_API bool kiln_faces_order(const char *const paths[6], int order[6]);
 
 typedef enum kiln_pixel_type {
@@ -378,8 +380,8 @@ typedef struct kiln_file_info {
     /// Coefficients of the spherical harmonics, converted to the normalisation and order of kiln_sh
     /// but in the axes of the file.
     float sh[KILN_MAX_BANDS * KILN_MAX_BANDS][3];
-    /// Notes about what kiln chooses, converts and assumes when it reads the file. The counts are 0,
-    /// because the texels were not read.
+    /// Notes about what kiln chooses, converts and assumes when it reads the file. The counts are
+    /// 0, because the texels were not read.
     kiln_load_report report;
 } kiln_file_info;
 
@@ -390,7 +392,7 @@ KILN_API KILN_CHECKED kiln_result kiln_file_describe(kiln_context *context, cons
 
 // --------------------------------------------------------------------------------------------- sky
 
-/// Stands for the value zero in options whose 0 selects a default, as in kiln_sky_def. A computed
+/// Stands for the value 0 in options for which 0 selects a default, as in kiln_sky_def. A computed
 /// option x is passed as `x != 0 ? x : KILN_ZERO`.
 #define KILN_ZERO 1e-300
 
@@ -478,14 +480,15 @@ KILN_API void kiln_stream_cancel(kiln_stream *stream);
 KILN_API void kiln_spectrum_destroy(kiln_spectrum *spectrum);
 
 KILN_API int kiln_spectrum_degree(const kiln_spectrum *spectrum);
-/// Sets power[l] to the sum over m of |a_lm|^2 of each of the three channels, for each degree l
-/// from 0 to the spectrum's degree.
+/// Sets power[l][c] to the sum of the squared coefficients of degree l in channel c, over all
+/// orders, for each degree l from 0 to the spectrum's degree.
 KILN_API KILN_CHECKED kiln_result kiln_spectrum_power(const kiln_spectrum *spectrum,
                                                       double (*power)[3], kiln_error *error);
 
 /// Filters the environment with one lobe, turned by `rotation` degrees about +Y, and writes the
-/// result, with values below zero set to 0, to level `level` of `map`. Fails where the lobe is too narrow for the degree of the
-/// spectrum; kiln_prefilter filters such levels from the panorama itself.
+/// result, with values below zero set to 0, to level `level` of `map`. Fails where the lobe is too
+/// narrow for the degree of the spectrum; kiln_prefilter filters such levels from the panorama
+/// itself.
 KILN_API KILN_CHECKED kiln_result kiln_spectrum_filter(kiln_context *context,
                                                        const kiln_spectrum *spectrum,
                                                        const kiln_lobe *lobe, double rotation,
@@ -501,7 +504,8 @@ typedef struct kiln_prefilter_def {
     kiln_shape shape; ///< shape of the result; KILN_SHAPE_AUTO for a cube
     int size;         ///< size of level 0, 1 to KILN_MAX_SIZE; 0 for 256
     int level_count;  ///< number of levels, 1 to KILN_MAX_LEVELS; 0 for all levels down to size 1
-    /// Smallest size of a level, as in kiln_map; needed for more levels than halving to 1 gives.
+    /// Smallest size of a level in texels, as in kiln_map. Needed where level_count is more than
+    /// the number of levels down to size 1.
     int smallest;
     /// Lobe of every level: GGX (alpha = roughness^2), Lambert, Charlie (alpha = roughness^2, at
     /// least 0.01) or Phong (exponent 2 / alpha^2 - 2, at least 1).
@@ -562,7 +566,8 @@ KILN_API KILN_CHECKED kiln_result kiln_map_sh(kiln_context *context, const kiln_
 KILN_API KILN_CHECKED kiln_result kiln_sh_filter(const kiln_sh *radiance, int bands,
                                                  bool irradiance, double window, kiln_sh *sh,
                                                  kiln_error *error);
-/// Sets `value` to the sum of the series in a unit direction. The sum may be negative.
+/// Sets `value` to the sum of all harmonics times their coefficients in a unit direction. The sum
+/// may be negative.
 KILN_API void kiln_sh_evaluate(const kiln_sh *sh, const double direction[3], double value[3]);
 
 // ----------------------------------------------------------------------------------- environments
@@ -571,15 +576,17 @@ KILN_API void kiln_sh_evaluate(const kiln_sh *sh, const double direction[3], dou
 /// kiln_plan_environment create an environment, kiln_environment_free releases it.
 /// kiln_environment_save also accepts an environment that the caller filled with other maps.
 typedef struct kiln_environment {
-    kiln_map levels; ///< prefiltered radiance, each level for its entry of levels.roughness
+    kiln_map levels; ///< prefiltered radiance; level k is filtered for levels.roughness[k]
     /// Irradiance / pi, one level; empty ({0}) where no irradiance was asked for.
     kiln_map irradiance;
-    kiln_sh sh; ///< harmonics of the radiance without a window; kiln_sh_filter derives others
+    /// spherical harmonics of the radiance; kiln_sh_filter makes irradiance of them or applies a
+    /// window
+    kiln_sh sh;
     kiln_lobe_kind lobe; ///< lobe that the levels were filtered with
     /// degree of the spectrum that the levels are computed from; 0 if there is no such spectrum
     int degree;
-    /// Values of the maps that were below zero and became 0. A source without negative texels has
-    /// such values by rounding only.
+    /// Values of `levels` and of `irradiance` that were below zero after filtering and became 0. A
+    /// source without negative texels has such values by rounding only.
     kiln_cut levels_cut, irradiance_cut;
 } kiln_environment;
 
@@ -597,7 +604,8 @@ typedef enum kiln_tune {
 /// What kiln_bake computes. {0} selects the defaults of kiln_prefilter_def, an irradiance map of
 /// size 64 and three bands of harmonics.
 typedef struct kiln_bake_def {
-    /// `levels.rotation` also turns irradiance and harmonics, and follows `mirror`.
+    /// The definition of the levels. `levels.rotation` turns irradiance and harmonics too, after
+    /// `mirror` is applied.
     kiln_prefilter_def levels;
     /// Engine that the levels are for, or NULL. The engine decides lobe, roughness, smallest and
     /// tuning of `levels`, whose own fields of these names must be 0; also size and level_count if
@@ -638,9 +646,8 @@ KILN_API KILN_CHECKED kiln_result kiln_plan_environment(const kiln_plan *plan,
                                                         kiln_error *error);
 /// Bakes into an environment made by kiln_plan_environment, or into maps of the same shape, size
 /// and levels. The result is bit-identical to that of kiln_bake. On failure the content of the maps
-/// is undefined. An execution allocates nothing, except where a source has
-/// more suns than 64 and more than any source before: single texels with a thousandth of all light
-/// each.
+/// is undefined. An execution allocates nothing, unless the source has more than 64 suns and more
+/// suns than any source before. A sun is a single texel with a thousandth of all light.
 KILN_API KILN_CHECKED kiln_result kiln_plan_execute(kiln_plan *plan, const kiln_map *source,
                                                     kiln_environment *environment,
                                                     kiln_error *error);
@@ -654,8 +661,8 @@ KILN_API void kiln_plan_destroy(kiln_plan *plan);
 
 /// Computes reference values by brute force, for tests, benchmarks and error maps: the sum over
 /// every texel of a panorama in double precision. The lobe is integrated over each texel with as
-/// many nodes as a relative error of 1e-6 of the result needs. `directions` holds `count` unit
-/// vectors (to 0.001), `values` receives count * 3 numbers.
+/// many quadrature nodes as a relative error of 1e-6 of the result needs. `directions` holds
+/// `count` unit vectors (to 0.001), `values` receives count * 3 numbers.
 KILN_API KILN_CHECKED kiln_result kiln_reference_filter(kiln_context *context,
                                                         const kiln_map *panorama,
                                                         const kiln_lobe *lobe, double rotation,
@@ -687,9 +694,9 @@ KILN_API double kiln_format_limit(kiln_format format);
 typedef struct kiln_save_def {
     kiln_format format;
     int zstd; ///< zstd compression level of a KTX2 file, 1 to 22; 0 for no compression
-    /// Harmonics stored in the metadata of formats that have metadata; may be NULL.
+    /// Spherical harmonics to store in the metadata of formats that have metadata; may be NULL.
     const kiln_sh *sh;
-    const char *lobe; ///< name of the lobe, stored in the metadata; may be NULL
+    const char *lobe; ///< name of the lobe of the levels, stored in the metadata; may be NULL
 } kiln_save_def;
 
 /// Returns the ending of a path if a format of kiln has that ending: in lower case and with its
@@ -697,7 +704,7 @@ typedef struct kiln_save_def {
 /// kiln does not know.
 KILN_API const char *kiln_path_ending(const char *path);
 /// Fails, with the error of kiln_map_save, if a map of this shape cannot be saved to this path with
-/// these options. `def` may be NULL.
+/// the options `def`, which may be NULL.
 KILN_API KILN_CHECKED kiln_result kiln_map_save_check(const char *path, kiln_shape shape,
                                                       const kiln_save_def *def, kiln_error *error);
 /// Returns the largest radiance that a file of this path and format holds; greater values are saved
@@ -720,7 +727,8 @@ KILN_API KILN_CHECKED kiln_result kiln_map_pack(kiln_context *context, const kil
 /// What kiln_map_save wrote, and how many values were too large for the format.
 typedef struct kiln_save_report {
     int file_count;
-    double limit;       ///< largest radiance that the files hold; 0 if floats hold every radiance
+    /// largest radiance that the files' format can hold; 0 if floats hold every radiance
+    double limit;
     size_t value_count; ///< number of values in all levels: three per texel
     size_t cut_count;   ///< number of values above the limit, which the files hold as the limit
     double share;       ///< cut_count / value_count

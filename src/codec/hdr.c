@@ -1,9 +1,10 @@
 // Reading of Radiance HDR files (RGBE and XYZE). In: the bytes of a file, flat or run-length
 // encoded in the old or the new way, in any of the eight orientations. Out: RGB floats in Rec. 709,
-// rows from top to bottom. Lines are found first and then decoded on all threads.  A value is
-// mantissa / 256 * 2^(exponent - 128), divided by the products of the header's lines EXPOSURE and
-// COLORCORR, which gives the original radiance, and converted to Rec. 709 if the header names other
-// primaries or CIE XYZ.
+// rows from top to bottom. Lines are found first and then decoded on all threads.
+//
+// A value is mantissa / 256 * 2^(exponent - 128), divided by the products of the header's lines
+// EXPOSURE and COLORCORR, which gives the original radiance, and converted to Rec. 709 if the
+// header names other primaries or CIE XYZ.
 #include "codec/hdr.h"
 
 #include "codec/codec.h"

@@ -1,8 +1,11 @@
 // Reading of PNG files. In: the bytes of a file. Out: a picture of three linear floats a pixel.
 // Every colour type, depth and filter is read, interlaced or not, by the specification (W3C,
 // "Portable Network Graphics", third edition). png_color.c finds what the samples mean. Alpha and
-// tRNS are ignored.  kiln has its own PNG code so that kiln can be built without libpng and writes
-// the same bytes on every system. The tests compare the code with libpng, oiiotool and a browser.
+// tRNS are ignored.
+//
+// kiln has its own PNG code so that kiln can be built without libpng and writes the same bytes on
+// every system. The tests compare the code with libpng, oiiotool and a browser.
+//
 // The IDAT chunks are joined and decompressed at once, the filters of the rows are undone in place,
 // and a table for each channel gives the linear value of every sample. Sizes are checked against
 // the file's before memory is allocated.
