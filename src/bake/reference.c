@@ -101,7 +101,8 @@ static void set_lobe(ki_reference *r, const kiln_lobe *lobe)
         r->lobe_width = 2 * alpha;
         r->linear = alpha == 1;
     } else if (lobe->kind == KILN_LOBE_PHONG) {
-        // Where cos^n theta is below e^-60 = 1e-26 of its peak, the lobe is left out.
+        // Where cos^n theta, the lobe with exponent n, is below e^-60 = 1e-26 of its peak, the lobe
+        // is left out.
         double cut = ki_exp(-60 / lobe->parameter);
         if (cut > 0.01) {
             r->cut = cut;
@@ -197,7 +198,8 @@ static void fill_pairs(const ki_reference *r, const ray_sums *ray, const ki_row_
         double cc = p1 + q1 * ea[x], cd = p1 + q1 * eb[x];
         double da = high - slope * ca, db = high - slope * cb;
         double dc = high - slope * cc, dd = high - slope * cd;
-        // the four quotients a2 / (d d) below share one division, which takes longer than products
+        // The quotients a2 / d of the four nodes share one division, because a division takes
+        // longer than products.
         double scale = a2 / ((da * db) * (dc * dd));
         double ra = scale * db * (dc * dd), rb = scale * da * (dc * dd);
         double rc = scale * (da * db) * dd, rd = scale * (da * db) * dc;
@@ -264,7 +266,8 @@ static void refine(const ki_reference *r, const ray_sums *ray, const ki_row_geom
                    double *weight)
 {
     double step = 2 * KI_PI / r->width, step_theta = KI_PI / r->height;
-    // Factor that turns a mean over (theta, phi) into a mean over the solid angle.
+    // ki_reference_cell returns the mean of lobe times sin theta over (theta, phi). This factor turns
+    // that mean into the lobe's mean over the texel's solid angle.
     double scale = step * step_theta / row->area;
     for (int i = s.first; i <= s.last; i++) {
         int x = wrap(r, i);

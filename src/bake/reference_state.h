@@ -17,7 +17,7 @@ typedef struct ki_row_geometry {
     // +Y.
     double cos_mean, sin_mean;
     double cos_pair[2], sin_pair[2];
-    double area; // solid angle of one texel of the row in steradians
+    double area; // solid angle of each texel of the row in steradians
 } ki_row_geometry;
 
 // Geometry that is the same for all cells of one depth of cutting. A texel is a cell of depth 0,
@@ -47,7 +47,7 @@ typedef struct ki_reference {
     bool linear;
     double a2;  // alpha^2 of a GGX lobe
     double cut; // cosine of the angle to the lobe's axis below which the lobe is 0 or negligible
-    bool kink;  // true: the lobe has a kink where that cosine is `cut`
+    bool kink;  // true: the lobe has a kink where the cosine of the angle to its axis is `cut`
     double lobe_width;
     int depth_limit;
     ki_reference_rule rule;
@@ -55,7 +55,7 @@ typedef struct ki_reference {
     const double (*directions)[3]; // unit directions of the lobe's axis, turned by the rotation
     double (*values)[3];
     int count;
-    double *scratch; // scratch memory, one piece for each group of directions in a batch
+    double *scratch; // scratch memory, one piece for each group of directions that a batch computes
     size_t scratch_size;
 } ki_reference;
 

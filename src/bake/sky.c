@@ -90,8 +90,8 @@ static void sun_radiance(double theta, double turbidity, double rgb[3])
         for (int k = 0; k < 3; k++)
             xyz[k] += radiance * match[k];
     }
-    // Turns the sum into luminance: 10 nm between the samples of the spectrum, 683 lm/W, and 1e-3
-    // for kcd.
+    // Turns the sum over wavelengths into luminance: 10 nm between the samples of the spectrum, 683
+    // lm/W, and 1e-3 for kcd.
     for (int k = 0; k < 3; k++)
         xyz[k] *= 10 * 683 * 1e-3;
     rgb_from_xyz(xyz, rgb);
@@ -259,8 +259,8 @@ static void sky_on_ground(const ki_sky *sky, double irradiance[3])
     ki_gauss_legendre(HEIGHTS, node, weight);
     irradiance[0] = irradiance[1] = irradiance[2] = 0;
     for (int j = 0; j < HEIGHTS; j++) {
-        // The integral of radiance times cos theta over the hemisphere is a quadrature in cos^2
-        // theta, whose differential is 2 cos theta sin theta dtheta.
+        // The irradiance is the integral of radiance times cos theta over the hemisphere. The
+        // quadrature is in cos^2 theta, whose differential is 2 cos theta sin theta dtheta.
         double square = 0.5 * (1 + node[j]), cos_theta = sqrt(square), sin_theta = sqrt(1 - square);
         for (int i = 0; i < AZIMUTHS; i++) {
             double sine, cosine, rgb[3];
@@ -318,7 +318,7 @@ static void paint_row(void *data, int index)
     float *texel = p->map->level[0] + 3 * (size_t)row * (size_t)width;
     double low = KI_PI * row / size, high = KI_PI * (row + 1) / size;
 
-    // In a row that the horizon crosses, the share `above` of the texel is sky.
+    // above: the share of a texel's solid angle that is sky, in a row that the horizon crosses.
     double top = ki_cos(low), bottom = ki_cos(high), above = 1;
     if (2 * (row + 1) > size)
         above = 2 * row >= size ? 0 : top / (top - bottom);

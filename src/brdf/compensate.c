@@ -24,9 +24,8 @@ double kiln_kulla_conty(double e_o, double e_i, double e_average)
 double kiln_kulla_conty_fresnel(kiln_f_add form, double f_average, double e_average)
 {
     double f = ki_unit(f_average), e = ki_unit(e_average);
-    double divisor = (1 - f) + f * e; // 1 - f (1 - E) without cancellation near f = 1
-    // f = 1 and E = 0: all light bounces for ever, none is absorbed, and the limit of the factor is
-    // 1
+    double divisor = (1 - f) + f * e; // 1 - f (1 - E), as a sum that does not cancel near f = 1
+    // f = 1 and E = 0: no bounce absorbs light or lets it leave, and the limit of the factor is 1
     if (!(divisor > 0))
         return 1;
     double sum = f * e / divisor;
@@ -49,7 +48,8 @@ void kiln_fdez_aguera(double f0, double a, double b, double *single, double *mul
     f0 = ki_unit(f0);
     a = ki_unit(a);
     b = ki_unit(b) < 1 - a ? ki_unit(b) : 1 - a;
-    // The divisor is 1 - f m, written as a sum that does not cancel.
+    // The divisor is 1 - f m, where m = 1 - a - b is the light that the lobe for F = 1 loses. It is
+    // written as a sum that does not cancel.
     double f = (1 + 20 * f0) / 21, e = a + b, divisor = (1 - f) + f * e;
     *single = f0 * a + b;
     *multiple = divisor > 0 ? *single * f * (1 - e) / divisor : 1;

@@ -47,9 +47,10 @@ typedef struct boundary {
     // thinner medium.
     double critical;
     double lambda_v; // Smith's Lambda(v), for masking in transmission
-    double root_v;   // n.v (1 + 2 Lambda(v)) for GGX with KILN_G_SMITH, 0 for other models
-    double pole;     // G, as a function of n.l, has its pole nearest to 0 at about n.l = -pole
-    double most;     // upper bound of G(v, l) / (n.v)
+    // n.v (1 + 2 Lambda(v)) with Smith's Lambda, for GGX with KILN_G_SMITH; 0 for other models
+    double root_v;
+    double pole; // G, as a function of n.l, has its pole nearest to 0 at about n.l = -pole
+    double most; // upper bound of G(v, l) / (n.v)
     // Share of R or T that a ring of half vectors (all h at one angle to n) must hold to get 16
     // quadrature nodes instead of 8.
     double coarse;
@@ -86,8 +87,8 @@ static double fresnel(double contrast, double c, double beyond)
     return fmin(1, contrast * contrast * (product * product + s2 * s2) / (below * below));
 }
 
-// G / (n.v) of reflected light. For GGX with KILN_G_SMITH the formula uses root_v, which depends on
-// the view only.
+// The masking G / (n.v) of reflected light, where n.l = nol. For GGX with KILN_G_SMITH the formula
+// uses root_v, which depends on the view only.
 static double reflected_masking(const boundary *s, double nol)
 {
     if (s->root_v > 0) {
@@ -195,8 +196,9 @@ static double ring(const boundary *s, part what, const double h[2], bool coarse)
     } else {
         y = -least / k;
         pole = fmin(s->pole, 0.5 * sqrt(fabs(s->ior - 1)) + 1e-3) / (h[1] * k);
-        // If v is in the denser medium, transmitted light has n.l = 0 at c = v.h = (m^2 + eta^2 -
-        // 1) / (2 eta m), where m = eta n.v / cos theta.
+        // If v is in the denser medium, transmitted light has n.l = 0 at v.h = (m^2 + eta^2 - 1) /
+        // (2 eta m), where m = eta n.v / cos theta, eta = 1 / ior, and theta is the angle of h to
+        // n.
         double m = s->eta * s->mu / h[1], m2 = s->eta * s->eta - 1;
         y = s->critical > 0 && m * m < m2 ? ((m * m + m2) / (2 * s->eta * m) - least) / k : y;
         pole = s->critical > 0 ? s->pole / (h[1] * k) : pole;

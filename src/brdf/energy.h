@@ -14,7 +14,8 @@
 /// the limit as roughness tends to 0 while nov is fixed. At roughness 0 and nov = 0, E is the limit
 /// of the values at roughness 0 as nov tends to 0.
 double ki_energy(const kiln_model *model, double roughness, double nov);
-/// The average E_avg = 2 int_0^1 E(mu) mu dmu. Roughness is in [0, 1]. The error is below 1e-10.
+/// Returns the average albedo under diffuse light, E_avg = 2 int_0^1 E(mu) mu dmu, of the lobe with
+/// F = 1. Roughness is in [0, 1]. The error is below 1e-10.
 double ki_energy_average(const kiln_model *model, double roughness);
 /// Sets ab[0] and ab[1] to A and B of the split sum: with Schlick's F the albedo is f0 A + B, and
 /// E = A + B. Ranges and error are those of ki_energy.

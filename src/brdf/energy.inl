@@ -45,11 +45,11 @@ typedef struct view {
     double alpha, alpha2, s; // roughness^2, alpha^2 and 1 - alpha^2
     double mu, sin2, sine;   // cosine mu of the view, 1 - mu^2 and its square root
     double k;                // k of Schlick's masking G1(x) = x / (x (1 - k) + k)
-    double root;             // sqrt(alpha^2 + s mu^2), of Smith's masking
-    double front;            // factor of G / mu that depends on the view and not on the light
+    double root;  // sqrt(alpha^2 + s mu^2), which is mu (1 + 2 Lambda) of Smith's masking
+    double front; // the factor of masking G / mu that depends on the view and not on the light
     // cosine mu_i of the light at which the second of the two intervals of mu_i begins
     double split;
-    double pole; // c: the integrand's pole nearest to mu_i = 0 is at mu_i = -c
+    double pole; // c, where the integrand's pole nearest to mu_i = 0 is at mu_i = -c
 } view;
 
 // The sixteen nodes of a quadrature panel: mu = mu_i, the cosine of the light; rest = 1 - mu_i;
@@ -84,7 +84,8 @@ static void view_set(view *v, const kiln_model *model, double roughness, double 
         v->pole = v->k / (1 - v->k);
         break;
     }
-    // The integrand of B is singular, as a logarithm, at mu_i = -mu (cosines of light and view).
+    // The integrand of B of the split sum is singular, as a logarithm, where the light's cosine
+    // mu_i is minus the view's cosine mu.
     if (split && v->pole > nov)
         v->pole = nov;
     v->split = (nov > v->alpha ? nov : v->alpha) / 2;
@@ -125,7 +126,8 @@ static void hyperbolic(double h, double sinh_y[HALF], double cosh_y[HALF])
     }
 }
 
-// Sets delta and Q of nodes whose mu_i is known, for substitutions that give Q no closed form.
+// Sets delta, the light's cosine mu_i minus the view's, and Q, the root in int D dphi, of nodes
+// whose mu_i is known. Serves substitutions that give Q no closed form.
 static void finish_nodes(const view *v, panel *p)
 {
     double back = 2 * v->alpha2 * v->mu, wide = 4 * v->alpha2 * v->sin2;
@@ -155,8 +157,9 @@ static void log_nodes(const view *v, double h, double centre, const double *sinh
     finish_nodes(v, p);
 }
 
-// Sets the nodes of the second interval of mu_i as one panel, even in mu_i from v->split to 1. Only
-// alpha > 0.7 uses this panel, where the integrand has no pole near the interval.
+// Sets the nodes of the second interval of mu_i, the light's cosine, as one panel with nodes evenly
+// in mu_i from v->split to 1. Only alpha > 0.7 uses this panel, where the integrand has no pole
+// near the interval.
 static void even_nodes(const view *v, panel *p)
 {
     double h = (1 - v->split) / 2;
@@ -173,9 +176,9 @@ static void even_nodes(const view *v, panel *p)
 // The parameters of the substitution mu_i = m + d sinh t in the second interval of mu_i, the cosine
 // of the light.
 typedef struct stretch {
-    double m_rest; // 1 - m, where m is the centre of the peak of D
+    double m_rest; // 1 - m, where m is the centre of the peak of D, as a cosine of the light
     double ahead;  // m - mu, where mu is the cosine of the view
-    double d;      // width of the peak of D in mu_i
+    double d;      // width of the peak of D as a function of the light's cosine
 } stretch;
 
 // Sets the nodes of a panel of the second interval of mu_i, where mu_i = m + d sinh t. The panel
@@ -208,8 +211,8 @@ static void sinh_nodes(const view *v, const stretch *x, double h, double centre,
 
 // -------------------------------------------------------------------------------------- integrands
 
-// Splits weight * G / (4 mu) at each node into a quotient top / bottom, so that the integrand needs
-// one division only.
+// Splits quadrature weight times G / (4 mu), with the masking G and the view's cosine mu, into a
+// quotient top / bottom at each node, so that the integrand needs one division only.
 static void masking(const view *v, const panel *p, double top[NODES], double bottom[NODES])
 {
     double front = v->front / 4, k = v->k;
@@ -235,7 +238,8 @@ static void masking(const view *v, const panel *p, double top[NODES], double bot
     }
 }
 
-// Adds the terms of E at the sixteen nodes of a panel to eight sums, one for each lane of vectors.
+// Adds the terms of the albedo E at the sixteen nodes of a panel to eight sums, one for each lane
+// of vectors.
 static void add_e(const view *v, const panel *p, const double top[NODES],
                   const double bottom[NODES], double sum[HALF])
 {
@@ -269,8 +273,8 @@ typedef struct elliptic {
     double cel[NODES], slope[NODES], k[NODES], e[NODES];
 } elliptic;
 
-// Computes the integrals of `elliptic` for kc2 = kc^2 and p0 = p. A d before a variable's name
-// denotes the derivative by p.
+// Computes the complete elliptic integrals of `elliptic` for kc2 = kc^2 and p0 = p. A d before a
+// variable's name denotes the derivative by p.
 static void elliptic_integrals(const double kc2[NODES], const double p0[NODES], int steps,
                                elliptic *out)
 {
@@ -288,7 +292,8 @@ static void elliptic_integrals(const double kc2[NODES], const double p0[NODES], 
         qc[j] = ee[j] = sqrt(kc2[j]);
         sum[j] = 0.5 * (1 - kc2[j]);
     }
-    double scale = 0.25; // weight 2^n / (2^(n + 1))^2 of (em - qc)^2 at step n
+    // weight of (em - qc)^2, which the integral e sums at each step n: 2^n / (2^(n + 1))^2
+    double scale = 0.25;
     for (int step = 0; step < steps; step++, scale /= 2)
         for (int j = 0; j < NODES; j++) {
             double f = a[j], df = da[j], inverse = 1 / p[j];
@@ -334,7 +339,8 @@ static void add_b(const view *v, const panel *p, const double top[NODES],
     for (int j = 0; j < NODES; j++) {
         double mu = p->mu[j], total = v->mu + mu, s2 = total * total, sin2 = p->rest[j] * (1 + mu);
         double sine = sqrt(sin2), spread = p->delta[j] * total / (sine + v->sine + 1e-300);
-        double w0 = spread * spread + v->alpha2 * s2; // P - q, least value of P + q cos phi
+        // P - q, the least value over phi of W = P + q cos phi
+        double w0 = spread * spread + v->alpha2 * s2;
         total_a[j] = v->s * s2;
         big_p[j] = v->sin2 + sin2 + v->alpha2 * s2;
         q[j] = 2 * v->sine * sine;
@@ -384,11 +390,11 @@ static void add(const view *v, const panel *p, double e[HALF], double b[HALF], b
         add_b(v, p, top, bottom, b);
 }
 
-// An interval of the integration variable x, which is u or t, cut into `count` panels of equal
-// length.
+// An interval of a quadrature variable x, which is u or t of the substitutions for mu_i, cut into
+// `count` panels of equal length.
 typedef struct tiling {
-    double from;     // e^x at the interval's lower end
-    double ratio;    // e^x at the interval's upper end over e^x at its lower end
+    double from;     // e^x at the lower end of the interval of x
+    double ratio;    // e^x at the upper end of the interval over e^x at its lower end
     double h, ahead; // h: half the length of a panel in x; ahead: e^h
     int count;
 } tiling;
@@ -429,8 +435,8 @@ static void tile(tiling *t)
     t->ahead = ki_exp(t->h);
 }
 
-// Integrates over both intervals of mu_i. Sets out[0] to E and, with `split`, out[1] to B of the
-// split sum.
+// Integrates over both intervals of the light's cosine mu_i. Sets out[0] to the albedo E and, with
+// `split`, out[1] to B of the split sum.
 static void integrate(const entry *n, bool split, double out[2])
 {
     double e[HALF] = {0}, b[HALF] = {0}, sinh_y[HALF], cosh_y[HALF];
@@ -454,13 +460,13 @@ static void integrate(const entry *n, bool split, double out[2])
     }
     out[0] = sum_lanes(e);
     out[1] = sum_lanes(b);
-    // B tends to 0 for smooth surfaces at normal incidence, nov = 1, where rounding can make it
-    // negative.
+    // B of the split sum tends to 0 for smooth surfaces at normal incidence, nov = 1, where
+    // rounding can make it negative.
     out[1] = out[1] > 0 ? out[1] : 0;
 }
 
-// E and B at roughness 0: all light goes to the mirror direction, where mu_i = mu. G is 1 there,
-// except for the k of KILN_G_SCHLICK_TEXT, which is not 0 at roughness 0.
+// The albedo E and B of the split sum at roughness 0: all light goes to the mirror direction. The
+// masking G is 1 there, except for KILN_G_SCHLICK_TEXT, whose k is not 0 at roughness 0.
 static void mirror(const view *v, double out[2])
 {
     double g1 = v->mu / (v->mu * (1 - v->k) + v->k), c = 1 - v->mu;

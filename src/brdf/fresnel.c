@@ -18,7 +18,8 @@ double ki_schlick_fresnel(double voh)
     return c2 * c2 * c;
 }
 
-// With c = cos theta, s^2 = 1 - c^2 and g^2 = ior^2 - s^2:
+// Fresnel's formulas for the reflectance (R_s + R_p) / 2 of a dielectric. With c = cos theta, s^2 =
+// 1 - c^2 and g^2 = ior^2 - s^2:
 //
 //     R_s = ((c - g) / (c + g))^2,      R_p = R_s ((c g - s^2) / (c g + s^2))^2,
 //

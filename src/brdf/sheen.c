@@ -83,7 +83,8 @@ static double ashikhmin_azimuth(double theta, double theta_v, double mu)
 {
     double sine, cosine, sin_v = sqrt((1 - mu) * (1 + mu));
     ki_sincos(theta, &sine, &cosine);
-    double nearest = fmax(0, ki_cos(theta_v - 2 * theta)); // n.l at phi = 0
+    // n.l for the half vector at azimuth phi = 0, its greatest value
+    double nearest = fmax(0, ki_cos(theta_v - 2 * theta));
     double farthest = ki_cos(theta_v + 2 * theta);
     // The arc of azimuths ends at phi = reach, where n.l = 0: cos reach = -cot theta_v cot 2 theta.
     // t2 is tan^2(reach / 2).

@@ -23,7 +23,7 @@ void KI_SURFACE_ROW(const ki_surface *surface, const double *coefficient, double
             for (int i = 0; i < BLOCK; i++)
                 x[i] = sqrt(x[i]);
         for (int i = 0; i < BLOCK; i++) {
-            x[i] = 4 * x[i] - 2; // twice the argument 2 u - 1 of the Chebyshev polynomials
+            x[i] = 4 * x[i] - 2; // 2 (2 u - 1): twice the argument of the Chebyshev polynomials
             b1[i] = coefficient[top];
         }
         for (int k = top - 1; k > 1; k -= 2) {

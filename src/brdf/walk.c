@@ -32,8 +32,8 @@ static const double TAIL = 0.1;
 
 // ----------------------------------------------------------------------------------------- the ray
 
-// sqrt(c^2 + alpha^2 sine^2), which is c (1 + 2 Lambda) for a direction of cosine c. Heitz 2014,
-// eq. 72.
+// sqrt(c^2 + alpha^2 sine^2), which is c (1 + 2 Lambda) with Smith's Lambda of GGX for a direction
+// of cosine c. Heitz 2014, eq. 72.
 static double stretched(double alpha, double sine, double c)
 {
     return sqrt(c * c + alpha * alpha * (sine * sine));
@@ -96,9 +96,10 @@ static const uint32_t generators[DIMENSIONS] = {1,      182667, 469891, 498753, 
 // A rank-1 lattice (a set of quasi-random points) shifted at random: coordinate d of point i is i *
 // step[d] + shift[d], modulo 1.
 typedef struct lattice {
-    uint32_t step[DIMENSIONS];  // step of each coordinate from point to point, in units of 2^-32
-    uint32_t shift[DIMENSIONS]; // random shift of each coordinate, in units of 2^-32
-    uint64_t key;               // seed of the shifts and of the hashed numbers
+    // step of each coordinate from a lattice point to the next, in units of 2^-32
+    uint32_t step[DIMENSIONS];
+    uint32_t shift[DIMENSIONS]; // random shift of each coordinate of the lattice, in units of 2^-32
+    uint64_t key;               // seed of the shifts, and of the random numbers that are hashed
 } lattice;
 
 // A hash of 64 bits: the finaliser of splitmix64 (Steele, Lea and Flood 2014).
@@ -161,7 +162,8 @@ static void walk_path(double alpha, double nov, const lattice *l, uint32_t index
     }
 }
 
-// Running sums over a set of paths for one Fresnel term.
+// Running sums of the light that leaves the surface, over a set of random paths, for one Fresnel
+// term.
 typedef struct series {
     const kiln_walk_def *def;
     double throughput; // product of F over the current path's bounces so far
@@ -226,7 +228,8 @@ void kiln_walk_albedo(const kiln_walk_def *def, double roughness, double nov, ki
     walk->path_count = REPLICATES << bits;
 }
 
-// Running sums over a set of paths for Schlick's Fresnel terms of `count` values of f0.
+// Running sums of the light that leaves the surface, over a set of random paths, for Schlick's
+// Fresnel terms of `count` values of f0.
 typedef struct column {
     const double *f0;
     int count;

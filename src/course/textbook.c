@@ -179,7 +179,7 @@ typedef struct prefilter {
     const kiln_map *panorama;
     kiln_map *map;
     int level, width, first_row;
-    int sample_count;   // number of light directions above the horizon
+    int sample_count;   // number of light directions, which are above the horizon
     double (*light)[3]; // light directions in a frame whose z axis is the normal
     double weight_sum;  // sum of n.l over the light directions
 } prefilter;

@@ -155,7 +155,8 @@ double ki_log(double x)
     for (int k = 19; k >= 3; k -= 2)
         p = p * y + 1.0 / k;
     double e = exponent;
-    // log(1 + f) = f - s f + 2 s y p. The sum starts from f, which is exact, to round as little as
+    // With f = x - 1, the series is log x = 2 s + 2 s y p = (f - s f) + 2 s y p, where y p is the
+    // sum after the first term. The sum starts from f, which is exact, to round as little as
     // possible.
     return e * log2_high + (f - (s * f - (2 * s * (y * p) + e * log2_low)));
 }

@@ -87,7 +87,8 @@ void ki_taps_design(double step, const double *density, int degree, double *taps
         double sum = 0;
         for (int i = 0; i < KI_TAPS; i++)
             sum += b[i];
-        // The interpolation weights for the fraction 1 - t are the weights for t in reverse order.
+        // The interpolation weights for the fraction 1 - t of the way between two grid points are
+        // the weights for the fraction t in reverse order.
         for (int i = 0; i < KI_TAPS; i++)
             taps[(KI_TAP_STEPS - n) * KI_TAPS + KI_TAPS - 1 - i] = b[i] / sum;
         for (int i = 0; i < KI_TAPS; i++)

@@ -222,7 +222,8 @@ static double *fft(const ki_fft *plan, double *data, double *work)
 static void add_weighted(double *accumulator, const float *rows, const ptrdiff_t *offsets,
                          const double *weights, int row_count, int count)
 {
-    enum { AT_ONCE = 4 }; // number of vectors summed at once, which hides the latency of additions
+    // number of native vectors that are summed at once, which hides the latency of additions
+    enum { AT_ONCE = 4 };
     int i = 0;
     for (; i + AT_ONCE * KI_WIDTH <= count; i += AT_ONCE * KI_WIDTH) {
         vec sum[AT_ONCE];

@@ -78,8 +78,8 @@ static bool design_taps(kiln_context *context, ki_level *level)
 {
     double *density = ki_alloc_raw(context, (size_t)level->degree + 1, sizeof *density);
     double *taps = ki_alloc_raw(context, KI_TAP_TABLE, sizeof *taps);
-    // KI_TAPS zeros follow the table: a fraction that rounds up to 1 reads the entry after the last
-    // one, with weight 0.
+    // KI_TAPS zeros follow a table of interpolation weights: a fraction that rounds up to 1 reads
+    // the entry after the table's last, and gives it the weight 0.
     size_t count = KI_TAP_TABLE + KI_TAPS;
     level->ring_taps = ki_alloc(context, count, sizeof(float));
     level->column_taps = ki_alloc(context, count, sizeof(float));
@@ -382,8 +382,8 @@ static void fill_places(void *data, int worker, int index)
         for (int n = 0; n < most; n++) {
             double cosine[KI_LANES], sine[KI_LANES], sign[KI_LANES], rgb[3 * KI_LANES];
             for (int j = 0; j < KI_LANES; j++) {
-                // Eight rings are evaluated at once. A ring with fewer texels than the others
-                // evaluates some texel again, whose value is not used.
+                // Eight latitude rings are evaluated at once, at one texel each. A ring with fewer
+                // texels than the others evaluates some texel again, whose value is not used.
                 const place *p = &v->places[start[j] + n < start[j + 1] ? start[j] + n : 0];
                 cosine[j] = p->cosine;
                 sine[j] = p->sine;

@@ -12,7 +12,7 @@ typedef struct ki_level ki_level;
 
 /// Prepares a level of `size` in the given shape, filtered by the lobe of `zonal`. The level takes
 /// over `spectrum`, the lobe's coefficients, also on failure. `legendre` must outlive the level and
-/// reach the degree of `spectrum`.
+/// have at least the degree of `spectrum`.
 kiln_result ki_level_create(kiln_context *context, const ki_legendre *legendre,
                             const ki_zonal *zonal, ki_zonal_spectrum *spectrum, kiln_shape shape,
                             int size, ki_level **level, kiln_error *error);

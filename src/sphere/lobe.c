@@ -116,8 +116,8 @@ double ki_lobe_width(const kiln_lobe *lobe)
     case KILN_LOBE_GGX:
         return ki_clamp(2 * lobe->parameter, 1e-9, 1);
     case KILN_LOBE_CHARLIE:
-        // The Charlie lobe falls from the horizon like (1 - c)^(1 / (2 alpha)), where c is the
-        // cosine of the angle theta.
+        // From the horizon towards its axis, the Charlie lobe falls like (1 - c)^(1 / (2 alpha)),
+        // where c is the cosine of the angle to the axis and alpha the lobe's parameter.
         return ki_clamp(2 * lobe->parameter, 0.02, 1);
     case KILN_LOBE_PHONG:
         return ki_clamp(1 / sqrt(lobe->parameter), 1e-3, 1);

@@ -6,8 +6,8 @@ enum { STEP_BITS = 5, FIRST_OCTAVE = -20 };
 _Static_assert(1 << STEP_BITS == KI_MIXTURE_STEPS, "steps are a mantissa's first bits");
 static const double offset = 0x1p-20;
 
-// Returns the weight of the mixture without its factor cos theta, whose kink at the horizon a cubic
-// could not follow.
+// Returns the weight of a mixture of GGX lobes without its factor cos theta, whose kink at the
+// horizon a cubic could not follow.
 static double exact(const double *alphas, const double *weights, const double *integrals, int count,
                     double versine)
 {
@@ -31,8 +31,8 @@ void ki_mixture_create(ki_mixture *mixture, const double *alphas, const double *
             double part = (i % KI_MIXTURE_STEPS + k / 3.0) / KI_MIXTURE_STEPS;
             f[k] = exact(alphas, weights, integrals, count, start * (1 + part) - offset);
         }
-        // Sets c to the coefficients of the cubic in t that has the values f at t = 0, 1/3, 2/3 and
-        // 1.
+        // Sets c to the coefficients c[0] + c[1] t + c[2] t^2 + c[3] t^3 of the cubic that has the
+        // values f at t = 0, 1/3, 2/3 and 1.
         c[0] = f[0];
         c[1] = -5.5 * f[0] + 9 * f[1] - 4.5 * f[2] + f[3];
         c[2] = 9 * f[0] - 22.5 * f[1] + 18 * f[2] - 4.5 * f[3];
@@ -47,8 +47,8 @@ double ki_mixture_weight(const ki_mixture *mixture, double one_minus_cos)
     double x = (one_minus_cos > 0 ? one_minus_cos : 0) + offset;
     uint64_t bits;
     memcpy(&bits, &x, sizeof bits);
-    // The exponent of x and the first bits of its mantissa choose the cubic. The remaining bits of
-    // the mantissa are the cubic's argument t.
+    // x = 1 - cos theta + 2^-20. The exponent of x and the first bits of its mantissa choose the
+    // cubic. The remaining bits of the mantissa are the cubic's argument t.
     uint64_t first = (uint64_t)(1023 + FIRST_OCTAVE) << STEP_BITS;
     const double *c = mixture->cubic[(bits >> (52 - STEP_BITS)) - first];
     double t = (double)(bits & ((UINT64_C(1) << (52 - STEP_BITS)) - 1)) * 0x1p-47;

@@ -31,7 +31,7 @@ struct kiln_spectrum {
 /// The weight with which a row of the panorama contributes to a latitude ring.
 typedef struct ki_row_weight {
     int row;
-    // true: the ring is the mirror image of one beyond a pole, and takes the row's texels half a
+    // true: the ring is the mirror image of a ring beyond a pole, and takes the row's texels half a
     // turn away
     bool half_turn;
     double weight;

@@ -198,7 +198,8 @@ static kiln_result make_fit(kiln_context *context, kiln_fit *fit, kiln_error *er
     if (!s)
         return ki_fail_memory(context, error, "fit", 2 * sizeof *s);
     kiln_result result = KILN_OK;
-    double left = fit->def.error; // the wanted error minus the errors of the parts found so far
+    // the wanted error minus the errors of the fit's parts that have been found
+    double left = fit->def.error;
     for (int k = 0; k < fit->part_count && !result; k++) {
         kiln_fit_part *part = &fit->part[k];
         double wanted = k < fit->part_count - 1 ? left / 2 : left, reached = 0;

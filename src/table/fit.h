@@ -20,7 +20,9 @@ float ki_fit_evaluate_part(const kiln_fit_def *def, const kiln_fit_part *part, f
 typedef enum ki_fit_target {
     KI_FIT_E,
     KI_FIT_E_AVERAGE,
-    KI_FIT_REST, ///< B - E (1 - n.v)^5, which is near 0 except at grazing views
+    /// B - E (1 - n.v)^5 with the albedo E and B of the split sum, which is near 0 except at
+    /// grazing views
+    KI_FIT_REST,
     KI_FIT_SHEEN
 } ki_fit_target;
 
@@ -32,12 +34,12 @@ int ki_fit_targets(kiln_fit_kind kind, ki_fit_target target[2]);
 /// which a part (P or P / Q) is fitted, or the points at which its error is measured.
 typedef struct ki_fit_points {
     int count;
-    double *x, *y; ///< arguments of the part's polynomials in [-1, 1]; set at nodes only
+    double *x, *y; ///< arguments x and y of the part's polynomials in [-1, 1]; set at nodes only
     double *nov, *roughness;
     double *value;
 } ki_fit_points;
 
-/// Number of nodes along each side of the grid to which a form is fitted.
+/// Number of points along each side of the grid of nodes to which a closed form is fitted.
 enum { KI_FIT_GRID = 40 };
 
 /// Allocates the nodes to which a part is fitted if its argument x is `axis`: a Chebyshev grid in x

@@ -12,7 +12,7 @@
 
 #include <math.h>
 
-// Returns the exact value of a target function at this roughness and nov.
+// Returns the exact value of a target function of closed forms at this roughness and nov.
 static double target_value(const kiln_fit_def *def, ki_fit_target target, double roughness,
                            double nov)
 {
@@ -136,8 +136,8 @@ kiln_result ki_fit_nodes(kiln_context *context, const kiln_fit_def *def, ki_fit_
     for (int i = 0; i < points->count; i++) {
         points->x[i] = node(i % columns, columns);
         points->y[i] = node(i / columns, rows);
-        // At roughness 0 every x < 1 stands for n.v = 0. The node takes the value at a small
-        // roughness, which is nearly the limit.
+        // At roughness 0 every argument x < 1 stands for n.v = 0. The node takes the value at a
+        // small roughness, which is nearly the limit.
         points->roughness[i] = roughness_of(def, points->y[i]);
         if (points->roughness[i] < KI_GRAZING_MIN)
             points->roughness[i] = KI_GRAZING_MIN;
@@ -163,7 +163,8 @@ kiln_result ki_fit_checks(kiln_context *context, const kiln_fit_def *def, ki_fit
                           ki_fit_points *points, kiln_error *error)
 {
     enum { SIDE = 101, LINE = 1001 };
-    bool line = target == KI_FIT_E_AVERAGE; // E_avg is a function of roughness alone
+    // E_avg is a function of roughness alone, and needs no grid
+    bool line = target == KI_FIT_E_AVERAGE;
     int columns = line ? 1 : SIDE, rows = line ? LINE : SIDE;
     kiln_result result = allocate(context, 4 * columns * rows, points, error);
     if (result)

@@ -62,12 +62,12 @@ typedef struct equations {
     int terms;      // number of coefficients of P, and of Q together with its constant 1
     int columns;    // number of unknowns: the coefficients of P, and of Q without its constant 1
     int rows;       // number of equations: one for each node, and one for each unknown of Q
-    double *matrix; // coefficients of the equations, column after column
+    double *matrix; // coefficients of the unknowns in the equations, column after column
     double *right;  // right-hand side of each equation, and after a round the error at each node
     double *weight; // weight of each node's squared error, with sum 1
-    double *denominator; // Q of the previous round at each node
+    double *denominator; // denominator Q of the previous round at each node
     double *basis;       // products of Chebyshev polynomials T_i(x) T_j(y), `terms` for each node
-    double ridge;        // weight that draws the coefficients of Q to 0, to keep Q positive
+    double ridge; // weight of equations that draw the coefficients of Q to 0, to keep Q positive
 } equations;
 
 // Sets up the equations of a round. That of a node with value f is sqrt(weight) / Q_previous * (P -
@@ -118,8 +118,8 @@ static double judge(const equations *s, const double *x)
     return largest;
 }
 
-// Lawson's rule (1961): multiplies each node's weight by the square root of its error, and scales
-// the sum of weights to 1.
+// Lawson's rule (1961): multiplies the weight of each node by the square root of the node's error,
+// and scales the weights to the sum 1.
 static void reweight(const equations *s)
 {
     double sum = 0;

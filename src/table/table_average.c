@@ -1,5 +1,5 @@
-// The average E_avg of the albedo E in a table, which is read by linear interpolation between its
-// texels.
+// The average E_avg under diffuse light of the albedo E in a table, which is read by linear
+// interpolation between its texels.
 #include "table/table.h"
 
 #include "math/math.h"

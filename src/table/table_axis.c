@@ -89,7 +89,7 @@ ki_third ki_table_third(kiln_table_kind kind)
     }
 }
 
-// For an ior, w = 2 (ior - 1) / (ior + 1), which is twice the square root of its F0.
+// For an ior, the place is w = 2 (ior - 1) / (ior + 1), which is twice the square root of F0.
 double ki_third_to_w(ki_third third, double value)
 {
     return third == KI_THIRD_IOR ? 2 * (value - 1) / (value + 1) : value;

@@ -7,8 +7,8 @@
 
 enum { KI_TABLE_TEXT = 160 };
 
-/// Writes the line for a def whose fields are in range. paths= is path_count, used by
-/// KILN_TABLE_E_WALK only.
+/// Writes the line of text for a kiln_table_def whose fields are in range. paths= is path_count,
+/// used by KILN_TABLE_E_WALK only.
 void ki_table_describe(const kiln_table_def *def, char text[KI_TABLE_TEXT]);
 /// Reads a line that ki_table_describe has written. If `text` is such a line, returns true with
 /// every field of `def` in range, sizes from 1 to KILN_MAX_TABLE. Otherwise returns false and

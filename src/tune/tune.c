@@ -204,8 +204,8 @@ static kiln_result make_kernel(const run *r, int level, ki_zonal *zonal, ki_mixt
             spectrum->k[i] = 0;
     spectrum->degree = l;
     ki_mixture_create(mixture, alphas, weights, integrals, count);
-    // The width of a level's kernel is taken from the narrowest lobe of its mixture with a weight
-    // above 0.01.
+    // The width of a level's kernel is taken from the narrowest lobe of its mixture whose weight is
+    // above 0.01 in absolute value.
     double narrowest = 1;
     for (int n = 0; n < count; n++)
         if (fabs(weights[n]) > 0.01)
@@ -257,7 +257,7 @@ static bool is_read(const ki_tune *t, int level)
 
 typedef struct correction {
     kiln_map *goal;
-    // texels of the next coarser level, and the radiance that the level should show
+    // texels of the next coarser level, and the radiance that it should show
     const kiln_map *map, *target;
     int level;
     double factor;

@@ -63,9 +63,10 @@ void ki_nodes_place(ki_nodes *nodes, double (*level)(double, int, int), int leve
 // --------------------------------------------------------------------------------------- equations
 
 typedef struct equations {
-    // A_ii of the normal equations' matrix A (tune.h) for each level i
+    // A_ii for each level i of the tridiagonal matrix A of the normal equations (tune.h)
     double diagonal[KILN_MAX_LEVELS];
-    double next[KILN_MAX_LEVELS]; // A_i,i+1 of the normal equations' matrix A (tune.h)
+    // A_i,i+1 of the tridiagonal matrix A of the normal equations (tune.h)
+    double next[KILN_MAX_LEVELS];
     // right-hand side of the equation of each level: the coefficient of each lobe
     double right[KILN_MAX_LEVELS][KI_MOST_LOBES];
     // the solution: the weight of each lobe in the mixture of each level
@@ -99,8 +100,8 @@ static void set_up_equations(const ki_nodes *nodes, const double *w, double *cou
     }
     for (int i = 0; i <= last && coupling; i++)
         coupling[i] = e->diagonal[i] > 0 ? e->next[i] / e->diagonal[i] : 0;
-    // Levels that are not tuned are known, and their terms move to the right-hand sides of the
-    // equations.
+    // Levels that are not tuned are known: their terms in the equations of other levels move to the
+    // right-hand sides.
     for (int i = 0; i <= last; i++) {
         if (nodes->tuned[i])
             continue;
@@ -133,8 +134,8 @@ static void solve_equations(const ki_nodes *nodes, equations *e)
         }
 }
 
-// Adds to `to` the component of the mixtures e->weights along one common eigenvector ("axis") of
-// the two norms of tune_norms.h.
+// Adds to the mixtures `to` the component of the mixtures e->weights along one axis, a common
+// eigenvector of the two norms of tune_norms.h.
 static void add_part(const ki_norms *n, size_t axis, const equations *e, int level_count,
                      ki_mixtures *to)
 {

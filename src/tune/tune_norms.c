@@ -141,7 +141,7 @@ static void divide(int count, const double *lower, double *a)
 }
 
 // Converts eigenvectors q of L^-1 H L^-T to the basis of lobes: along = L^-T q and across = L q. G
-// and H are the matrices of tune_norms.h, with L L' = G.
+// and H are the matrices of scalar products in the two norms of tune_norms.h, and L L' = G.
 static void turn_axes(ki_norms *n, const double *lower, const double *axes)
 {
     size_t count = (size_t)n->count;

@@ -11,16 +11,18 @@
 /// orthonormal in the norm of G and orthogonal in the norm of H, in which axis u has the squared
 /// length `ratio`.
 typedef struct ki_norms {
-    int count; // number of lobes, which is also the number of axes
+    int count; // number of lobes, which is also the number of axes (eigenvectors)
     // squared norm over the whole sphere of the environment filtered by each lobe, over the squared
     // mean radiance
     double whole[KI_MOST_LOBES];
     // squared norm away from suns of the environment filtered by each lobe, over the squared mean
     // radiance
     double away[KI_MOST_LOBES];
-    // generalised eigenvalue that belongs to each axis, an eigenvector u of H u = ratio G u
+    // for each axis, a common eigenvector of both norms, the ratio of its squared norm away from
+    // suns to that over the whole sphere
     double ratio[KI_MOST_LOBES];
-    // [axis][lobe]: weights of the mixture of lobes that each axis is
+    // [axis][lobe]: the weights of lobes that each axis, a common eigenvector of both norms,
+    // consists of
     double *along;
     // [axis][lobe]: scalar product over the whole sphere of each axis and the environment filtered
     // by each lobe

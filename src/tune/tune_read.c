@@ -27,16 +27,16 @@ typedef struct reads {
     kiln_context *context;
     const kiln_map *goal;
     size_t texel_count, point_count;
-    // the four texels that a bilinear read at each point uses, with their weights: the matrix B
+    // the matrix B: the four texels that a bilinear read at each point uses, with their weights
     tap (*taps)[4];
     // index in `reverse` of the first point that reads each texel, [texel_count + 1]
     uint32_t *start;
-    // the points that read each texel, with their weights: the transpose of the matrix B
+    // the transpose of `taps`: the points that read each texel, with their weights
     tap *reverse;
     // solid angle of each point of one cube face, up to a constant factor
     float *solid;
-    // at each point, the interpolated value B x or the residual goal - B x, times the point's solid
-    // angle
+    // at each point, the value that is read from the texels, or the goal minus that value, times
+    // the point's solid angle
     double (*shown)[3];
     // For each texel and channel: the solution x; the residual of the normal equations; the search
     // direction; the matrix B' W B times that direction; the diagonal of the matrix (for each
@@ -148,8 +148,9 @@ static void release(reads *r)
     ki_free(r->sums);
 }
 
-// Task of one thread: for a chunk of texels, sets the diagonal of the matrix B' W B, and as the
-// first guess of x the weighted mean of the goal over the points that read the texel.
+// Task of one thread: for a chunk of texels, sets the diagonal of the normal equations' matrix, and
+// as the first guess of the solution the weighted mean of the goal over the points that read the
+// texel.
 static void begin(void *data, int index)
 {
     reads *r = data;
@@ -174,14 +175,16 @@ static void begin(void *data, int index)
 
 typedef struct product {
     reads *r;
-    const double (*from)[3]; // one RGB value for each texel
+    const double (*from)[3]; // RGB of each texel
     double (*to)[3];
-    // true: computes the residual B' W (goal - B from); false: the product B' W B from
+    // true: `to` is the residual B' W (goal - B from) of the normal equations; false: the product
+    // B' W B from. B are the weights of bilinear reads, W the points' solid angles.
     bool residual;
 } product;
 
-// Task of one thread: sets `shown` at a chunk of points to W B x or to the residual W (goal - B x),
-// where x is `from`. Writes to r->sums the sums over the chunk of W goal and of W B x.
+// Task of one thread: reads the texels `from` at a chunk of points, and sets `shown` to the value
+// read or to the goal minus that value, times the point's solid angle. Writes to r->sums the sums
+// over the chunk of the goal and of the value read, both times solid angle.
 static void show_points(void *data, int index)
 {
     const product *a = data;
@@ -203,9 +206,9 @@ static void show_points(void *data, int index)
     }
 }
 
-// Task of one thread: multiplies r->shown by the transpose of B, which gives a chunk of texels of
-// `to`. Writes to r->sums the sums over the chunk of `to` times `from`, and of `to` squared over
-// the diagonal of the matrix.
+// Task of one thread: sets a chunk of texels of `to` to the sums of `shown` over the points that
+// read each texel, times the weights of the reads. Writes to r->sums the sums over the chunk of
+// `to` times `from`, and of `to` squared over the diagonal of the normal equations' matrix.
 static void gather(void *data, int index)
 {
     const product *a = data;
