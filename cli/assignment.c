@@ -86,7 +86,8 @@ static kiln_result compute_average(assignment *a, int table, bool bytes)
     return result;
 }
 
-// Integrates E and E_avg exactly for the same model and the same texel centres.
+// Integrates E and E_avg exactly, for the model and at the texel centres of the assignment's
+// tables.
 static kiln_result compute_exact(assignment *a)
 {
     int size = a->def->size;

@@ -64,7 +64,8 @@ static kiln_result use_bytes(const assignment *a, view_renderer *renderer)
     return result;
 }
 
-// Without OpenGL the CPU shades the same rays, with exact E.
+// Draws the balls without OpenGL: the CPU shades the same rays as the renderer does, with exact E
+// instead of a table.
 static kiln_result shade(assignment *a, const view_options *o, kiln_image *image)
 {
     kiln_result result = view_reference(a->work->context, o, NULL, WIDTH, HEIGHT, NULL, image, NULL,

@@ -12,7 +12,7 @@ typedef enum bake_tuning { BAKE_EXACT, BAKE_SHARP, BAKE_SOFT } bake_tuning;
 
 typedef struct bake {
     cli_arguments arguments;
-    // Values that the option rows write.
+    // Values of the options, which the parser writes here by the option rows of bake_options.c.
     const char *output, *irradiance_path, *sh_path, *roughness_text;
     int size, level_count, shape, format, zstd, lobe, textbook;
     int engine_index; ///< index of the engine; -1 without --for

@@ -200,7 +200,8 @@ static int read_roughness(bake *b)
 
 // ----------------------------------------------------------------------------------------- outputs
 
-// The first engine that loads files with this name's ending; NULL if no engine does.
+// Returns the first engine of kiln's list that loads files with the ending of this path, or NULL if
+// no engine does.
 static const kiln_engine *engine_of(const char *path)
 {
     const kiln_engine *engine;

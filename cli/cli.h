@@ -44,8 +44,11 @@ struct cli_command {
     const char *summary; ///< one sentence for the list of commands
     /// description: paragraphs without line breaks inside; "" for no description
     const char *about;
-    const char *(*word)(int index); ///< words of the first argument, NULL after the last; or NULL
-    const char *list_title;         ///< heading of that list in the help, such as "Quantities"
+    /// returns the words that the first argument may be, NULL after the last; NULL if there is no
+    /// such list
+    const char *(*word)(int index);
+    /// heading, in the help, of the list that `list` gives, such as "Quantities"
+    const char *list_title;
     /// Lists what the first argument may be: writes the word of an index, with the arguments that
     /// follow the word, to `left`, and returns its description, or NULL after the last word. The
     /// function may be NULL.
@@ -78,8 +81,8 @@ typedef struct cli_arguments {
 /// printed the help or an error message. The words must outlive `arguments` and `values`.
 int cli_read_arguments(cli_arguments *arguments, const cli_command *command, const cli_call *call,
                        void *values);
-/// Writes the values of the given options into `values` once more, for commands that have changed
-/// the defaults.
+/// Writes the values of the options that the command line gives into `values` once more, for
+/// commands that have changed the values of absent options after cli_read_arguments.
 int cli_store_values(const cli_arguments *arguments, void *values);
 /// Reads an option of type CLI_TEXT as an integer from `low` to `high`. `value` stays unchanged for
 /// an absent option. Returns CLI_GO or CLI_WRONG.

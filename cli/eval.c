@@ -396,7 +396,7 @@ static bool next_line(char **line, size_t *capacity)
     return true;
 }
 
-// Makes room for the numbers of one more line.
+// Makes room for the numbers of one more line of standard input.
 static bool grow(eval *v, size_t *room)
 {
     size_t width = (size_t)v->column_count, more = *room ? 2 * *room : 1024;
@@ -412,7 +412,8 @@ static bool grow(eval *v, size_t *room)
     return true;
 }
 
-// Reads all lines before anything is printed: an invalid line leaves no partial output.
+// Reads all lines of standard input before anything is printed, so that an invalid line leaves no
+// partial output.
 static int read_lines(eval *v)
 {
     size_t capacity = 0, room = 0, width = (size_t)v->column_count;
@@ -497,7 +498,8 @@ static int run(const cli_call *call)
     return code;
 }
 
-// A quantity with its arguments, such as "specular roughness mu nol noh".
+// Writes a quantity with its arguments, such as "specular roughness mu nol noh", to `left`, and
+// returns its description; NULL after the last quantity.
 static const char *list(int index, char left[64])
 {
     if (index >= QUANTITIES)

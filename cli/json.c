@@ -121,8 +121,8 @@ void json_bool(json *j, const char *key, bool value)
 static int sequence(const unsigned char *at)
 {
     static const struct {
-        // range of first bytes, and the range of second bytes that UTF-8 allows after these first
-        // bytes
+        // range of the first byte of a UTF-8 sequence, and the range of the second byte that RFC
+        // 3629 allows after such a first byte
         unsigned char first, last, low, high;
         int length;
     } forms[] = {

@@ -22,7 +22,8 @@ enum {
 };
 
 typedef struct render {
-    // must be the first member, because the shared option rows write to this address
+    // the shared options; must be the first member, because the shared option rows write to this
+    // address
     scene_setup setup;
     cli_arguments arguments;
     const char *output;

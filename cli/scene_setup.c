@@ -55,8 +55,8 @@ int scene_read(const cli_arguments *a, bool may_change, scene_setup *s)
     s->input = a->rest_count ? a->rest[0] : NULL;
     if (s->scene < 0)
         s->scene = s->input ? VIEW_SCENE_IBL : VIEW_SCENE_ASSIGNMENT;
-    // The scene sets the defaults of the other options, so the given values are written again after
-    // it.
+    // The scene decides the defaults of the other options. The values that the command line gives
+    // are therefore written again after them.
     s->options = view_defaults((view_scene)s->scene);
     int code = cli_store_values(a, s);
     if (code == CLI_GO)

@@ -14,7 +14,8 @@
 enum { SCREENSHOT = SCENE_OPTIONS, THREADS, OPTIONS };
 
 typedef struct view {
-    // must be the first member, because the shared option rows write to this address
+    // the shared options; must be the first member, because the shared option rows write to this
+    // address
     scene_setup setup;
     const char *screenshot;
     int threads;
@@ -79,7 +80,8 @@ static void create_thread(void *user)
 static kiln_result begin_textbook(show *s, view_renderer *renderer, kiln_error *error)
 {
     textbook *t = &s->textbook;
-    // Until the sampled bake has finished, both halves show the exact environment.
+    // Until the bake by importance sampling has finished, both halves of scene compare show the
+    // exact environment.
     if (scene_bake_slot(s->work, s->setup, s->source, VIEW_SLOT_TEXTBOOK, 0, renderer) != CLI_GO) {
         *error = s->work->error;
         return error->result;
@@ -126,7 +128,8 @@ static void end_textbook(textbook *t)
     kiln_context_destroy(t->context);
 }
 
-// If baking fails, the error message is in work->error.
+// Bakes and sets the environment before the window opens. On failure the error message is in
+// work->error.
 static kiln_result prepare(void *user, view_renderer *renderer, kiln_error *error)
 {
     const show *s = user;

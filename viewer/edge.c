@@ -26,7 +26,7 @@ double view_edge(double roughness, double nov)
     double sine = sqrt((1 - nov) * (1 + nov)), root_v = root(alpha, nov);
     if (alpha < 1e-6 || root_v <= 0)
         return nov * pow(1 - nov, 6);
-    // the view v, stretched such that the visible normals of the surface become those of a
+    // the view v after the stretch that turns the surface's visible normals into those of a
     // hemisphere
     double sx = alpha * sine / root_v, sz = nov / root_v;
     for (int i = 0; i < DOWN; i++) {

@@ -31,7 +31,8 @@ typedef struct job {
     double noise;
     int batch_limit, bounces;
     bool alone;
-    // true: view_walk_add computes the ball's bounces after the first
+    // true for a ball whose bounces after the first between microfacets are computed by
+    // view_walk_add
     bool walks[VIEW_MAX_BALLS];
     double eye[3], right[3], up[3], back[3], slope;
     view_ball balls[VIEW_MAX_BALLS];
@@ -457,7 +458,8 @@ kiln_result view_reference(kiln_context *context, const view_options *options,
         .noise = def->noise > 0 ? def->noise : 0.01,
         .batch_limit = def->batch_limit > 1 ? def->batch_limit : 16384,
         .bounces = def->bounces,
-        // in the furnace, the two rows of balls would otherwise reflect each other
+        // in the furnace scene the two rows of balls do not reflect each other, so that each ball
+        // sees white alone
         .alone = def->alone || white,
         .slope = tan(options->camera.fov / 2 * degree),
         .image = image,

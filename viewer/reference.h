@@ -6,7 +6,7 @@
 
 #include "viewer.h"
 
-/// Settings; {0} selects the defaults.
+/// Settings of view_reference; {0} selects the default of each.
 typedef struct view_reference_def {
     double noise;    ///< wanted relative standard error of a pixel, 1e-4 to 1; 0 for 0.01
     int batch_limit; ///< largest number of samples for each ray; 0 for 16384

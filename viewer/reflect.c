@@ -70,7 +70,8 @@ static kiln_f_add form_of(view_method method)
     return method == VIEW_METHOD_KULLA_CONTY_HANDOUT ? KILN_F_ADD_ASSIGNMENT : KILN_F_ADD_SECOND;
 }
 
-// Computes the same as f82_edge of shaders/brdf.glsl.
+// Returns the edge in F = Schlick's reflectance - edge voh (1 - voh)^6, as f82_edge of
+// shaders/brdf.glsl does.
 static double edge_of(double f0, double f82)
 {
     static const double edge = 1.0 / 7;

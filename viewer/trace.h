@@ -23,7 +23,8 @@ double view_random_next(view_random *random);
 
 typedef struct view_light {
     kiln_map panorama; ///< the environment as a panorama of one level
-    /// cumulated r + g + b: of the rows above, and of the texels to the left within each row
+    /// cumulated |r| + |g| + |b|. row: of all rows above each row, times the solid angle of a
+    /// texel; texel: of all texels to the left of each texel in its row
     double *row, *texel;
     double total; ///< integral of r + g + b over the sphere
     double mean;  ///< mean radiance over the sphere and the three channels
@@ -48,9 +49,10 @@ typedef struct view_point {
     double ray[3], position[3];
     double n[3], t[3], b[3]; ///< unit normal and two unit tangents, in the world
     double v[3];             ///< unit vector towards the camera, in the frame (t, b, n)
-    double specular[3]; ///< factor on the single-scattering lobe, besides Fresnel's reflectance
-    double lobe[3];     ///< factor of Kulla and Conty's lobe, which is lobe (1 - E(n.l)) / pi
-    double diffuse[3];  ///< albedo of the diffuse light
+    /// factor by which the single-scattering lobe is multiplied, besides Fresnel's reflectance
+    double specular[3];
+    double lobe[3];    ///< factor of Kulla and Conty's lobe, which is lobe (1 - E(n.l)) / pi
+    double diffuse[3]; ///< albedo of the diffuse light
 } view_point;
 
 enum { VIEW_CURVE = 256 };

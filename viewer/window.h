@@ -4,7 +4,7 @@
 
 #include "viewer.h"
 
-/// Settings; {0} selects the defaults.
+/// Settings of view_window; {0} selects the default of each.
 typedef struct view_window_def {
     const char *title;
     int width, height; ///< size of the picture in pixels; 0 for 1280 x 720

@@ -35,7 +35,8 @@ static bool progress(void *user, const char *stage, double fraction)
     return true;
 }
 
-// WebAssembly memory ends at 2 GiB; 1800 MiB are kiln's limit, and the other memory holds files.
+// Memory limit of the library. WebAssembly memory ends at 2 GiB; what the library leaves holds
+// files.
 #define MEMORY ((size_t)1800 << 20)
 
 baker *baker_create(void)

@@ -18,7 +18,8 @@ STAGE stage *stage_create(const char *canvas);
 STAGE bool stage_ready(const stage *s);
 STAGE const char *stage_message(const stage *s);
 STAGE const char *stage_gl_name(const stage *s);
-/// Returns the array of view numbers (view_numbers.h) that stage_draw and the functions below read.
+/// Returns the array of view numbers (view_numbers.h) that stage_draw, stage_furnace and
+/// stage_error read.
 STAGE double *stage_numbers(stage *s);
 /// Sets the array of view numbers to the scene's defaults.
 STAGE void stage_defaults(stage *s, int scene);

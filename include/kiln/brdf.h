@@ -158,8 +158,9 @@ KILN_API void kiln_glass_average(const kiln_model *model, double roughness, doub
 
 /// Factor that colours the added lobe, in terms of f = F_avg.
 typedef enum kiln_f_add {
-    KILN_F_ADD_SECOND, ///< f^2 E_avg / (1 - f (1 - E_avg)): all bounces from the second on
-    /// F E_avg / (1 - f (1 - E_avg)): all bounces from the first on, as in courses.
+    /// f^2 E_avg / (1 - f (1 - E_avg)), f = F_avg: sums all bounces from the second on
+    KILN_F_ADD_SECOND,
+    /// F E_avg / (1 - f (1 - E_avg)), f = F_avg: sums all bounces from the first on, as in courses.
     KILN_F_ADD_ASSIGNMENT
 } kiln_f_add;
 
@@ -231,7 +232,8 @@ typedef enum kiln_table_kind {
     KILN_TABLE_DFG_MULTISCATTER, ///< B, A + B and the albedo of sheen, in Filament's order
     KILN_TABLE_SHEEN,            ///< directional albedo of Charlie sheen; one channel
     KILN_TABLE_E_DIELECTRIC,     ///< E of a rough dielectric's reflection, with w along the ior
-    /// Reflected and transmitted share from outside, then both from inside.
+    /// Shares of light that rough glass reflects and transmits from outside, then both from inside;
+    /// four channels.
     KILN_TABLE_GLASS,
     /// The part of the albedo that is due to light reflected twice or more between microfacets,
     /// computed by random walks, with w along F0. The albedo of all bounces is F0 A + B plus the

@@ -56,7 +56,8 @@ KILN_API KILN_CHECKED kiln_result kiln_textbook_brdf(kiln_context *context, int 
 typedef enum kiln_assignment_method {
     KILN_ASSIGNMENT_MONTE_CARLO, ///< cosine-distributed light in jittered strata (SplitMix64)
     KILN_ASSIGNMENT_IMPORTANCE,  ///< GGX half vectors from Hammersley points: bonus task 1
-    KILN_ASSIGNMENT_SPLIT_SUM    ///< A + B of the split sum with the same points: bonus task 2
+    /// A + B of the split sum, by GGX half vectors from Hammersley points: bonus task 2
+    KILN_ASSIGNMENT_SPLIT_SUM
 } kiln_assignment_method;
 
 /// The masking G that the assignment combines with GGX.

@@ -114,7 +114,7 @@ typedef struct kiln_context_def {
     kiln_cpu cpu;
 } kiln_context_def;
 
-/// Creates a context. `def` may be NULL for the defaults.
+/// Creates a context. `def` may be NULL, which selects the defaults of kiln_context_def.
 KILN_API KILN_CHECKED kiln_result kiln_context_create(const kiln_context_def *def,
                                                       kiln_context **context, kiln_error *error);
 /// Destroys a context; `context` may be NULL. Objects made with the context may still be freed or
@@ -270,10 +270,10 @@ typedef struct kiln_load_report {
     /// Light of the values below zero relative to the light of the values above zero, where light
     /// is a value times the solid angle of its texel.
     double negative_share;
-    kiln_negative negative; ///< what became of the values below zero
+    kiln_negative negative; ///< what became of the values below zero: they were kept, or became 0
     int note_count;         ///< number of notes, of which `note` holds the first KILN_MAX_NOTES
-    /// Choices, conversions and assumptions. The notes about the counts above are made by
-    /// kiln_load_report_note.
+    /// Choices, conversions and assumptions of the loader. The notes about the counts above are
+    /// made by kiln_load_report_note.
     kiln_note note[KILN_MAX_NOTES];
 } kiln_load_report;
 
@@ -730,7 +730,7 @@ typedef struct kiln_save_report {
     /// largest radiance that the files' format can hold; 0 if floats hold every radiance
     double limit;
     size_t value_count; ///< number of values in all levels: three per texel
-    size_t cut_count;   ///< number of values above the limit, which the files hold as the limit
+    size_t cut_count;   ///< number of values above `limit`, which the files hold as `limit`
     double share;       ///< cut_count / value_count
     /// Light above the limit relative to all light of the map, where light is a value times the
     /// solid angle of its texel.
@@ -865,7 +865,8 @@ typedef struct kiln_environment_save_def {
     const char *irradiance_path; ///< path of the irradiance map; NULL to leave the irradiance out
     /// Path of the harmonics (.json, .txt or .h); NULL for no file of harmonics.
     const char *sh_path;
-    const kiln_sh *sh; ///< harmonics for sh_path; NULL for those of the environment
+    /// harmonics to write to sh_path; NULL for the field `sh` of the environment
+    const kiln_sh *sh;
 } kiln_environment_save_def;
 
 typedef struct kiln_environment_report {

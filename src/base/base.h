@@ -79,11 +79,11 @@ typedef struct ki_scratch {
     uint8_t *memory;
     /// size of `memory` in bytes, and the largest size that executions have wanted
     size_t capacity, peak;
-    struct ki_block *top; ///< the block that was taken last of those not given back
+    struct ki_block *top; ///< the last block taken that is not given back yet
 } ki_scratch;
 
 void ki_scratch_begin(kiln_context *context, ki_scratch *scratch);
-/// Ends the use of the scratch. The caller has freed all blocks taken from the scratch.
+/// Ends an execution's use of the scratch memory. The caller has freed all blocks taken from it.
 void ki_scratch_end(kiln_context *context);
 /// Enlarges the scratch's memory to the largest size that executions have ever wanted plus `more`
 /// bytes. Returns false if memory runs out. Must not be called between ki_scratch_begin and

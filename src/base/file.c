@@ -194,7 +194,8 @@ static kiln_result add_in_memory(ki_file_set *set, const char *path, const void 
     return KILN_OK;
 }
 
-// Returns whether two paths of files lead to the same folder, as far as their texts say.
+// Returns whether two paths of files have the same text before the file's name, and so name the
+// same folder.
 static bool same_folder(const char *a, const char *b)
 {
     size_t length = ki_folder_length(a);

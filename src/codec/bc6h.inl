@@ -343,7 +343,8 @@ static void descend(const parabola *p, const ki_bc6h_mode *mode, int channel, in
     }
 }
 
-// Sets the ends of each subset's line to those with the least squared error for the given indices.
+// Sets the ends of each subset's line to those with the least squared error for the indices that
+// the texels have.
 static void refine(const texels *t, const float mask[TEXELS], candidate *k)
 {
     ki_bc6h_block *b = &k->block;
@@ -379,7 +380,8 @@ static void refine(const texels *t, const float mask[TEXELS], candidate *k)
     }
 }
 
-// Moves the other endpoints into the range of the mode's differences after endpoint 0 has changed.
+// After endpoint 0 has changed, moves endpoints 1 to 3 into the range that the mode's bits for
+// differences from endpoint 0 allow.
 static void keep_all(ki_bc6h_block *b)
 {
     const ki_bc6h_mode *mode = &ki_bc6h_modes[b->mode];

@@ -6,7 +6,8 @@
 // times in b.
 uint32_t ki_adler32(uint32_t sum, const uint8_t *bytes, size_t size)
 {
-    enum { AT_ONCE = 5552 }; // number of bytes for which b stays below 2^32
+    // number of bytes after which b, the second sum of Adler-32, is still below 2^32
+    enum { AT_ONCE = 5552 };
     uint32_t a = sum & 0xffff, b = sum >> 16;
     while (size) {
         size_t count = size < AT_ONCE ? size : AT_ONCE, i = 0;

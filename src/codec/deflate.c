@@ -310,7 +310,7 @@ static void put_stored(ki_deflater *d, const uint8_t *bytes, size_t size, bool l
         put_flush(d, 0, -d->held & 7);
         put_flush(d, (uint32_t)count, 16);
         put_flush(d, (uint32_t)~count & 0xffff, 16);
-        // put_flush() has written all bits, since the padding above ends at a byte
+        // put_flush() has written all bits that waited, since the padding above ends at a byte
         memcpy(d->out, bytes, count);
         d->out += count;
         bytes += count;

@@ -125,7 +125,8 @@ static kiln_result find_chunk(search *s, const char *name, int column, int row, 
     ki_reader r = open_chunk(s, index, column, row);
     c->packed_size = ki_read_u32(&r);
     c->packed = ki_read_bytes(&r, c->packed_size);
-    // A chunk's size above what the chunks before have left of the file means that chunks overlap.
+    // Each byte of the file belongs to one chunk at most: a chunk larger than what the chunks
+    // before it have left shows that chunks overlap.
     if (!c->packed || c->packed_size > s->left)
         return ki_fail(error, KILN_ERROR_FORMAT, "%s: chunk %lld is missing or damaged", name,
                        (long long)index);

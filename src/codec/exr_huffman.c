@@ -9,8 +9,8 @@
 
 enum {
     SYMBOLS = 65537,
-    // Longest code in bits. The format allows 58 bits, but no chunk is long enough to need more
-    // than these.
+    // Longest code in bits that is read. The format allows 58 bits, but no chunk has enough symbols
+    // to need more than 56.
     LONGEST = 56,
     SHORT_ZEROS = 59, // stored code lengths 59 to 62 mean that 2 to 5 symbols do not occur
     // the stored code length 63, with 8 more bits, means that 6 to 261 symbols do not occur

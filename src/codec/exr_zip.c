@@ -16,7 +16,8 @@
 static void undo_differences(uint8_t *bytes, size_t size)
 {
     size_t i = 0;
-    uint8_t last = 128; // with 128 before it, the first byte stays as it is stored
+    // the byte before the first, chosen so that the first byte stays as it is stored
+    uint8_t last = 128;
     for (; i + 16 <= size; i += 16) {
         ki_bytes16 v;
         memcpy(&v, bytes + i, sizeof v);

@@ -21,8 +21,9 @@ enum { FACES = 6, WORD = 16 };
 
 struct ki_face_set {
     const char *word[FACES]; // names of the faces +X -X +Y -Y +Z -Z, in lower case
-    bool named_by_side;      // true: the names say sides, such as "right", and not axes
-    bool quake;              // true: the pictures are oriented as Quake and Source orient a sky
+    // true: the names are sides of the viewer, such as "right", and not axes, such as "px"
+    bool named_by_side;
+    bool quake; // true: the pictures are oriented as Quake and Source orient a sky
 };
 
 static const ki_face_set sets[] = {
@@ -92,7 +93,8 @@ static const char *find_word(const char *name, const char *word)
     }
 }
 
-// Returns whether what follows a face in a file name says a level other than 0, as in "px_3.exr".
+// Returns whether the text after the name of a face in a file name says a level other than 0, as in
+// "px_3.exr".
 static bool is_small_level(const char *after)
 {
     char *end;
@@ -122,7 +124,8 @@ const ki_face_set *ki_faces_order(const char *const paths[6], int order[6])
     return NULL;
 }
 
-// Returns whether a path names a face: at the end of its name, after a character that is no letter.
+// Returns whether a path's file name ends in the name of a face, after a character that is no
+// letter.
 static bool names_a_face(const char *path)
 {
     const char *name = file_name(path);
@@ -150,7 +153,8 @@ bool kiln_faces_order(const char *const paths[6], int order[6])
 
 // ------------------------------------------------------------------------------------------ folders
 
-// The names of the pictures in a folder, each with its NUL, and the same in alphabetical order.
+// The names of the pictures in a folder: `text` one after the other, each with its NUL, and
+// pointers to them in alphabetical order.
 typedef struct listing {
     ki_writer text;
     size_t count;
@@ -211,12 +215,12 @@ typedef struct search {
     int complete;
     const ki_face_set *set[2];
     const char *name[2][FACES];
-    int most; // number of faces of the set that lacks the fewest
+    int most; // number of faces of the set that lacks the fewest faces
     const char *present;
     char lacking[96];
 } search;
 
-// Keeps a set of files that lacks faces if the set lacks fewer than the sets before.
+// Keeps a set of files that lacks faces if it lacks fewer than the sets found before.
 static void keep_partial(search *s, const char *const name[FACES], int count, int lacking,
                          const char *at, const char *from, const ki_face_set *set, int face)
 {
@@ -228,7 +232,8 @@ static void keep_partial(search *s, const char *const name[FACES], int count, in
              set->word[lacking], at + strlen(set->word[face]));
 }
 
-// Looks for the other five files of a file whose name holds the name of `face` at `at`.
+// Looks in a folder for the other five files of a set, of which the name at hand holds the name of
+// `face` at `at`.
 static void complete_set(search *s, const ki_face_set *set, int face, const char *from,
                          const char *at)
 {
@@ -348,14 +353,15 @@ static void spell(const char *word, int letters, char text[WORD])
     }
 }
 
-// A pattern, and the room for six paths that are made from the pattern.
+// A pattern for the paths of six faces, and the room for the paths that are made from the pattern.
 typedef struct pattern {
     const char *text, *place;
     size_t length, room;
     char *paths;
 } pattern;
 
-// Makes the six paths of a set, and returns how many of these files exist.
+// Makes the six paths of a pattern with the names of a set, written with capital letters as
+// `letters` says. Returns how many of these files exist.
 static int try_pattern(const pattern *p, const ki_face_set *set, int letters)
 {
     int count = 0;
@@ -393,8 +399,8 @@ kiln_result ki_faces_of_pattern(kiln_context *context, const char *text, const c
                 most = count;
             }
         }
-    // The paths of the set that lacks the fewest files; the reading of a file that is missing
-    // fails with the file's name.
+    // Makes the paths of the set of which the most files exist. If a file is missing, the reading
+    // of the set fails with the name of the file.
     try_pattern(&p, files->set, letters);
     for (size_t face = 0; face < FACES; face++)
         files->path[face] = p.paths + p.room * face;

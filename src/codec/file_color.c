@@ -117,7 +117,8 @@ typedef struct known_transfer {
     ki_curve curve;
 } known_transfer;
 
-// The inverse of the function of ITU-R BT.709, which has four numbers.
+// Numbers of KI_CURVE_PARAMETRIC for the transfer function of ITU-R BT.709, from stored samples to
+// linear light.
 #define BT709_CURVE                                                                                \
     {                                                                                              \
         .kind = KI_CURVE_PARAMETRIC, .g = 1 / 0.45, .a = 1 / 1.099, .b = 0.099 / 1.099,            \
@@ -170,7 +171,8 @@ typedef struct hlg_job {
     kiln_image *image;
 } hlg_job;
 
-// Task of one thread: applies the system gamma of HLG to one row.
+// Task of one thread: applies the system gamma of HLG, which turns the light of the scene into that
+// of a display, to one row.
 static void show_row(void *data, int row)
 {
     const hlg_job *job = data;

@@ -15,7 +15,7 @@ typedef struct foreign {
     const char *format, *command;
     const char *first;
     size_t first_count;
-    const char *second; // NULL for one string
+    const char *second; // NULL if the format is recognised by one string
     size_t second_at, second_count;
 } foreign;
 

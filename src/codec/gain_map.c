@@ -18,7 +18,8 @@ static uint32_t read_u32(ki_reader *r)
     return __builtin_bswap32(ki_read_u32(r));
 }
 
-// A fraction, whose denominator is common to all if `common` is not 0.
+// Reads a fraction: a numerator, and a denominator unless `common`, the denominator of all
+// fractions of the gain map, is not 0.
 static double read_fraction(ki_reader *r, bool is_signed, uint32_t common)
 {
     uint32_t above = read_u32(r), below = common ? common : read_u32(r);
@@ -30,11 +31,12 @@ static bool read_iso(ki_span span, ki_gain_map *map)
 {
     enum { SEVERAL_CHANNELS = 128, COMMON_DENOMINATOR = 8 };
     ki_reader r = ki_reader_make(span.bytes, span.size);
-    ki_read_bytes(&r, 4); // the versions that a reader needs and that the writer has
+    // skips the version that a reader must know and the version that the writer knows
+    ki_read_bytes(&r, 4);
     int flags = ki_read_u8(&r), count = flags & SEVERAL_CHANNELS ? 3 : 1;
     uint32_t common = flags & COMMON_DENOMINATOR ? read_u32(&r) : 0;
     if (r.failed || span.bytes[0] || span.bytes[1] ||
-        (flags & COMMON_DENOMINATOR && !common)) // a version that kiln does not know
+        (flags & COMMON_DENOMINATOR && !common)) // the gain map needs a reader of a later version
         return false;
     map->base_headroom = read_fraction(&r, false, common);
     map->other_headroom = read_fraction(&r, false, common);
@@ -77,7 +79,7 @@ static const uint8_t *skip_spaces(const uint8_t *at, const uint8_t *end)
     return at;
 }
 
-// Reads a number that stands before the end of the packet.
+// Reads a decimal number that ends before the end of the XMP packet.
 static bool parse(const uint8_t *at, const uint8_t *end, double *value)
 {
     char text[40];
@@ -87,7 +89,8 @@ static bool parse(const uint8_t *at, const uint8_t *end, double *value)
     return ki_parse_number(text, value) != NULL;
 }
 
-// Finds "hdrgm:NAME", whose name goes no further, and returns what follows, or NULL.
+// Finds "hdrgm:NAME" in an XMP packet, where NAME is not the beginning of a longer name, and
+// returns a pointer to the text after NAME, or NULL.
 static const uint8_t *find_name(ki_span xmp, const char *name)
 {
     const uint8_t *end = xmp.bytes + xmp.size;
@@ -100,8 +103,9 @@ static const uint8_t *find_name(ki_span xmp, const char *name)
     return NULL;
 }
 
-// Reads an attribute NAME="1.5", an element <NAME>1.5</NAME> or a list of three <rdf:li>1.5</rdf:li>.
-// Leaves the values as they are, and returns false, if there is no such name.
+// Reads one or three values of an XMP packet: an attribute NAME="1.5", an element <NAME>1.5</NAME>
+// or a list of three <rdf:li>1.5</rdf:li>. Returns false, and leaves the values as they are, if the
+// packet has no such name.
 static bool read_xmp_values(ki_span xmp, const char *name, double values[3])
 {
     const uint8_t *end = xmp.bytes + xmp.size, *at = find_name(xmp, name);
@@ -163,7 +167,8 @@ bool ki_gain_map_announced(const ki_jpeg_head *head)
     return head->iso.bytes || (head->xmp.bytes && find_name(head->xmp, "hdrgm:Version"));
 }
 
-// A gain of 2^32 and offsets of 64 are far beyond those of any camera, and keep values finite.
+// Returns whether a gain map's numbers can be used. Gains up to 2^32 and offsets up to 64 are far
+// beyond those of any camera, and keep values finite.
 static bool is_usable(const ki_gain_map *map)
 {
     for (int c = 0; c < 3; c++)
@@ -191,7 +196,8 @@ typedef struct gain_job {
     kiln_image *image;
 } gain_job;
 
-// The two samples of a row or column around a texel's centre, and the share of the second.
+// The two samples of the gain map, in a row or a column, between which a texel's centre lies, and
+// the weight of the second in the interpolation.
 typedef struct between {
     int first, second;
     double share;
@@ -226,7 +232,7 @@ static float apply_gain(const ki_gain_map *m, int c, double value, double sample
     return (float)((value + m->base_offset[c]) * gain - m->other_offset[c]);
 }
 
-// Task of one thread: applies the map to one row.
+// Task of one thread: applies the gain map to one row of the image.
 static void apply_row(void *data, int row)
 {
     const gain_job *job = data;

@@ -25,13 +25,14 @@ static uint32_t u32_at(const uint8_t *at)
     return (uint32_t)at[0] << 24 | (uint32_t)at[1] << 16 | (uint32_t)at[2] << 8 | at[3];
 }
 
-// A number with 16 bits before and 16 bits after the binary point.
+// Returns a number that is stored with 16 bits before and 16 bits after the binary point.
 static double fixed_at(const uint8_t *at)
 {
     return (double)(int32_t)u32_at(at) / 65536;
 }
 
-// Returns the data of a tag with at least `least` bytes, or NULL.
+// Returns the data of a profile's tag, or NULL if the profile has no such tag of at least `least`
+// bytes.
 static const uint8_t *find_tag(const icc_file *f, const char *name, size_t least, size_t *size)
 {
     uint32_t count = u32_at(f->bytes + HEADER);
@@ -59,8 +60,8 @@ static bool has_tag(const icc_file *f, const char *name)
 
 // ---------------------------------------------------------------------------------------- curves
 
-// The numbers of a curve of type "para" that are stored for each of the five functions, in the
-// order g, a, b, c, d, e, f.
+// Reads a curve of type "para", which has one of five functions. Each function stores some of the
+// numbers g, a, b, c, d, e and f, in this order.
 static bool read_parametric(const uint8_t *data, size_t size, ki_curve *curve)
 {
     static const size_t counts[5] = {1, 3, 4, 5, 7};
@@ -102,8 +103,8 @@ static bool read_curve(const icc_file *f, const char *name, ki_curve *curve)
     return true;
 }
 
-// Returns whether a curve is that of sRGB within a third of a step of 8 bits, which is the rounding
-// of profiles.
+// Returns whether a curve gives the linear values of sRGB with differences of at most 5e-4, which
+// the rounding of numbers in profiles explains.
 static bool is_srgb(const ki_curve *curve)
 {
     for (int i = 0; i <= 64; i++) {
@@ -116,7 +117,7 @@ static bool is_srgb(const ki_curve *curve)
 
 // ------------------------------------------------------------------------------------------ names
 
-// Copies the profile's description, as far as its characters are ASCII.
+// Copies the profile's description to `name`, as far as its characters are ASCII.
 static void read_name(const icc_file *f, char name[KI_COLOR_NAME])
 {
     char text[KI_COLOR_NAME] = "";
@@ -124,7 +125,7 @@ static void read_name(const icc_file *f, char name[KI_COLOR_NAME])
     const uint8_t *data = find_tag(f, "desc", 28, &size);
     if (data && !memcmp(data, "desc", 4)) {
         at = 12;
-    } else if (data && !memcmp(data, "mluc", 4)) { // UTF-16, high byte first
+    } else if (data && !memcmp(data, "mluc", 4)) { // the text is UTF-16, high byte first
         at = u32_at(data + 24);
         step = 2;
     }
@@ -157,7 +158,8 @@ static bool read_matrix(const icc_file *f, ki_file_color *color)
     return true;
 }
 
-// Leaves out the conversion by a matrix that is the identity within the rounding of profiles.
+// Clears `converts` if the profile's matrix is the identity but for the rounding of numbers in
+// profiles, and replaces curves that give the values of sRGB by {0}.
 static void simplify(ki_file_color *color)
 {
     double most = 0;

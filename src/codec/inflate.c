@@ -37,7 +37,8 @@ static inline uint32_t kind_of(uint32_t entry)
     return entry >> 8 & 7;
 }
 
-// The input as bits, of which those in `bits` are read already, the next one lowest.
+// The input as a sequence of bits. The bits in `bits` are already read from the input; the next of
+// them is the lowest.
 typedef struct stream {
     const uint8_t *in, *in_end;
     uint64_t bits;

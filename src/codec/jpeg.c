@@ -11,7 +11,8 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { PICTURES_MOST = 8 }; // number of pictures in a file that may be its gain map
+// greatest number of pictures of a file among which the gain map is searched
+enum { PICTURES_MOST = 8 };
 
 typedef struct jpeg_file {
     kiln_context *context;
@@ -58,7 +59,7 @@ static void read_color(jpeg_file *f, kiln_load_report *report)
                 "no ICC profile says how values are coded, so sRGB was assumed");
 }
 
-// Finds the picture with the numbers of a gain map.
+// Finds the picture of the file that holds a gain map, and the gain map's numbers.
 static kiln_result find_gain_map(jpeg_file *f, kiln_error *error)
 {
     ki_span pictures[PICTURES_MOST];
@@ -141,8 +142,8 @@ static kiln_result apply_gain_map(jpeg_file *f, kiln_image *image, kiln_error *e
     return result;
 }
 
-// Turns the picture by Exif's orientation: from 5 on rows and columns are exchanged. Pixel (x, y) of
-// the upright picture is then read from the left or the right, and from the top or the bottom.
+// Turns the picture by Exif's orientation: from 5 on rows and columns are exchanged. Pixel (x, y)
+// of the upright picture is then read from the left or the right, and from the top or the bottom.
 static kiln_result turn_upright(jpeg_file *f, kiln_image *image, kiln_error *error)
 {
     int o = f->head.orientation, w = image->width, h = image->height;

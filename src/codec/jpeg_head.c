@@ -1,7 +1,7 @@
 // The segments of JPEG files. In: bytes. Out: size and kind of the picture, and the places of its
-// Exif orientation, XMP packet, ICC profile, gain-map numbers and further pictures. Method: segments
-// are walked one after the other (ITU-T T.81, annex B); the data of a scan are passed by a search
-// for the next marker. Each byte is visited once.
+// Exif orientation, XMP packet, ICC profile, gain-map numbers and further pictures. Method:
+// segments are walked one after the other (ITU-T T.81, annex B); the data of a scan are passed by a
+// search for the next marker. Each byte is visited once.
 #include "codec/jpeg_head.h"
 
 #include <string.h>
@@ -24,7 +24,8 @@ static unsigned u16_at(const uint8_t *at)
 
 // ------------------------------------------------------------------------------------------- TIFF
 
-// Exif data and the index of pictures are small TIFF files of either byte order.
+// The beginning of a TIFF file of either byte order. Exif data and a JPEG file's index of pictures
+// have this form.
 typedef struct tiff {
     ki_span span;
     bool low_first;
@@ -46,7 +47,8 @@ static bool open_tiff(ki_span span, tiff *t)
     return span.size >= 8 && (!memcmp(span.bytes, "II*\0", 4) || !memcmp(span.bytes, "MM\0*", 4));
 }
 
-// Returns the place of an entry of the first directory, or 0.
+// Returns the position of a tag's entry in the first directory of a TIFF file, or 0 if the
+// directory has no such entry.
 static size_t find_entry(const tiff *t, unsigned tag)
 {
     size_t at = tiff_number(t, 4, 4);
@@ -71,7 +73,8 @@ static int read_orientation(ki_span exif)
 
 // --------------------------------------------------------------------------------------- segments
 
-// Returns whether a segment begins with a name, and sets what follows.
+// Returns whether a segment begins with a name of `count` bytes, and sets *rest to the bytes after
+// the name.
 static bool is_named(ki_span segment, const char *name, size_t count, ki_span *rest)
 {
     if (segment.size < count || memcmp(segment.bytes, name, count) != 0)
@@ -91,7 +94,8 @@ static void read_app1(ki_jpeg_head *head, ki_span segment)
         head->xmp = rest;
 }
 
-// A profile of more than a segment has parts, which are numbered from 1.
+// Reads a segment APP2, which may hold a part of an ICC profile. The parts of a profile of more
+// than one segment are numbered from 1.
 static void read_app2(ki_jpeg_head *head, ki_span segment)
 {
     ki_span rest;
@@ -105,7 +109,8 @@ static void read_app2(ki_jpeg_head *head, ki_span segment)
     }
 }
 
-// Reads the header of a frame, of any of the processes of JPEG.
+// Reads the header of a frame, which states the size of the picture and how it is coded, by any of
+// the processes of JPEG.
 static void read_frame(ki_jpeg_head *head, int marker, ki_span segment)
 {
     if (segment.size < 6 || head->components)
@@ -132,7 +137,8 @@ static void read_segment(ki_jpeg_head *head, int marker, ki_span segment)
         read_frame(head, marker, segment);
 }
 
-// Returns the place of the next marker's code, from which its 0xff is one byte back, or `size`.
+// Returns the position of the code of the next marker, which is one byte after its 0xff, or `size`
+// if there is none.
 static size_t find_marker(const uint8_t *bytes, size_t size, size_t at)
 {
     while (at < size) {
@@ -150,7 +156,8 @@ static size_t find_marker(const uint8_t *bytes, size_t size, size_t at)
 kiln_result ki_jpeg_read_head(kiln_context *context, const uint8_t *bytes, size_t size,
                               const char *name, ki_jpeg_head *head, kiln_error *error)
 {
-    enum { SEGMENTS = 1 << 14 }; // number of segments between two questions whether to go on
+    // number of segments after which the caller is asked whether to go on
+    enum { SEGMENTS = 1 << 14 };
     *head = (ki_jpeg_head){.orientation = 1, .end = size};
     size_t at = 2;
     for (int i = 1; at < size; i++) {

@@ -5,7 +5,7 @@
 #include "base/base.h"
 
 typedef struct ki_span {
-    const uint8_t *bytes; ///< NULL for nothing
+    const uint8_t *bytes; ///< NULL if the file has no such bytes
     size_t size;
 } ki_span;
 
@@ -16,19 +16,21 @@ typedef struct ki_jpeg_head {
     int width, height, components, precision;
     bool progressive;
     int orientation;  ///< Exif's orientation, 1 to 8; 1 is upright
-    ki_span xmp;      ///< the XMP packet
-    ki_span iso;      ///< what follows the name of ISO 21496-1 in its segment
+    ki_span xmp;      ///< text of the XMP packet
+    ki_span iso;      ///< gain-map numbers of ISO 21496-1: the content of their segment
     ki_span pictures; ///< the index of the file's pictures (CIPA DC-007), a TIFF file
-    ki_span profile[KI_JPEG_PROFILE_PARTS]; ///< parts of the ICC profile
-    int profile_parts;                      ///< number of parts that the profile has
-    size_t end;                             ///< number of bytes from the picture's first to its end
+    /// parts of the ICC profile, each from a segment of its own
+    ki_span profile[KI_JPEG_PROFILE_PARTS];
+    int profile_parts; ///< number of parts that the ICC profile has
+    size_t end;        ///< number of bytes from the picture's first byte to its end
 } ki_jpeg_head;
 
-/// Reads the segments of the picture that begins at `bytes`. Fails unless the picture has a frame.
+/// Reads the segments of the JPEG picture that begins at `bytes`. Fails unless the picture has a
+/// frame header, which states its size.
 kiln_result ki_jpeg_read_head(kiln_context *context, const uint8_t *bytes, size_t size,
                               const char *name, ki_jpeg_head *head, kiln_error *error);
-/// Finds the pictures behind the first, by the file's index or, without an index, behind the first
-/// picture's end. Returns their number, at most `most`.
+/// Finds the further pictures of a JPEG file, such as a gain map: by the file's index or, without
+/// an index, after the first picture's end. Returns their number, at most `most`.
 int ki_jpeg_other_pictures(const uint8_t *bytes, size_t size, const ki_jpeg_head *head,
                            ki_span *pictures, int most);
 /// Joins the parts of the ICC profile. Returns NULL if there is no profile, a part is missing or

@@ -1,6 +1,6 @@
 // Decoding of JPEG pictures by libjpeg-turbo. In: the bytes of a picture. Out: 8-bit samples.
-// libjpeg's errors end the decoding by longjmp. Data that end too early or are damaged fail, because
-// libjpeg would fill the rest with grey.
+// libjpeg's errors end the decoding by longjmp. Data that end too early or are damaged fail,
+// because libjpeg would fill the rest with grey.
 #include "codec/jpeg_pixels.h"
 
 #include "codec/file_info.h"
@@ -35,7 +35,8 @@ static _Noreturn void stop(j_common_ptr jpeg)
     longjmp(d->stop, 1);
 }
 
-// Called for warnings (level below 0) and traces. Damaged data are an error, and so is an early end.
+// Called by libjpeg for warnings (level below 0) and traces. A warning says that data are damaged
+// or end early, which is an error here.
 static void take_message(j_common_ptr jpeg, int level)
 {
     int code = jpeg->err->msg_code;
@@ -62,7 +63,7 @@ static void begin(decoder *d, kiln_context *context)
     d->jpeg.client_data = d;
 }
 
-// Returns false where libjpeg stopped.
+// Decodes a picture to `samples`. Returns false if libjpeg stopped with an error.
 static bool decode(decoder *d, ki_span picture, const ki_jpeg_head *head, uint8_t *samples)
 {
     struct jpeg_decompress_struct *jpeg = &d->jpeg;
@@ -75,7 +76,7 @@ static bool decode(decoder *d, ki_span picture, const ki_jpeg_head *head, uint8_
     jpeg_mem_src(jpeg, picture.bytes, picture.size);
     jpeg_read_header(jpeg, TRUE);
     jpeg->out_color_space = head->components == 1 ? JCS_GRAYSCALE : JCS_RGB;
-    jpeg->dct_method = JDCT_ISLOW; // the same bits on every processor
+    jpeg->dct_method = JDCT_ISLOW; // gives the same bits on every processor
     jpeg_start_decompress(jpeg);
     if (jpeg->output_width != (JDIMENSION)head->width ||
         jpeg->output_height != (JDIMENSION)head->height ||

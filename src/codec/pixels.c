@@ -43,7 +43,7 @@ typedef struct convert_job {
     float *rgb;
 } convert_job;
 
-// Task of one thread: converts one row.
+// Task of one thread: converts one row of the caller's pixels to floats.
 static void convert_row(void *data, int row)
 {
     enum { STRETCH = 64 };

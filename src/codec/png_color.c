@@ -14,9 +14,9 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { PROFILE_MOST = 1 << 24 }; // bytes of the largest ICC profile that is read
+enum { PROFILE_MOST = 1 << 24 }; // number of bytes of the largest ICC profile that is read
 
-// A chunk's content, NULL if the file has no such chunk.
+// The content of one kind of chunk; NULL if the file has no such chunk.
 typedef struct content {
     const uint8_t *bytes;
     size_t size;
@@ -37,8 +37,8 @@ static bool is_own_text(const uint8_t *data, size_t size)
     return size > key && !memcmp(data, KI_PNG_TEXELS_KEY, key);
 }
 
-// Returns where the content of a chunk belongs, or NULL if the chunk says nothing about colours or
-// has too few bytes.
+// Returns where the content of a chunk of this type is kept, or NULL if the chunk says nothing
+// about colours or has too few bytes.
 static content *place_of(found *f, const uint8_t *type, const uint8_t *data, size_t size)
 {
     const struct {
@@ -54,11 +54,11 @@ static content *place_of(found *f, const uint8_t *type, const uint8_t *data, siz
     return NULL;
 }
 
-// Finds the chunks up to the first IDAT or the end of the bytes.
+// Finds the chunks about colours before the first IDAT chunk, or before the end of the bytes.
 static kiln_result find_chunks(kiln_context *context, ki_reader *r, found *f,
                                kiln_load_report *report, kiln_error *error)
 {
-    enum { CHUNKS = 1 << 14 }; // number of chunks between two questions whether to go on
+    enum { CHUNKS = 1 << 14 }; // number of chunks after which the caller is asked whether to go on
     ki_crc32_table table;
     ki_crc32_fill(&table);
     ki_read_bytes(r, 8);
@@ -122,8 +122,8 @@ static kiln_result read_cicp(const found *f, const char *name, ki_png_meaning *m
     return KILN_OK;
 }
 
-// Decompresses the profile of the chunk iCCP: a name, a NUL, the method 0 and zlib data. A profile
-// begins with its size. Returns NULL if the chunk is damaged.
+// Decompresses the ICC profile in the chunk iCCP, which is a name, a NUL, the method 0 and zlib
+// data. The first four bytes of a profile are its size. Returns NULL if the chunk is damaged.
 static uint8_t *unpack_profile(kiln_context *context, const found *f, size_t *size)
 {
     const uint8_t *bytes = f->iccp.bytes, *end = memchr(bytes, 0, f->iccp.size);
@@ -173,7 +173,7 @@ static void read_gamma(const found *f, ki_png_meaning *meaning, kiln_load_report
             stored);
 }
 
-// cHRM has the white before the primaries.
+// Reads the chunk cHRM, which has the white point before the primaries.
 static void read_chromaticities(const found *f, ki_png_meaning *meaning, kiln_load_report *report)
 {
     ki_primaries p;

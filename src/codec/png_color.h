@@ -1,21 +1,21 @@
-// The chunks of PNG files that say what samples mean.
+// Reads the chunks of PNG files that say which colours the samples stand for.
 #ifndef KI_PNG_COLOR_H
 #define KI_PNG_COLOR_H
 
 #include "codec/file_color.h"
 #include "codec/rgbx.h"
 
-/// How the samples of a PNG become radiance.
+/// How the samples of a PNG file become radiance.
 typedef struct ki_png_meaning {
-    /// Function that gives radiance from the four samples of a pixel; NULL if the samples are
+    /// Function that computes radiance from the four samples of a pixel; NULL if the samples are
     /// colours as `color` says.
     ki_from_rgbx *unpack;
     ki_file_color color;
     const char *name; ///< short name of the coding, for example "srgb"
 } ki_png_meaning;
 
-/// Reads the chunks before the first IDAT. Fails where a chunk names colours that kiln cannot
-/// convert.
+/// Reads the chunks about colours before the first IDAT chunk. Fails if a chunk names colours that
+/// kiln cannot convert.
 kiln_result ki_png_read_meaning(kiln_context *context, const uint8_t *bytes, size_t size,
                                 const char *name, ki_png_meaning *meaning, kiln_load_report *report,
                                 kiln_error *error);

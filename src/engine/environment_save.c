@@ -51,7 +51,7 @@ typedef struct environment_files {
     const kiln_environment *environment;
     const char *path;
     const kiln_environment_save_def *def;
-    kiln_environment_report report; // set by add_files for the caller
+    kiln_environment_report report; // what was saved, set by add_files
 } environment_files;
 
 static kiln_result add_files(ki_file_set *set, void *data, kiln_error *error)

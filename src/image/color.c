@@ -89,7 +89,8 @@ static bool xyz_from_rgb(const ki_primaries *primaries, ki_matrix3 *matrix)
     return true;
 }
 
-// Sets the matrix that turns the white `from` into the white of Rec. 709, XYZ to XYZ.
+// Sets the matrix, from XYZ to XYZ, that adapts colours seen under the white `from` to the white of
+// Rec. 709.
 static bool adapt(const double from[2], ki_matrix3 *matrix)
 {
     double cones_from[3], cones_to[3];
@@ -163,7 +164,7 @@ typedef struct transform_job {
     kiln_image *image;
 } transform_job;
 
-// Task of one thread: converts one row.
+// Task of one thread: multiplies the colours of one row by the matrix.
 static void transform_row(void *data, int row)
 {
     const transform_job *job = data;

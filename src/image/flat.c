@@ -19,7 +19,7 @@
 
 #include <math.h>
 
-enum { GRID = 6 }; // number of points along each side of a texel
+enum { GRID = 6 }; // number of points along each side of a texel, at which the probe is read
 
 static int rows_for(int most)
 {
@@ -41,8 +41,9 @@ static double radius_of(ki_probe probe, double z)
     return probe == KI_PROBE_ANGULAR ? ki_acos(-cosine) / KI_PI : sqrt((1 - cosine) / 2);
 }
 
-// Returns the texel at radius r in the direction (x, y) from the centre. A texel whose centre lies
-// outside the disc may hold what is behind the probe, so that the texel further in is taken.
+// Returns the probe's texel at radius r in the direction (x, y) from the centre of the disc. A
+// texel whose centre lies outside the disc may hold what is behind the probe, so that the next
+// texel towards the centre is taken.
 static const float *texel_at(const kiln_image *image, double r, double x, double y)
 {
     int n = image->width;
@@ -107,14 +108,15 @@ typedef struct stretch_job {
     kiln_map *map;
 } stretch_job;
 
-// Returns the index of the interval out of `count` that the fraction `at` of all lies in.
+// Returns in which of `count` equal parts of [0, 1] the number `at` lies.
 static int interval_of(double at, int count)
 {
     return ki_min((int)(at * count), count - 1);
 }
 
-// Adds a row of the picture with a weight to `sum`, between the fractions `left` and `right` of the
-// width. Adds the weights to *total.
+// Adds a part of a row of the picture, times `weight`, to `sum`: the texels between the fractions
+// `left` and `right` of the width, by the share of each that lies between them. Adds the texels'
+// weights to *total.
 static void add_row(const kiln_image *image, int row, double weight, double left, double right,
                     double sum[3], double *total)
 {

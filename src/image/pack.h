@@ -18,11 +18,12 @@ void ki_halfs_from_floats(const float *values, size_t count, uint16_t *halfs);
 void ki_floats_from_halfs(const uint16_t *halfs, size_t count, float *values);
 /// Converts halves that lie at any address, for example in a file.
 void ki_floats_from_half_bytes(const void *bytes, size_t count, float *values);
-/// The format with a shared exponent and 9 bits for each channel (VK_FORMAT_E5B9G9R9_UFLOAT_PACK32,
-/// EXT_texture_shared_exponent).
+/// Convert RGB floats to the format with a shared exponent and 9 bits for each channel
+/// (VK_FORMAT_E5B9G9R9_UFLOAT_PACK32, EXT_texture_shared_exponent), and back.
 uint32_t ki_rgb9e5_from_float(const float rgb[3]);
 void ki_float_from_rgb9e5(uint32_t packed, float rgb[3]);
-/// The format VK_FORMAT_B10G11R11_UFLOAT_PACK32, with red in the low bits.
+/// Convert RGB floats to the format VK_FORMAT_B10G11R11_UFLOAT_PACK32, with red in the low bits,
+/// and back.
 uint32_t ki_b10g11r11_from_float(const float rgb[3]);
 void ki_float_from_b10g11r11(uint32_t packed, float rgb[3]);
 

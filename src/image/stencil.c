@@ -540,8 +540,8 @@ kiln_result ki_stencil_grid_build(kiln_context *context, ki_stencil_grid *grid, 
 {
     kiln_result result = KILN_OK;
     int rows = grid->height, width = 2 * rows;
-    // The borders between columns from -45 to 45 degrees for a side, else from 0 to 90 degrees, and
-    // one more border on either end.
+    // The borders between panorama columns that a grid can cover, and one more on either end: from
+    // -45 to 45 degrees around the grid's axis for a cube's side, else from 0 to 90 degrees.
     double step = 2 * KI_PI / width, eighth = width / 8.0;
     double low = grid->kind == KI_STENCIL_SIDE ? -eighth : 0;
     double high = grid->kind == KI_STENCIL_SIDE ? eighth : 2 * eighth;
