@@ -266,8 +266,8 @@ static void refine(const ki_reference *r, const ray_sums *ray, const ki_row_geom
                    double *weight)
 {
     double step = 2 * KI_PI / r->width, step_theta = KI_PI / r->height;
-    // ki_reference_cell returns the mean of lobe times sin theta over (theta, phi). This factor turns
-    // that mean into the lobe's mean over the texel's solid angle.
+    // ki_reference_cell returns the mean of lobe times sin theta over (theta, phi). This factor
+    // turns that mean into the lobe's mean over the texel's solid angle.
     double scale = step * step_theta / row->area;
     for (int i = s.first; i <= s.last; i++) {
         int x = wrap(r, i);

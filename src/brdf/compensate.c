@@ -18,8 +18,8 @@ double kiln_kulla_conty(double e_o, double e_i, double e_average)
 //
 //     sum = f E + f E f (1 - E) + f E f^2 (1 - E)^2 + ... = f E / (1 - f (1 - E)).
 //
-// The bounces from the second on return f (1 - E) sum. The lobe kiln_kulla_conty already carries the
-// factor 1 - E, so that its colour is f sum. KILN_F_ADD_ASSIGNMENT uses `sum`, which counts the
+// The bounces from the second on return f (1 - E) sum. The lobe kiln_kulla_conty already carries
+// the factor 1 - E, so that its colour is f sum. KILN_F_ADD_ASSIGNMENT uses `sum`, which counts the
 // first bounce too.
 double kiln_kulla_conty_fresnel(kiln_f_add form, double f_average, double e_average)
 {
@@ -34,8 +34,8 @@ double kiln_kulla_conty_fresnel(kiln_f_add form, double f_average, double e_aver
 
 double kiln_turquin(double f0, double e)
 {
-    // The bound of 1e-6 keeps the factor finite. The albedo of every lobe that reflects light is
-    // above that bound.
+    // The bound of 1e-6 on the albedo keeps Turquin's factor 1 + f0 (1 - e) / e finite. The albedo
+    // of every lobe that reflects light is above that bound.
     double albedo = ki_clamp(e, 1e-6, 1);
     return 1 + ki_unit(f0) * (1 - albedo) / albedo;
 }

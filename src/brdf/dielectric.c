@@ -51,8 +51,8 @@ typedef struct boundary {
     double root_v;
     double pole; // G, as a function of n.l, has its pole nearest to 0 at about n.l = -pole
     double most; // upper bound of G(v, l) / (n.v)
-    // Share of R or T that a ring of half vectors (all h at one angle to n) must hold to get 16
-    // quadrature nodes instead of 8.
+    // Part of the reflected or transmitted share that a ring of half vectors (all h at one angle to
+    // n) must hold to get 16 quadrature nodes instead of 8.
     double coarse;
 } boundary;
 
@@ -98,8 +98,9 @@ static double reflected_masking(const boundary *s, double nol)
     return nol * ki_visibility(&s->model, s->roughness, s->mu, nol);
 }
 
-// The integrand of R or T without its factor D, for a half vector with n.h = cos_h and v.h = c. If
-// v is in the denser medium, the integrand of R has 1 - F in place of F.
+// The integrand of the reflected share R or the transmitted share T, without its factor D, for a
+// half vector with n.h = cos_h and v.h = c. If v is in the denser medium, the integrand of R has 1
+// - F in place of F.
 static double facet(const boundary *s, part what, double cos_h, double c)
 {
     double contrast = (1 - s->ior) * (1 + s->ior), g2 = c * c - contrast;
@@ -256,9 +257,9 @@ static double integrate_rings(const boundary *s, part what, double from, double 
     return sum;
 }
 
-// Integrates R or T over all half vectors: cuts the range of their angle theta to n at the angles
-// where ring()'s arc of azimuths opens, closes or changes its limiting condition, and adds the
-// integrals between the cuts.
+// Integrates the reflected share R or the transmitted share T over all half vectors: cuts the range
+// of their angle theta to n at the angles where ring()'s arc of azimuths opens, closes or changes
+// its limiting condition, and adds the integrals between the cuts.
 static double integrate_part(const boundary *s, part what)
 {
     double elevation = KI_PI / 2 - s->theta_v, start = 0, end = KI_PI / 2, cuts[6];
@@ -287,7 +288,7 @@ static double integrate_part(const boundary *s, part what)
         }
     }
     double sum = 0, from = fmax(0, start);
-    for (;;) { // takes the cuts of the range of theta in increasing order
+    for (;;) { // takes the cuts of the range of theta, the angle of h to n, in increasing order
         double to = end;
         for (int i = 0; i < count; i++)
             if (cuts[i] > from && cuts[i] < to)
@@ -300,8 +301,8 @@ static double integrate_part(const boundary *s, part what)
     }
 }
 
-// R and T of a smooth boundary: F and 1 - F, times the masking G, which differs from 1 only for
-// KILN_G_SCHLICK_TEXT.
+// The reflected share R and the transmitted share T of a smooth boundary: the Fresnel term F and 1
+// - F, times the masking G, which differs from 1 only for KILN_G_SCHLICK_TEXT.
 static void smooth(const kiln_model *model, double ior, double nov, double rt[2])
 {
     nov = nov > 1e-150 ? nov : 0; // the square of a smaller cosine would underflow
@@ -312,7 +313,7 @@ static void smooth(const kiln_model *model, double ior, double nov, double rt[2]
 }
 
 // Fills `s` from arguments that are clamped to their ranges. Returns false for roughness below
-// 1e-4, for which smooth() computes R and T.
+// 1e-4, for which smooth() computes the shares R and T.
 static bool prepare(const kiln_model *model, double roughness, double ior, double nov, boundary *s)
 {
     *s = (boundary){.model = *model, .roughness = ki_clamp(roughness, 0, 1)};
@@ -367,10 +368,10 @@ double ki_dielectric_reflection(const kiln_model *model, double roughness, doubl
     return rt[0];
 }
 
-// The averages of R and T under diffuse light, 2 int R mu dmu with mu = n.v. R and T change fast at
-// grazing angles, at the critical angle, and where the cone of total reflection meets the horizon
-// (n.v = ior). The integral is cut at these cosines, and a cubic substitution places more nodes
-// near the cuts.
+// The averages of the reflected and transmitted shares R and T under diffuse light, 2 int R mu dmu
+// with mu = n.v. R and T change fast at grazing angles, at the critical angle, and where the cone
+// of total reflection meets the horizon (n.v = ior). The integral is cut at these cosines, and a
+// cubic substitution places more nodes near the cuts.
 void kiln_glass_average(const kiln_model *model, double roughness, double ior, double rt[2])
 {
     enum { PANELS = 2 };

@@ -11,8 +11,9 @@
 
 #include <math.h>
 
-// The kernel (the inner loop that computes E or A and B of a row) for calls that have no context.
-// It uses only instructions that every processor of the compiled architecture has.
+// The kernel (the inner loop that computes a row of albedos E or of A and B of the split sum) for
+// calls that have no context. It uses only instructions that every processor of the compiled
+// architecture has.
 #if defined(KILN_HAVE_SIMD128)
 #define BASELINE ki_energy_row_simd128
 #else
@@ -57,10 +58,10 @@ void ki_energy_split(const kiln_model *model, double roughness, double nov, doub
     row_of(model, BASELINE)(model, roughness, &nov, 1, true, ab);
 }
 
-// The average of E under diffuse light, 2 int_0^1 E(mu) mu dmu, by composite Gauss-Legendre
-// quadrature over u, where mu = c (e^u - 1) and c = alpha / 50. E changes fast at grazing angles,
-// mu < alpha, and with correlated masking behaves as mu log(mu) near 0. The range mu < alpha has
-// the length log 51 in u at every roughness, so that enough nodes lie there.
+// The average of the albedo E under diffuse light, 2 int_0^1 E(mu) mu dmu, by composite
+// Gauss-Legendre quadrature over u, where mu = c (e^u - 1) and c = alpha / 50. E changes fast at
+// grazing angles, mu < alpha, and with correlated masking behaves as mu log(mu) near 0. The range
+// mu < alpha has the length log 51 in u at every roughness, so that enough nodes lie there.
 double ki_energy_average(const kiln_model *model, double roughness)
 {
     enum { NODES = 16 };

@@ -21,9 +21,9 @@ double ki_energy_average(const kiln_model *model, double roughness);
 /// E = A + B. Ranges and error are those of ki_energy.
 void ki_energy_split(const kiln_model *model, double roughness, double nov, double ab[2]);
 
-/// Computes the values for `count` cosines nov at one roughness: E of ki_energy to out[count], or
-/// with `split` the pairs A, B of ki_energy_split to out[count][2]. The results are bit-identical
-/// to the results of these two functions, on every instruction set.
+/// Computes the values for `count` cosines nov at one roughness: albedos E of ki_energy to
+/// out[count], or with `split` the pairs A, B of the split sum of ki_energy_split to out[count][2].
+/// The results are bit-identical to the results of these two functions, on every instruction set.
 void ki_energy_values(const kiln_context *context, const kiln_model *model, double roughness,
                       const double *nov, int count, bool split, double *out);
 

@@ -1,7 +1,7 @@
-// The kernel ki_energy_row for GGX. In: one roughness and `count` cosines of the view. Out: E, or A
-// and B of the split sum, for each cosine. Files that are compiled for one instruction set each
-// define KI_ROW, the kernel's name, and include this file. The loops over sixteen nodes are plain C
-// that compilers vectorise.
+// The kernel ki_energy_row for GGX. In: one roughness and `count` cosines of the view. Out: the
+// albedo E, or A and B of the split sum, for each cosine. Files that are compiled for one
+// instruction set each define KI_ROW, the kernel's name, and include this file. The loops over
+// sixteen nodes are plain C that compilers vectorise.
 //
 // With o the view, i the light, mu and mu_i the cosines of o and i to the normal, s = 1 - alpha^2
 // and S = mu + mu_i, the integral over the azimuth phi has a closed form (derived in
@@ -89,8 +89,8 @@ static void view_set(view *v, const kiln_model *model, double roughness, double 
     if (split && v->pole > nov)
         v->pole = nov;
     v->split = (nov > v->alpha ? nov : v->alpha) / 2;
-    // A pole nearer to mu_i = 0 than 1e-12 of the first interval's length has the same effect as
-    // one at that distance.
+    // A pole of the integrand nearer to mu_i = 0, for the light's cosine mu_i, than 1e-12 of the
+    // first interval's length has the same effect as one at that distance.
     v->pole = ki_clamp(v->pole, 1e-12 * v->split, 1);
 }
 
@@ -138,9 +138,9 @@ static void finish_nodes(const view *v, panel *p)
     }
 }
 
-// Sets the nodes of a panel of the first interval of mu_i, where mu_i = c (e^u - 1) with c =
-// v->pole. The panel goes from u0 - h to u0 + h, and `centre` is e^u0. sinh_y and cosh_y are the
-// functions of h times the eight positive quadrature nodes.
+// Sets the nodes of a panel of the first interval of the light's cosine mu_i, where mu_i = c (e^u -
+// 1) with c = v->pole. The panel goes from u0 - h to u0 + h, and `centre` is e^u0. sinh_y and
+// cosh_y are the functions of h times the eight positive quadrature nodes.
 static void log_nodes(const view *v, double h, double centre, const double *sinh_y,
                       const double *cosh_y, panel *p)
 {
@@ -181,9 +181,9 @@ typedef struct stretch {
     double d;      // width of the peak of D as a function of the light's cosine
 } stretch;
 
-// Sets the nodes of a panel of the second interval of mu_i, where mu_i = m + d sinh t. The panel
-// goes from t0 - h to t0 + h, and `centre` is e^t0. sinh_y and cosh_y are the functions of h times
-// the eight positive quadrature nodes.
+// Sets the nodes of a panel of the second interval of the light's cosine mu_i, where mu_i = m + d
+// sinh t. The panel goes from t0 - h to t0 + h, and `centre` is e^t0. sinh_y and cosh_y are the
+// functions of h times the eight positive quadrature nodes.
 static void sinh_nodes(const view *v, const stretch *x, double h, double centre,
                        const double *sinh_y, const double *cosh_y, panel *p)
 {
@@ -196,7 +196,8 @@ static void sinh_nodes(const view *v, const stretch *x, double h, double centre,
         double low_c = x->d * (even_c - odd_c), high_c = x->d * (even_c + odd_c);
         p->mu[j] = m + low;
         p->mu[j + HALF] = m + high;
-        // Rounding can make the difference 1 - mu_i negative where mu_i is near 1.
+        // Rounding can make the difference 1 - mu_i negative where the light's cosine mu_i is near
+        // 1.
         double rest_low = x->m_rest - low, rest_high = x->m_rest - high;
         p->rest[j] = rest_low > 0 ? rest_low : 0;
         p->rest[j + HALF] = rest_high > 0 ? rest_high : 0;
@@ -375,7 +376,8 @@ static void add_b(const view *v, const panel *p, const double top[NODES],
 
 // --------------------------------------------------------------------------------------- integrals
 
-// Adds the eight sums of E or B in an order that does not depend on the width of vectors.
+// Adds the eight sums of the albedo E, or of B of the split sum, in an order that does not depend
+// on the width of vectors.
 static double sum_lanes(const double x[HALF])
 {
     return ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]));
@@ -390,8 +392,8 @@ static void add(const view *v, const panel *p, double e[HALF], double b[HALF], b
         add_b(v, p, top, bottom, b);
 }
 
-// An interval of a quadrature variable x, which is u or t of the substitutions for mu_i, cut into
-// `count` panels of equal length.
+// An interval of a quadrature variable x, which is u or t of the substitutions for the light's
+// cosine mu_i, cut into `count` panels of equal length.
 typedef struct tiling {
     double from;     // e^x at the lower end of the interval of x
     double ratio;    // e^x at the upper end of the interval over e^x at its lower end
@@ -419,7 +421,7 @@ static void entry_set(entry *n, const kiln_model *model, double roughness, doubl
     n->x.ahead = 2 * v->alpha2 * nov / v->s;
     double d = 2 * v->alpha * v->sine / v->s;
     n->x.d = d > 1e-120 ? d : 1e-120;
-    // e^t at both ends of the second interval of mu_i, from mu_i = m + d sinh t.
+    // e^t at both ends of the second interval of the light's cosine mu_i, from mu_i = m + d sinh t.
     double low = (v->split - nov - n->x.ahead) / n->x.d, high = n->x.m_rest / n->x.d;
     double root_low = sqrt(low * low + 1), root_high = sqrt(high * high + 1);
     double to = high > 0 ? high + root_high : 1 / (root_high - high);

@@ -67,11 +67,11 @@ static void build_row(void *data, int row)
             coefficient[k] += job->by_nov[i][k] * e[i];
 }
 
-// Chooses the numbers of Chebyshev coefficients that bring the error of E below 7e-8 for each
-// masking. For KILN_G_SMITH, E has a logarithmic singularity at n.v = 0, which the fourth root in u
-// smooths. For KILN_G_SCHLICK_TEXT, E changes over n.v < k / (1 - k), with Schlick's k, and by a
-// small amount over n.v < alpha. These two widths depend differently on roughness, which takes more
-// coefficients in roughness.
+// Chooses the numbers of Chebyshev coefficients that bring the error of the albedo E below 7e-8 for
+// each masking. For KILN_G_SMITH, E has a logarithmic singularity at n.v = 0, which the fourth root
+// in u smooths. For KILN_G_SCHLICK_TEXT, E changes over n.v < k / (1 - k), with Schlick's k, and by
+// a small amount over n.v < alpha. These two widths depend differently on roughness, which takes
+// more coefficients in roughness.
 static void choose_degrees(ki_surface *surface)
 {
     surface->quartic = surface->model.g == KILN_G_SMITH;
@@ -103,7 +103,7 @@ void ki_surface_build(kiln_context *context, const kiln_model *model, ki_surface
     }
 }
 
-// Sums the series of E over roughness by the recurrence of Chebyshev polynomials,
+// Sums the series of the albedo E over roughness by the recurrence of Chebyshev polynomials,
 // T_{i+1}(x) = 2 x T_i(x) - T_{i-1}(x) with x = 2 roughness - 1. A kernel then sums the remaining
 // series over u.
 void ki_surface_values(const kiln_context *context, const ki_surface *surface, double roughness,

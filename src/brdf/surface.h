@@ -22,16 +22,17 @@ typedef struct ki_surface {
     double coefficient[KI_SURFACE_ROUGHNESS][KI_SURFACE_NOV];
 } ki_surface;
 
-/// The width c of the range of n.v at grazing angles in which E changes fast: alpha, at least
-/// 1e-12, or k / (1 - k) with k = (roughness + 1)^2 / 8 for KILN_G_SCHLICK_TEXT.
+/// The width c of the range of n.v at grazing angles in which the albedo E changes fast: alpha, at
+/// least 1e-12, or k / (1 - k) with k = (roughness + 1)^2 / 8 for KILN_G_SCHLICK_TEXT.
 double ki_grazing_scale(const kiln_model *model, double roughness);
 
-/// Computes the series of E for a model whose D is GGX, on the context's threads.
+/// Computes the Chebyshev series of the albedo E for a model whose D is GGX, on the context's
+/// threads.
 void ki_surface_build(kiln_context *context, const kiln_model *model, ki_surface *surface);
 
-/// Sets out[i] to E at nov[i] for `count` cosines at one roughness, all in [0, 1]. The values
-/// differ from ki_energy by less than 7e-8, except near roughness = nov = 0. They are bit-identical
-/// on every instruction set.
+/// Sets out[i] to the albedo E at nov[i] for `count` cosines at one roughness, all in [0, 1]. The
+/// values differ from ki_energy by less than 7e-8, except near roughness = nov = 0. They are
+/// bit-identical on every instruction set.
 void ki_surface_values(const kiln_context *context, const ki_surface *surface, double roughness,
                        const double *nov, int count, double *out);
 

@@ -13,8 +13,8 @@ void KI_SURFACE_ROW(const ki_surface *surface, const double *coefficient, double
 {
     for (int from = 0; from < count; from += BLOCK) {
         double x[BLOCK] = {0}, b1[BLOCK], b2[BLOCK] = {0}, sum[BLOCK];
-        // top: the highest degree of the Chebyshev series of E in u. It is odd, because `columns`
-        // is even.
+        // top: the highest degree of the Chebyshev series of the albedo E in u. It is odd, because
+        // `columns` is even.
         int n = ki_min(BLOCK, count - from), top = surface->columns - 1;
         memcpy(x, nov + from, (size_t)n * sizeof *x);
         for (int i = 0; i < BLOCK; i++)

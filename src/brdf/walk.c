@@ -267,8 +267,9 @@ void ki_walk_column(double roughness, double nov, const double *f0, int count, i
         for (uint32_t i = 0; i < 1u << bits; i++)
             walk_path(alpha, nov, &l, i, add_bounces, &c);
     }
-    // For F = 1 the light of the bounces after the first is 1 - E, where E = A + B is known
-    // exactly. The walk provides only the factor by which the Fresnel terms darken that light.
+    // For F = 1 the light of the bounces after the first is 1 - E, where the albedo E = A + B of
+    // the single bounce is known exactly. The walk provides only the factor by which the Fresnel
+    // terms darken that light.
     ki_energy_split(&(kiln_model){0}, roughness, nov, ab);
     // If no path had a second bounce, the factor by which the Fresnel terms darken the further
     // bounces is taken as f squared, where f is the factor by which the Fresnel term darkens the

@@ -31,11 +31,12 @@ enum { KI_WALK_COLUMN = 64 };
 
 /// Sets added[i] to the albedo of all bounces after the first, for a GGX surface with
 /// height-correlated Smith masking and Schlick's F of f0[i]. The albedo with every bounce is then
-/// f0 A + B + added. count is at most KI_WALK_COLUMN; f0[], roughness and nov are in [0, 1];
-/// path_count is that of kiln_walk_def. One set of walks serves all f0, because the angles of a
-/// walk do not depend on F. added is exactly 1 - E for f0 = 1. Every call with the same seed draws
-/// the same random numbers, so that the error changes smoothly along a table. A path takes 0.25 us.
-/// Any thread may call. The errors are listed in docs/theory/walk.md.
+/// f0 A + B + added, with A and B of the split sum. count is at most KI_WALK_COLUMN; f0[],
+/// roughness and nov are in [0, 1]; path_count is that of kiln_walk_def. One set of walks serves
+/// all f0, because the angles of a walk do not depend on F. added is exactly 1 - E for f0 = 1.
+/// Every call with the same seed draws the same random numbers, so that the error changes smoothly
+/// along a table. A path takes 0.25 us. Any thread may call. The errors are listed in
+/// docs/theory/walk.md.
 void ki_walk_column(double roughness, double nov, const double *f0, int count, int path_count,
                     uint32_t seed, double *added);
 

@@ -56,7 +56,7 @@ static void round_powers(const kiln_fit_part *part, double *c, float *rounded, d
 }
 
 // The weighted linear least-squares problem that one round of the fit solves, with the coefficients
-// of P and Q as unknowns.
+// of the quotient P / Q as unknowns.
 typedef struct equations {
     const ki_fit_points *nodes;
     int terms;      // number of coefficients of P, and of Q together with its constant 1

@@ -257,8 +257,8 @@ static void fill_walk_row(void *data, int row)
     }
 }
 
-// Returns true for tables of E that have more than four times as many texels as the Chebyshev
-// series of E (surface.h) needs integrals at most.
+// Returns true for tables of the albedo E that have more than four times as many texels as the
+// Chebyshev series of E (surface.h) needs integrals at most.
 static bool wants_surface(const kiln_table_def *def)
 {
     return def->kind == KILN_TABLE_E && def->model.d == KILN_D_GGX &&

@@ -5,8 +5,8 @@
 #include "math/math.h"
 #include "table/table_axis.h"
 
-// E_avg = 2 int E(mu) mu dmu at one roughness of an interpolated table of E, by Gauss-Legendre
-// quadrature between neighbouring columns, where the interpolated E is smooth.
+// E_avg = 2 int E(mu) mu dmu at one roughness of an interpolated table of the albedo E, by
+// Gauss-Legendre quadrature between neighbouring columns, where the interpolated E is smooth.
 static double average_row(const kiln_table *table, double roughness)
 {
     enum { NODES = 6 };

@@ -22,7 +22,8 @@ double ki_axis_to_nov(const kiln_table_def *def, double roughness, double u);
 /// Sets nov[i] to the n.v of column from + i of a table's row of this roughness, for i < count.
 void ki_axis_columns(const kiln_table_def *def, double roughness, int from, int count, double *nov);
 
-/// The third argument of a kind of table, in addition to n.v and roughness: it varies from slice to slice.
+/// The third argument of a kind of table, in addition to n.v and roughness. It varies from slice to
+/// slice.
 typedef enum ki_third { KI_THIRD_NONE, KI_THIRD_F0, KI_THIRD_IOR } ki_third;
 ki_third ki_table_third(kiln_table_kind kind);
 /// Returns the place w in [0, 1] along a table's third axis of a value of F0, or of an ior from 1

@@ -43,8 +43,8 @@ typedef struct reads {
     // texel); and whether the texel is fixed at 0.
     double (*x)[3], (*residual)[3], (*direction)[3], (*product)[3], *diagonal;
     bool (*held)[3];
-    // [chunk][2][channel]: for each chunk of texels or points, the two sums that the task writes
-    // which ran last; show_points, gather, take_step and hold say which.
+    // [chunk][2][channel]: for each chunk of texels or points, two sums that a task has written;
+    // show_points, gather, take_step and hold say which.
     double (*sums)[2][3];
     double scale[3];
 } reads;
