@@ -1,7 +1,6 @@
 // Converts the options of a view into numbers, and loads or computes the environment.
 #include "scene_setup.h"
 
-#include <stdio.h>
 #include <string.h>
 
 const char *scene_diffuse_word(int index)
@@ -10,12 +9,29 @@ const char *scene_diffuse_word(int index)
     return words[index];
 }
 
+// Reads a number of digits only; a number with more than six digits becomes 999999. Returns the text
+// after the number, or NULL if there is no digit.
+static const char *read_side(const char *text, int *side)
+{
+    const char *at = text;
+    for (*side = 0; *at >= '0' && *at <= '9'; at++)
+        *side = *side < 99999 ? 10 * *side + (*at - '0') : 999999;
+    return at > text ? at : NULL;
+}
+
+// Reads "WIDTHxHEIGHT". Returns false for any other text.
+static bool read_sides(const char *text, scene_setup *s)
+{
+    const char *at = read_side(text, &s->width);
+    at = at && *at == 'x' ? read_side(at + 1, &s->height) : NULL;
+    return at && !*at;
+}
+
 static int read_size(const cli_arguments *a, scene_setup *s)
 {
-    char rest;
     s->width = 1280;
     s->height = 720;
-    if (s->size && sscanf(s->size, "%dx%d%c", &s->width, &s->height, &rest) != 2)
+    if (s->size && !read_sides(s->size, s))
         return cli_wrong(a->command, "--size is '%s', it must be WIDTHxHEIGHT", s->size);
     if (s->width < 1 || s->width > 16384 || s->height < 1 || s->height > 16384)
         return cli_wrong(a->command, "--size is %s, each side must be from 1 to 16384", s->size);

@@ -65,7 +65,13 @@ int cli_begin_work(cli_work *work, int threads, bool quiet)
                        .on_terminal = !quiet && os_is_terminal(OS_ERRORS)};
     os_catch_signals();
     os_without_signals(create_context, work);
-    return work->context ? CLI_GO : CLI_FAILED;
+    if (!work->context)
+        return CLI_FAILED;
+    int running, wanted;
+    kiln_context_threads(work->context, &running, &wanted);
+    if (running < wanted && !quiet)
+        cli_note(work, false, "%d of %d threads work, the system starts no more", running, wanted);
+    return CLI_GO;
 }
 
 int cli_end_work(cli_work *work, int code)

@@ -99,7 +99,9 @@ typedef struct kiln_context_def {
     void *allocator_user;
     /// number of bytes that the context's objects may hold at once; 0 for no limit
     size_t memory_limit;
-    int thread_count; ///< number of threads, 1 to 256; 0 for one per core
+    /// Number of threads, 1 to 256; 0 for one per core. If the system starts fewer threads, the
+    /// context works with those; see kiln_context_threads.
+    int thread_count;
     /// Runs task(data, i) for each i from 0 to count - 1, in any order on any threads, and returns
     /// when every call has returned. NULL: the context starts threads of its own.
     void (*parallel_for)(void *user, int count, void (*task)(void *data, int index), void *data);
@@ -125,6 +127,11 @@ KILN_API void kiln_context_destroy(kiln_context *context);
 /// Returns the name of the instruction set in use: "scalar", "sse2", "avx2", "avx512", "neon" or
 /// "simd128".
 KILN_API const char *kiln_context_cpu(const kiln_context *context);
+
+/// Sets *running to the number of threads that work, with the calling thread, and *wanted to the
+/// number that the definition asked for. `running` is less than `wanted` if the system refused to
+/// start threads, for example because of a limit on processes. Either pointer may be NULL.
+KILN_API void kiln_context_threads(const kiln_context *context, int *running, int *wanted);
 
 /// Sets *current to the number of bytes that the context's objects hold now, and *peak to the
 /// largest number held at once so far.
@@ -825,13 +832,14 @@ KILN_API KILN_CHECKED kiln_result kiln_engine_levels(const kiln_engine *engine, 
 /// from. Fails if *format is not a format of the engine.
 KILN_API KILN_CHECKED kiln_result kiln_engine_format(const kiln_engine *engine, kiln_format *format,
                                                      kiln_error *error);
-/// Returns the level, with its fraction, that the engine's shader reads for a roughness. Returns -1
-/// if `engine` is not from kiln's list or reads no levels.
+/// Returns the level, with its fraction, that the engine's shader reads for a roughness of 0 to 1.
+/// Returns -1 if `engine` is not from kiln's list or reads no levels, and for a roughness, size or
+/// level_count out of range.
 KILN_API double kiln_engine_level(const kiln_engine *engine, double roughness, int size,
                                   int level_count);
-/// Computes what an engine shows of a cube in directions other than 0: two neighbouring levels,
+/// Computes what an engine shows of a cube in finite directions other than 0: two neighbouring levels,
 /// each read bilinearly across cube faces, are mixed by the fraction of the level. `values`
-/// receives count * 3 numbers.
+/// receives count * 3 numbers; `count` is not negative.
 KILN_API KILN_CHECKED kiln_result kiln_engine_show(kiln_context *context, const kiln_engine *engine,
                                                    const kiln_map *map, double roughness,
                                                    const double (*directions)[3], int count,

@@ -418,7 +418,7 @@ static void set_directions(double (*to)[3], const double (*from)[3], int count, 
 static kiln_result integrate(kiln_context *context, ki_reference *r, kiln_error *error)
 {
     static const char stage[] = "reference";
-    int groups = (r->count + GROUP - 1) / GROUP;
+    int groups = r->count / GROUP + (r->count % GROUP > 0);
     for (int done = 0; done < groups; done += BATCH) {
         if (!ki_progress(context, stage, (double)done / groups))
             return ki_fail_cancelled(error, stage);
@@ -441,7 +441,7 @@ kiln_result ki_reference_integrate(kiln_context *context, const kiln_map *panora
     size_t width = 2 * (size_t)panorama->size;
     double(*turned)[3] = NULL, *columns = NULL;
     ki_reference *r = ki_alloc(context, 1, sizeof *r);
-    int groups = ki_min(BATCH, (count + GROUP - 1) / GROUP);
+    int groups = ki_min(BATCH, count / GROUP + (count % GROUP > 0));
     if (count < 1)
         goto done;
     turned = ki_alloc(context, (size_t)count, sizeof *turned);

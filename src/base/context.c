@@ -260,11 +260,9 @@ kiln_result kiln_context_create(const kiln_context_def *def, kiln_context **cont
     memset(c, 0, sizeof *c);
     c->def = d;
     c->heap = heap;
-    if (!d.parallel_for && !ki_threads_start(c)) {
-        d.release(d.allocator_user, c, sizeof *c);
-        heap_leave(heap);
-        return ki_fail(error, KILN_ERROR_MEMORY, "cannot start %d threads", d.thread_count);
-    }
+    c->threads_wanted = d.thread_count;
+    if (!d.parallel_for)
+        c->def.thread_count = ki_threads_start(c);
     *context = c;
     return KILN_OK;
 }
@@ -278,6 +276,14 @@ void kiln_context_destroy(kiln_context *context)
     ki_heap *heap = context->heap;
     context->def.release(context->def.allocator_user, context, sizeof *context);
     heap_leave(heap);
+}
+
+void kiln_context_threads(const kiln_context *context, int *running, int *wanted)
+{
+    if (running)
+        *running = context->def.thread_count;
+    if (wanted)
+        *wanted = context->threads_wanted;
 }
 
 void kiln_context_memory(const kiln_context *context, size_t *current, size_t *peak)

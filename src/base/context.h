@@ -38,14 +38,17 @@ typedef struct ki_heap {
 } ki_heap;
 
 struct kiln_context {
-    kiln_context_def def;
+    kiln_context_def def; // its thread_count is the number of threads that work
+    int threads_wanted;   // number of threads that the definition asked for
     ki_heap *heap;
     ki_scratch *scratch;    // scratch of the plan execution that runs; NULL if no execution runs
     ki_progress_range said; // stage and range of the last progress report, which ki_go_on repeats
     ki_pool pool;
 };
 
-bool ki_threads_start(kiln_context *context);
+/// Starts the threads that the definition asks for, or as many as the system starts. Returns their
+/// number, with the calling thread.
+int ki_threads_start(kiln_context *context);
 void ki_threads_stop(kiln_context *context);
 enum kiln_cpu ki_cpu_best(void);
 const char *ki_cpu_name(enum kiln_cpu cpu);

@@ -35,21 +35,17 @@ static void thread_main(void *data)
     ki_os_unlock(&pool->mutex);
 }
 
-bool ki_threads_start(kiln_context *context)
+int ki_threads_start(kiln_context *context)
 {
     ki_pool *pool = &context->pool;
     ki_os_mutex_begin(&pool->mutex);
     ki_os_condition_begin(&pool->work);
     ki_os_condition_begin(&pool->done);
     pool->helper = (ki_os_work){thread_main, pool};
-    for (int i = 1; i < context->def.thread_count; i++) {
-        if (!ki_os_thread_start(&pool->thread[pool->thread_count], &pool->helper)) {
-            ki_threads_stop(context);
-            return false;
-        }
+    while (pool->thread_count + 1 < context->def.thread_count &&
+           ki_os_thread_start(&pool->thread[pool->thread_count], &pool->helper))
         pool->thread_count++;
-    }
-    return true;
+    return pool->thread_count + 1;
 }
 
 void ki_threads_stop(kiln_context *context)

@@ -103,5 +103,5 @@ double kiln_pdf_visible(double roughness, double nov, double noh, double voh)
 
 double kiln_pdf_reflection(double pdf, double voh)
 {
-    return voh > 0 ? pdf / (4 * voh) : 0;
+    return voh > 0 && pdf > 0 ? pdf / (4 * ki_clamp(voh, 0, 1)) : 0;
 }

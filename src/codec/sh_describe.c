@@ -19,7 +19,8 @@ typedef struct text {
 static void copy_text(const uint8_t *bytes, size_t size, size_t room, text *t)
 {
     size = size < room ? size : room - 1;
-    memcpy(t->bytes, bytes, size);
+    if (size) // `bytes` may be NULL where there are none
+        memcpy(t->bytes, bytes, size);
     t->bytes[size] = 0;
 }
 

@@ -116,7 +116,9 @@ kiln_result kiln_engine_levels(const kiln_engine *engine, int size, int level_co
 double kiln_engine_level(const kiln_engine *engine, double roughness, int size, int level_count)
 {
     const ki_recipe *recipe = ki_recipe_of(engine);
-    return recipe && recipe->level ? recipe->level(roughness, level_count, size) : -1;
+    bool good = recipe && recipe->level && roughness >= 0 && roughness <= 1 && size >= 1 &&
+                size <= KILN_MAX_SIZE && level_count >= 1 && level_count <= KILN_MAX_LEVELS;
+    return good ? recipe->level(roughness, level_count, size) : -1;
 }
 
 kiln_result kiln_engine_format(const kiln_engine *engine, kiln_format *format, kiln_error *error)
@@ -164,7 +166,7 @@ enum { VIEW_CHUNK = 1024 };
 static void show(void *data, int index)
 {
     const view *v = data;
-    int first = index * VIEW_CHUNK, end = ki_min(first + VIEW_CHUNK, v->count);
+    int first = index * VIEW_CHUNK, end = first + ki_min(VIEW_CHUNK, v->count - first);
     for (int i = first; i < end; i++) {
         double next[3];
         ki_cube_read(v->map, v->level, v->directions[i], v->values[i]);
@@ -176,13 +178,23 @@ static void show(void *data, int index)
     }
 }
 
-kiln_result kiln_engine_show(kiln_context *context, const kiln_engine *engine, const kiln_map *map,
-                             double roughness, const double (*directions)[3], int count,
-                             double (*values)[3], kiln_error *error)
+static kiln_result check_directions(const double (*directions)[3], int count, kiln_error *error)
 {
-    const ki_recipe *recipe;
-    kiln_result result = find_recipe(engine, &recipe, error);
-    if (result != KILN_OK || (result = ki_map_check(map, error)) != KILN_OK)
+    for (int i = 0; i < count; i++) {
+        const double *d = directions[i];
+        if (!isfinite(d[0]) || !isfinite(d[1]) || !isfinite(d[2]) || !(d[0] || d[1] || d[2]))
+            return ki_fail(error, KILN_ERROR_ARGUMENT,
+                           "direction %d is (%g, %g, %g), it must be finite and not 0", i, d[0],
+                           d[1], d[2]);
+    }
+    return KILN_OK;
+}
+
+static kiln_result check_show(const ki_recipe *recipe, const kiln_map *map, double roughness,
+                              const double (*directions)[3], int count, kiln_error *error)
+{
+    kiln_result result = ki_map_check(map, error);
+    if (result != KILN_OK)
         return result;
     if (!recipe->level || map->shape != KILN_SHAPE_CUBE)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
@@ -190,11 +202,29 @@ kiln_result kiln_engine_show(kiln_context *context, const kiln_engine *engine, c
                        recipe->about.name);
     if (!(roughness >= 0 && roughness <= 1))
         return ki_fail(error, KILN_ERROR_ARGUMENT, "roughness is %g, it must be 0 to 1", roughness);
+    if (count < 0)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "count is %d, it must not be negative", count);
+    return check_directions(directions, count, error);
+}
+
+kiln_result kiln_engine_show(kiln_context *context, const kiln_engine *engine, const kiln_map *map,
+                             double roughness, const double (*directions)[3], int count,
+                             double (*values)[3], kiln_error *error)
+{
+    const ki_recipe *recipe;
+    kiln_result result = find_recipe(engine, &recipe, error);
+    if (result == KILN_OK)
+        result = check_show(recipe, map, roughness, directions, count, error);
+    if (result != KILN_OK) {
+        if (count > 0)
+            memset(values, 0, (size_t)count * sizeof *values);
+        return result;
+    }
     double level = recipe->level(roughness, map->level_count, map->size);
     view v = {.map = map, .directions = directions, .values = values, .count = count};
     v.level = (int)ki_clamp(floor(level), 0, map->level_count - 1);
     v.mix = v.level + 1 < map->level_count ? level - v.level : 0;
-    ki_parallel_for(context, (count + VIEW_CHUNK - 1) / VIEW_CHUNK, show, &v);
+    ki_parallel_for(context, count / VIEW_CHUNK + (count % VIEW_CHUNK > 0), show, &v);
     return KILN_OK;
 }
 

@@ -25,6 +25,13 @@ for scene in assignment ibl furnace grid compare; do
     same a.png b.png
 done
 expect 0 "" render -o a.exr --size 64x36
+# 4294968576 is 1280 + 2^32.
+for size in 4294968576x720 720x4294968576 2147483648x1 99999999999999999999x1 16385x1 0x1; do
+    expect 2 "each side must be from 1 to 16384" render -o b.png --size $size
+done
+for size in x 4x x4 4x4x ' 4x4' +4x4 -4x4 4x0x4; do
+    expect 2 "it must be WIDTHxHEIGHT" render -o b.png --size "$size"
+done
 "$KILN" info a.exr | grep -q '64 x 36' || die "the picture's size"
 
 # A baked cube is used as it is.
