@@ -29,7 +29,7 @@ int assignment_check_folder(const cli_command *command, const char *folder)
         return os_is_writable(folder)
                    ? CLI_GO
                    : cli_fail("%s: kiln is not allowed to write into this folder", folder);
-    // Without the final slash, os_kind_of tells whether the folder itself exists.
+    // The path without a final slash, for which os_kind_of says whether the folder itself exists.
     char path[4096];
     size_t length = strlen(folder);
     while (length > 1 && folder[length - 1] == '/')

@@ -5,7 +5,7 @@
 
 #include "work.h"
 
-/// Stages whose seconds the report lists.
+/// The stages of a bake whose seconds the report lists.
 typedef enum bake_stage { BAKE_LOAD, BAKE_FILTER, BAKE_SAVE, BAKE_STAGES } bake_stage;
 
 typedef enum bake_tuning { BAKE_EXACT, BAKE_SHARP, BAKE_SOFT } bake_tuning;
@@ -15,7 +15,7 @@ typedef struct bake {
     // Values of the options, which the parser writes here by the option rows of bake_options.c.
     const char *output, *irradiance_path, *sh_path, *roughness_text;
     int size, level_count, shape, format, zstd, lobe, textbook;
-    int engine_index; ///< index of the engine; -1 without --for
+    int engine_index; ///< index of the engine of --for in kiln's list; -1 without --for
     int tuning;       ///< a bake_tuning; -1 if the engine decides
     int samples, phi_steps, theta_steps;
     int irradiance_size, sh_bands, layout, negative, threads;

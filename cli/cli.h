@@ -61,7 +61,7 @@ struct cli_command {
 
 extern const cli_command cli_bake, cli_engines, cli_eval, cli_fit, cli_info, cli_sky, cli_tables;
 extern const cli_command cli_completions, cli_help;
-// commands of builds with KILN_VIEWER
+// commands that only builds with the CMake option KILN_VIEWER have
 extern const cli_command cli_assignment, cli_render, cli_view;
 
 // --------------------------------------------------------------------------------------- arguments
@@ -72,7 +72,7 @@ typedef struct cli_arguments {
     const cli_command *command;
     /// text of each option by its row's index: NULL for an absent option, "" for a flag
     const char *text[CLI_MAX_OPTIONS];
-    const char **rest; ///< the words that are not options
+    const char **rest; ///< words of the command line that are not options
     int rest_count;
 } cli_arguments;
 
@@ -103,7 +103,7 @@ int cli_find_word(const cli_command *command, const char *what, const char *text
 int cli_wrong(const cli_command *command, const char *format, ...) CLI_PRINTF(2, 3);
 /// Prints "kiln: MESSAGE"; returns CLI_FAILED.
 int cli_fail(const char *format, ...) CLI_PRINTF(1, 2);
-/// A number of bytes for people, such as "4.2 MB".
+/// Writes a number of bytes for people, such as "4.2 MB", to `text`, and returns `text`.
 const char *cli_bytes(double bytes, char text[32]);
 /// Flushes standard output. Returns `code`, or the exit code of a failed write.
 int cli_close_output(int code);

@@ -242,9 +242,9 @@ typedef struct eval {
     double given[ARGUMENTS]; // values of the arguments, indexed by option
     // values of those arguments of the quantity that are given as options, in the quantity's order
     double fixed[MAX_ARGUMENTS];
-    int column_count; // number of arguments that each line holds
+    int column_count; // number of arguments that each line of standard input holds
     int column[MAX_ARGUMENTS];
-    double *lines; // column_count numbers for each line
+    double *lines; // arguments of all lines of standard input, column_count for each line
     size_t line_count;
 } eval;
 

@@ -43,8 +43,8 @@ typedef struct scene_setup {
     bool straight;
     int width, height;
     int bake_size;     ///< edge of the environment's level 0 in texels
-    int negative;      ///< a kiln_negative
-    const char *input; ///< name of the environment; NULL for a sky
+    int negative;      ///< a kiln_negative, which decides what becomes of negative texels
+    const char *input; ///< name of the environment's file; NULL for a sky
 } scene_setup;
 
 /// The option rows that kiln render and kiln view share. Each command's table of options begins

@@ -37,7 +37,7 @@ typedef struct tables {
     const char *output, *average, *size;
     kiln_table_def def;
     kiln_table_save_def save;
-    int engine; ///< index in tables_engines; -1 without --for
+    int engine; ///< index of the engine of --for, as in tables_engine_word; -1 without --for
     int method, samples, threads;
     bool assignment, lookup, json, quiet;
     char lookup_path[2][4096]; ///< paths of the C and GLSL files with the code that reads the table

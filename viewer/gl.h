@@ -69,7 +69,7 @@ typedef struct view_gl {
 /// Looks the functions of VIEW_GL_FUNCTIONS up by name. Returns false if one is missing and stores
 /// its name in `missing`.
 bool view_gl_load(view_gl *gl, view_lookup *lookup, const char **missing);
-/// Returns whether the current context offers this extension.
+/// Returns whether the current GL context offers this extension.
 bool view_gl_has(const view_gl *gl, const char *extension);
 
 /// Compiles and links a program of the full-screen triangle's vertex shader and a fragment shader,

@@ -26,8 +26,8 @@ typedef struct view_light {
     /// cumulated |r| + |g| + |b|. row: of all rows above each row, times the solid angle of a
     /// texel; texel: of all texels to the left of each texel in its row
     double *row, *texel;
-    double total; ///< integral of r + g + b over the sphere
-    double mean;  ///< mean radiance over the sphere and the three channels
+    double total; ///< integral of |r| + |g| + |b| over the sphere
+    double mean;  ///< mean of |r|, |g| and |b| over the sphere
     double cos_turn, sin_turn;
 } view_light;
 
@@ -37,7 +37,7 @@ KILN_CHECKED kiln_result view_light_create(kiln_context *context, const kiln_map
                                            double rotation, view_light *light, kiln_error *error);
 void view_light_free(view_light *light);
 void view_light_radiance(const view_light *light, const double d[3], double radiance[3]);
-/// Draws a direction with a density per steradian proportional to r + g + b.
+/// Draws a direction with a density per steradian proportional to |r| + |g| + |b|.
 void view_light_sample(const view_light *light, const double xi[2], double d[3]);
 double view_light_pdf(const view_light *light, const double d[3]);
 

@@ -35,8 +35,8 @@ typedef enum view_method {
     /// Kulla and Conty 2017 with the Fresnel factor F E / (1 - F (1 - E)) of the GAMES202
     /// assignment
     VIEW_METHOD_KULLA_CONTY_HANDOUT,
-    VIEW_METHOD_FDEZ_AGUERA, ///< Fdez-Aguera 2019
-    VIEW_METHOD_TURQUIN,     ///< Turquin 2019
+    VIEW_METHOD_FDEZ_AGUERA, ///< the factors of Fdez-Aguera 2019 for image-based light
+    VIEW_METHOD_TURQUIN,     ///< the factor of Turquin 2019 on the single-scattering lobe
     VIEW_METHOD_COUNT
 } view_method;
 

@@ -21,7 +21,7 @@ extern "C" {
 
 /// Distribution D of the microfacet normals.
 typedef enum kiln_d {
-    KILN_D_GGX,     ///< Trowbridge and Reitz 1975, Walter et al. 2007
+    KILN_D_GGX,     ///< GGX: Trowbridge and Reitz 1975, Walter et al. 2007
     KILN_D_BECKMANN ///< Gaussian slopes (Beckmann), with Smith's masking for this distribution
 } kiln_d;
 

@@ -17,7 +17,8 @@ extern "C" {
 /// Parameters of a textbook method. {0} selects the textbook's own sizes. See
 /// docs/theory/textbook.md.
 typedef struct kiln_textbook_def {
-    kiln_shape shape; ///< shape of the result; KILN_SHAPE_AUTO for a panorama, as in the textbook
+    /// shape of the computed map; KILN_SHAPE_AUTO for a panorama, as in the textbook
+    kiln_shape shape;
     int size;         ///< rows of a panorama, or texels along a side of a face; 0 for 64
     int level_count;  ///< number of levels, only for kiln_textbook_prefilter; 0 for all
     int phi_count;    ///< steps of phi for irradiance, at most 65536; 0 for 100

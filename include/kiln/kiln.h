@@ -330,8 +330,8 @@ KILN_API KILN_CHECKED kiln_result kiln_map_load_faces(kiln_context *context,
 KILN_API bool kiln_faces_order(const char *const paths[6], int order[6]);
 
 typedef enum kiln_pixel_type {
-    KILN_PIXEL_FLOAT = 0, ///< 32 bits
-    KILN_PIXEL_HALF       ///< 16 bits
+    KILN_PIXEL_FLOAT = 0, ///< floats of 32 bits
+    KILN_PIXEL_HALF       ///< half floats of 16 bits
 } kiln_pixel_type;
 
 /// Radiance in the caller's memory, for example rendered there or read back from a graphics
@@ -340,7 +340,7 @@ typedef enum kiln_pixel_type {
 typedef struct kiln_pixels {
     const void *data; ///< the first pixel of the top row, at any address
     int width, height;
-    int channels;         ///< 3, or 4, of which the fourth is ignored
+    int channels;         ///< number of channels: 3, or 4, of which the fourth is ignored
     kiln_pixel_type type; ///< type of each channel
     /// Distance in bytes from a row to the row below, may be negative; 0 for no gaps.
     ptrdiff_t row_stride;
@@ -508,7 +508,7 @@ typedef struct kiln_engine kiln_engine; // defined in the section on engines bel
 /// What kiln_prefilter computes. {0} selects a cube of size 256 with all levels, filtered by GGX
 /// with roughness from 0 to 1 in equal steps.
 typedef struct kiln_prefilter_def {
-    kiln_shape shape; ///< shape of the result; KILN_SHAPE_AUTO for a cube
+    kiln_shape shape; ///< shape of the levels; KILN_SHAPE_AUTO for a cube
     int size;         ///< size of level 0, 1 to KILN_MAX_SIZE; 0 for 256
     int level_count;  ///< number of levels, 1 to KILN_MAX_LEVELS; 0 for all levels down to size 1
     /// Smallest size of a level in texels, as in kiln_map. Needed where level_count is more than
@@ -552,7 +552,7 @@ typedef struct kiln_sh {
     int bands; ///< number of bands, 1 to KILN_MAX_BANDS
     /// True: band l is multiplied by the cosine lobe's pi, 2 pi/3, pi/4, 0, -pi/24.
     bool irradiance;
-    double window; ///< width of the deringing window, 0 for none
+    double window; ///< width of the deringing window in bands, 0 for none
     double c[KILN_MAX_BANDS * KILN_MAX_BANDS][3];
 } kiln_sh;
 
@@ -804,8 +804,8 @@ struct kiln_engine {
     /// Formula for the roughness r of level k of n, w being the size of level 0.
     const char *mapping;
     int size;        ///< default size of a cube face in texels
-    int level_count; ///< default number of levels
-    double limit;    ///< largest radiance that the files hold
+    int level_count; ///< default number of levels of the cube
+    double limit;    ///< largest radiance that the engine's files hold
     /// Formats that the engine's files may have, the default first and KILN_FORMAT_AUTO after the
     /// last.
     kiln_format formats[4];

@@ -20,7 +20,8 @@ enum {
     FLAG_LINEAR = 0x80000,
     FORMAT_SIZE = 32,
     FORMAT_FOURCC = 0x4,
-    CAPS = 0x8 | 0x1000 | 0x400000, // the picture is complex, a texture, with levels
+    // flags of the picture: a texture, with more than one surface, with levels
+    CAPS = 0x8 | 0x1000 | 0x400000,
     CAPS2_CUBE = 0x200,
     CAPS2_ALL_FACES = 0xfc00,
     DIMENSION_2D = 3,

@@ -86,7 +86,7 @@ static void list_channels(const ki_exr_part *p, char *text, size_t room)
 
 static kiln_result choose_part(exr_file *f, kiln_error *error)
 {
-    const ki_exr_part *first = NULL; // first part that is not deep
+    const ki_exr_part *first = NULL; // first part of the file that is not deep
     for (int i = 0; i < f->header.part_count; i++) {
         const ki_exr_part *p = &f->header.parts[i];
         if (p->deep || p->channel_count > KI_EXR_MAX_CHANNELS)

@@ -170,7 +170,7 @@ typedef struct ki_exr_picture {
     // the display window, which the picture fills, in the file's coordinates
     int left, top, width, height;
     int source[3]; // indices of the channels that become red, green and blue; -1 for no channel
-    float *pixels; // width * height * 3 floats
+    float *pixels; // the picture's pixels: width * height * 3 floats
 } ki_exr_picture;
 
 /// Writes the samples of a box to the pixels of the picture that the box overlaps.

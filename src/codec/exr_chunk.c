@@ -44,7 +44,8 @@ static int chunk_lines(int compression)
 
 // The size of the data window, and of the chunks into which it is cut: tiles or groups of lines.
 typedef struct grid {
-    int64_t width, height, chunk_width, chunk_height; // sizes in pixels; 0 if the header is wrong
+    // size in pixels of the data window and of a chunk; 0 if the header is wrong
+    int64_t width, height, chunk_width, chunk_height;
     int64_t across, down;
 } grid;
 

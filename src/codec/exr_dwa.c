@@ -344,7 +344,8 @@ static bool transform(dwa *d, const int *members, int count, size_t *const offse
 // The channels of one layer that are red, green and blue of a colour, as indices of channels; -1
 // for a missing channel.
 typedef struct triple {
-    const char *name; // name of one of the channels
+    // name of one of the three channels, before whose last dot the layer's name stands
+    const char *name;
     int member[3];
 } triple;
 
@@ -438,7 +439,7 @@ static void copy_plain(dwa *d, int index, const size_t *offset)
 // zlib; coefficients of the cosine transform after the first of each block (ac); first coefficients
 // (dc); and channels compressed as runs.
 typedef struct sections {
-    const uint8_t *zlib, *ac, *dc, *runs; // the packed sections
+    const uint8_t *zlib, *ac, *dc, *runs; // packed bytes of each section
     // unpacked channels that zlib compressed, followed by channels that are stored as runs
     uint8_t *plain;
     uint8_t *run_bytes; // the runs after unpacking by zlib, before they are expanded

@@ -39,7 +39,7 @@ typedef struct bits {
     uint64_t spent;
 } bits;
 
-// Reads bytes until at least 57 bits are held.
+// Reads bytes of the input until at least 57 bits wait in `held`.
 static inline void fill(bits *b)
 {
     if (b->held_count > 56)
@@ -156,7 +156,7 @@ static bool decode(decoder *d, const uint8_t *packed, size_t packed_size, uint16
 {
     ki_reader r = ki_reader_make(packed, packed_size);
     uint32_t low = ki_read_u32(&r), high = ki_read_u32(&r);
-    ki_read_u32(&r); // size of the table, which is not needed
+    ki_read_u32(&r); // skips the number of bytes of the code lengths
     uint64_t bit_count = ki_read_u32(&r);
     ki_read_u32(&r);
     if (r.failed || low >= SYMBOLS || high >= SYMBOLS || low > high)

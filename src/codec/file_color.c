@@ -12,7 +12,8 @@
 #include <stdio.h>
 #include <string.h>
 
-// Luminance in cd/m2 of the reference white, and of the largest values of PQ and HLG.
+// Luminance in cd/m2 of the reference white, which becomes 1, and of the largest values that PQ and
+// HLG store.
 static const double reference_white = 203, pq_peak = 10000, hlg_peak = 1000;
 
 // ---------------------------------------------------------------------------------------- curves

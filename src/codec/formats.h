@@ -40,7 +40,7 @@ typedef kiln_result ki_write_cube(const kiln_map *map, const kiln_save_def *def,
                                   kiln_error *error);
 
 typedef struct ki_file_format {
-    const char *name;       ///< name as in kiln_file_info, for example "ktx2"
+    const char *name;       ///< name of the format, as in kiln_file_info, for example "ktx2"
     const char *endings[3]; ///< endings of paths, in lower case with the dot; NULL after the last
     /// The bytes with which every file of the format begins; NULL if formats are told apart in
     /// another way.

@@ -255,7 +255,8 @@ static void describe(const light *l, kiln_file_info *info)
             info->sh[i][c] = ki_info_number(l->sh[i][c] / irradiance_factor[i]);
 }
 
-// Returns the bytes of the next chunk, or NULL if its type is not `type` or the file ends.
+// Returns the bytes of the file's next chunk, or NULL if the type of the chunk is not `type` or the
+// file ends.
 static const uint8_t *read_chunk(ki_reader *r, uint32_t type, uint32_t *size)
 {
     *size = ki_read_u32(r);

@@ -55,7 +55,7 @@ typedef struct state {
 
 // -------------------------------------------------------------------------------------------- bits
 
-// Reads bytes until at least 57 bits are held.
+// Reads bytes of the input until at least 57 bits wait in `bits`.
 static inline void fill(stream *s)
 {
     while (s->held <= 56) {
@@ -65,8 +65,8 @@ static inline void fill(stream *s)
     }
 }
 
-// Reads bytes until at least 56 bits are held; at least eight bytes of input must be left. Bits of
-// `bits` above those held are already the input's next bits.
+// Reads bytes of the input until at least 56 bits wait in `bits`; at least eight bytes of input
+// must be left. The bits above those that `held` counts are already the input's next bits.
 static inline void fill_fast(stream *s)
 {
     uint64_t next;
@@ -237,7 +237,7 @@ static inline size_t value_of(stream *s, uint32_t entry)
 static bool stored(state *st)
 {
     stream *s = &st->s;
-    drop(s, (uint32_t)s->held & 7); // skips to the next byte boundary
+    drop(s, (uint32_t)s->held & 7); // skips to the next byte boundary of the input
     size_t count = take(s, 16), inverse = take(s, 16), left = (size_t)(st->end - st->out);
     if (count != (~inverse & 0xffff))
         return false;

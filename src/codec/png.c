@@ -342,7 +342,7 @@ static inline void put_row(const png_file *f, const uint8_t *row, size_t width, 
     }
 }
 
-// Decodes a row of radiance in four bytes.
+// Decodes a row of texels that kiln stored as radiance in four bytes (RGBM, RGBD or RGBP).
 static void unpack_row(const png_file *f, const uint8_t *row, size_t width, float *rgb, size_t step)
 {
     for (size_t x = 0; x < width; x++, rgb += step, row += 4) {

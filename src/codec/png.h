@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-/// Bits of a colour type.
+/// The bits of a PNG file's colour type.
 enum { KI_PNG_PALETTE = 1, KI_PNG_COLOR = 2, KI_PNG_ALPHA = 4 };
 
 /// Key of the text chunk by which a picture of kiln says that its samples are radiance in four

@@ -11,7 +11,7 @@ typedef struct ki_png_meaning {
     /// colours as `color` says.
     ki_from_rgbx *unpack;
     ki_file_color color;
-    const char *name; ///< short name of the coding, for example "srgb"
+    const char *name; ///< short name of the coding of the samples, for example "srgb"
 } ki_png_meaning;
 
 /// Reads the chunks about colours before the first IDAT chunk. Fails if a chunk names colours that

@@ -177,7 +177,7 @@ static uint8_t to_byte(float value, const float *thresholds)
         return 255;
     if (!thresholds)
         return (uint8_t)(value * 255 + 0.5f);
-    int low = 0, high = 255; // number of thresholds that the value reaches
+    int low = 0, high = 255; // bounds of the number of thresholds that the value reaches
     while (low < high) {
         int middle = (low + high) / 2;
         if (value >= thresholds[middle])

@@ -16,7 +16,7 @@ enum { KI_RGBM_MAX = 64, KI_RGBP_MAX = 64, KI_RGBD_MAX = 255 };
 void ki_rgbm_from_float(const float rgb[3], float rgbm[4]);
 void ki_rgbp_from_float(const float rgb[3], float rgbp[4]);
 void ki_rgbd_from_float(const float rgb[3], float rgbd[4]);
-/// Convert four stored numbers to RGB radiance.
+/// Convert the four stored numbers of a texel to RGB radiance.
 void ki_float_from_rgbm(const float rgbm[4], float rgb[3]);
 void ki_float_from_rgbp(const float rgbp[4], float rgb[3]);
 void ki_float_from_rgbd(const float rgbd[4], float rgb[3]);

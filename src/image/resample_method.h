@@ -20,7 +20,8 @@ typedef enum ki_resample_method {
     KI_RESAMPLE_GATHER,
     /// from a cube or octahedron to a panorama: adds each texel to the texels under its stencil
     KI_RESAMPLE_SCATTER,
-    KI_RESAMPLE_SEPARABLE, ///< from a panorama to a panorama: separable weights of columns and rows
+    /// from a panorama to a panorama: weights of columns times weights of rows
+    KI_RESAMPLE_SEPARABLE,
     /// from a cube to a cube of another size, turned by quarter turns: rectangles on faces
     KI_RESAMPLE_FACES,
     KI_RESAMPLE_SUBSAMPLE ///< all other conversions, by samples within each texel

@@ -162,7 +162,7 @@ typedef struct cursor {
     const ki_stencil_place *place;
     const ki_stencil *stencil;
     const float *weights;
-    ptrdiff_t texel; // index of the texel in the map
+    ptrdiff_t texel; // index in the map of the texel to which the stencil belongs
     int i, end, j, stop;
 } cursor;
 
