@@ -19,7 +19,8 @@ static void next_stage(bake *b)
 static int load(bake *b)
 {
     const kiln_load_def def = {.layout = (kiln_layout)b->layout,
-                               .negative = (kiln_negative)b->negative};
+                               .negative = (kiln_negative)b->negative,
+                               .layer = b->layer};
     int code = cli_load(&b->work, b->arguments.rest, b->arguments.rest_count, &def, &b->source);
     if (code != CLI_GO)
         return code;

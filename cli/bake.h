@@ -13,7 +13,7 @@ typedef enum bake_tuning { BAKE_EXACT, BAKE_SHARP, BAKE_SOFT } bake_tuning;
 typedef struct bake {
     cli_arguments arguments;
     // Values of the options, which the parser writes here by the option rows of bake_options.c.
-    const char *output, *irradiance_path, *sh_path, *roughness_text;
+    const char *output, *irradiance_path, *sh_path, *roughness_text, *layer;
     int size, level_count, shape, format, zstd, lobe, textbook;
     int engine_index; ///< index of the engine of --for in kiln's list; -1 without --for
     int tuning;       ///< a bake_tuning; -1 if the engine decides

@@ -31,6 +31,7 @@ enum {
     SH_IRRADIANCE,
     SH_WINDOW,
     LAYOUT,
+    LAYER,
     NEGATIVE,
     ROTATE,
     EXPOSURE,
@@ -143,6 +144,7 @@ const cli_option bake_options[OPTIONS + 1] = {
          .more = "A panorama named so need not be twice as wide as high: the picture is stretched "
                  "over the whole sphere. A probe is a square angular map with -Z in its centre, a "
                  "ball the square photograph of a mirror ball; both become a panorama."},
+    [LAYER] = CLI_LAYER_ROW(bake),
     [NEGATIVE] = CLI_NEGATIVE_ROW(bake),
     [ROTATE] = {"rotate", CLI_NUMBER, AT(rotation), -3600, 3600, 0, "DEGREES",
                 .help = "turn the environment about the vertical axis, after --mirror; the content "

@@ -160,6 +160,18 @@ int cli_check_source_name(const cli_arguments *arguments, int option);
                     "outside the gamut of Rec. 709 have negative channels. Filtered values below " \
                     "zero are written as 0 in either case."                                        \
     }
+#define CLI_LAYER_ROW(type)                                                                        \
+    {                                                                                              \
+        "layer", CLI_TEXT, offsetof(type, layer),                                                  \
+            .value = "NAME",                                                                       \
+            .help = "which layer of an EXR file is the picture: a layer, a part, or a channel "    \
+                    "that is read as grey; 'kiln info' lists the layers",                          \
+            .unset = "the channels R, G and B without a layer, else the layer that renderers "     \
+                     "name like a picture, else the only one with colours",                        \
+            .more = "NAME may be the end of a layer's name after a dot, such as Combined for "     \
+                    "ViewLayer.Combined, or PART.LAYER. A file with several layers that may be "   \
+                    "the picture is refused without this option."                                  \
+    }
 #define CLI_D_ROW(type, field)                                                                     \
     {                                                                                              \
         "d", CLI_CHOICE, offsetof(type, field), .value = "D", .word = cli_d_word,                  \

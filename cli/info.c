@@ -23,6 +23,26 @@ static void print_engine(const char *name)
         printf("  engine       %s\n", name);
 }
 
+// Prints the layers of an EXR file, unless the file has nothing but one layer without a name.
+static void print_layers(const kiln_file_info *info)
+{
+    if (info->part_count < 2 && info->layer_count < 2 && !info->layer[0].name[0])
+        return;
+    printf("  layers       %d in %d part%s\n", info->layer_count, info->part_count,
+           info->part_count == 1 ? "" : "s");
+    int shown = info->layer_count < KILN_MAX_LAYERS ? info->layer_count : KILN_MAX_LAYERS;
+    for (int i = 0; i < shown; i++) {
+        const kiln_layer_info *layer = &info->layer[i];
+        const char *name = layer->name[0] ? layer->name : "(no name)";
+        printf("    %s", name);
+        if (layer->part[0])
+            printf(" in part %s", layer->part);
+        printf(": %s%s\n", layer->channels, layer->picture ? ", the picture" : "");
+    }
+    if (shown < info->layer_count)
+        printf("    and %d more\n", info->layer_count - shown);
+}
+
 static void print_text(const char *path, const kiln_file_info *info)
 {
     char bytes[32];
@@ -43,6 +63,7 @@ static void print_text(const char *path, const kiln_file_info *info)
             printf(" %.4g", (double)info->roughness[k]);
         putchar('\n');
     }
+    print_layers(info);
     print_engine(info->engine);
     if (info->table[0])
         printf("  table        %s\n", info->table);
@@ -83,6 +104,23 @@ static void print_sh_json(json *j, const kiln_file_info *info)
     json_end(j);
 }
 
+static void print_layers_json(json *j, const kiln_file_info *info)
+{
+    json_number(j, "part_count", info->part_count);
+    json_number(j, "layer_count", info->layer_count);
+    json_array(j, "layers");
+    for (int i = 0; i < info->layer_count && i < KILN_MAX_LAYERS; i++) {
+        const kiln_layer_info *layer = &info->layer[i];
+        json_object(j, NULL);
+        json_text(j, "part", layer->part);
+        json_text(j, "name", layer->name);
+        json_text(j, "channels", layer->channels);
+        json_bool(j, "picture", layer->picture);
+        json_end(j);
+    }
+    json_end(j);
+}
+
 static void print_json(json *j, const char *path, const kiln_file_info *info)
 {
     json_object(j, NULL);
@@ -112,6 +150,8 @@ static void print_json(json *j, const char *path, const kiln_file_info *info)
         json_text(j, "writer", info->writer);
     if (info->sh_bands)
         print_sh_json(j, info);
+    if (info->layer_count)
+        print_layers_json(j, info);
     json_notes(j, &info->report);
     json_end(j);
 }
@@ -166,10 +206,11 @@ const cli_command cli_info = {
     .name = "info",
     .arguments = "FILE... [OPTION...]",
     .summary = "Describes files that kiln reads or writes.",
-    .about = "For each file kiln prints the format, encoding, layout, size, the roughness of the "
-             "levels, the spherical harmonics, the engine that the file is for, and what kiln "
-             "chooses, converts and assumes when the file is read. Files that kiln writes only, "
-             "such as .env and .glb, are described too.",
+    .about =
+        "For each file kiln prints the format, encoding, layout, size, the roughness of the "
+        "levels, the spherical harmonics, the layers of an EXR file, the engine that the file "
+        "is for, and what kiln chooses, converts and assumes when the file is read. Files that "
+        "kiln writes only, such as .env and .glb, are described too.",
     .examples = examples,
     .options = options,
     .run = run,

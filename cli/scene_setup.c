@@ -91,7 +91,7 @@ int scene_load(cli_work *work, const scene_setup *s, kiln_map *source)
 {
     if (s->input) {
         const char *names[] = {s->input};
-        const kiln_load_def def = {.negative = (kiln_negative)s->negative};
+        const kiln_load_def def = {.negative = (kiln_negative)s->negative, .layer = s->layer};
         return cli_load(work, names, 1, &def, source);
     }
     // Scales the sky's radiance from kcd/m2 to values near 1.

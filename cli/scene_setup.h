@@ -29,6 +29,7 @@ enum {
     SCENE_STRAIGHT,
     SCENE_DIFFUSE,
     SCENE_BAKE_SIZE,
+    SCENE_LAYER,
     SCENE_NEGATIVE,
     SCENE_OPTIONS
 };
@@ -44,6 +45,7 @@ typedef struct scene_setup {
     int width, height;
     int bake_size;     ///< edge of the environment's level 0 in texels
     int negative;      ///< a kiln_negative, which decides what becomes of negative texels
+    const char *layer; ///< layer of the environment's file; NULL for the default
     const char *input; ///< name of the environment's file; NULL for a sky
 } scene_setup;
 
@@ -209,7 +211,7 @@ typedef struct scene_setup {
                          256,                                                                      \
                          "N",                                                                      \
                          .help = "texels along the edge of a face of the baked environment"},      \
-    [SCENE_NEGATIVE] = CLI_NEGATIVE_ROW(scene_setup)
+    [SCENE_LAYER] = CLI_LAYER_ROW(scene_setup), [SCENE_NEGATIVE] = CLI_NEGATIVE_ROW(scene_setup)
 /// Returns the word of --diffuse with this index, or NULL after the last word.
 const char *scene_diffuse_word(int index);
 

@@ -299,6 +299,11 @@ typedef struct kiln_load_def {
     kiln_layout layout;
     kiln_negative negative;
     kiln_load_report *report; ///< receives what was found in the file; may be NULL
+    /// Layer of an EXR file that is the picture: the layer's name, its last components, the name of
+    /// its part, PART.LAYER, or the name of a single channel, which is read as grey. NULL chooses
+    /// R, G and B without a layer, else the layer that renderers name like a picture, else the only
+    /// layer with colours; a file that has several such layers is refused.
+    const char *layer;
 } kiln_load_def;
 
 /// Loads a map from an EXR, Radiance HDR or PNG file (PNG values are sRGB and are decoded to
@@ -360,13 +365,26 @@ KILN_API KILN_CHECKED kiln_result kiln_map_from_pixels(kiln_context *context,
 KILN_API KILN_CHECKED kiln_result kiln_image_load(kiln_context *context, const char *path,
                                                   kiln_image *image, kiln_error *error);
 
+enum { KILN_MAX_LAYERS = 32 };
+
+/// One layer of an EXR file: the channels of a part whose names agree up to the last dot. Bytes of
+/// the file that are control characters or no UTF-8 stand as \xNN in these texts, a backslash as
+/// \\, and texts that are too long are cut.
+typedef struct kiln_layer_info {
+    char part[64];      ///< name of the part, or empty
+    char name[128];     ///< name of the layer; empty for channels without a layer
+    char channels[128]; ///< channels without the layer's name, for example "A, B, G, R"
+    bool picture;       ///< true: kiln_map_load reads this layer unless the caller names another
+} kiln_layer_info;
+
 /// Description of a file, found without reading all of its texels. Strings end in NUL.
 typedef struct kiln_file_info {
     char format[16]; ///< file format: "exr", "hdr", "png", "ktx2", "dds", "ktx1", "env", "glb", ...
     char encoding[48]; ///< type of the texels and their compression, for example "half rgb, piz"
     /// What the texels are: "panorama", "cross", "strip", "cube", "octahedron", "image", "table",
     /// "harmonics", or an atlas of levels side by side, "cubeuv" (three.js) or "atlas"
-    /// (PlayCanvas).
+    /// (PlayCanvas). "openexr-panorama" and "openexr-cube" are the maps of OpenEXR's attribute
+    /// "envmap", whose outer texels lie on the border of the panorama or of the face.
     char layout[24];
     /// Size of a cube face, of a picture, or of one slice of a table. For harmonics the width is
     /// the number of coefficients and the height 1.
@@ -390,6 +408,9 @@ typedef struct kiln_file_info {
     /// Notes about what kiln chooses, converts and assumes when it reads the file. The counts are
     /// 0, because the texels were not read.
     kiln_load_report report;
+    int part_count;  ///< number of parts of an EXR file, else 0
+    int layer_count; ///< number of layers of an EXR file, of which `layer` holds the first
+    kiln_layer_info layer[KILN_MAX_LAYERS];
 } kiln_file_info;
 
 /// Describes any file that kiln can read, and of the files that kiln only writes KTX 1 (Filament),

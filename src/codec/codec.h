@@ -25,16 +25,20 @@ typedef struct ki_decoded {
 /// messages. `info`, if not NULL, is filled in. If `decoded` is NULL, the texels are not read.
 kiln_result ki_decode(kiln_context *context, const uint8_t *bytes, size_t size, const char *name,
                       ki_decoded *decoded, kiln_file_info *info, kiln_error *error);
-/// Reads a whole file and decodes it as ki_decode does.
-kiln_result ki_decode_file(kiln_context *context, const char *path, ki_decoded *decoded,
-                           kiln_file_info *info, kiln_error *error);
+/// Decodes as ki_decode does, from an EXR file the layer that is named; `layer` may be NULL.
+kiln_result ki_decode_layer(kiln_context *context, const uint8_t *bytes, size_t size,
+                            const char *name, const char *layer, ki_decoded *decoded,
+                            kiln_file_info *info, kiln_error *error);
+/// Reads a whole file and decodes it as ki_decode_layer does.
+kiln_result ki_decode_file(kiln_context *context, const char *path, const char *layer,
+                           ki_decoded *decoded, kiln_file_info *info, kiln_error *error);
 void ki_decoded_free(ki_decoded *decoded);
 
 /// Decode a picture. `image`, `info` and `report` may be NULL; without `image` the texels are not
-/// read.
+/// read. `layer`, which may be NULL, names a layer of an EXR file.
 kiln_result ki_exr_decode(kiln_context *context, const uint8_t *bytes, size_t size,
-                          const char *name, kiln_image *image, kiln_file_info *info,
-                          kiln_load_report *report, kiln_error *error);
+                          const char *name, const char *layer, kiln_image *image,
+                          kiln_file_info *info, kiln_load_report *report, kiln_error *error);
 kiln_result ki_hdr_decode(kiln_context *context, const uint8_t *bytes, size_t size,
                           const char *name, kiln_image *image, kiln_file_info *info,
                           kiln_load_report *report, kiln_error *error);

@@ -1,16 +1,16 @@
-// Reading of EXR files. In: the bytes of a file. Out: a picture of three floats a pixel.
-// exr_header.c parses the header, exr_chunk.c finds and decompresses the chunks, exr_pixels.c
-// converts the samples, and this file chooses the part and the channels. Chunks are independent and
-// are decompressed in parallel.
+// Reading of EXR files. In: the bytes of a file. Out: a picture of three floats a pixel, and notes.
+// exr_header.c parses the header, exr_layers.c chooses the part and the layer, exr_chunk.c finds and
+// decompresses the chunks, and exr_pixels.c converts the samples. exr_chroma.c computes colours from
+// luminance and chroma, and exr_color.c and image/color.h convert other primaries to Rec. 709. Chunks are independent
+// and are decompressed in parallel.
 //
-// The picture is the display window; pixels outside the data window are 0. Read are the first part
-// with colour, level 0 of a part with several levels, and the channels R, G and B, or Y as grey.
-// Channels without a layer's name are preferred to those with one. The attribute "chromaticities"
-// is not applied.
+// The picture is the display window; pixels outside the data window are 0. Of a part with several
+// levels, level 0 is read.
 #include "codec/exr.h"
 #include "codec/codec.h"
 #include "codec/engine_text.h"
 #include "codec/file_info.h"
+#include "codec/report.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -21,8 +21,12 @@ typedef struct exr_file {
     kiln_context *context;
     const char *name;
     ki_exr_header header;
-    const ki_exr_part *part; // the part that is read: a file may hold several pictures
-    int part_index;
+    ki_exr_layers layers;
+    ki_exr_layer layer;      // the layer that is read
+    bool chosen;             // false: no layer is the picture, and `layer` is only described
+    const ki_exr_part *part; // the part of the layer
+    int sampling;            // 2 if chroma has a sample in every second column and line, else 1
+    ki_exr_color color;
     ki_exr_picture picture;
     ki_exr_chunk *chunks;
     int chunk_count;
@@ -32,107 +36,59 @@ typedef struct exr_file {
     int damaged[TASKS];     // index of the chunk at which each task failed
 } exr_file;
 
-// ------------------------------------------------------------------------------- part and channels
+// ---------------------------------------------------------------------------------------- channels
 
-static int find_channel(const ki_exr_part *p, const char *layer, size_t layer_length,
-                        const char *name)
+// Chooses the layer. If only a description is wanted, a file without a choice is described by its
+// first layer.
+static kiln_result choose(exr_file *f, const char *wanted, bool describe_only, kiln_error *error)
 {
-    for (int c = 0; c < p->channel_count; c++) {
-        const char *full = p->channels[c].name;
-        if (!strncmp(full, layer, layer_length) && !strcmp(full + layer_length, name))
-            return c;
-    }
-    return -1;
+    kiln_result result =
+        ki_exr_choose_layer(&f->header, &f->layers, wanted, f->name, &f->layer, error);
+    f->chosen = result == KILN_OK;
+    if (!f->chosen && (!describe_only || !f->layers.count))
+        return result;
+    if (!f->chosen)
+        f->layer = f->layers.layer[0];
+    f->part = &f->header.parts[f->layer.part];
+    const int *channel = f->layer.channel;
+    int *source = f->picture.source;
+    bool chroma = f->layer.kind == KI_EXR_CHROMA, grey = f->layer.kind == KI_EXR_GREY;
+    source[0] = channel[chroma ? KI_EXR_RED_CHROMA : grey ? KI_EXR_LUMINANCE : KI_EXR_RED];
+    source[1] = channel[chroma || grey ? KI_EXR_LUMINANCE : KI_EXR_GREEN];
+    source[2] = channel[chroma ? KI_EXR_BLUE_CHROMA : grey ? KI_EXR_LUMINANCE : KI_EXR_BLUE];
+    return KILN_OK;
 }
 
-// Chooses the channels of one layer that become red, green and blue: R, G and B, or else Y for all
-// three. Returns false if the layer has none of these channels.
-static bool choose_in_layer(const ki_exr_part *p, const char *layer, size_t length, int source[3])
+// Returns 2 if chroma has one sample for 2 x 2 pixels of the data window, as OpenEXR writes it, else 1.
+static int find_sampling(const exr_file *f)
 {
-    static const char *const colours[3] = {"R", "G", "B"};
-    bool any = false;
+    const ki_exr_window *w = &f->part->data;
+    const int *source = f->picture.source;
+    if (f->layer.kind != KI_EXR_CHROMA)
+        return 1;
+    const ki_exr_channel *c = &f->part->channels[source[0] >= 0 ? source[0] : source[2]];
+    bool even = w->left % 2 == 0 && w->top % 2 == 0;
+    return even && c->x_sampling == 2 && c->y_sampling == 2 ? 2 : 1;
+}
+
+// Fails unless the samples of the chosen channels lie where the picture is read from.
+static kiln_result check_channels(exr_file *f, kiln_error *error)
+{
+    f->sampling = find_sampling(f);
     for (int k = 0; k < 3; k++) {
-        source[k] = find_channel(p, layer, length, colours[k]);
-        any = any || source[k] >= 0;
-    }
-    if (!any)
-        source[0] = source[1] = source[2] = find_channel(p, layer, length, "Y");
-    return source[0] >= 0 || any;
-}
-
-// Chooses the channels that become red, green and blue: those whose names have no layer, or else
-// those of the first layer that has R, G, B or Y.
-static bool choose_channels(const ki_exr_part *p, int source[3])
-{
-    if (choose_in_layer(p, "", 0, source))
-        return true;
-    for (int c = 0; c < p->channel_count; c++) {
-        const char *name = p->channels[c].name;
-        size_t length = (size_t)(ki_exr_suffix(name) - name);
-        if (length > 0 && choose_in_layer(p, name, length, source))
-            return true;
-    }
-    return false;
-}
-
-static void list_channels(const ki_exr_part *p, char *text, size_t room)
-{
-    size_t used = 0;
-    text[0] = 0;
-    for (int c = 0; c < p->channel_count && used + 40 < room; c++)
-        used += (size_t)snprintf(text + used, room - used, "%s%.32s", c ? ", " : "",
-                                 p->channels[c].name);
-}
-
-static kiln_result choose_part(exr_file *f, kiln_error *error)
-{
-    const ki_exr_part *first = NULL; // first part of the file that is not deep
-    for (int i = 0; i < f->header.part_count; i++) {
-        const ki_exr_part *p = &f->header.parts[i];
-        if (p->deep || p->channel_count > KI_EXR_MAX_CHANNELS)
+        if (f->picture.source[k] < 0)
             continue;
-        first = first ? first : p;
-        if (choose_channels(p, f->picture.source)) {
-            f->part = p;
-            f->part_index = i;
-            return KILN_OK;
-        }
-    }
-    const ki_exr_part *p = &f->header.parts[0];
-    if (!first && p->deep)
+        const ki_exr_channel *c = &f->part->channels[f->picture.source[k]];
+        int wanted = k == 1 ? 1 : f->sampling;
+        if (c->x_sampling == wanted && c->y_sampling == wanted)
+            continue;
+        char name[48];
+        ki_escape_text(name, sizeof name, c->name, strlen(c->name));
         return ki_fail(error, KILN_ERROR_UNSUPPORTED,
-                       "%s: holds deep samples, kiln reads flat pictures only", f->name);
-    if (!first)
-        return ki_fail(error, KILN_ERROR_UNSUPPORTED, "%s: has %d channels, the limit is %d",
-                       f->name, p->channel_count, KI_EXR_MAX_CHANNELS);
-    char names[256];
-    list_channels(first, names, sizeof names);
-    return ki_fail(error, KILN_ERROR_UNSUPPORTED,
-                   "%s: has no channel R, G, B or Y; its channels are %s", f->name, names);
-}
-
-// Fails unless red, green and blue have channels, and these channels are not subsampled.
-static kiln_result check_channels(const exr_file *f, kiln_error *error)
-{
-    const ki_exr_part *p = f->part;
-    const char *chosen = NULL;
-    for (int k = 0; k < 3; k++) {
-        const ki_exr_channel *c =
-            f->picture.source[k] < 0 ? NULL : &p->channels[f->picture.source[k]];
-        if (c && (c->x_sampling != 1 || c->y_sampling != 1))
-            return ki_fail(error, KILN_ERROR_UNSUPPORTED,
-                           "%s: channel %.32s has one sample for %d x %d pixels, kiln reads one "
-                           "sample for each pixel only",
-                           f->name, c->name, c->x_sampling, c->y_sampling);
-        chosen = c ? c->name : chosen;
+                       "%s: channel %s has one sample for %d x %d pixels, kiln reads one sample "
+                       "for each pixel only, or one for 2 x 2 pixels in both RY and BY",
+                       f->name, name, c->x_sampling, c->y_sampling);
     }
-    size_t layer = (size_t)(ki_exr_suffix(chosen) - chosen);
-    if (!strcmp(chosen + layer, "Y") &&
-        (find_channel(p, chosen, layer, "RY") >= 0 || find_channel(p, chosen, layer, "BY") >= 0))
-        return ki_fail(
-            error, KILN_ERROR_UNSUPPORTED,
-            "%s: stores luminance and chroma (Y, RY, BY), kiln reads channels R, G and B only",
-            f->name);
     return KILN_OK;
 }
 
@@ -152,12 +108,15 @@ static kiln_result check_window(const exr_file *f, const char *what, const ki_ex
     return KILN_OK;
 }
 
-static kiln_result open_file(exr_file *f, const uint8_t *bytes, size_t size, kiln_error *error)
+static kiln_result open_file(exr_file *f, const uint8_t *bytes, size_t size, const char *wanted,
+                             bool describe_only, kiln_error *error)
 {
     kiln_result result = ki_exr_read_header(f->context, bytes, size, f->name, &f->header, error);
     if (result == KILN_OK)
-        result = choose_part(f, error);
+        result = ki_exr_list_layers(f->context, &f->header, f->name, &f->layers, error);
     if (result == KILN_OK)
+        result = choose(f, wanted, describe_only, error);
+    if (result == KILN_OK && f->chosen)
         result = check_channels(f, error);
     if (result != KILN_OK)
         return result;
@@ -199,6 +158,15 @@ static void describe_attributes(const exr_file *f, kiln_file_info *info)
     read_string(f->part, "software", text, sizeof info->writer);
     if (!strncmp(text, "kiln ", 5))
         ki_copy_printable(info->writer, sizeof info->writer, text);
+    size_t size = 0;
+    const uint8_t *bytes = ki_exr_attribute(f->part, "envmap", "envmap", &size);
+    // kiln's own panoramas have this attribute too, but have their texels where kiln has them.
+    if (bytes && size == 1 && !info->writer[0]) {
+        bool panorama = f->picture.width == 2 * (int64_t)f->picture.height;
+        if (*bytes == 1 || panorama)
+            snprintf(info->layout, sizeof info->layout, "openexr-%s",
+                     *bytes == 1 ? "cube" : "panorama");
+    }
     read_string(f->part, "kilnShape", text, sizeof text);
     if (!strcmp(text, "octahedron") && f->picture.width == f->picture.height)
         snprintf(info->layout, sizeof info->layout, "octahedron");
@@ -207,8 +175,7 @@ static void describe_attributes(const exr_file *f, kiln_file_info *info)
     char engine[512];
     read_string(f->part, "kilnEngine", engine, sizeof engine);
     ki_engine_text_read(engine, info);
-    size_t size = 0;
-    const uint8_t *bytes = ki_exr_attribute(f->part, "kilnRoughness", "float", &size);
+    bytes = ki_exr_attribute(f->part, "kilnRoughness", "float", &size);
     float roughness = -1;
     if (bytes && size == sizeof roughness)
         memcpy(&roughness, bytes, sizeof roughness);
@@ -219,23 +186,28 @@ static void describe_attributes(const exr_file *f, kiln_file_info *info)
 static void describe(const exr_file *f, kiln_file_info *info)
 {
     static const char *const types[KI_EXR_TYPES] = {"uint", "half", "float"};
+    static const char *const kinds[] = {[KI_EXR_NO_PICTURE] = "data",
+                                        [KI_EXR_COLOR] = "rgb",
+                                        [KI_EXR_PARTIAL] = "rgb",
+                                        [KI_EXR_CHROMA] = "luminance and chroma",
+                                        [KI_EXR_GREY] = "grey"};
     const int *source = f->picture.source;
-    int count = 0, type = KI_EXR_HALF;
+    int count = 0, type = f->part->channels[0].type;
     for (int k = 0; k < 3; k++)
         if (source[k] >= 0) {
             count++;
             type = f->part->channels[source[k]].type;
         }
-    bool grey = source[0] >= 0 && source[0] == source[1];
     snprintf(info->format, sizeof info->format, "exr");
     snprintf(info->encoding, sizeof info->encoding, "%s %s, %s%s", types[type],
-             grey ? "grey" : "rgb", ki_exr_compression_name(f->part->compression),
+             kinds[f->layer.kind], ki_exr_compression_name(f->part->compression),
              f->part->tiled ? ", tiled" : "");
     info->width = f->picture.width;
     info->height = f->picture.height;
-    info->channel_count = grey ? 1 : count;
+    info->channel_count = f->layer.kind == KI_EXR_GREY ? 1 : count;
     info->level_count = 1;
     describe_attributes(f, info);
+    ki_exr_describe_layers(&f->header, &f->layers, f->chosen ? &f->layer : NULL, info);
 }
 
 // ------------------------------------------------------------------------------------------ pixels
@@ -285,9 +257,11 @@ static kiln_result decode_all(exr_file *f, kiln_error *error)
             return ki_fail_memory(f->context, error, f->name, 65536 * sizeof *f->dwa_table);
         ki_exr_dwa_table(f->context, f->dwa_table);
     }
-    // A large picture is decoded in rounds, between which the caller may stop the work.
-    int rounds =
-        (size_t)f->picture.width * (size_t)f->picture.height < (size_t)1 << 23 ? 1 : ROUNDS;
+    // Many samples are decoded in rounds, between which the caller may stop the work.
+    size_t bytes = 0;
+    for (int i = 0; i < f->chunk_count; i++)
+        bytes += f->chunks[i].size;
+    int rounds = bytes < (size_t)1 << 25 ? 1 : ROUNDS;
     for (int r = 0; r < rounds; r++) {
         if (!ki_progress(f->context, "reading", (double)r / rounds))
             return ki_fail_cancelled(error, "reading");
@@ -301,48 +275,144 @@ static kiln_result decode_all(exr_file *f, kiln_error *error)
     return KILN_OK;
 }
 
-// Returns the number of pixels of the display window that lie outside the data window.
-static size_t count_missing(const ki_exr_window *data, const ki_exr_window *display)
+static size_t area(const ki_exr_window *w)
 {
-    int width = ki_min(data->right, display->right) - ki_max(data->left, display->left) + 1;
-    int height = ki_min(data->bottom, display->bottom) - ki_max(data->top, display->top) + 1;
-    size_t covered = width > 0 && height > 0 ? (size_t)width * (size_t)height : 0;
-    return (size_t)(display->right - display->left + 1) *
-               (size_t)(display->bottom - display->top + 1) -
-           covered;
+    return (size_t)(w->right - w->left + 1) * (size_t)(w->bottom - w->top + 1);
+}
+
+// Returns the number of pixels that lie in both the data window and the display window.
+static size_t count_common(const ki_exr_window *data, const ki_exr_window *display)
+{
+    const ki_exr_window common = {
+        ki_max(data->left, display->left), ki_max(data->top, display->top),
+        ki_min(data->right, display->right), ki_min(data->bottom, display->bottom)};
+    return common.left <= common.right && common.top <= common.bottom ? area(&common) : 0;
+}
+
+// Fails if the display window is nearly empty. The file's size bounds the data window, and this rule
+// the display window, so that a short file cannot ask for a large picture.
+static kiln_result check_common(const exr_file *f, size_t common, kiln_error *error)
+{
+    enum { SMALL = 1 << 20, MOST_EMPTY = 64 };
+    size_t pixels = area(&f->part->display);
+    if (!common)
+        return ki_fail(error, KILN_ERROR_FORMAT,
+                       "%s: none of the %zu pixels of its display window lies in its data window",
+                       f->name, pixels);
+    if (pixels > SMALL && pixels / MOST_EMPTY > common)
+        return ki_fail(error, KILN_ERROR_UNSUPPORTED,
+                       "%s: only %zu of the %zu pixels of its display window lie in its data "
+                       "window, it must be at least 1 of %d; write the file with a display window "
+                       "that fits the data",
+                       f->name, common, pixels, MOST_EMPTY);
+    return KILN_OK;
+}
+
+static kiln_result allocate(const exr_file *f, size_t pixels, float **memory, kiln_error *error)
+{
+    *memory = ki_alloc(f->context, pixels, 3 * sizeof(float));
+    return *memory ? KILN_OK
+                   : ki_fail_memory(f->context, error, f->name, 3 * pixels * sizeof(float));
+}
+
+// Copies what the picture of the data window has in common with the display window into a picture of
+// the display window.
+static void copy_common(const ki_exr_picture *data, const ki_exr_picture *display)
+{
+    int left = ki_max(data->left, display->left), top = ki_max(data->top, display->top);
+    int right = ki_min(data->left + data->width, display->left + display->width);
+    int bottom = ki_min(data->top + data->height, display->top + display->height);
+    for (int y = top; y < bottom; y++) {
+        size_t from = (size_t)(y - data->top) * (size_t)data->width + (size_t)(left - data->left);
+        size_t to =
+            (size_t)(y - display->top) * (size_t)display->width + (size_t)(left - display->left);
+        memcpy(display->pixels + 3 * to, data->pixels + 3 * from,
+               3 * (size_t)(right - left) * sizeof(float));
+    }
+}
+
+// Reads luminance and chroma over the data window, whose border the interpolation of chroma needs,
+// and replaces them by colours over the display window.
+static kiln_result read_chroma(exr_file *f, kiln_error *error)
+{
+    const ki_exr_picture display = f->picture;
+    const ki_exr_window *w = &f->part->data;
+    ki_exr_picture *p = &f->picture;
+    float *rgb = NULL;
+    p->left = w->left;
+    p->top = w->top;
+    p->width = w->right - w->left + 1;
+    p->height = w->bottom - w->top + 1;
+    kiln_result result = allocate(f, area(w), &p->pixels, error);
+    if (result == KILN_OK)
+        result = decode_all(f, error);
+    if (result == KILN_OK)
+        result = allocate(f, area(w), &rgb, error);
+    if (result == KILN_OK)
+        result =
+            ki_exr_reconstruct(f->context, p, f->sampling, f->color.weights, f->name, rgb, error);
+    ki_free(p->pixels);
+    p->pixels = rgb;
+    if (result != KILN_OK || !memcmp(w, &f->part->display, sizeof *w))
+        return result;
+    const ki_exr_picture colours = *p;
+    f->picture = display;
+    result = allocate(f, area(&f->part->display), &f->picture.pixels, error);
+    if (result == KILN_OK)
+        copy_common(&colours, &f->picture);
+    ki_free(colours.pixels);
+    return result;
+}
+
+static kiln_result read_colors(exr_file *f, size_t common, kiln_error *error)
+{
+    size_t pixels = area(&f->part->display);
+    f->picture.pixels = common == pixels ? ki_alloc_raw(f->context, pixels, 3 * sizeof(float))
+                                         : ki_alloc(f->context, pixels, 3 * sizeof(float));
+    if (!f->picture.pixels)
+        return ki_fail_memory(f->context, error, f->name, 3 * pixels * sizeof(float));
+    return decode_all(f, error);
+}
+
+// Notes what is read and how.
+static void note_all(const exr_file *f, kiln_load_report *report)
+{
+    size_t common = count_common(&f->part->data, &f->part->display);
+    size_t outside = area(&f->part->data) - common;
+    ki_exr_note_layer(&f->header, &f->layers, &f->layer, report);
+    if (outside)
+        ki_note(report, KILN_NOTE_CHOICE, false,
+                "%zu pixels of the data window lie outside the display window and were left out",
+                outside);
+    ki_exr_note_color(&f->color, f->layer.kind, report);
 }
 
 static kiln_result read_pixels(exr_file *f, kiln_image *image, kiln_load_report *report,
                                kiln_error *error)
 {
     ki_exr_picture *p = &f->picture;
-    size_t texels = (size_t)p->width * (size_t)p->height, count = 3 * texels;
-    size_t missing = count_missing(&f->part->data, &f->part->display);
-    if (missing == texels)
-        return ki_fail(error, KILN_ERROR_FORMAT,
-                       "%s: none of the %zu pixels of its display window lies in its data window",
-                       f->name, texels);
-    kiln_result result = ki_exr_find_chunks(f->context, &f->header, f->part_index, f->name,
-                                            &f->chunks, &f->chunk_count, error);
+    size_t common = count_common(&f->part->data, &f->part->display);
+    kiln_result result = check_common(f, common, error);
+    if (result == KILN_OK)
+        result = ki_exr_find_chunks(f->context, &f->header, f->layer.part, f->name, &f->chunks,
+                                    &f->chunk_count, error);
+    if (result == KILN_OK)
+        result =
+            f->layer.kind == KI_EXR_CHROMA ? read_chroma(f, error) : read_colors(f, common, error);
     if (result != KILN_OK)
         return result;
-    p->pixels = missing ? ki_alloc(f->context, count, sizeof(float))
-                        : ki_alloc_raw(f->context, count, sizeof(float));
-    if (!p->pixels)
-        return ki_fail_memory(f->context, error, f->name, count * sizeof(float));
-    result = decode_all(f, error);
-    if (result == KILN_OK) {
-        *image = (kiln_image){p->width, p->height, 3, p->pixels, p->pixels};
-        p->pixels = NULL;
-        if (report)
-            report->missing_count = missing;
-    }
-    return result;
+    *image = (kiln_image){p->width, p->height, 3, p->pixels, p->pixels};
+    p->pixels = NULL;
+    if (f->layer.kind != KI_EXR_GREY && f->color.converts)
+        ki_image_transform(f->context, &f->color.matrix, image);
+    if (report)
+        report->missing_count = area(&f->part->display) - common;
+    return KILN_OK;
 }
 
 kiln_result ki_exr_decode(kiln_context *context, const uint8_t *bytes, size_t size,
-                          const char *name, kiln_image *image, kiln_file_info *info,
-                          kiln_load_report *report, kiln_error *error)
+                          const char *name, const char *layer, kiln_image *image,
+                          kiln_file_info *info, kiln_load_report *report, kiln_error *error)
 {
     if (image)
         *image = (kiln_image){0};
@@ -351,7 +421,11 @@ kiln_result ki_exr_decode(kiln_context *context, const uint8_t *bytes, size_t si
         return ki_fail_memory(context, error, name, sizeof *f);
     f->context = context;
     f->name = name;
-    kiln_result result = open_file(f, bytes, size, error);
+    kiln_result result = open_file(f, bytes, size, layer, !image, error);
+    if (result == KILN_OK && f->chosen)
+        result = ki_exr_read_color(f->part, name, &f->color, error);
+    if (result == KILN_OK && f->chosen)
+        note_all(f, report);
     if (result == KILN_OK && info)
         describe(f, info);
     if (result == KILN_OK && image)
@@ -359,6 +433,7 @@ kiln_result ki_exr_decode(kiln_context *context, const uint8_t *bytes, size_t si
     ki_free(f->picture.pixels);
     ki_free(f->chunks);
     ki_free(f->dwa_table);
+    ki_free(f->layers.layer);
     ki_exr_header_free(&f->header);
     ki_free(f);
     return result;

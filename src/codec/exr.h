@@ -4,9 +4,13 @@
 #define KI_EXR_H
 
 #include "base/base.h"
+#include "image/color.h"
 
-/// Greatest number of channels; files with more are rejected.
-enum { KI_EXR_MAX_CHANNELS = 256 };
+#include <kiln/kiln.h>
+
+/// Greatest number of channels of a part that is read, and of parts of a file; and the greatest
+/// length of the name of an attribute or a channel, which is OpenEXR's limit.
+enum { KI_EXR_MAX_CHANNELS = 1024, KI_EXR_MAX_PARTS = 1024, KI_EXR_MAX_NAME = 255 };
 
 /// Compression methods, with the numbers that files use.
 typedef enum ki_exr_compression {
@@ -45,8 +49,9 @@ typedef struct ki_exr_window {
 
 /// One part of an EXR file: a picture with a header of its own.
 typedef struct ki_exr_part {
-    // the bytes of the part's attributes within the file
-    const uint8_t *attributes, *attributes_end;
+    const uint8_t *attributes, *attributes_end; // the bytes of the attributes within the file
+    const char *name; // name within the file, without a NUL at its end; NULL for no name
+    size_t name_length;
     ki_exr_channel *channels;
     int channel_count;
     ki_exr_window data, display;
@@ -81,6 +86,61 @@ const uint8_t *ki_exr_attribute(const ki_exr_part *part, const char *name, const
 
 /// Returns the part of a channel's name after the last dot: "R" for the channel "beauty.R".
 const char *ki_exr_suffix(const char *name);
+
+// ------------------------------------------------------------------------------------------ layers
+
+/// What a channel means by the last component of its name.
+typedef enum ki_exr_role {
+    KI_EXR_RED,
+    KI_EXR_GREEN,
+    KI_EXR_BLUE,
+    KI_EXR_LUMINANCE,
+    KI_EXR_RED_CHROMA,  // RY = (R - Y) / Y
+    KI_EXR_BLUE_CHROMA, // BY = (B - Y) / Y
+    KI_EXR_ROLES,
+    KI_EXR_COORDINATE = KI_EXR_ROLES, // X or Z, which with Y is a position or a normal
+    KI_EXR_OTHER
+} ki_exr_role;
+
+/// What picture the channels of a layer are.
+typedef enum ki_exr_kind {
+    KI_EXR_NO_PICTURE,
+    KI_EXR_COLOR,   // red, green and blue
+    KI_EXR_PARTIAL, // one or two of red, green and blue
+    KI_EXR_CHROMA,  // luminance and chroma
+    KI_EXR_GREY     // luminance, or one channel that the caller named
+} ki_exr_kind;
+
+/// A layer: the channels of a part whose names agree up to the last dot.
+typedef struct ki_exr_layer {
+    int part;
+    const char *name; // the common beginning without the last dot, of `length` bytes
+    size_t length;    // 0 for channels without a layer
+    ki_exr_kind kind;
+    int channel[KI_EXR_ROLES]; // indices of the channels that have a role; -1 for no channel
+    bool coordinates;          // true: the layer has a channel X or Z
+} ki_exr_layer;
+
+typedef struct ki_exr_layers {
+    ki_exr_layer *layer;
+    int count;
+} ki_exr_layers;
+
+/// Lists the layers of all parts that are not deep and have at most KI_EXR_MAX_CHANNELS channels.
+/// The caller frees layers->layer by ki_free, whatever the result is.
+kiln_result ki_exr_list_layers(kiln_context *context, const ki_exr_header *header, const char *name,
+                               ki_exr_layers *layers, kiln_error *error);
+/// Chooses the layer that is the picture, by the rules in exr_layers.c, or the one that `wanted`
+/// names; `wanted` may be NULL.
+kiln_result ki_exr_choose_layer(const ki_exr_header *header, const ki_exr_layers *layers,
+                                const char *wanted, const char *name, ki_exr_layer *chosen,
+                                kiln_error *error);
+/// Adds a note about the choice, unless the file has one layer without a name and all its colours.
+void ki_exr_note_layer(const ki_exr_header *header, const ki_exr_layers *layers,
+                       const ki_exr_layer *chosen, kiln_load_report *report);
+/// Lists the layers in `info`. `chosen` is NULL if no layer is the picture.
+void ki_exr_describe_layers(const ki_exr_header *header, const ki_exr_layers *layers,
+                            const ki_exr_layer *chosen, kiln_file_info *info);
 
 // ------------------------------------------------------------------------------------------- boxes
 
@@ -167,13 +227,43 @@ const uint8_t *ki_exr_chunk_samples(const ki_exr_workspace *work, int compressio
 // ----------------------------------------------------------------------------------------- picture
 
 typedef struct ki_exr_picture {
-    // the display window, which the picture fills, in the file's coordinates
-    int left, top, width, height;
+    int left, top, width, height; // window of pixels, in the file's coordinates
     int source[3]; // indices of the channels that become red, green and blue; -1 for no channel
     float *pixels; // the picture's pixels: width * height * 3 floats
 } ki_exr_picture;
 
-/// Writes the samples of a box to the pixels of the picture that the box overlaps.
+/// Writes the samples of a box to the pixels of the picture that the box overlaps. A subsampled
+/// channel is written to those pixels only that have a sample.
 void ki_exr_put_box(const ki_exr_picture *picture, const ki_exr_box *box, const uint8_t *raw);
+
+// ------------------------------------------------------------------------------------------- color
+
+typedef struct ki_exr_color {
+    ki_primaries primaries;
+    double neutral[2]; // chromaticity that is to look white; the primaries' white unless stated
+    double luminance;  // luminance of white in cd/m2; 0 if the file does not state it
+    double weights[3]; // weights of red, green and blue in the luminance Y, of sum 1
+    bool converts;     // true: colours are multiplied by `matrix` to become those of Rec. 709
+    ki_matrix3 matrix;
+} ki_exr_color;
+
+/// Reads the attributes chromaticities, adoptedNeutral and whiteLuminance of a part. Fails if the
+/// chromaticities are no set of primaries.
+kiln_result ki_exr_read_color(const ki_exr_part *part, const char *name, ki_exr_color *color,
+                              kiln_error *error);
+/// Notes which colours are converted, for a layer of this kind.
+void ki_exr_note_color(const ki_exr_color *color, ki_exr_kind kind, kiln_load_report *report);
+
+/// Computes red, green and blue from luminance and chroma. In: a picture over the data window, with
+/// RY, Y and BY in place of red, green and blue, where `sampling` (1 or 2) says that the samples of
+/// RY and BY lie at multiples of 1 or 2. Out: `rgb`, of the same size.
+kiln_result ki_exr_reconstruct(kiln_context *context, const ki_exr_picture *picture, int sampling,
+                               const double weights[3], const char *name, float *rgb,
+                               kiln_error *error);
+
+/// Moves the texels of a panorama of 2:1 or, if `cube`, of a strip of 1:6 from where OpenEXR's
+/// attribute "envmap" has them to where kiln has them. Replaces the picture's pixels.
+kiln_result ki_exr_place_envmap(kiln_context *context, kiln_image *image, bool cube,
+                                const char *name, kiln_error *error);
 
 #endif

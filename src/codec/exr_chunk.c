@@ -164,7 +164,11 @@ kiln_result ki_exr_find_chunks(kiln_context *context, const ki_exr_header *heade
         return ki_fail_memory(context, error, name, (size_t)needed * sizeof *found);
     for (int row = 0; row < s.grid.down; row++)
         for (int column = 0; column < s.grid.across; column++) {
-            kiln_result result = find_chunk(&s, name, column, row, &found[*count], error);
+            kiln_result result = KILN_OK;
+            if (*count % 4096 == 4095 && !ki_progress(context, "reading", 0))
+                result = ki_fail_cancelled(error, "reading");
+            else
+                result = find_chunk(&s, name, column, row, &found[*count], error);
             if (result != KILN_OK) {
                 ki_free(found);
                 *count = 0;

@@ -16,11 +16,11 @@ enum { TILED = 0x200, DEEP = 0x800, MULTIPART = 0x1000 };
 
 // -------------------------------------------------------------------------------------- attributes
 
-// Reads text up to its NUL and advances past the NUL. Returns NULL if there is no NUL.
+// Returns a name up to its NUL, or NULL if there is no NUL within the length that names may have.
 static const char *read_text(ki_reader *r)
 {
-    size_t left = ki_reader_left(r);
-    const uint8_t *end = left ? memchr(r->at, 0, left) : NULL;
+    size_t left = ki_reader_left(r), most = KI_EXR_MAX_NAME + 1;
+    const uint8_t *end = left ? memchr(r->at, 0, left < most ? left : most) : NULL;
     return end ? (const char *)ki_read_bytes(r, (size_t)(end - r->at) + 1) : NULL;
 }
 
@@ -78,26 +78,36 @@ static bool read_channel(ki_reader *r, ki_exr_channel *c)
     return true;
 }
 
-// Reads the attribute that lists a part's channels; the list ends with a NUL. Returns NULL on
-// success, else a text that says what is wrong.
+// What ends the reading of a header before its end.
+typedef enum stop { GO_ON, STARVED, CANCELLED } stop;
+
+enum { STEP = 1024 }; // number of attributes or channels after which the caller may stop the work
+
+// Reads a list of channels, which ends with a NUL. Returns NULL on success, else a text that says
+// what is wrong.
 static const char *read_channels(kiln_context *context, const attribute *a, ki_exr_part *p,
-                                 bool *starved)
+                                 stop *stopped)
 {
-    static const char wrong[] = "its list of channels is damaged";
+    static const char wrong[] = "its list of channels is damaged or has a name of more than 255 "
+                                "bytes";
     ki_exr_channel channel;
     ki_reader counting = ki_reader_make(a->bytes, a->size), r = counting;
     int count = 0;
     while (ki_reader_left(&counting) > 1) {
         if (!read_channel(&counting, &channel))
             return wrong;
-        count++;
+        if (++count % STEP == 0 && !ki_progress(context, "reading", 0)) {
+            *stopped = CANCELLED;
+            return wrong;
+        }
     }
     if (p->channels || count == 0 || strcmp(a->type, "chlist") != 0)
         return wrong;
     p->channels = ki_alloc_raw(context, (size_t)count, sizeof *p->channels);
-    *starved = !p->channels;
-    if (*starved)
-        return "it has too many channels";
+    if (!p->channels) {
+        *stopped = STARVED;
+        return wrong;
+    }
     for (p->channel_count = 0; p->channel_count < count; p->channel_count++)
         read_channel(&r, &p->channels[p->channel_count]);
     return NULL;
@@ -161,6 +171,9 @@ static int read_attribute(const attribute *a, ki_exr_part *p)
         p->stated_chunks = (int32_t)ki_read_u32(&r);
     } else if (!strcmp(a->name, "type") && !strcmp(a->type, "string")) {
         read_storage(a, p);
+    } else if (!strcmp(a->name, "name") && !strcmp(a->type, "string")) {
+        p->name = (const char *)a->bytes;
+        p->name_length = a->size;
     }
     return 0;
 }
@@ -168,9 +181,10 @@ static int read_attribute(const attribute *a, ki_exr_part *p)
 // Reads the header of one part, up to the NUL that ends it. Returns NULL on success, else a text
 // that says what is wrong.
 static const char *read_part(kiln_context *context, ki_reader *r, uint32_t flags, ki_exr_part *p,
-                             bool *starved)
+                             stop *stopped)
 {
     int found = 0;
+    size_t count = 0;
     attribute a;
     *p = (ki_exr_part){.attributes = r->at, .stated_chunks = -1};
     p->tiled = flags & TILED;
@@ -178,14 +192,16 @@ static const char *read_part(kiln_context *context, ki_reader *r, uint32_t flags
     while (next_attribute(r, &a)) {
         const char *wrong = NULL;
         if (!strcmp(a.name, "channels"))
-            wrong = read_channels(context, &a, p, starved);
+            wrong = read_channels(context, &a, p, stopped);
         else
             found |= read_attribute(&a, p);
-        if (wrong)
-            return wrong;
+        if (++count % STEP == 0 && !ki_progress(context, "reading", 0))
+            *stopped = CANCELLED;
+        if (wrong || *stopped)
+            return wrong ? wrong : "";
     }
     if (!a.name)
-        return "it ends within an attribute";
+        return "it ends within an attribute, or an attribute has a name of more than 255 bytes";
     p->attributes_end = r->at;
     return !p->channels                 ? "it has no attribute channels"
            : !(found & HAS_COMPRESSION) ? "it has no attribute compression"
@@ -211,7 +227,7 @@ static bool grow(kiln_context *context, ki_exr_header *h)
     return true;
 }
 
-static const char *read_parts(kiln_context *context, ki_exr_header *h, bool *starved)
+static const char *read_parts(kiln_context *context, ki_exr_header *h, stop *stopped)
 {
     ki_reader r = ki_reader_make(h->bytes, h->size);
     ki_read_u32(&r); // the magic number, which is already checked
@@ -220,10 +236,15 @@ static const char *read_parts(kiln_context *context, ki_exr_header *h, bool *sta
         return "its version is not 2";
     h->multipart = version & MULTIPART;
     do {
-        *starved = !grow(context, h);
-        if (*starved)
-            return "it has too many parts";
-        const char *wrong = read_part(context, &r, version, &h->parts[h->part_count++], starved);
+        if (h->part_count == KI_EXR_MAX_PARTS)
+            return "it has more than 1024 parts";
+        if (!grow(context, h))
+            *stopped = STARVED;
+        else if (!ki_progress(context, "reading", 0))
+            *stopped = CANCELLED;
+        if (*stopped)
+            return "";
+        const char *wrong = read_part(context, &r, version, &h->parts[h->part_count++], stopped);
         if (wrong)
             return wrong;
     } while (h->multipart && ki_reader_left(&r) && *r.at);
@@ -237,9 +258,11 @@ kiln_result ki_exr_read_header(kiln_context *context, const uint8_t *bytes, size
                                const char *name, ki_exr_header *header, kiln_error *error)
 {
     *header = (ki_exr_header){.bytes = bytes, .size = size};
-    bool starved = false;
-    const char *wrong = read_parts(context, header, &starved);
-    if (starved)
+    stop stopped = GO_ON;
+    const char *wrong = read_parts(context, header, &stopped);
+    if (stopped == CANCELLED)
+        return ki_fail_cancelled(error, "reading");
+    if (stopped == STARVED)
         return ki_fail(error, KILN_ERROR_MEMORY, "out of memory: %s: reading the EXR header", name);
     if (wrong)
         return ki_fail(error, KILN_ERROR_FORMAT, "%s: the EXR header is damaged: %s", name, wrong);

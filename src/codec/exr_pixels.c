@@ -69,6 +69,25 @@ static void put_line(const uint8_t *const samples[3], const ki_exr_channel *cons
     }
 }
 
+// Converts one line of a channel that has a sample for each `sampling` columns, the first of them at
+// column `first`, to one channel of RGB.
+static void put_samples(const uint8_t *samples, const ki_exr_channel *channel, int first, int count,
+                        float *rgb)
+{
+    int sampling = channel->x_sampling, n = (count - first + sampling - 1) / sampling;
+    for (int i = 0; i < n; i++) {
+        float value;
+        to_floats(samples + (size_t)i * (size_t)channel->bytes, channel->type, 1, &value);
+        rgb[3 * ((size_t)first + (size_t)i * (size_t)sampling)] = value;
+    }
+}
+
+// Returns the remainder of a division that rounds down: 0 to b - 1.
+static int modulo(int a, int b)
+{
+    return (a % b + b) % b;
+}
+
 void ki_exr_put_box(const ki_exr_picture *p, const ki_exr_box *box, const uint8_t *raw)
 {
     int left = ki_max(box->x, p->left), right = ki_min(box->x + box->width, p->left + p->width);
@@ -85,13 +104,20 @@ void ki_exr_put_box(const ki_exr_picture *p, const ki_exr_box *box, const uint8_
             continue;
         const uint8_t *samples[3] = {NULL};
         const ki_exr_channel *channel[3] = {NULL};
+        float *rgb = p->pixels + 3 * ((size_t)row * (size_t)p->width + (size_t)(left - p->left));
         for (int k = 0; k < 3; k++) {
-            if (p->source[k] < 0)
+            const ki_exr_channel *c = p->source[k] < 0 ? NULL : &box->channels[p->source[k]];
+            if (!c || c->x_sampling != 1 || c->y_sampling != 1)
                 continue;
-            channel[k] = &box->channels[p->source[k]];
-            samples[k] = start[p->source[k]] + (size_t)(left - box->x) * (size_t)channel[k]->bytes;
+            channel[k] = c;
+            samples[k] = start[p->source[k]] + (size_t)(left - box->x) * (size_t)c->bytes;
         }
-        put_line(samples, channel, right - left,
-                 p->pixels + 3 * ((size_t)row * (size_t)p->width + (size_t)(left - p->left)));
+        put_line(samples, channel, right - left, rgb);
+        for (int k = 0; k < 3; k++) {
+            const ki_exr_channel *c = p->source[k] < 0 ? NULL : &box->channels[p->source[k]];
+            if (c && !channel[k] && ki_exr_line_has(c, y))
+                put_samples(start[p->source[k]], c, modulo(-box->x, c->x_sampling), right - left,
+                            rgb + k);
+        }
     }
 }

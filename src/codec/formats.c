@@ -110,7 +110,7 @@ static const ki_file_format formats[] = {
      .table_formats = TABLES(F32) | TABLES(F16),
      .table_format = KILN_TABLE_FORMAT_F32,
      .limit = KI_HALF_MAX,
-     .read_picture = ki_exr_decode,
+     .read_layer = ki_exr_decode,
      .write_picture = write_exr},
     {.name = "hdr",
      .endings = {".hdr"},
@@ -276,8 +276,8 @@ static const ki_file_format *find_bytes(const uint8_t *bytes, size_t size)
 }
 
 static kiln_result read_bytes(kiln_context *context, const uint8_t *bytes, size_t size,
-                              const char *name, ki_decoded *decoded, kiln_file_info *info,
-                              kiln_error *error)
+                              const char *name, const char *layer, ki_decoded *decoded,
+                              kiln_file_info *info, kiln_error *error)
 {
     const ki_file_format *format = find_bytes(bytes, size);
     if (!format && ki_refuse_foreign(bytes, size, name, error))
@@ -287,6 +287,10 @@ static kiln_result read_bytes(kiln_context *context, const uint8_t *bytes, size_
             error, KILN_ERROR_FORMAT,
             "%s: its %zu bytes do not begin like a file of EXR, HDR, PNG, JPEG, KTX2 or DDS", name,
             size);
+    if (layer && !format->read_layer)
+        return ki_fail(error, KILN_ERROR_UNSUPPORTED,
+                       "%s: is a %s file, which has no layers, leave out --layer %.64s", name,
+                       format->name, layer);
     if (format->describe && decoded)
         return ki_fail(error, KILN_ERROR_UNSUPPORTED,
                        "%s: is a %s file, which kiln writes and describes but does not read", name,
@@ -296,6 +300,9 @@ static kiln_result read_bytes(kiln_context *context, const uint8_t *bytes, size_
         return format->describe(bytes, size, name, info, error);
     if (format->read)
         return format->read(context, bytes, size, name, decoded, info, error);
+    if (format->read_layer)
+        return format->read_layer(context, bytes, size, name, layer,
+                                  decoded ? &decoded->image : NULL, info, report, error);
     return format->read_picture(context, bytes, size, name, decoded ? &decoded->image : NULL, info,
                                 report, error);
 }
@@ -303,12 +310,19 @@ static kiln_result read_bytes(kiln_context *context, const uint8_t *bytes, size_
 kiln_result ki_decode(kiln_context *context, const uint8_t *bytes, size_t size, const char *name,
                       ki_decoded *decoded, kiln_file_info *info, kiln_error *error)
 {
+    return ki_decode_layer(context, bytes, size, name, NULL, decoded, info, error);
+}
+
+kiln_result ki_decode_layer(kiln_context *context, const uint8_t *bytes, size_t size,
+                            const char *name, const char *layer, ki_decoded *decoded,
+                            kiln_file_info *info, kiln_error *error)
+{
     kiln_file_info unused;
     info = info ? info : &unused;
     if (decoded)
         *decoded = (ki_decoded){0};
     ki_file_info_clear(info, size);
-    kiln_result result = read_bytes(context, bytes, size, name, decoded, info, error);
+    kiln_result result = read_bytes(context, bytes, size, name, layer, decoded, info, error);
     if (result != KILN_OK) {
         memset(info, 0, sizeof *info);
         if (decoded)
@@ -326,15 +340,15 @@ kiln_result ki_decode(kiln_context *context, const uint8_t *bytes, size_t size, 
     return KILN_OK;
 }
 
-kiln_result ki_decode_file(kiln_context *context, const char *path, ki_decoded *decoded,
-                           kiln_file_info *info, kiln_error *error)
+kiln_result ki_decode_file(kiln_context *context, const char *path, const char *layer,
+                           ki_decoded *decoded, kiln_file_info *info, kiln_error *error)
 {
     uint8_t *bytes;
     size_t size;
     kiln_result result = ki_file_read(context, path, &bytes, &size, error);
     if (result != KILN_OK)
         return result;
-    result = ki_decode(context, bytes, size, path, decoded, info, error);
+    result = ki_decode_layer(context, bytes, size, path, layer, decoded, info, error);
     ki_free(bytes);
     return result;
 }

@@ -29,6 +29,10 @@ typedef struct ki_picture_about {
 typedef kiln_result ki_read_picture(kiln_context *context, const uint8_t *bytes, size_t size,
                                     const char *name, kiln_image *image, kiln_file_info *info,
                                     kiln_load_report *report, kiln_error *error);
+typedef kiln_result ki_read_layer(kiln_context *context, const uint8_t *bytes, size_t size,
+                                  const char *name, const char *layer, kiln_image *image,
+                                  kiln_file_info *info, kiln_load_report *report,
+                                  kiln_error *error);
 typedef kiln_result ki_read_file(kiln_context *context, const uint8_t *bytes, size_t size,
                                  const char *name, ki_decoded *decoded, kiln_file_info *info,
                                  kiln_error *error);
@@ -58,9 +62,10 @@ typedef struct ki_file_format {
     kiln_table_format table_format;
     bool zstd;
     double limit; ///< largest radiance that files with KILN_FORMAT_AUTO hold; 0 for no limit
-    /// Reading: a format that is recognised by its first bytes has exactly one of the three
-    /// functions read_picture, read and describe.
+    /// Reading: a format that is recognised by its first bytes has exactly one of the four
+    /// functions read_picture, read_layer, read and describe.
     ki_read_picture *read_picture;
+    ki_read_layer *read_layer; ///< reads a picture from files with layers, of which one is chosen
     ki_read_file *read;
     ki_describe_file *describe; ///< describes files whose texels kiln does not read
     ki_write_picture *write_picture;

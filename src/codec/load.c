@@ -5,6 +5,7 @@
 #include "base/file.h"
 #include "base/os.h"
 #include "codec/engine_text.h"
+#include "codec/exr.h"
 #include "codec/faces.h"
 #include "codec/formats.h"
 #include "codec/layout.h"
@@ -24,6 +25,12 @@ static kiln_result check_def(const kiln_load_def *def, kiln_error *error)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "negative is %d, it must be 0 or %d",
                        (int)def->negative, (int)KILN_NEGATIVE_ZERO);
     return KILN_OK;
+}
+
+// Returns the name of the layer that a load definition chooses, or NULL for none or an empty name.
+static const char *layer_of(const kiln_load_def *def)
+{
+    return def->layer && def->layer[0] ? def->layer : NULL;
 }
 
 // Begins a public function that loads a map: replaces a load definition that is NULL by the
@@ -53,6 +60,20 @@ static kiln_result finish(kiln_context *context, const char *name, const kiln_lo
     return result;
 }
 
+// Returns whether an EXR file declares an environment map, and notes what becomes of such a map if
+// the caller names no layout.
+static bool note_envmap(const kiln_file_info *info, kiln_load_report *report)
+{
+    bool cube = !strcmp(info->layout, "openexr-cube");
+    if (!cube && strcmp(info->layout, "openexr-panorama") != 0)
+        return false;
+    ki_note(report, KILN_NOTE_CONVERSION, false,
+            "the file is a %s with OpenEXR's attribute envmap, whose outer texels lie on the "
+            "border; texels were interpolated at kiln's places; --layout %s reads them as they are",
+            cube ? "cube" : "panorama", cube ? "strip" : "panorama");
+    return true;
+}
+
 // Makes a map from what was decoded, whose memory the map may take over.
 static kiln_result place(kiln_context *context, ki_decoded *decoded, const kiln_file_info *info,
                          const char *name, kiln_layout layout, kiln_map *map, kiln_error *error)
@@ -71,8 +92,12 @@ static kiln_result place(kiln_context *context, ki_decoded *decoded, const kiln_
                        info->engine[0] ? info->engine : "an engine");
     if (layout == KILN_LAYOUT_AUTO && !strcmp(info->layout, "octahedron"))
         layout = KILN_LAYOUT_OCTAHEDRON;
-    kiln_result result =
-        ki_lay_out(context, &decoded->image, name, layout, map, &decoded->report, error);
+    kiln_result result = KILN_OK;
+    if (layout == KILN_LAYOUT_AUTO && note_envmap(info, &decoded->report))
+        result = ki_exr_place_envmap(context, &decoded->image,
+                                     !strcmp(info->layout, "openexr-cube"), name, error);
+    if (result == KILN_OK)
+        result = ki_lay_out(context, &decoded->image, name, layout, map, &decoded->report, error);
     if (result == KILN_OK && info->roughness[0] >= 0)
         map->roughness[0] = info->roughness[0];
     return result;
@@ -98,18 +123,18 @@ kiln_result kiln_map_decode(kiln_context *context, const void *bytes, size_t siz
     kiln_result result = begin(&def, map, error);
     name = name ? name : "memory";
     if (result == KILN_OK)
-        result = ki_decode(context, bytes, size, name, &decoded, &info, error);
+        result = ki_decode_layer(context, bytes, size, name, layer_of(def), &decoded, &info, error);
     if (result == KILN_OK)
         result = take_map(context, &decoded, &info, name, def, map, error);
     return result;
 }
 
 // Decodes a file to a flat picture, whose values stay as in the file. Fails if the file holds a
-// cube.
-static kiln_result load_image(kiln_context *context, const char *path, ki_decoded *decoded,
-                              kiln_file_info *info, kiln_error *error)
+// cube. `layer` names a layer of an EXR file and may be NULL.
+static kiln_result load_image(kiln_context *context, const char *path, const char *layer,
+                              ki_decoded *decoded, kiln_file_info *info, kiln_error *error)
 {
-    kiln_result result = ki_decode_file(context, path, decoded, info, error);
+    kiln_result result = ki_decode_file(context, path, layer, decoded, info, error);
     if (result == KILN_OK && decoded->is_map) {
         ki_decoded_free(decoded);
         return ki_fail(error, KILN_ERROR_UNSUPPORTED, "%s: holds a cube, not a flat picture", path);
@@ -122,7 +147,7 @@ kiln_result kiln_image_load(kiln_context *context, const char *path, kiln_image 
 {
     ki_decoded decoded;
     *image = (kiln_image){0};
-    kiln_result result = load_image(context, path, &decoded, NULL, error);
+    kiln_result result = load_image(context, path, NULL, &decoded, NULL, error);
     if (result != KILN_OK)
         return result;
     if (!decoded.is_table && decoded.image.channels == 3)
@@ -138,7 +163,10 @@ kiln_result kiln_file_describe(kiln_context *context, const char *path, kiln_fil
                                kiln_error *error)
 {
     memset(info, 0, sizeof *info);
-    return ki_decode_file(context, path, NULL, info, error);
+    kiln_result result = ki_decode_file(context, path, NULL, NULL, info, error);
+    if (result == KILN_OK)
+        note_envmap(info, &info->report);
+    return result;
 }
 
 // -------------------------------------------------------------------------------------- six files
@@ -160,12 +188,13 @@ static kiln_result check_face(const char *path, const kiln_image *image, const k
 }
 
 static kiln_result load_face(kiln_context *context, const ki_face_files *files, int face,
-                             kiln_map *map, kiln_load_report *report, kiln_error *error)
+                             const char *layer, kiln_map *map, kiln_load_report *report,
+                             kiln_error *error)
 {
     ki_decoded decoded;
     kiln_file_info info;
     const char *path = files->path[face];
-    kiln_result result = load_image(context, path, &decoded, &info, error);
+    kiln_result result = load_image(context, path, layer, &decoded, &info, error);
     if (result != KILN_OK)
         return result;
     const kiln_image *image = &decoded.image;
@@ -192,7 +221,7 @@ static kiln_result load_faces(kiln_context *context, const ki_face_files *files,
     kiln_result result = KILN_OK;
     ki_faces_note(files->set, &report);
     for (int face = 0; face < 6 && result == KILN_OK; face++)
-        result = load_face(context, files, face, map, &report, error);
+        result = load_face(context, files, face, layer_of(def), map, &report, error);
     return finish(context, files->path[0], def, result, &report, map, error);
 }
 
@@ -228,7 +257,7 @@ kiln_result kiln_map_load(kiln_context *context, const char *path, const kiln_lo
     }
     kiln_file_info info;
     ki_decoded decoded;
-    result = ki_decode_file(context, path, &decoded, &info, error);
+    result = ki_decode_file(context, path, layer_of(def), &decoded, &info, error);
     if (result == KILN_OK)
         result = take_map(context, &decoded, &info, path, def, map, error);
     return result;

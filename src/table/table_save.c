@@ -319,7 +319,7 @@ kiln_result kiln_table_load(kiln_context *context, const char *path, kiln_table 
     *table = (kiln_table){0};
     ki_decoded decoded;
     kiln_file_info info;
-    kiln_result result = ki_decode_file(context, path, &decoded, &info, error);
+    kiln_result result = ki_decode_file(context, path, NULL, &decoded, &info, error);
     if (result != KILN_OK)
         return result;
     result = take(path, &decoded, &info, table, error);

@@ -350,7 +350,7 @@ static void what_is_not_read_is_said(void **state)
 {
     (void)state;
     static const exr_make_channel depth[] = {{"Z", EXR_PIXEL_FLOAT, 0, false}};
-    static const exr_make_channel chroma[] = {{"BY", EXR_PIXEL_HALF, 2, false},
+    static const exr_make_channel chroma[] = {{"BY", EXR_PIXEL_HALF, 4, false},
                                               {"RY", EXR_PIXEL_HALF, 2, false},
                                               {"Y", EXR_PIXEL_HALF, 0, false}};
     static const exr_make_channel sampled[] = {{"R", EXR_PIXEL_HALF, 2, false},
@@ -362,18 +362,19 @@ static void what_is_not_read_is_said(void **state)
                      .channel_count = 1,
                      .value = ramp};
     check_refused(&make, KILN_ERROR_UNSUPPORTED,
-                  "made.exr: has no channel R, G, B or Y; its channels are Z");
+                  "made.exr: has no channel R, G, B or Y; its channels are Z; --layer CHANNEL "
+                  "reads one of them as grey");
+    // Chroma has either a sample for each pixel or one for 2 x 2 pixels, in both channels alike.
     make.channels = chroma;
     make.channel_count = 3;
-    check_refused(
-        &make, KILN_ERROR_UNSUPPORTED,
-        "made.exr: stores luminance and chroma (Y, RY, BY), kiln reads channels R, G and B "
-        "only");
+    check_refused(&make, KILN_ERROR_UNSUPPORTED,
+                  "made.exr: channel BY has one sample for 4 x 4 pixels, kiln reads one sample for "
+                  "each pixel only, or one for 2 x 2 pixels in both RY and BY");
     make.channels = sampled;
     make.channel_count = 2;
     check_refused(&make, KILN_ERROR_UNSUPPORTED,
                   "made.exr: channel R has one sample for 2 x 2 pixels, kiln reads one sample for "
-                  "each pixel only");
+                  "each pixel only, or one for 2 x 2 pixels in both RY and BY");
     make.channels = half_rgb;
     make.channel_count = 3;
     make.display = (exr_attr_box2i_t){{{{0, 0}}}, {{{69999, 34999}}}};
