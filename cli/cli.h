@@ -133,7 +133,7 @@ void cli_print_wrapped(const char *text, int column, int indent, int width);
 const char *cli_d_word(int index);
 const char *cli_g_word(int index);
 const char *cli_sheen_word(int index);
-/// Words for what becomes of negative texels, in the order of kiln_negative.
+/// Returns the word of --negative with this index, in the order of kiln_negative.
 const char *cli_negative_word(int index);
 /// Returns whether the option's text is a valid identifier in C and GLSL: CLI_GO or CLI_WRONG.
 int cli_check_source_name(const cli_arguments *arguments, int option);

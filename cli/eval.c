@@ -306,7 +306,8 @@ static bool takes(const quantity *q, int option)
     return false;
 }
 
-// Names of the arguments that a line holds, such as "roughness mu".
+// Writes the names of the arguments that a line of standard input holds, such as "roughness mu", to
+// `text`.
 static const char *columns(const eval *v, char text[128])
 {
     *text = 0;

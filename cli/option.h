@@ -20,7 +20,7 @@ typedef enum cli_kind {
 typedef struct cli_option {
     const char *name; ///< long name without its dashes, such as "size"
     cli_kind kind;
-    unsigned at;       ///< offset of the value in the command's structure, bytes
+    unsigned at;       ///< offset in bytes of the option's value in the command's structure
     double low, high;  ///< range of a CLI_INTEGER or CLI_NUMBER
     double initial;    ///< default value; for CLI_CHOICE the index of a word, or -1
     const char *value; ///< placeholder of the value in the help, such as "N"

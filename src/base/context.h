@@ -38,8 +38,9 @@ typedef struct ki_heap {
 } ki_heap;
 
 struct kiln_context {
-    kiln_context_def def; // its thread_count is the number of threads that work
-    int threads_wanted;   // number of threads that the definition asked for
+    // the context's definition, whose thread_count is the number of threads that work
+    kiln_context_def def;
+    int threads_wanted; // number of threads that the definition asked for
     ki_heap *heap;
     ki_scratch *scratch;    // scratch of the plan execution that runs; NULL if no execution runs
     ki_progress_range said; // stage and range of the last progress report, which ki_go_on repeats

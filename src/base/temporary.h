@@ -4,7 +4,7 @@
 
 #include "base/os.h"
 
-/// Room for a temporary name after the path of its folder.
+/// Number of bytes, with the final NUL, of a temporary file's name after the path of its folder.
 enum { KI_TEMPORARY_ROOM = 64 };
 
 /// Returns the length of the part of a path that names the folder, with the separator at its end.

@@ -20,7 +20,8 @@ typedef struct ki_bc6h_mode {
 
 /// The content of a block. endpoint[subset][end][channel] holds whole endpoints, not differences.
 typedef struct ki_bc6h_block {
-    /// Index in ki_bc6h_modes (not the mode's number), and index of the partition.
+    /// mode: index in ki_bc6h_modes, not the number that a block stores. partition: index in
+    /// ki_bc6h_partitions.
     int mode, partition;
     int endpoint[2][2][3];
     int index[16];

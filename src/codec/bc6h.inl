@@ -16,7 +16,8 @@
 
 enum { TEXELS = 16, VALUES = 3 * TEXELS, PARTITIONS = KI_BC6H_PARTITIONS };
 
-// The decoder multiplies a number between endpoints by 31/64 to get a code.
+// The decoder multiplies a number that it has interpolated between endpoints by 31/64. The result
+// is a code, the bits of a half float.
 #define CODE (31.0f / 64)
 
 // TRIED: number of partitions that are tried in full. MODES: number of modes that are tried for

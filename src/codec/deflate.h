@@ -19,7 +19,8 @@ bool ki_inflate_beginning(const uint8_t *packed, size_t packed_size, uint8_t *pl
 typedef struct ki_deflater ki_deflater;
 ki_deflater *ki_deflater_create(kiln_context *context);
 void ki_deflater_free(ki_deflater *deflater);
-/// Returns the number of bytes written to `packed`, or 0 if more than `room` are needed.
+/// Compresses one input as a whole. Returns the number of bytes written to `packed`, or 0 if more
+/// than `room` are needed.
 size_t ki_deflate(ki_deflater *deflater, const uint8_t *plain, size_t size, uint8_t *packed,
                   size_t room);
 

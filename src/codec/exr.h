@@ -148,7 +148,8 @@ void ki_exr_describe_layers(const ki_exr_header *header, const ki_exr_layers *la
 /// channel in the file's order. Of each channel the box has the samples whose x and y are multiples
 /// of the channel's sampling.
 typedef struct ki_exr_box {
-    int x, y, width, height; // position (in the file's coordinates) and size in pixels
+    // position of the box in the file's coordinates, and its size in pixels
+    int x, y, width, height;
     const ki_exr_channel *channels;
     int channel_count;
 } ki_exr_box;

@@ -30,7 +30,7 @@ static void linear_stretch(void *data, int index)
             y = 65536; // a value larger than any half
         else if (x > 1)
             y = ki_exp(2.2 * (x - 1));
-        // Smaller x give less than half of the smallest half, which rounds to 0.
+        // For smaller x the power is less than half of the smallest half float and rounds to 0.
         else if (x > 0x1p-12)
             y = ki_pow(x, 2.2);
         uint16_t half = ki_half_from_float((float)y);

@@ -9,7 +9,8 @@ static int sort_symbols(const uint32_t *counts, int count, uint16_t *sorted)
 {
     uint16_t by_low[KI_HUFFMAN_SYMBOLS];
     int used = 0;
-    // Radix sort: by the low byte of the count, then by the high byte.
+    // Radix sort of the symbols by their counts: by the low byte of the count, then by the high
+    // byte.
     for (int pass = 0; pass < 2; pass++) {
         int place[257] = {0};
         int n = pass ? used : count;

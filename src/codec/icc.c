@@ -72,7 +72,8 @@ static bool read_parametric(const uint8_t *data, size_t size, ki_curve *curve)
     for (size_t i = 0; i < counts[function]; i++)
         p[i] = fixed_at(data + 12 + 4 * i);
     *curve = (ki_curve){.kind = KI_CURVE_PARAMETRIC, .g = p[0], .a = p[1], .b = p[2]};
-    if (function == 1 || function == 2) { // the curve is 0 or a constant up to the root of a x + b
+    // up to the x at which a x + b is 0 the curve is 0 or a constant
+    if (function == 1 || function == 2) {
         curve->d = p[1] != 0 ? -p[2] / p[1] : 0;
         curve->e = curve->f = function == 2 ? p[3] : 0;
     } else if (function > 2) {

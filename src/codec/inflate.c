@@ -248,7 +248,8 @@ static bool stored(state *st)
         *st->out++ = (uint8_t)drop(s, 8);
     if (overdrawn(s) || (size_t)(s->in_end - s->in) < count)
         return false;
-    st->full = full; // after the held bytes are written, so that drained() has not changed it
+    // set only here, where the input is known to be long enough and the held bytes are written
+    st->full = full;
     if (count) {
         memcpy(st->out, s->in, count);
         s->bits = 0;

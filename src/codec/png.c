@@ -43,7 +43,9 @@ typedef struct png_file {
     uint64_t raw_size; // number of bytes that the IDAT data must decompress to
     uint8_t *raw;
     ki_png_meaning meaning;
-    float *table[3], *pixels; // table: the linear value of every sample of a channel
+    // table[c]: the linear value of every possible sample of channel c; pixels: the picture, three
+    // floats a pixel
+    float *table[3], *pixels;
 } png_file;
 
 static kiln_result damaged(const png_file *f, kiln_error *error, const char *what)

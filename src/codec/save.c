@@ -134,7 +134,8 @@ static bool expand(const char *template, int face, int level, ki_writer *w)
 
 // ------------------------------------------------------------------------------------------- files
 
-// Adds the file of one face of one level to the set; `bytes` is overwritten.
+// Adds the file of one face of one level to the set. `bytes`, memory for the content of the file,
+// is overwritten.
 static kiln_result add_picture(ki_file_set *set, const ki_file_format *file, const kiln_map *map,
                                int level, int face, kiln_format format, const char *path,
                                ki_writer *bytes, kiln_error *error)

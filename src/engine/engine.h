@@ -34,7 +34,7 @@ typedef struct ki_recipe {
     kiln_engine about;
     ki_axes axes;
     int size_min, size_max;
-    int last_size;       ///< default number of levels: they are halved in size down to this size
+    int last_size;       ///< by default the levels' sizes are halved down to this size
     int smallest;        ///< smallest size of a level in texels, 0 for no bound
     int extra_levels;    ///< number of further levels, all of the size last_size
     int level_count_max; ///< greatest default number of levels; 0 for no limit

@@ -13,7 +13,7 @@ enum { KI_HALF_MAX = 65504, KI_RGB9E5_MAX = 65408, KI_B10G11R11_MAX = 64512 };
 
 uint16_t ki_half_from_float(float value);
 float ki_float_from_half(uint16_t half);
-/// Convert `count` values at once, with vector instructions.
+/// Convert `count` floats to half floats, and back, with vector instructions.
 void ki_halfs_from_floats(const float *values, size_t count, uint16_t *halfs);
 void ki_floats_from_halfs(const uint16_t *halfs, size_t count, float *values);
 /// Converts halves that lie at any address, for example in a file.

@@ -10,7 +10,7 @@
 #include <math.h>
 
 enum {
-    /// most grids of stencils: two kinds of grid for each quarter of the map
+    /// greatest number of grids of stencils: two kinds for each quarter of the map
     KI_RESAMPLE_GRIDS = 8,
     KI_RESAMPLE_BANDS = 8 ///< bands of panorama rows to which threads add light at the same time
 };
@@ -53,7 +53,7 @@ struct ki_resample_plan {
             float *fine_area;
             int band_rows; // scatter only: number of panorama rows that one task computes
         };
-        struct { // separable: for each column and row of the target, the source's under it
+        struct { // separable: the columns and rows of the source that those of the target overlap
             ki_resample_span *columns, *rows;
             float *weights;
         };

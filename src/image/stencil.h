@@ -21,13 +21,13 @@ typedef struct ki_stencil {
     float area; ///< solid angle of the texel of the cube or octahedron
 } ki_stencil;
 
-/// The stencils of some rows of a grid, in the order of the rows.
+/// The stencils of at most KI_STENCIL_ROWS rows of a grid, row by row.
 typedef struct ki_stencil_chunk {
     ki_stencil *stencils;
     float *weights;
     size_t stencil_count, weight_count; ///< numbers of stencils and weights that are in use
     size_t weight_room;                 ///< number of weights that are allocated
-    /// Range of panorama rows that all stencils of the chunk cover.
+    /// Range of panorama rows that the stencils of the chunk cover together.
     int first_row, end_row;
     bool failed; ///< true: memory ran out
 } ki_stencil_chunk;
