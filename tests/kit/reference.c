@@ -70,3 +70,23 @@ scene_errors scene_compare(kiln_context *context, const kiln_map *panorama, cons
     free(index);
     return (scene_errors){sqrt(square / whole), most};
 }
+
+double furnace_error(kiln_context *context, int size, int face, enum kiln_lobe_kind lobe)
+{
+    kiln_error error;
+    kiln_map in = make_panorama(context, size), out;
+    fill_constant(&in, 0.75f);
+    kiln_prefilter_def def = {.size = face, .lobe = lobe};
+    // At roughness 0 the lobes of Phong and Charlie are so narrow that they cost much and run no other code.
+    static const float roughness[] = {0.3f, 0.4f, 0.5f, 0.6f, 0.7f, 0.8f, 1};
+    if (lobe > KILN_LOBE_LAMBERT)
+        def.roughness = roughness;
+    CHECK_OK(kiln_prefilter(context, &in, &def, &out, &error));
+    double most = 0;
+    for (int l = 0; l < out.level_count; l++)
+        for (size_t i = 0; i < 3 * kiln_map_texels(&out, l); i++)
+            most = fmax(most, fabs((double)out.level[l][i] / 0.75 - 1));
+    kiln_map_free(&in);
+    kiln_map_free(&out);
+    return most;
+}
