@@ -34,8 +34,8 @@ static int load(bake *b)
     return CLI_GO;
 }
 
-// Bands of harmonics to compute: enough for the output file's metadata (engines need three bands)
-// and for --sh.
+// Returns the number of bands of harmonics to compute: enough for the output file's metadata
+// (engines need three bands) and for --sh.
 static int most_bands(const bake *b)
 {
     return b->engine && b->sh_bands < 3 ? 3 : b->sh_bands;

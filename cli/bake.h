@@ -21,8 +21,8 @@ typedef struct bake {
     int irradiance_size, sh_bands, layout, negative, threads;
     double sh_window, rotation, exposure;
     bool mirror, json, quiet, verbose, sh_radiance, sh_irradiance;
-    // Values that follow from several options together.
-    /// names of the output folders with a final slash, which the user may omit
+    // Values that follow from several options together. The first are the names of the output
+    // folders of levels and irradiance, with a final slash, which the user may omit.
     char folder[2][4096];
     const kiln_engine *engine; ///< engine of --for; NULL without --for
     /// has_roughness: --roughness is given; stores_sh: the output file's metadata holds spherical

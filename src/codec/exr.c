@@ -38,8 +38,8 @@ typedef struct exr_file {
 
 // ---------------------------------------------------------------------------------------- channels
 
-// Chooses the layer. If only a description is wanted, a file without a choice is described by its
-// first layer.
+// Chooses the layer that becomes the picture. If the caller wants a description alone, a file in
+// which no layer can be chosen is described by its first layer.
 static kiln_result choose(exr_file *f, const char *wanted, bool describe_only, kiln_error *error)
 {
     kiln_result result =
@@ -59,7 +59,8 @@ static kiln_result choose(exr_file *f, const char *wanted, bool describe_only, k
     return KILN_OK;
 }
 
-// Returns 2 if chroma has one sample for 2 x 2 pixels of the data window, as OpenEXR writes it, else 1.
+// Returns 2 if chroma has one sample for 2 x 2 pixels of the data window, as OpenEXR writes it,
+// else 1.
 static int find_sampling(const exr_file *f)
 {
     const ki_exr_window *w = &f->part->data;
@@ -289,8 +290,8 @@ static size_t count_common(const ki_exr_window *data, const ki_exr_window *displ
     return common.left <= common.right && common.top <= common.bottom ? area(&common) : 0;
 }
 
-// Fails if the display window is nearly empty. The file's size bounds the data window, and this rule
-// the display window, so that a short file cannot ask for a large picture.
+// Fails if the display window is nearly empty. The file's size bounds the data window, and this
+// rule the display window, so that a short file cannot ask for a large picture.
 static kiln_result check_common(const exr_file *f, size_t common, kiln_error *error)
 {
     enum { SMALL = 1 << 20, MOST_EMPTY = 64 };
@@ -315,8 +316,8 @@ static kiln_result allocate(const exr_file *f, size_t pixels, float **memory, ki
                    : ki_fail_memory(f->context, error, f->name, 3 * pixels * sizeof(float));
 }
 
-// Copies what the picture of the data window has in common with the display window into a picture of
-// the display window.
+// Copies what the picture of the data window has in common with the display window into a picture
+// of the display window.
 static void copy_common(const ki_exr_picture *data, const ki_exr_picture *display)
 {
     int left = ki_max(data->left, display->left), top = ki_max(data->top, display->top);

@@ -102,7 +102,7 @@ typedef enum ki_exr_role {
     KI_EXR_OTHER
 } ki_exr_role;
 
-/// What picture the channels of a layer are.
+/// Which picture the channels of a layer make.
 typedef enum ki_exr_kind {
     KI_EXR_NO_PICTURE,
     KI_EXR_COLOR,   // red, green and blue
@@ -114,8 +114,8 @@ typedef enum ki_exr_kind {
 /// A layer: the channels of a part whose names agree up to the last dot.
 typedef struct ki_exr_layer {
     int part;
-    const char *name; // the common beginning without the last dot, of `length` bytes
-    size_t length;    // 0 for channels without a layer
+    const char *name; // the part of the channels' names before the last dot, of `length` bytes
+    size_t length;    // number of bytes of `name`; 0 for channels without a layer
     ki_exr_kind kind;
     int channel[KI_EXR_ROLES]; // indices of the channels that have a role; -1 for no channel
     bool coordinates;          // true: the layer has a channel X or Z
@@ -135,7 +135,8 @@ kiln_result ki_exr_list_layers(kiln_context *context, const ki_exr_header *heade
 kiln_result ki_exr_choose_layer(const ki_exr_header *header, const ki_exr_layers *layers,
                                 const char *wanted, const char *name, ki_exr_layer *chosen,
                                 kiln_error *error);
-/// Adds a note about the choice, unless the file has one layer without a name and all its colours.
+/// Adds a note about the layer that was chosen, unless the file has one layer without a name and
+/// all its colours.
 void ki_exr_note_layer(const ki_exr_header *header, const ki_exr_layers *layers,
                        const ki_exr_layer *chosen, kiln_load_report *report);
 /// Lists the layers in `info`. `chosen` is NULL if no layer is the picture.

@@ -1,12 +1,11 @@
-// Luminance and chroma (Y, RY, BY) to red, green and blue. In: the samples as stored, with chroma in
-// every second column and line. Out: three floats a pixel. The method is that of OpenEXR's own
-// reader (RgbaInputFile), described in "Technical Introduction to OpenEXR":
-//   1. Missing chroma is interpolated by a symmetric filter of 14 samples, along lines first.
-//   2. R = (RY + 1) Y, B = (BY + 1) Y, and G from Y = wr R + wg G + wb B, where the weights w follow
-//      from the chromaticities of the file.
-//   3. A pixel far more saturated than its four diagonal neighbours is an error of step 1 at a sharp
-//      edge. Such a pixel is made less saturated, with its luminance unchanged.
-// Beyond the data window, filters read the nearest line or column that has chroma.
+// Luminance and chroma (Y, RY, BY) to red, green and blue. In: the samples as stored, with chroma
+// in every second column and line. Out: three floats a pixel. The method is that of OpenEXR's own
+// reader (RgbaInputFile), described in "Technical Introduction to OpenEXR": 1. Missing chroma is
+// interpolated by a symmetric filter of 14 samples, along lines first. 2. R = (RY + 1) Y, B = (BY +
+// 1) Y, and G from Y = wr R + wg G + wb B, where the weights w follow from the chromaticities of
+// the file. 3. A pixel far more saturated than its four diagonal neighbours is an error of step 1
+// at a sharp edge. Such a pixel is made less saturated, with its luminance unchanged. Beyond the
+// data window, filters read the nearest line or column that has chroma.
 #include "codec/exr.h"
 
 #include <math.h>
@@ -14,7 +13,8 @@
 
 enum { TAPS = 7, STRIPS = 64 };
 
-/// Weights of the samples at a distance of 1, 3, 5, ..., 13, on either side.
+/// Weights of the chroma samples at a distance of 1, 3, 5, ..., 13 columns or lines on either side
+/// of the pixel.
 static const float taps[TAPS] = {0.627123F, -0.186077F, 0.087929F, -0.043159F,
                                  0.019597F, -0.007540F, 0.002128F};
 
@@ -61,7 +61,8 @@ static const float *line_at(const job *j, int y)
            3 * (size_t)j->picture->width * (size_t)nearest(y, j->picture->height);
 }
 
-// Adds the chroma of two lines, at the same distance from the wanted line, times a weight.
+// Adds to `line`, times a weight, the chroma of two lines that lie at the same distance above and
+// below it.
 static void add_lines(const float *a, const float *b, float weight, int width, float *line)
 {
     for (int x = 0; x < width; x++) {
@@ -72,7 +73,8 @@ static void add_lines(const float *a, const float *b, float weight, int width, f
 
 static void to_rgb(const float weights[3], float texel[3])
 {
-    if (texel[RY] == 0 && texel[BY] == 0) { // grey, which stays exactly grey
+    // without chroma the pixel is grey, and stays exactly grey
+    if (texel[RY] == 0 && texel[BY] == 0) {
         texel[0] = texel[2] = texel[1];
         return;
     }
@@ -110,7 +112,8 @@ static float luminance(const float weights[3], const float rgb[3])
     return weights[0] * rgb[0] + weights[1] * rgb[1] + weights[2] * rgb[2];
 }
 
-// Moves the channels towards the largest one by a factor, and keeps the luminance.
+// Moves the channels of a pixel towards the largest of them by a factor, and keeps the luminance,
+// whose weights are `weights`.
 static void desaturate(const float weights[3], const float in[3], float factor, float out[3])
 {
     float most = fmaxf(in[0], fmaxf(in[1], in[2]));
@@ -121,8 +124,9 @@ static void desaturate(const float weights[3], const float in[3], float factor, 
         out[c] *= before / after;
 }
 
-// Writes a line whose pixels are not much more saturated than their diagonal neighbours in the lines
-// above and below: a pixel keeps at least a quarter of the neighbours' mean distance from pure colour.
+// Writes a line whose pixels are not much more saturated than their diagonal neighbours in the
+// lines above and below: a pixel keeps at least a quarter of the neighbours' mean distance from
+// pure colour.
 static void write_line(const job *j, float *const lines[3], float *out)
 {
     int width = j->picture->width;

@@ -16,7 +16,7 @@
 
 typedef struct job {
     const kiln_image *from;
-    int size; // of a cube face, or 0 for a panorama
+    int size; // number of texels along a side of a cube face, or 0 for a panorama
     float *to;
 } job;
 
@@ -30,7 +30,7 @@ static void read_at(const kiln_image *image, int top, int width, int height, dou
     const double weights[4] = {(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v};
     double sum[3] = {0};
     for (int i = 0; i < 4; i++) {
-        if (weights[i] == 0) // the texel may lie outside or be infinite
+        if (weights[i] == 0) // a texel of weight 0 may lie outside of the window or be infinite
             continue;
         const float *texel =
             image->pixels +

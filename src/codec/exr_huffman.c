@@ -23,8 +23,8 @@ typedef struct decoder {
     // all symbols that occur, sorted by the length of their codes, the longest first, then by
     // number
     uint32_t symbol[SYMBOLS];
-    // The code at the head of TABLE_BITS bits: an entry is symbol << 6 | length, or 0 where the
-    // code is longer than TABLE_BITS.
+    // Table indexed by the next TABLE_BITS bits of the input. The entry is symbol << 6 | length of
+    // the code with which these bits begin, or 0 where the code is longer than TABLE_BITS.
     uint32_t table[1 << TABLE_BITS];
     uint64_t first[LONGEST + 1]; // lowest code of each length in bits
     uint32_t count[LONGEST + 1], start[LONGEST + 1];

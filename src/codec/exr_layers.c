@@ -18,19 +18,20 @@
 #include <stdio.h>
 #include <string.h>
 
-/// Names of the layer that holds the picture, in the order of preference; upper and lower case count
-/// as equal. A layer counts by the last component of its name, a part without layers by its own.
+/// Names of the layer that holds the picture, in the order of preference; upper and lower case
+/// count as equal. A layer counts by the last component of its name, a part without layers by its
+/// own.
 static const char *const picture_names[] = {
-    "Combined",   // Blender and Cycles: ViewLayer.Combined
-    "rgba",       // Arnold, and Nuke's main layer
-    "rgb",        // Nuke
-    "beauty",     // Arnold, Redshift, Octane, Maya (masterLayer.beauty)
-    "RGB_color",  // V-Ray
-    "RGB color",  // V-Ray in 3ds Max
-    "Ci",         // RenderMan
-    "C",          // Mantra and Karma
-    "FinalImage", // Unreal Engine
-    "Image",      // Blender's file output node
+    "Combined",   // written by Blender and Cycles: ViewLayer.Combined
+    "rgba",       // written by Arnold, and by Nuke for its main layer
+    "rgb",        // written by Nuke
+    "beauty",     // written by Arnold, Redshift, Octane and Maya (masterLayer.beauty)
+    "RGB_color",  // written by V-Ray
+    "RGB color",  // written by V-Ray in 3ds Max
+    "Ci",         // written by RenderMan
+    "C",          // written by Mantra and Karma
+    "FinalImage", // written by Unreal Engine
+    "Image",      // written by Blender's file output node
     "color",      "main", "default",
 };
 enum { PICTURE_NAMES = sizeof picture_names / sizeof *picture_names };
@@ -82,8 +83,8 @@ static ki_exr_kind kind_of(const ki_exr_layer *l)
     return chroma ? KI_EXR_CHROMA : l->coordinates ? KI_EXR_NO_PICTURE : KI_EXR_GREY;
 }
 
-// Returns the layer of a name among those from `first` on, which are of one part, and adds the layer
-// if there is none. Channels are sorted by name, so that the layer is nearly always the last.
+// Returns the layer of a name among those from `first` on, which are of one part, and adds the
+// layer if there is none. Channels are sorted by name, so that the layer is nearly always the last.
 static ki_exr_layer *find_layer(ki_exr_layers *layers, int first, int part, const char *name,
                                 size_t length)
 {
@@ -162,7 +163,8 @@ static word last_component(const ki_exr_header *header, const ki_exr_layer *l)
     return w;
 }
 
-// Returns the place in the table of a layer's name, or PICTURE_NAMES.
+// Returns the index of a layer's name in picture_names, or PICTURE_NAMES if the table lacks the
+// name.
 static int find_picture_name(const ki_exr_header *header, const ki_exr_layer *l)
 {
     word w = last_component(header, l);
@@ -186,7 +188,7 @@ static const char *label(const ki_exr_header *header, const ki_exr_layer *l, cha
     return text;
 }
 
-// Lists the layers that `fits` says are meant, as "a, b, c and 7 more".
+// Writes the names of the layers for which `fits` returns true, as "a, b, c and 7 more".
 static void list_labels(const ki_exr_header *header, const ki_exr_layers *layers,
                         bool (*fits)(const ki_exr_layer *), char *text, size_t room)
 {
@@ -282,8 +284,8 @@ static bool is_text(const char *text, size_t length, const char *wanted)
     return strlen(wanted) == length && !memcmp(text, wanted, length);
 }
 
-// Returns whether `wanted` names a layer: by its whole name, by its part's name or by both with a dot
-// between them; or if `loosely`, by its last components.
+// Returns whether `wanted` names a layer: by its whole name, by its part's name or by both with a
+// dot between them; or if `loosely`, by its last components.
 static bool is_named(const ki_exr_header *header, const ki_exr_layer *l, const char *wanted,
                      bool loosely)
 {
@@ -318,7 +320,8 @@ static int find_channels(const ki_exr_header *header, const ki_exr_layers *layer
 {
     int count = 0, part = -1;
     for (int i = 0; i < layers->count; i++) {
-        if (layers->layer[i].part == part) // the channels of a part are searched once
+        // several layers may belong to one part, whose channels are searched once
+        if (layers->layer[i].part == part)
             continue;
         part = layers->layer[i].part;
         for (int c = 0; c < header->parts[part].channel_count; c++) {
