@@ -8,6 +8,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+static void check_finite(const float *values, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (!(fabsf(values[i]) <= 3.4028235e38F))
+            abort();
+}
+
 // A table holds finite numbers, and so does a picture or a cube after mending, unless none of its
 // texels was a number.
 static void check_texels(kiln_context *context, ki_decoded *decoded)
@@ -20,7 +27,7 @@ static void check_texels(kiln_context *context, ki_decoded *decoded)
     if (decoded->is_map)
         result = ki_map_mend(context, "fuzz", KILN_NEGATIVE_KEEP, map, &report, &error);
     else if (!decoded->is_table)
-        result = ki_image_mend(context, "fuzz", image, &error);
+        result = ki_image_mend(context, "fuzz", image, &report, &error);
     if (result != KILN_OK && result != KILN_ERROR_FORMAT && result != KILN_ERROR_MEMORY)
         abort();
     for (int k = 0; result == KILN_OK && decoded->is_map && k < map->level_count; k++)
@@ -67,6 +74,7 @@ static size_t magic(uint8_t *bytes)
     } known[] = {{"exr", "\x76\x2f\x31\x01", 4},
                  {"hdr", "#?", 2},
                  {"png", "\x89PNG\r\n\x1a\n", 8},
+                 {"jpeg", "\xff\xd8\xff", 3},
                  {"ktx2", "\xabKTX 20\xbb\r\n\x1a\n", 12},
                  {"dds", "DDS ", 4},
                  {"ktx1", "\xabKTX 11\xbb\r\n\x1a\n", 12},
@@ -78,13 +86,6 @@ static size_t magic(uint8_t *bytes)
             return known[i].size;
         }
     return 0;
-}
-
-static void check_finite(const float *values, size_t count)
-{
-    for (size_t i = 0; i < count; i++)
-        if (!(fabsf(values[i]) <= 3.4028235e38F))
-            abort();
 }
 
 static void check_text(const char *text, size_t room)

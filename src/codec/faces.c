@@ -164,7 +164,7 @@ typedef struct listing {
 static void add_name(void *user, const char *name)
 {
     listing *l = user;
-    if (!ki_file_holds(ki_file_format_of_path(name), KI_HOLDS_PICTURE))
+    if (!ki_file_holds(ki_file_format_of_path(name), KI_HOLDS_PICTURE | KI_READS_PICTURE))
         return;
     ki_write(&l->text, name, strlen(name) + 1);
     l->count++;
@@ -287,7 +287,7 @@ static kiln_result say_search(const search *s, const char *folder, kiln_error *e
         return ki_fail(error, KILN_ERROR_IO,
                        "%s: holds no six faces; name the files px nx py ny pz nz or right left top "
                        "bottom front back, with the same text around each face (%s)",
-                       folder, ki_list_endings(KI_HOLDS_PICTURE, NULL, endings));
+                       folder, ki_list_endings(KI_HOLDS_PICTURE | KI_READS_PICTURE, NULL, endings));
     return KILN_OK;
 }
 

@@ -9,10 +9,11 @@
 enum {
     KI_HOLDS_PICTURE =
         1, ///< a flat picture: a panorama, an octahedron, one face of a cube, or an image
-    KI_HOLDS_CUBE = 2,  ///< the faces and levels of a cube
-    KI_HOLDS_TABLE = 4, ///< a table of the reflection model
-    KI_HOLDS_SH = 8,    ///< spherical harmonics
-    KI_HOLDS_CODE = 16, ///< functions that look tables up, and closed forms
+    KI_HOLDS_CUBE = 2,     ///< the faces and levels of a cube
+    KI_HOLDS_TABLE = 4,    ///< a table of the reflection model
+    KI_HOLDS_SH = 8,       ///< spherical harmonics
+    KI_READS_PICTURE = 32, ///< a flat picture, which kiln reads but does not write
+    KI_HOLDS_CODE = 16,    ///< functions that look tables up, and closed forms
 };
 
 /// What a picture's file states about the picture, and how the picture's numbers are stored: the

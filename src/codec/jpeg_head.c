@@ -88,7 +88,7 @@ static bool is_named(ki_span segment, const char *name, size_t count, ki_span *r
 static void read_app1(ki_jpeg_head *head, ki_span segment)
 {
     ki_span rest;
-    if (is_named(segment, "Exif\0\0", 6, &rest))
+    if (!head->orientation && is_named(segment, "Exif\0\0", 6, &rest))
         head->orientation = read_orientation(rest);
     else if (!head->xmp.bytes && NAMED(segment, "http://ns.adobe.com/xap/1.0/", &rest))
         head->xmp = rest;
@@ -158,7 +158,7 @@ kiln_result ki_jpeg_read_head(kiln_context *context, const uint8_t *bytes, size_
 {
     // number of segments after which the caller is asked whether to go on
     enum { SEGMENTS = 1 << 14 };
-    *head = (ki_jpeg_head){.orientation = 1, .end = size};
+    *head = (ki_jpeg_head){.end = size};
     size_t at = 2;
     for (int i = 1; at < size; i++) {
         if (i % SEGMENTS == 0 && !ki_go_on(context))
@@ -175,6 +175,7 @@ kiln_result ki_jpeg_read_head(kiln_context *context, const uint8_t *bytes, size_
         at += u16_at(bytes + at);
     }
     head->end = at;
+    head->orientation = head->orientation ? head->orientation : 1;
     if (!head->components || !head->width || !head->height)
         return ki_fail(error, KILN_ERROR_FORMAT,
                        "%s: the JPEG is damaged: no segment of its %zu bytes gives the picture's "

@@ -437,6 +437,8 @@ static void exif_orientations_are_honoured(void **state)
         picture held = witness(&w);
         ki_decoded decoded;
         uint8_t exif[32] = "Exif\0\0II*\0\x08\0\0\0\1\0\x12\1\3\0\1\0\0\0";
+        exif[24] = (uint8_t)(9 - o);
+        add_segment(&w, 0xe1, exif, sizeof exif); // the second segment, which has no say
         exif[24] = (uint8_t)o;
         add_segment(&w, 0xe1, exif, sizeof exif);
         CHECK_OK(ki_decode(context, w.bytes, w.size, "a.jpg", &decoded, NULL, &error));
@@ -458,6 +460,31 @@ static void exif_orientations_are_honoured(void **state)
         ki_decoded_free(&decoded);
         ki_writer_free(&w);
     }
+}
+
+// Six faces in a folder, each of one grey.
+static void faces_may_be_jpeg(void **state)
+{
+    static const char *const names[6] = {"px.jpg", "nx.jpg", "py.jpg",
+                                         "ny.jpg", "pz.jpg", "nz.jpg"};
+    kiln_map map;
+    double greys[6];
+    (void)state;
+    for (int face = 0; face < 6; face++) {
+        picture p = {.width = 8, .height = 8, .channels = 1};
+        memset(p.samples, 40 * face + 10, sizeof p.samples);
+        ki_writer w = make(&p, false);
+        picture held = witness(&w);
+        greys[face] = srgb(sample_of(&held, 3, 3, 0));
+        write_file(in_folder(names[face]), w.bytes, w.size);
+        ki_writer_free(&w);
+    }
+    CHECK_OK(kiln_map_load(context, folder_path(), NULL, &map, &error));
+    assert_int_equal(map.size, 8);
+    for (int i = 0; i < 6 * 3 * 64; i++)
+        CHECK_NEAR((double)map.level[0][i], greys[i / 192], 1e-6);
+    kiln_map_free(&map);
+    folder_empty();
 }
 
 static void refused(const ki_writer *w, const char *part)
@@ -526,8 +553,9 @@ int main(void)
         cmocka_unit_test(what_is_not_applied_is_told_of),
         cmocka_unit_test(icc_profiles_in_parts_are_honoured),
         cmocka_unit_test(exif_orientations_are_honoured),
+        cmocka_unit_test(faces_may_be_jpeg),
         cmocka_unit_test(what_is_not_read_is_said),
         cmocka_unit_test(scans_have_a_limit),
     };
-    return cmocka_run_group_tests_name("jpeg", tests, set_up, tear_down);
+    return cmocka_run_group_tests_name("jpeg", tests, set_up_folder, tear_down_folder);
 }
