@@ -204,7 +204,7 @@ int ki_jpeg_other_pictures(const uint8_t *bytes, size_t size, const ki_jpeg_head
     size_t start = entry ? (size_t)(head->pictures.bytes - bytes) : 0;
     size_t table = entry ? tiff_number(&t, entry + 8, 4) : 0;
     size_t count = entry ? tiff_number(&t, entry + 4, 4) / 16 : 0;
-    for (size_t i = 1; i < count && found < most; i++) {
+    for (size_t i = 1; i < count && table + 16 * i < t.span.size && found < most; i++) {
         size_t length = tiff_number(&t, table + 16 * i + 4, 4);
         size_t place = start + tiff_number(&t, table + 16 * i + 8, 4);
         if (begins_picture(bytes, size, place))

@@ -12,9 +12,11 @@
 #include <jerror.h>
 #include <jpeglib.h>
 
-// A progressive picture may have any number of scans, each of which costs the time of a picture.
-// libjpeg's own writer makes 10, and the others that are known make fewer than 30.
-enum { SCANS_MOST = 100 };
+// A progressive picture may have any number of scans, each of which costs the time of a picture and
+// may have few bytes, as may a scan with arithmetic coding. The pixels of all scans are therefore
+// limited by the number of bytes. libjpeg's own writer makes 10 scans; its pictures of one colour
+// have 3000 such pixels a byte.
+enum { PIXELS_A_BYTE = 8192, PIXELS_ALWAYS = 1 << 26 };
 
 typedef struct decoder {
     struct jpeg_decompress_struct jpeg;
@@ -22,6 +24,7 @@ typedef struct decoder {
     struct jpeg_progress_mgr progress;
     jmp_buf stop;
     kiln_context *context;
+    double pixels, pixels_most; // of a scan, and of all scans
     bool cancelled, too_many_scans;
     char fault[JMSG_LENGTH_MAX];
 } decoder;
@@ -49,7 +52,7 @@ static void watch(j_common_ptr jpeg)
 {
     decoder *d = jpeg->client_data;
     d->cancelled = !ki_go_on(d->context);
-    d->too_many_scans = d->jpeg.input_scan_number > SCANS_MOST;
+    d->too_many_scans = ki_max(1, d->jpeg.input_scan_number) * d->pixels > d->pixels_most;
     if (d->cancelled || d->too_many_scans)
         longjmp(d->stop, 1);
 }
@@ -96,8 +99,10 @@ static kiln_result fail(const decoder *d, const char *name, kiln_error *error)
     if (d->cancelled)
         return ki_fail_cancelled(error, "reading");
     if (d->too_many_scans)
-        return ki_fail(error, KILN_ERROR_UNSUPPORTED,
-                       "%s: the JPEG has more than %d scans, the limit of kiln", name, SCANS_MOST);
+        return ki_fail(
+            error, KILN_ERROR_UNSUPPORTED,
+            "%s: the JPEG has %d scans or more, too many for its %.0f pixels and its size", name,
+            d->jpeg.input_scan_number, d->pixels);
     return ki_fail(error, KILN_ERROR_FORMAT, "%s: the JPEG is damaged: %s", name,
                    d->fault[0] ? d->fault : "its size changes");
 }
@@ -116,6 +121,8 @@ kiln_result ki_jpeg_samples(kiln_context *context, ki_span picture, const ki_jpe
         result = ki_fail_memory(context, error, name, 3 * count);
     } else {
         begin(d, context);
+        d->pixels = (double)head->width * head->height;
+        d->pixels_most = PIXELS_ALWAYS + PIXELS_A_BYTE * (double)picture.size;
         if (!decode(d, picture, head, *samples))
             result = fail(d, name, error);
         jpeg_destroy_decompress(&d->jpeg);

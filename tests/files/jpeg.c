@@ -26,7 +26,9 @@ static picture gradient(int width, int height, int channels)
     return p;
 }
 
-static ki_writer make(const picture *p, bool progressive)
+// Encodes rows that are `step` samples apart; 0 repeats the first row.
+static ki_writer encode(const uint8_t *rows, int width, int height, int channels, int step,
+                        bool progressive)
 {
     struct jpeg_compress_struct jpeg;
     struct jpeg_error_mgr errors;
@@ -35,17 +37,17 @@ static ki_writer make(const picture *p, bool progressive)
     jpeg.err = jpeg_std_error(&errors);
     jpeg_create_compress(&jpeg);
     jpeg_mem_dest(&jpeg, &bytes, &size);
-    jpeg.image_width = (JDIMENSION)p->width;
-    jpeg.image_height = (JDIMENSION)p->height;
-    jpeg.input_components = p->channels;
-    jpeg.in_color_space = p->channels == 1 ? JCS_GRAYSCALE : p->channels == 3 ? JCS_RGB : JCS_CMYK;
+    jpeg.image_width = (JDIMENSION)width;
+    jpeg.image_height = (JDIMENSION)height;
+    jpeg.input_components = channels;
+    jpeg.in_color_space = channels == 1 ? JCS_GRAYSCALE : channels == 3 ? JCS_RGB : JCS_CMYK;
     jpeg_set_defaults(&jpeg);
     jpeg_set_quality(&jpeg, 95, TRUE);
     if (progressive)
         jpeg_simple_progression(&jpeg);
     jpeg_start_compress(&jpeg, TRUE);
-    for (int y = 0; y < p->height; y++) {
-        JSAMPROW row = (JSAMPROW)p->samples + y * p->width * p->channels;
+    for (int y = 0; y < height; y++) {
+        JSAMPROW row = (JSAMPROW)rows + y * step;
         jpeg_write_scanlines(&jpeg, &row, 1);
     }
     jpeg_finish_compress(&jpeg);
@@ -54,6 +56,12 @@ static ki_writer make(const picture *p, bool progressive)
     ki_write(&w, bytes, size);
     free(bytes);
     return w;
+}
+
+static ki_writer make(const picture *p, bool progressive)
+{
+    return encode(p->samples, p->width, p->height, p->channels, p->width * p->channels,
+                  progressive);
 }
 
 // The samples of a file as libjpeg-turbo itself decodes them.
@@ -521,26 +529,71 @@ static void what_is_not_read_is_said(void **state)
     ki_writer_free(&w);
 }
 
-// A picture of many scans costs the time of each scan; their number has a limit.
-static void scans_have_a_limit(void **state)
+// Returns the place of the scan with this number, from 0, or of the marker behind it.
+static size_t find_scan(const ki_writer *w, int number, bool behind)
+{
+    bool inside = false;
+    for (size_t i = 2; i + 1 < w->size; i++) {
+        if (w->bytes[i] != 0xff || !w->bytes[i + 1])
+            continue;
+        if (inside)
+            return i;
+        if (w->bytes[i + 1] != 0xda || number--)
+            continue;
+        if (!behind)
+            return i;
+        inside = true;
+    }
+    fail_msg("no scan");
+    return 0;
+}
+
+// A scan of a picture of one colour has few bytes, but costs the time of a picture. A file with the
+// second scan 2000 times is refused after the scans that its size pays for; 20 times are read.
+static void scans_are_limited_by_the_size(void **state)
+{
+    enum { SIZE = 4096 };
+    static const uint8_t row[SIZE];
+    (void)state;
+    ki_writer w = encode(row, SIZE, SIZE, 1, 0, true);
+    size_t scan = find_scan(&w, 1, false), end = find_scan(&w, 1, true);
+    for (int times = 20; times <= 2000; times *= 100) {
+        ki_writer many = {.context = context};
+        ki_write(&many, w.bytes, scan);
+        for (int i = 0; i < times; i++)
+            ki_write(&many, w.bytes + scan, end - scan);
+        ki_write(&many, w.bytes + end, w.size - end);
+        ki_decoded decoded;
+        if (times == 20) {
+            CHECK_OK(ki_decode(context, many.bytes, many.size, "a.jpg", &decoded, NULL, &error));
+            CHECK_NEAR((double)decoded.image.pixels[0], 0, 0);
+            ki_decoded_free(&decoded);
+        } else {
+            refused(&many, "scans or more, too many for its 16777216 pixels and its size");
+        }
+        ki_writer_free(&many);
+    }
+    ki_writer_free(&w);
+}
+
+// The index of pictures may state any number of entries; those that the segment holds are read.
+static void an_index_ends_with_its_segment(void **state)
 {
     (void)state;
-    picture p = gradient(W, H, 1);
-    ki_writer w = make(&p, true), many = {.context = context};
-    size_t scan = 0, end = 0;
-    for (size_t i = 2; i + 1 < w.size && !end; i++) { // the first scan, and the marker behind it
-        bool marker = w.bytes[i] == 0xff && w.bytes[i + 1];
-        end = marker && scan ? i : 0;
-        scan = marker && !scan && w.bytes[i + 1] == 0xda ? i : scan;
-    }
-    assert_true(end > scan);
-    ki_write(&many, w.bytes, scan);
-    for (int i = 0; i < 200; i++)
-        ki_write(&many, w.bytes + scan, end - scan);
-    ki_write(&many, w.bytes + end, w.size - end);
-    refused(&many, "bad.jpg: the JPEG has more than 100 scans, the limit of kiln");
-    ki_writer_free(&w);
-    ki_writer_free(&many);
+    picture p = gradient(W, H, 3);
+    ki_writer base = make(&p, false);
+    ki_decoded decoded;
+    add_xmp(&base, "hdrgm:Version=\"1.0\"/>");
+    add_index(&base, 100);
+    for (size_t i = 0; i + 8 < 100; i++)
+        if (!memcmp(base.bytes + i, "\xb0\2\0\7", 4))
+            base.bytes[i + 4] = 0xf6; // the number of bytes is 4 thousand million
+    CHECK_OK(ki_decode(context, base.bytes, base.size, "a.jpg", &decoded, NULL, &error));
+    check_note(&decoded.report, 0, KILN_NOTE_ASSUMPTION, true,
+               "the file announces a gain map, but has none that kiln can read, so values end at "
+               "1");
+    ki_decoded_free(&decoded);
+    ki_writer_free(&base);
 }
 
 int main(void)
@@ -555,7 +608,8 @@ int main(void)
         cmocka_unit_test(exif_orientations_are_honoured),
         cmocka_unit_test(faces_may_be_jpeg),
         cmocka_unit_test(what_is_not_read_is_said),
-        cmocka_unit_test(scans_have_a_limit),
+        cmocka_unit_test(scans_are_limited_by_the_size),
+        cmocka_unit_test(an_index_ends_with_its_segment),
     };
     return cmocka_run_group_tests_name("jpeg", tests, set_up_folder, tear_down_folder);
 }
