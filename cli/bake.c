@@ -207,12 +207,14 @@ const cli_command cli_bake = {
     .arguments = "IN... -o OUT [OPTION...]",
     .summary = "Bakes a panorama into a prefiltered environment.",
     .about =
-        "IN is a panorama, cross, strip, octahedron or cube (EXR, HDR, PNG, JPEG, KTX2, DDS), a "
+        "IN is a panorama, cross, strip, octahedron or cube (EXR, HDR, PNG, JPEG, KTX2, DDS, KTX), "
+        "a "
         "folder "
         "or pattern of six faces, six files, or - for standard input. In a pattern, and in OUT, %s "
         "or {face} stands for the face; in OUT, %d or {level} stands for the level.",
-    .more = "What a file says about its colours is honoured. Of KTX2 and DDS files kiln reads "
-            "those that kiln wrote. "
+    .more = "What a file says about its colours is honoured. Of KTX2, DDS and KTX files kiln reads "
+            "level 0 of a cube or a "
+            "2-D texture with 8 or 16 bits, 16-bit or 32-bit floats, or BC6H. "
             "Names of six faces are px nx py ny pz nz, posx negx ..., +x -x ..., right left top "
             "bottom front back, or rt lf up dn ft bk, which are oriented as Quake and Source draw "
             "a sky; see docs/conventions.md. Six files with such names may come in any order; "

@@ -307,7 +307,7 @@ typedef struct kiln_load_def {
 } kiln_load_def;
 
 /// Loads a map from an EXR, Radiance HDR or PNG file (PNG values are sRGB and are decoded to
-/// linear), from a KTX2 or DDS cube that kiln wrote, or from six face files. Six faces are given by
+/// linear), from a cube or 2-D texture in a KTX2, DDS or KTX 1 file, or from six face files. Six faces are given by
 /// a folder or by a path with `%s` or `{face}` in place of the face, with any of the names in
 /// docs/conventions.md: px nx py ny pz nz and the like. A folder that holds two sets of faces is
 /// refused. The content of a file decides its format, never the ending of its name. Texels that are
@@ -413,8 +413,7 @@ typedef struct kiln_file_info {
     kiln_layer_info layer[KILN_MAX_LAYERS];
 } kiln_file_info;
 
-/// Describes any file that kiln can read, and of the files that kiln only writes KTX 1 (Filament),
-/// .env (Babylon.js), .glb with EXT_lights_image_based, atlases, and spherical harmonics as text.
+/// Describes any file that kiln can read, and of the files that kiln only writes .env (Babylon.js), .glb with EXT_lights_image_based, atlases, and spherical harmonics as text.
 KILN_API KILN_CHECKED kiln_result kiln_file_describe(kiln_context *context, const char *path,
                                                      kiln_file_info *info, kiln_error *error);
 

@@ -141,7 +141,7 @@ static const ki_file_format formats[] = {
      .endings = {".ktx"},
      .first = "\xabKTX 11\xbb\r\n\x1a\n",
      .first_count = 12,
-     .describe = ki_ktx1_describe},
+     .read = ki_ktx1_decode},
     {.name = "env",
      .endings = {".env"},
      .first = "\x86\x16\x87\x96\xf6\xd6\x96\x36",
@@ -290,8 +290,8 @@ static kiln_result read_bytes(kiln_context *context, const uint8_t *bytes, size_
     if (!format)
         return ki_fail(
             error, KILN_ERROR_FORMAT,
-            "%s: its %zu bytes do not begin like a file of EXR, HDR, PNG, JPEG, KTX2 or DDS", name,
-            size);
+            "%s: its %zu bytes do not begin like a file of EXR, HDR, PNG, JPEG, KTX2, KTX or DDS",
+            name, size);
     if (layer && !format->read_layer)
         return ki_fail(error, KILN_ERROR_UNSUPPORTED,
                        "%s: is a %s file, which has no layers, leave out --layer %.64s", name,

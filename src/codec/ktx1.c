@@ -1,13 +1,14 @@
 // KTX version 1. In: a cube to be stored as halves or as floats of 11, 11 and 10 bits. Out: bytes
-// of a file; or of a file that is read, the engine, roughness and harmonics in its key-value pairs,
-// while its texels are not read. A file is a header of 64 bytes, pairs of text, and the levels,
-// largest first.
+// of a file; or of a file that is read, level 0 of its cube or picture, and the engine, roughness
+// and harmonics in its key-value pairs. A file is a header of 64 bytes, pairs of text, and the
+// levels, largest first.
 #include "codec/ktx1.h"
 
 #include "codec/engine_text.h"
 #include "codec/filament_sh.h"
 #include "codec/file_info.h"
-#include "codec/pixel_format.h"
+#include "codec/report.h"
+#include "codec/texels.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -109,13 +110,81 @@ kiln_result ki_ktx1_encode(const kiln_map *map, const kiln_sh *sh, const char *e
 // ------------------------------------------------------------------------------------------ reading
 
 typedef struct header {
-    const ki_pixel_format *pixel;
-    uint32_t width, height, level_count, pair_bytes;
+    ki_texels texels;
+    uint32_t width, height, face_count, level_count, pair_bytes;
+    bool by_cmgen; // true: the header has the unusual values that Filament's cmgen writes
 } header;
+
+// Finds how the texels are stored. `types` are the fields from glType to glBaseInternalFormat.
+static bool find_texels(const uint32_t types[5], ki_texels *texels)
+{
+    enum {
+        UNSIGNED_BYTE = 0x1401,
+        UNSIGNED_SHORT = 0x1403,
+        FLOAT = 0x1406,
+        HALF_FLOAT_OES = 0x8d61,
+        BGR = 0x80e0,
+        BGRA = 0x80e1,
+        SRGB8 = 0x8c41,
+        SRGB8_ALPHA8 = 0x8c43,
+        RGB9_E5 = 0x8c3d,
+        BC6H_UNSIGNED = 0x8e8f,
+    };
+    uint32_t type = types[0], format = types[2], internal = types[3];
+    bool blue_first = format == BGR || format == BGRA,
+         srgb = internal == SRGB8 || internal == SRGB8_ALPHA8;
+    const ki_pixel_format *pixel =
+        internal == GL_R11F_G11F_B10F ? ki_pixel_format_of(KILN_FORMAT_B10G11R11)
+        : internal == RGB9_E5         ? ki_pixel_format_of(KILN_FORMAT_RGB9E5)
+        : internal == BC6H_UNSIGNED   ? ki_pixel_format_of(KILN_FORMAT_BC6H)
+                                      : NULL;
+    *texels = (ki_texels){.channels = 3, .pixel = pixel};
+    if (pixel)
+        return true;
+    texels->blue_first = blue_first;
+    texels->channels = format == GL_RGBA || format == BGRA ? 4
+                       : format == GL_RGB || format == BGR ? 3
+                                                           : 0;
+    texels->kind = type == UNSIGNED_BYTE    ? srgb ? KI_TEXEL_SRGB8 : KI_TEXEL_U8
+                   : type == UNSIGNED_SHORT ? KI_TEXEL_U16
+                   : type == FLOAT          ? KI_TEXEL_F32
+                   : type == GL_HALF_FLOAT || type == HALF_FLOAT_OES ? KI_TEXEL_F16
+                                                                     : KI_TEXEL_PIXEL;
+    if (texels->kind == KI_TEXEL_F16 && texels->channels == 4 && !blue_first)
+        *texels = (ki_texels){.channels = 4, .pixel = ki_pixel_format_of(KILN_FORMAT_RGBA16F)};
+    return texels->channels && (texels->kind || texels->pixel);
+}
+
+static kiln_result check_order(uint32_t order, const char *name, kiln_error *error)
+{
+    enum { SWAPPED = 0x01020304 };
+    if (order == SWAPPED)
+        return ki_fail(error, KILN_ERROR_UNSUPPORTED,
+                       "%s: is a KTX 1 file with the numbers of a big-endian machine; kiln reads "
+                       "little-endian files, which all current tools write",
+                       name);
+    if (order != ORDER)
+        return ki_fail(error, KILN_ERROR_FORMAT, "%s: the KTX header is cut off or damaged", name);
+    return KILN_OK;
+}
+
+static kiln_result check_header(const header *h, const char *name, kiln_error *error)
+{
+    bool cube = h->face_count == 6;
+    uint32_t longest = h->width > h->height ? h->width : h->height;
+    if (h->width < 1 || h->height < 1 || (cube && h->width != h->height) ||
+        longest > KILN_MAX_SIZE || h->level_count > KILN_MAX_LEVELS ||
+        longest >> (h->level_count - 1) == 0)
+        return ki_fail(error, KILN_ERROR_FORMAT,
+                       "%s: has %u levels of faces of %u x %u, which are not square, too large, or "
+                       "too small for so many levels",
+                       name, h->level_count, h->width, h->height);
+    return KILN_OK;
+}
 
 static kiln_result read_header(ki_reader *r, const char *name, header *h, kiln_error *error)
 {
-    uint32_t types[5], counts[4];
+    uint32_t types[5], counts[3];
     ki_read_bytes(r, sizeof magic);
     uint32_t order = ki_read_u32(r);
     for (int i = 0; i < 5; i++)
@@ -124,27 +193,23 @@ static kiln_result read_header(ki_reader *r, const char *name, header *h, kiln_e
     h->height = ki_read_u32(r);
     for (int i = 0; i < 3; i++) // skips the fields for depth, array elements and faces
         counts[i] = ki_read_u32(r);
+    h->face_count = counts[2];
+    h->by_cmgen = !memcmp(types, packed_types, sizeof types);
     h->level_count = ki_read_u32(r);
-    h->pair_bytes = ki_read_u32(r);
-    if (r->failed || order != ORDER)
-        return ki_fail(error, KILN_ERROR_FORMAT, "%s: the KTX header is cut off or damaged", name);
-    h->pixel = !memcmp(types, half_types, sizeof types) ? ki_pixel_format_of(KILN_FORMAT_RGBA16F)
-               : !memcmp(types, packed_types, sizeof types)
-                   ? ki_pixel_format_of(KILN_FORMAT_B10G11R11)
-                   : NULL;
-    if (!h->pixel || counts[0] || counts[1] || counts[2] != 6)
-        return ki_fail(error, KILN_ERROR_UNSUPPORTED,
-                       "%s: is a KTX 1 file of type 0x%x, internal format 0x%x and %u faces; kiln "
-                       "describes cubes of 16-bit floats and of floats with 11, 11 and 10 bits",
-                       name, types[0], types[3], counts[2]);
     h->level_count = h->level_count ? h->level_count : 1;
-    if (h->width < 1 || h->width != h->height || h->width > KILN_MAX_SIZE ||
-        h->level_count > KILN_MAX_LEVELS || h->width >> (h->level_count - 1) == 0)
-        return ki_fail(error, KILN_ERROR_FORMAT,
-                       "%s: has %u levels of faces of %u x %u, which are not square, too large, or "
-                       "too small for so many levels",
-                       name, h->level_count, h->width, h->height);
-    return KILN_OK;
+    h->pair_bytes = ki_read_u32(r);
+    kiln_result result = check_order(r->failed ? 0 : order, name, error);
+    if (result != KILN_OK)
+        return result;
+    if (!find_texels(types, &h->texels) || counts[0] || counts[1] > 1 ||
+        (h->face_count != 6 && h->face_count != 1))
+        return ki_fail(
+            error, KILN_ERROR_UNSUPPORTED,
+            "%s: is a KTX 1 file of type 0x%x, internal format 0x%x and %u faces; kiln "
+            "reads cubes and pictures of RGB and RGBA with 8 and 16 bits, with 16-bit and "
+            "32-bit floats, and of the formats 0x8c3a, 0x8c3d and 0x8e8f",
+            name, types[0], types[3], h->face_count);
+    return check_header(h, name, error);
 }
 
 static void read_pair(const char *key, const char *value, kiln_file_info *info)
@@ -177,39 +242,104 @@ static bool read_pairs(const uint8_t *bytes, size_t size, kiln_file_info *info)
     return !r.failed;
 }
 
-static bool has_levels(ki_reader *r, const header *h)
+// Returns the number of bytes of level k of a face, whose rows end at multiples of 4 bytes.
+static uint64_t level_bytes(const header *h, uint32_t k)
+{
+    int width = ki_max(1, (int)(h->width >> k)), height = ki_max(1, (int)(h->height >> k));
+    return ki_texels_size(&h->texels, width, height, 4);
+}
+
+// Checks that all levels are in the file, and sets *first to the texels of level 0. The stated size
+// is that of a face; some programs state the size of all six.
+static bool has_levels(ki_reader *r, const header *h, const uint8_t **first)
 {
     for (uint32_t k = 0; k < h->level_count; k++) {
-        uint64_t size = ki_pixels_size(h->pixel, (int)h->width >> k, (int)h->width >> k);
-        // The bytes of six faces may exceed a size_t of 32 bits.
-        if (ki_read_u32(r) != size || 6 * size > ki_reader_left(r))
+        uint64_t size = level_bytes(h, k), all = h->face_count * size, stated = ki_read_u32(r);
+        // Six faces may have more bytes than a size_t of 32 bits counts.
+        if ((stated != size && stated != all) || all > ki_reader_left(r))
             return false;
-        ki_read_bytes(r, (size_t)(6 * size));
+        const uint8_t *at = ki_read_bytes(r, (size_t)all);
+        *first = k ? *first : at;
     }
     return true;
 }
 
-kiln_result ki_ktx1_describe(const uint8_t *bytes, size_t size, const char *name,
-                             kiln_file_info *info, kiln_error *error)
+static void describe(const header *h, kiln_file_info *info)
+{
+    char name[KI_TEXELS_NAME];
+    snprintf(info->format, sizeof info->format, "ktx1");
+    snprintf(info->encoding, sizeof info->encoding, "%s", ki_texels_name(&h->texels, name));
+    if (h->face_count == 6)
+        snprintf(info->layout, sizeof info->layout, "cube");
+    info->width = (int)h->width;
+    info->height = (int)h->height;
+    info->face_count = (int)h->face_count;
+    info->level_count = (int)h->level_count;
+    info->channel_count = h->texels.channels;
+}
+
+// Notes what is to be known about the levels and axes of a file.
+static void note(const header *h, const kiln_file_info *info, kiln_load_report *report)
+{
+    ki_texels_note(&h->texels, true, (int)h->level_count, report);
+    if (h->face_count == 6 && (h->by_cmgen || info->sh_bands || !strcmp(info->engine, "filament")))
+        ki_note(report, KILN_NOTE_ASSUMPTION, false,
+                "the cube is one for Filament, which shows +Z in the centre of a panorama; a turn "
+                "by 180 degrees gives the axes of kiln");
+}
+
+// Reads level 0 of six faces, or of a picture.
+static kiln_result read_texels(kiln_context *context, const header *h, const uint8_t *from,
+                               const kiln_file_info *info, ki_decoded *decoded, kiln_error *error)
+{
+    int w = (int)h->width, height = (int)h->height;
+    bool cube = h->face_count == 6;
+    decoded->map = (kiln_map){.shape = KILN_SHAPE_CUBE, .size = w, .level_count = 1};
+    decoded->image = (kiln_image){.width = w, .height = height, .channels = 3};
+    kiln_result result = cube ? ki_map_allocate(context, &decoded->map, error)
+                              : ki_image_allocate(context, &decoded->image, error);
+    float *rgb = cube ? decoded->map.level[0] : decoded->image.pixels;
+    bool up = strstr(info->orientation, "T=u") != NULL,
+         left = strstr(info->orientation, "S=l") != NULL;
+    for (size_t face = 0; face < h->face_count && result == KILN_OK; face++) {
+        float *to = rgb + 3 * face * (size_t)w * (size_t)height;
+        if (!ki_texels_read(context, &h->texels, from + face * (size_t)level_bytes(h, 0), w, height,
+                            4, to))
+            result = ki_fail_cancelled(error, "reading");
+        else
+            ki_texels_flip(to, w, height, left, up);
+    }
+    if (result == KILN_OK && (up || left))
+        ki_note(&decoded->report, KILN_NOTE_CONVERSION, false,
+                "the orientation \"%s\" was turned to rows from the top and columns from the left",
+                info->orientation);
+    if (result != KILN_OK || !cube)
+        kiln_map_free(&decoded->map);
+    if (result != KILN_OK || cube)
+        kiln_image_free(&decoded->image);
+    return result;
+}
+
+kiln_result ki_ktx1_decode(kiln_context *context, const uint8_t *bytes, size_t size,
+                           const char *name, ki_decoded *decoded, kiln_file_info *info,
+                           kiln_error *error)
 {
     ki_reader r = ki_reader_make(bytes, size);
     header h = {0};
+    const uint8_t *first = NULL;
     kiln_result result = read_header(&r, name, &h, error);
-    if (result != KILN_OK || !h.pixel)
+    if (result != KILN_OK)
         return result;
     const uint8_t *pairs = ki_read_bytes(&r, h.pair_bytes);
     if (!pairs || !read_pairs(pairs, h.pair_bytes, info))
         return ki_fail(error, KILN_ERROR_FORMAT, "%s: its %u bytes of key-value pairs are damaged",
                        name, h.pair_bytes);
-    if (!has_levels(&r, &h))
+    if (!has_levels(&r, &h, &first))
         return ki_fail(error, KILN_ERROR_FORMAT, "%s: its %u levels are cut off or damaged", name,
                        h.level_count);
-    snprintf(info->format, sizeof info->format, "ktx1");
-    snprintf(info->encoding, sizeof info->encoding, "%s", ki_format_names[h.pixel->format]);
-    snprintf(info->layout, sizeof info->layout, "cube");
-    info->width = info->height = (int)h.width;
-    info->face_count = 6;
-    info->level_count = (int)h.level_count;
-    info->channel_count = h.pixel->channels;
-    return KILN_OK;
+    describe(&h, info);
+    note(&h, info, decoded ? &decoded->report : &info->report);
+    if (!decoded)
+        return KILN_OK;
+    return read_texels(context, &h, first, info, decoded, error);
 }

@@ -1,4 +1,4 @@
-// KTX version 1 files in the form that Filament reads.
+// KTX version 1 files: written in the form that Filament reads, and read in the usual forms.
 #ifndef KI_KTX1_H
 #define KI_KTX1_H
 
@@ -9,7 +9,9 @@
 /// factors.
 kiln_result ki_ktx1_encode(const kiln_map *map, const kiln_sh *sh, const char *engine,
                            kiln_format format, ki_writer *writer, kiln_error *error);
-kiln_result ki_ktx1_describe(const uint8_t *bytes, size_t size, const char *name,
-                             kiln_file_info *info, kiln_error *error);
+/// Decodes level 0 of a cube or picture. `decoded` may be NULL, `info` must not be.
+kiln_result ki_ktx1_decode(kiln_context *context, const uint8_t *bytes, size_t size,
+                           const char *name, ki_decoded *decoded, kiln_file_info *info,
+                           kiln_error *error);
 
 #endif

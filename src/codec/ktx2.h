@@ -5,6 +5,7 @@
 #define KI_KTX2_H
 
 #include "codec/codec.h"
+#include "codec/texels.h"
 
 // ----------------------------------------------------------------------------------------- writing
 
@@ -69,8 +70,8 @@ typedef struct ki_ktx2_source {
     const char *name;
     ki_reader reader;
     uint32_t vk, width, height, depth, layer_count, face_count, level_count;
-    bool zstd;
-    uint32_t metadata_offset, metadata_size;
+    bool zstd, zlib; // how the levels are compressed
+    uint32_t descriptor_offset, metadata_offset, metadata_size;
 } ki_ktx2_source;
 
 typedef struct ki_ktx2_level {
@@ -91,10 +92,22 @@ kiln_result ki_ktx2_unpack(kiln_context *context, const ki_ktx2_source *source, 
                            const ki_ktx2_level *level, const uint8_t **plain, uint8_t **unpacked,
                            kiln_error *error);
 
-/// Decode a file with six faces as a cube, and a file with one face as a table of the reflection
-/// model.
+/// Describes how the texels are stored. Fails for formats and colours that kiln does not read.
+kiln_result ki_ktx2_texels(const ki_ktx2_source *source, ki_texels *texels, kiln_error *error);
+/// Returns the end of the description of the texels: ", zstd", ", zlib" or "".
+const char *ki_ktx2_scheme(const ki_ktx2_source *source);
+/// Turns a picture of RGB floats from the orientation that the metadata state to rows from the top
+/// and columns from the left, and notes that.
+void ki_ktx2_turn(const kiln_file_info *info, float *rgb, int width, int height,
+                  kiln_load_report *report);
+
+/// Decode a source with six faces as a cube, and a source with one face as a flat picture of three
+/// channels or as a table.
 kiln_result ki_ktx2_decode_cube(kiln_context *context, ki_ktx2_source *source, kiln_map *map,
-                                kiln_file_info *info, kiln_error *error);
+                                kiln_file_info *info, kiln_load_report *report, kiln_error *error);
+kiln_result ki_ktx2_decode_picture(kiln_context *context, ki_ktx2_source *source, kiln_image *image,
+                                   kiln_file_info *info, kiln_load_report *report,
+                                   kiln_error *error);
 kiln_result ki_ktx2_decode_table(kiln_context *context, ki_ktx2_source *source, kiln_image *image,
                                  kiln_file_info *info, kiln_error *error);
 

@@ -1,8 +1,9 @@
 // The container format of KTX2 (Khronos specification 2.0.4). In: the values of the header,
 // metadata entries and packed levels. Out: bytes of a file; or of a file that is read, the values
 // of its header, its metadata, and the checked place and bytes of each level, decompressed by zstd
-// if needed.
+// or zlib if needed.
 #include "codec/decimal.h"
+#include "codec/deflate.h"
 #include "codec/file_info.h"
 #include "codec/ktx2.h"
 #include "codec/zstd.h"
@@ -13,7 +14,7 @@
 static const uint8_t identifier[12] = {0xab, 'K',  'T',  'X',  ' ',  '2',
                                        '0',  0xbb, '\r', '\n', 0x1a, '\n'};
 
-enum { INDEX_ENTRY = 24, SCHEME_NONE = 0, SCHEME_ZSTD = 2 };
+enum { INDEX_ENTRY = 24, SCHEME_NONE = 0, SCHEME_BASIS = 1, SCHEME_ZSTD = 2, SCHEME_ZLIB = 3 };
 
 // ----------------------------------------------------------------------------------------- writing
 
@@ -157,7 +158,7 @@ static kiln_result read_header(ki_ktx2_source *s, kiln_error *error)
     s->face_count = ki_read_u32(r);
     s->level_count = ki_read_u32(r);
     uint32_t scheme = ki_read_u32(r);
-    ki_read_u32(r); // skips the data format descriptor, which repeats what vkFormat says
+    s->descriptor_offset = ki_read_u32(r);
     ki_read_u32(r);
     s->metadata_offset = ki_read_u32(r);
     s->metadata_size = ki_read_u32(r);
@@ -167,16 +168,23 @@ static kiln_result read_header(ki_ktx2_source *s, kiln_error *error)
         return ki_fail(error, KILN_ERROR_FORMAT, "%s: the KTX2 header is cut off", s->name);
     bool cube = s->face_count == 6 && s->depth == 0;
     if ((!cube && s->face_count != 1) || s->layer_count > 1)
-        return ki_fail(
-            error, KILN_ERROR_UNSUPPORTED,
-            "%s: has %u faces, %u layers and depth %u; kiln reads single cubes and tables only",
-            s->name, s->face_count, s->layer_count, s->depth);
-    if (scheme != SCHEME_NONE && scheme != SCHEME_ZSTD)
-        return ki_fail(
-            error, KILN_ERROR_UNSUPPORTED,
-            "%s: has supercompression scheme %u; kiln reads the schemes 0 (none) and 2 (zstd)",
-            s->name, scheme);
+        return ki_fail(error, KILN_ERROR_UNSUPPORTED,
+                       "%s: has %u faces, %u layers and depth %u; kiln reads single cubes, "
+                       "pictures and tables "
+                       "only",
+                       s->name, s->face_count, s->layer_count, s->depth);
+    if (scheme == SCHEME_BASIS)
+        return ki_fail(error, KILN_ERROR_UNSUPPORTED,
+                       "%s: is compressed by BasisLZ; expand the file first, for example by 'ktx "
+                       "transcode --target rgba8'",
+                       s->name);
+    if (scheme > SCHEME_ZLIB)
+        return ki_fail(error, KILN_ERROR_UNSUPPORTED,
+                       "%s: has supercompression scheme %u; kiln reads the schemes 0 (none), 2 "
+                       "(zstd) and 3 (zlib)",
+                       s->name, scheme);
     s->zstd = scheme == SCHEME_ZSTD;
+    s->zlib = scheme == SCHEME_ZLIB;
     s->level_count = s->level_count ? s->level_count : 1;
     return s->zstd ? ki_zstd_known(s->name, error) : KILN_OK;
 }
@@ -196,13 +204,16 @@ kiln_result ki_ktx2_find_level(ki_ktx2_source *s, uint32_t k, uint64_t wanted, k
     if (s->zstd && !ki_zstd_stated_size(level->bytes, level->size, &stated))
         return ki_fail(error, KILN_ERROR_FORMAT,
                        "%s: level %u is not a zstd frame that states its size", s->name, k);
+    if (s->zlib)
+        stated = plain;
     if (plain != wanted || stated != wanted)
         return ki_fail(
             error, KILN_ERROR_FORMAT, "%s: level %u holds %llu bytes, but its %s %llu bytes",
             s->name, k, (unsigned long long)(plain != wanted ? plain : stated),
             s->face_count == 6 ? "six faces need" : "texels need", (unsigned long long)wanted);
     // zstd expands a byte to at most 43691 bytes: a block of 128 KiB takes at least three bytes.
-    if (wanted / 43691 > length)
+    // zlib expands a byte to at most 1032 bytes.
+    if (wanted / (s->zlib ? 1032 : 43691) > length)
         return ki_fail(error, KILN_ERROR_FORMAT,
                        "%s: level %u is damaged: its bytes are too few for its size", s->name, k);
     return KILN_OK;
@@ -214,12 +225,15 @@ kiln_result ki_ktx2_unpack(kiln_context *context, const ki_ktx2_source *s, int k
 {
     *plain = level->bytes;
     *unpacked = NULL;
-    if (!s->zstd)
+    if (!s->zstd && !s->zlib)
         return KILN_OK;
     uint8_t *room = ki_alloc_raw(context, level->plain_size, 1);
     if (!room)
         return ki_fail_memory(context, error, s->name, level->plain_size);
-    const char *fault = ki_zstd_unpack(level->bytes, level->size, room, level->plain_size);
+    const char *fault = s->zstd ? ki_zstd_unpack(level->bytes, level->size, room, level->plain_size)
+                        : ki_inflate(level->bytes, level->size, room, level->plain_size)
+                            ? NULL
+                            : "its zlib data";
     if (fault) {
         ki_free(room);
         return ki_fail(error, KILN_ERROR_FORMAT, "%s: level %d is damaged: %s", s->name, k, fault);

@@ -123,13 +123,8 @@ kiln_result ki_ktx2_encode(const kiln_map *map, const kiln_save_def *def, ki_wri
 
 // ----------------------------------------------------------------------------------------- reading
 
-static kiln_result check(const ki_ktx2_source *s, const ki_pixel_format *pixel, kiln_error *error)
+static kiln_result check(const ki_ktx2_source *s, kiln_error *error)
 {
-    if (!pixel)
-        return ki_fail(
-            error, KILN_ERROR_UNSUPPORTED,
-            "%s: has vkFormat %u; kiln reads cubes of the formats 97, 109, 122, 123 and 143",
-            s->name, s->vk);
     if (s->width < 1 || s->width != s->height || s->width > KILN_MAX_SIZE)
         return ki_fail(error, KILN_ERROR_FORMAT,
                        "%s: faces are %u x %u, they must be square with sides of 1 to %d", s->name,
@@ -142,45 +137,63 @@ static kiln_result check(const ki_ktx2_source *s, const ki_pixel_format *pixel, 
 }
 
 static kiln_result read_level(kiln_context *context, const ki_ktx2_source *s,
-                              const ki_pixel_format *pixel, const ki_ktx2_level *level, int k,
+                              const ki_texels *format, const ki_ktx2_level *level, int k,
                               kiln_map *map, kiln_error *error)
 {
     const uint8_t *plain;
     uint8_t *unpacked;
     kiln_result result = ki_ktx2_unpack(context, s, k, level, &plain, &unpacked, error);
     int n = kiln_map_level_size(map, k);
-    size_t face = (size_t)ki_pixels_size(pixel, n, n), texels = kiln_map_texels(map, k) / 6;
+    size_t face = (size_t)ki_texels_size(format, n, n, 1), texels = kiln_map_texels(map, k) / 6;
     for (size_t i = 0; i < 6 && result == KILN_OK; i++)
-        ki_pixels_unpack(pixel, plain + face * i, n, n, map->level[k] + 3 * texels * i);
+        if (!ki_texels_read(context, format, plain + face * i, n, n, 1,
+                            map->level[k] + 3 * texels * i))
+            result = ki_fail_cancelled(error, "reading");
     ki_free(unpacked);
     return result;
 }
 
-static void describe(const ki_ktx2_source *s, const ki_pixel_format *pixel, kiln_file_info *info)
+static void describe(const ki_ktx2_source *s, const ki_texels *texels, kiln_file_info *info)
 {
+    char name[KI_TEXELS_NAME];
     snprintf(info->format, sizeof info->format, "ktx2");
-    snprintf(info->encoding, sizeof info->encoding, "%s%s", ki_format_names[pixel->format],
-             s->zstd ? ", zstd" : "");
+    snprintf(info->encoding, sizeof info->encoding, "%s%s", ki_texels_name(texels, name),
+             ki_ktx2_scheme(s));
     info->width = info->height = (int)s->width;
     info->face_count = 6;
     info->level_count = (int)s->level_count;
-    info->channel_count = pixel->channels;
+    info->channel_count = texels->channels;
+}
+
+// Turns the faces as the metadata say.
+static void turn_faces(const kiln_map *map, const kiln_file_info *info, kiln_load_report *report)
+{
+    for (int k = 0; k < map->level_count; k++)
+        for (size_t face = 0; face < 6; face++) {
+            int n = kiln_map_level_size(map, k);
+            ki_ktx2_turn(info, map->level[k] + 3 * face * (size_t)n * (size_t)n, n, n, report);
+        }
 }
 
 kiln_result ki_ktx2_decode_cube(kiln_context *context, ki_ktx2_source *s, kiln_map *map,
-                                kiln_file_info *info, kiln_error *error)
+                                kiln_file_info *info, kiln_load_report *report, kiln_error *error)
 {
-    const ki_pixel_format *pixel = ki_pixel_format_of_vk(s->vk);
+    ki_texels texels;
     ki_ktx2_level levels[KILN_MAX_LEVELS];
-    kiln_result result = check(s, pixel, error);
-    if (result != KILN_OK || !pixel)
+    kiln_result result = ki_ktx2_texels(s, &texels, error);
+    if (result == KILN_OK)
+        result = check(s, error);
+    if (result != KILN_OK)
         return result;
-    describe(s, pixel, info);
+    describe(s, &texels, info);
     for (uint32_t k = 0; k < s->level_count && result == KILN_OK; k++) {
         int edge = (int)(s->width >> k);
-        uint64_t wanted = 6 * ki_pixels_size(pixel, edge, edge);
+        uint64_t wanted = 6 * ki_texels_size(&texels, edge, edge, 1);
         result = ki_ktx2_find_level(s, k, wanted, &levels[k], error);
     }
+    // A cube that kiln wrote states the roughness of its levels.
+    if (result == KILN_OK)
+        ki_texels_note(&texels, true, info->roughness[0] >= 0 ? 1 : (int)s->level_count, report);
     if (result != KILN_OK || !map)
         return result;
 
@@ -190,9 +203,11 @@ kiln_result ki_ktx2_decode_cube(kiln_context *context, ki_ktx2_source *s, kiln_m
     for (int k = 0; k < count && result == KILN_OK; k++) {
         float linear = count > 1 ? (float)k / (float)(count - 1) : 0;
         map->roughness[k] = info->roughness[k] >= 0 ? info->roughness[k] : linear;
-        result = read_level(context, s, pixel, &levels[k], k, map, error);
+        result = read_level(context, s, &texels, &levels[k], k, map, error);
     }
-    if (result != KILN_OK)
+    if (result == KILN_OK)
+        turn_faces(map, info, report);
+    else
         kiln_map_free(map);
     return result;
 }

@@ -355,16 +355,25 @@ static void what_is_not_read_is_said(void **state)
     ki_writer w = {.context = context};
     kiln_save_def def = {0};
     CHECK_OK(ki_ktx2_encode(&map, &def, &w, &error));
-    refused(&w, 12, 37, KILN_ERROR_UNSUPPORTED,
-            "bad: has vkFormat 37; kiln reads cubes of the formats 97, 109, 122, 123 and 143");
+    refused(&w, 12, 38, KILN_ERROR_UNSUPPORTED,
+            "bad: has vkFormat 38; kiln reads RGB and RGBA of 8 and 16 bits, of 16-bit and 32-bit "
+            "floats, and the formats 122, 123 and 143");
+    refused(&w, 12, 144, KILN_ERROR_UNSUPPORTED,
+            "bad: holds signed BC6H; kiln reads unsigned BC6H, and floats");
     refused(&w, 36, 3, KILN_ERROR_UNSUPPORTED,
-            "bad: has 3 faces, 0 layers and depth 0; kiln reads single cubes and tables only");
+            "bad: has 3 faces, 0 layers and depth 0; kiln reads single cubes, pictures and tables "
+            "only");
     refused(&w, 28, 2, KILN_ERROR_UNSUPPORTED,
-            "bad: has 6 faces, 0 layers and depth 2; kiln reads single cubes and tables only");
+            "bad: has 6 faces, 0 layers and depth 2; kiln reads single cubes, pictures and tables "
+            "only");
     refused(&w, 36, 1, KILN_ERROR_FORMAT,
             "bad: level 0 holds 3072 bytes, but its texels need 512 bytes");
     refused(&w, 44, 1, KILN_ERROR_UNSUPPORTED,
-            "bad: has supercompression scheme 1; kiln reads the schemes 0 (none) and 2 (zstd)");
+            "bad: is compressed by BasisLZ; expand the file first, for example by 'ktx transcode "
+            "--target rgba8'");
+    refused(&w, 44, 4, KILN_ERROR_UNSUPPORTED,
+            "bad: has supercompression scheme 4; kiln reads the schemes 0 (none), 2 (zstd) and 3 "
+            "(zlib)");
     refused(&w, 24, 4, KILN_ERROR_FORMAT,
             "bad: faces are 8 x 4, they must be square with sides of 1 to 32768");
     refused(&w, 40, 5, KILN_ERROR_FORMAT,
@@ -374,12 +383,15 @@ static void what_is_not_read_is_said(void **state)
     ki_writer_free(&w);
     w.context = context;
     CHECK_OK(ki_dds_encode(&map, &def, &w, &error));
-    refused(&w, 128, 28, KILN_ERROR_UNSUPPORTED,
-            "bad: has pixel format 28; kiln reads the DXGI formats 2, 10, 26, 67 and 95 and the "
-            "older codes 113 and 116");
     refused(
-        &w, 136, 0, KILN_ERROR_UNSUPPORTED,
-        "bad: kiln reads DDS files of one cube with six faces, and this file holds something else");
+        &w, 128, 71, KILN_ERROR_UNSUPPORTED,
+        "bad: has pixel format 71; kiln reads the DXGI formats 2, 6, 10, 11, 26, 28, 29, 67, 87, "
+        "88, 91, 93 and 95, the older codes 36, 113 and 116, and RGB and RGBA of 8 bits by masks");
+    refused(&w, 128, 96, KILN_ERROR_UNSUPPORTED,
+            "bad: holds signed BC6H; kiln reads unsigned BC6H, and floats");
+    refused(&w, 140, 2, KILN_ERROR_UNSUPPORTED,
+            "bad: kiln reads DDS files of one cube with six faces or of one picture, and this file "
+            "holds something else");
     w.size -= 8;
     refused(&w, 128, 10, KILN_ERROR_FORMAT,
             "bad: its levels need 3840 bytes, but only 3832 bytes follow the header");

@@ -229,11 +229,13 @@ static void ktx1_is_checked(void **state)
         size_t at;
         uint32_t value;
         kiln_result result;
-    } cases[] = {{12, 0x01020304, KILN_ERROR_FORMAT},  // the other byte order
-                 {28, 0x8c3a, KILN_ERROR_UNSUPPORTED}, // internal format
-                 {36, 15, KILN_ERROR_FORMAT},          // width, not the height
-                 {36, 0, KILN_ERROR_FORMAT},           {52, 1, KILN_ERROR_UNSUPPORTED}, // faces
-                 {56, 6, KILN_ERROR_FORMAT},           {56, 17, KILN_ERROR_FORMAT},     // levels
+    } cases[] = {{12, 0x01020304, KILN_ERROR_UNSUPPORTED}, // the other byte order
+                 {16, 0x1400, KILN_ERROR_UNSUPPORTED},     // signed bytes
+                 {36, 15, KILN_ERROR_FORMAT},              // width, not the height
+                 {36, 0, KILN_ERROR_FORMAT},
+                 {52, 2, KILN_ERROR_UNSUPPORTED}, // faces
+                 {56, 6, KILN_ERROR_FORMAT},
+                 {56, 17, KILN_ERROR_FORMAT},          // levels
                  {60, 0xffffffff, KILN_ERROR_FORMAT},  // bytes of pairs
                  {64, 0xfffffff0, KILN_ERROR_FORMAT}}; // of the first pair
     kiln_file_info info;

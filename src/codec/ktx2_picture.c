@@ -1,0 +1,116 @@
+// The texels of KTX2 files, whichever program wrote the file. In: an opened file. Out: how its texels
+// are stored, by its vkFormat and its data format descriptor; or a flat picture, level 0 of a 2-D
+// texture.
+#include "codec/ktx2.h"
+#include "codec/report.h"
+
+#include <stdio.h>
+
+kiln_result ki_ktx2_texels(const ki_ktx2_source *s, ki_texels *texels, kiln_error *error)
+{
+    enum { MODEL_UASTC = 166, MODEL_UASTC_HDR = 167, VK_BC6H_SIGNED = 144 };
+    enum { PRIMARIES_AT = 13, LINEAR = 1, SRGB = 2, BT709 = 1 };
+    uint8_t model = 0, primaries = 0, transfer = 0;
+    if (s->descriptor_offset && s->descriptor_offset <= s->size &&
+        s->size - s->descriptor_offset >= PRIMARIES_AT + 2) {
+        const uint8_t *at = s->bytes + s->descriptor_offset + PRIMARIES_AT;
+        model = at[-1];
+        primaries = at[0];
+        transfer = at[1];
+    }
+    if (model == MODEL_UASTC || model == MODEL_UASTC_HDR)
+        return ki_fail(
+            error, KILN_ERROR_UNSUPPORTED,
+            "%s: holds UASTC texels; expand the file first, for example by 'ktx transcode "
+            "--target rgba8'",
+            s->name);
+    if (s->vk == VK_BC6H_SIGNED)
+        return ki_fail(error, KILN_ERROR_UNSUPPORTED,
+                       "%s: holds signed BC6H; kiln reads unsigned BC6H, and floats", s->name);
+    if (!ki_texels_of_vk(s->vk, texels))
+        return ki_fail(
+            error, KILN_ERROR_UNSUPPORTED,
+            "%s: has vkFormat %u; kiln reads RGB and RGBA of 8 and 16 bits, of 16-bit and "
+            "32-bit floats, and the formats 122, 123 and 143",
+            s->name, s->vk);
+    if (primaries > BT709 || transfer > SRGB)
+        return ki_fail(error, KILN_ERROR_UNSUPPORTED,
+                       "%s: states colour primaries %u and transfer function %u; kiln reads the "
+                       "primaries 1 (BT.709) and the functions 1 (linear) and 2 (sRGB)",
+                       s->name, primaries, transfer);
+    if (texels->kind == KI_TEXEL_U8 && transfer == SRGB)
+        texels->kind = KI_TEXEL_SRGB8;
+    return KILN_OK;
+}
+
+void ki_ktx2_turn(const kiln_file_info *info, float *rgb, int width, int height,
+                  kiln_load_report *report)
+{
+    const char *way = info->orientation;
+    bool left = way[0] == 'l', up = way[0] && way[1] == 'u';
+    if (!left && !up)
+        return;
+    ki_texels_flip(rgb, width, height, left, up);
+    ki_note(report, KILN_NOTE_CONVERSION, false,
+            "the orientation \"%s\" was turned to rows from the top and columns from the left",
+            way);
+}
+
+// ----------------------------------------------------------------------------------- flat pictures
+
+const char *ki_ktx2_scheme(const ki_ktx2_source *s)
+{
+    return s->zstd ? ", zstd" : s->zlib ? ", zlib" : "";
+}
+
+static void describe(const ki_ktx2_source *s, const ki_texels *texels, kiln_file_info *info)
+{
+    char name[KI_TEXELS_NAME];
+    snprintf(info->format, sizeof info->format, "ktx2");
+    snprintf(info->encoding, sizeof info->encoding, "%s%s", ki_texels_name(texels, name),
+             ki_ktx2_scheme(s));
+    info->width = (int)s->width;
+    info->height = (int)s->height;
+    info->level_count = (int)s->level_count;
+    info->channel_count = texels->channels;
+}
+
+kiln_result ki_ktx2_decode_picture(kiln_context *context, ki_ktx2_source *s, kiln_image *image,
+                                   kiln_file_info *info, kiln_load_report *report,
+                                   kiln_error *error)
+{
+    ki_texels texels;
+    ki_ktx2_level level;
+    const uint8_t *plain;
+    uint8_t *unpacked = NULL;
+    kiln_result result = ki_ktx2_texels(s, &texels, error);
+    if (result == KILN_OK && (s->width < 1 || s->height < 1 || s->width > KILN_MAX_SIZE ||
+                              s->height > KILN_MAX_SIZE || s->level_count > KILN_MAX_LEVELS))
+        result =
+            ki_fail(error, KILN_ERROR_UNSUPPORTED,
+                    "%s: is %u x %u texels with %u levels; each side may be 1 to %d, with %d "
+                    "levels at most",
+                    s->name, s->width, s->height, s->level_count, KILN_MAX_SIZE, KILN_MAX_LEVELS);
+    if (result != KILN_OK)
+        return result;
+    describe(s, &texels, info);
+    int w = info->width, h = info->height;
+    result = ki_ktx2_find_level(s, 0, ki_texels_size(&texels, w, h, 1), &level, error);
+    if (result == KILN_OK)
+        ki_texels_note(&texels, true, info->level_count, report);
+    if (result != KILN_OK || !image)
+        return result;
+    result = ki_ktx2_unpack(context, s, 0, &level, &plain, &unpacked, error);
+    *image = (kiln_image){.width = w, .height = h, .channels = 3};
+    if (result == KILN_OK)
+        result = ki_image_allocate(context, image, error);
+    if (result == KILN_OK && !ki_texels_read(context, &texels, plain, w, h, 1, image->pixels))
+        result = ki_fail_cancelled(error, "reading");
+    ki_free(unpacked);
+    if (result != KILN_OK) {
+        kiln_image_free(image);
+        return result;
+    }
+    ki_ktx2_turn(info, image->pixels, w, h, report);
+    return KILN_OK;
+}
