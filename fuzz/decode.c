@@ -104,6 +104,11 @@ static void check_info(const kiln_file_info *info)
     check_text(info->writer, sizeof info->writer);
     check_text(info->orientation, sizeof info->orientation);
     check_text(info->table, sizeof info->table);
+    for (int i = 0; i < info->layer_count && i < KILN_MAX_LAYERS; i++) {
+        check_text(info->layer[i].part, sizeof info->layer[i].part);
+        check_text(info->layer[i].name, sizeof info->layer[i].name);
+        check_text(info->layer[i].channels, sizeof info->layer[i].channels);
+    }
     if (info->level_count < 0 || info->level_count > KILN_MAX_LEVELS || info->sh_bands < 0 ||
         info->sh_bands > KILN_MAX_BANDS || !info->format[0] || !info->layout[0])
         abort();

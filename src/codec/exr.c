@@ -15,7 +15,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { TASKS = 64, ROUNDS = 8 };
+enum { TASKS = 1024 };
 
 typedef struct exr_file {
     kiln_context *context;
@@ -31,7 +31,7 @@ typedef struct exr_file {
     ki_exr_chunk *chunks;
     int chunk_count;
     uint16_t *dwa_table;
-    int task_count, first_task;
+    int task_count;
     uint8_t results[TASKS]; // the kiln_result of each task that decodes chunks
     int damaged[TASKS];     // index of the chunk at which each task failed
 } exr_file;
@@ -215,10 +215,9 @@ static void describe(const exr_file *f, kiln_file_info *info)
 
 // Task of one thread: decodes chunks that follow one another in the file. The task allocates memory
 // for the largest of its chunks.
-static void decode_chunks(void *data, int index)
+static void decode_chunks(void *data, int task)
 {
     exr_file *f = data;
-    int task = f->first_task + index;
     int begin = (int)((int64_t)f->chunk_count * task / f->task_count);
     int end = (int)((int64_t)f->chunk_count * (task + 1) / f->task_count);
     size_t most = 0;
@@ -258,18 +257,10 @@ static kiln_result decode_all(exr_file *f, kiln_error *error)
             return ki_fail_memory(f->context, error, f->name, 65536 * sizeof *f->dwa_table);
         ki_exr_dwa_table(f->context, f->dwa_table);
     }
-    // Many samples are decoded in rounds, between which the caller may stop the work.
-    size_t bytes = 0;
-    for (int i = 0; i < f->chunk_count; i++)
-        bytes += f->chunks[i].size;
-    int rounds = bytes < (size_t)1 << 25 ? 1 : ROUNDS;
-    for (int r = 0; r < rounds; r++) {
-        if (!ki_progress(f->context, "reading", (double)r / rounds))
-            return ki_fail_cancelled(error, "reading");
-        f->first_task = f->task_count * r / rounds;
-        int end = f->task_count * (r + 1) / rounds;
-        ki_parallel_for(f->context, end - f->first_task, decode_chunks, f);
-    }
+    static const ki_progress_range all = {"reading", 0, 1};
+    if (!ki_progress(f->context, "reading", 0) ||
+        !ki_parallel_steps(f->context, &all, f->task_count, decode_chunks, f))
+        return ki_fail_cancelled(error, "reading");
     for (int t = 0; t < f->task_count; t++)
         if (f->results[t] != KILN_OK)
             return say_damaged(f, t, error);

@@ -11,6 +11,9 @@
 /// Greatest number of channels of a part that is read, and of parts of a file; and the greatest
 /// length of the name of an attribute or a channel, which is OpenEXR's limit.
 enum { KI_EXR_MAX_CHANNELS = 1024, KI_EXR_MAX_PARTS = 1024, KI_EXR_MAX_NAME = 255 };
+/// Greatest distance of the samples of a channel, in pixels. Lines without samples of a channel take
+/// time too, which this limit keeps proportional to the number of samples.
+enum { KI_EXR_MAX_SAMPLING = 16 };
 
 /// Compression methods, with the numbers that files use.
 typedef enum ki_exr_compression {
@@ -161,6 +164,19 @@ int ki_exr_columns(const ki_exr_box *box, const ki_exr_channel *channel);
 int ki_exr_rows(const ki_exr_box *box, const ki_exr_channel *channel);
 /// Returns whether a channel has samples on line `y`, in the file's coordinates.
 bool ki_exr_line_has(const ki_exr_channel *channel, int y);
+/// A channel with samples in a box, and the number of bytes of a line of these.
+typedef struct ki_exr_run {
+    int channel; // index of the channel
+    size_t bytes;
+} ki_exr_run;
+/// Lists the channels that have columns in a box, in the file's order. Returns their number.
+int ki_exr_list_runs(const ki_exr_box *box, ki_exr_run runs[KI_EXR_MAX_CHANNELS]);
+/// Returns the number of lines of all channels that have columns in a box.
+size_t ki_exr_count_lines(const ki_exr_box *box);
+/// Finds the bytes of a box at which the lines of every channel begin. `offset` has room for as many
+/// numbers as ki_exr_count_lines returns; lines[c] becomes those of channel c, or NULL.
+void ki_exr_find_lines(const ki_exr_box *box, size_t *offset,
+                       const size_t *lines[KI_EXR_MAX_CHANNELS]);
 /// Returns the number of bytes of a box's samples, or 0 if the number exceeds size_t.
 size_t ki_exr_box_size(const ki_exr_box *box);
 /// Reorders samples from planes, in which all samples of one channel precede all samples of the

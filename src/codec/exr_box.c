@@ -54,23 +54,61 @@ size_t ki_exr_box_size(const ki_exr_box *box)
     return size;
 }
 
+int ki_exr_list_runs(const ki_exr_box *box, ki_exr_run runs[KI_EXR_MAX_CHANNELS])
+{
+    int count = 0;
+    for (int c = 0; c < box->channel_count; c++) {
+        size_t columns = (size_t)ki_exr_columns(box, &box->channels[c]);
+        if (columns)
+            runs[count++] = (ki_exr_run){c, columns * (size_t)box->channels[c].bytes};
+    }
+    return count;
+}
+
+size_t ki_exr_count_lines(const ki_exr_box *box)
+{
+    size_t count = 0;
+    for (int c = 0; c < box->channel_count; c++)
+        if (ki_exr_columns(box, &box->channels[c]))
+            count += (size_t)ki_exr_rows(box, &box->channels[c]);
+    return count;
+}
+
+void ki_exr_find_lines(const ki_exr_box *box, size_t *offset,
+                       const size_t *lines[KI_EXR_MAX_CHANNELS])
+{
+    ki_exr_run runs[KI_EXR_MAX_CHANNELS];
+    size_t *found[KI_EXR_MAX_CHANNELS], at = 0;
+    int count = ki_exr_list_runs(box, runs);
+    for (int c = 0; c < box->channel_count; c++)
+        lines[c] = NULL;
+    for (int i = 0; i < count; i++) {
+        lines[runs[i].channel] = found[i] = offset;
+        offset += ki_exr_rows(box, &box->channels[runs[i].channel]);
+    }
+    for (int y = box->y; y < box->y + box->height; y++)
+        for (int i = 0; i < count; i++)
+            if (ki_exr_line_has(&box->channels[runs[i].channel], y)) {
+                *found[i]++ = at;
+                at += runs[i].bytes;
+            }
+}
+
 void ki_exr_lines_from_planes(const ki_exr_box *box, const uint8_t *planes, uint8_t *raw)
 {
     const uint8_t *plane[KI_EXR_MAX_CHANNELS];
-    for (int c = 0; c < box->channel_count; c++) {
-        const ki_exr_channel *channel = &box->channels[c];
-        plane[c] = planes;
-        planes += (size_t)ki_exr_columns(box, channel) * (size_t)ki_exr_rows(box, channel) *
-                  (size_t)channel->bytes;
+    ki_exr_run runs[KI_EXR_MAX_CHANNELS];
+    int count = ki_exr_list_runs(box, runs);
+    for (int i = 0; i < count; i++) {
+        plane[i] = planes;
+        planes += (size_t)ki_exr_rows(box, &box->channels[runs[i].channel]) * runs[i].bytes;
     }
     for (int y = box->y; y < box->y + box->height; y++)
-        for (int c = 0; c < box->channel_count; c++) {
-            const ki_exr_channel *channel = &box->channels[c];
-            if (!ki_exr_line_has(channel, y))
+        for (int i = 0; i < count; i++) {
+            if (!ki_exr_line_has(&box->channels[runs[i].channel], y))
                 continue;
-            size_t bytes = (size_t)ki_exr_columns(box, channel) * (size_t)channel->bytes;
-            memcpy(raw, plane[c], bytes);
-            raw += bytes;
-            plane[c] += bytes;
+            memcpy(raw, plane[i], runs[i].bytes);
+            raw += runs[i].bytes;
+            plane[i] += runs[i].bytes;
         }
 }

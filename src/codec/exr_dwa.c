@@ -66,6 +66,7 @@ typedef struct dwa_plan {
     int width, height; // size of the channel in samples
     // the channel's raw bytes, unless the channel is stored by the cosine transform
     const uint8_t *from;
+    const size_t *lines; // the byte of the box at which each line of the channel begins
     bool done;
 } dwa_plan;
 
@@ -75,9 +76,9 @@ typedef struct dwa {
     counts counts;
     dwa_rule rules[MAX_RULES];
     int rule_count;
-    dwa_plan plans[KI_EXR_MAX_CHANNELS];
     uint8_t *raw;
     const uint16_t *ac, *ac_end, *dc, *dc_end;
+    dwa_plan plans[]; // of all channels
 } dwa;
 
 static void read_counts(ki_reader *r, counts *c)
@@ -269,26 +270,8 @@ static void put_row(const dwa *d, int bytes, bool linear, const uint16_t *halfs,
     }
 }
 
-// Finds the byte at which each line of a channel begins in the box, for the lines that have samples
-// of the channel.
-static void find_lines(const dwa *d, int index, size_t *offset)
-{
-    const ki_exr_box *box = d->box;
-    size_t at = 0;
-    int line = 0;
-    for (int y = box->y; y < box->y + box->height; y++)
-        for (int c = 0; c < box->channel_count; c++) {
-            const ki_exr_channel *channel = &box->channels[c];
-            if (!ki_exr_line_has(channel, y))
-                continue;
-            if (c == index)
-                offset[line++] = at;
-            at += (size_t)ki_exr_columns(box, channel) * (size_t)channel->bytes;
-        }
-}
-
 // Decodes one channel, or three channels that were stored as luma and two colour differences.
-static bool transform(dwa *d, const int *members, int count, size_t *const offset[3])
+static bool transform(dwa *d, const int *members, int count)
 {
     int width = d->plans[members[0]].width, height = d->plans[members[0]].height;
     int across = (width + 7) / 8, down = (height + 7) / 8;
@@ -328,7 +311,7 @@ static bool transform(dwa *d, const int *members, int count, size_t *const offse
                 for (int y = 0; y < lines; y++)
                     put_row(d, channel->bytes, count == 1 && channel->linear,
                             halfs + (flat ? 0 : 8 * y), columns,
-                            d->raw + offset[k][8 * by + y] +
+                            d->raw + d->plans[members[k]].lines[8 * by + y] +
                                 (size_t)(8 * bx) * (size_t)channel->bytes);
             }
         }
@@ -418,13 +401,13 @@ static size_t block_count(const dwa *d)
 
 // Copies a channel that was stored without the cosine transform: line by line, or, if it was stored
 // as runs, from planes that hold the most significant byte of every sample, then the next byte.
-static void copy_plain(dwa *d, int index, const size_t *offset)
+static void copy_plain(dwa *d, int index)
 {
     const dwa_plan *plan = &d->plans[index];
     size_t bytes = (size_t)d->box->channels[index].bytes;
     size_t width = (size_t)plan->width, plane = width * (size_t)plan->height;
-    for (size_t y = 0; y < (size_t)plan->height; y++) {
-        uint8_t *to = d->raw + offset[y];
+    for (size_t y = 0; width && y < (size_t)plan->height; y++) {
+        uint8_t *to = d->raw + plan->lines[y];
         if (plan->scheme == SCHEME_ZLIB) {
             memcpy(to, plan->from + y * width * bytes, width * bytes);
             continue;
@@ -444,7 +427,7 @@ typedef struct sections {
     uint8_t *plain;
     uint8_t *run_bytes; // the runs after unpacking by zlib, before they are expanded
     uint16_t *ac_values, *dc_values, *scratch;
-    size_t *offset; // byte offsets of the lines of up to three channels in the box
+    size_t *offset; // the byte of the box at which each line of each channel begins
     triple *triples;
     size_t zlib_size, runs_size, blocks;
 } sections;
@@ -524,24 +507,22 @@ static kiln_result unpack_sections(kiln_context *context, dwa *d, const sections
 
 // Decodes the colour triples (red, green and blue of a layer), which are stored before all other
 // channels, sorted by the names of their layers.
-static bool transform_triples(dwa *d, const triple *triples, int count, size_t *const lines[3])
+static bool transform_triples(dwa *d, const triple *triples, int count)
 {
     for (int t = 0; t < count; t++) {
         const int *member = triples[t].member;
         if (!whole_triple(d, member))
             continue;
-        for (int k = 0; k < 3; k++) {
+        for (int k = 0; k < 3; k++)
             if (d->plans[member[k]].scheme != SCHEME_DCT)
                 return false;
-            find_lines(d, member[k], lines[k]);
-        }
-        if (!transform(d, member, 3, lines))
+        if (!transform(d, member, 3))
             return false;
     }
     return true;
 }
 
-static bool put_other_channels(dwa *d, const sections *s, size_t *const lines[3])
+static bool put_other_channels(dwa *d, const sections *s)
 {
     const ki_exr_box *box = d->box;
     const uint8_t *at[3] = {s->plain, NULL, s->plain + s->zlib_size};
@@ -549,16 +530,15 @@ static bool put_other_channels(dwa *d, const sections *s, size_t *const lines[3]
         dwa_plan *plan = &d->plans[c];
         if (plan->done)
             continue;
-        find_lines(d, c, lines[0]);
         if (plan->scheme == SCHEME_DCT) {
-            if (!transform(d, &c, 1, lines))
+            if (!transform(d, &c, 1))
                 return false;
             continue;
         }
         plan->from = at[plan->scheme];
         at[plan->scheme] +=
             (size_t)plan->width * (size_t)plan->height * (size_t)box->channels[c].bytes;
-        copy_plain(d, c, lines[0]);
+        copy_plain(d, c);
     }
     return true;
 }
@@ -568,22 +548,23 @@ static kiln_result decompress(kiln_context *context, dwa *d, const uint8_t *pack
 {
     if (!read_sections(d, packed, packed_size, s))
         return KILN_ERROR_FORMAT;
-    size_t height = (size_t)d->box->height;
     s->triples = ki_alloc_raw(context, (size_t)d->box->channel_count, sizeof *s->triples);
-    s->offset = ki_alloc_raw(context, 3 * height, sizeof *s->offset);
-    if (!s->triples || !s->offset)
+    if (!s->triples)
         return KILN_ERROR_MEMORY;
     int triple_count = make_plan(d, s->triples);
     if (!check_counts(d, s))
         return KILN_ERROR_FORMAT;
-    if (!allocate(context, d, s))
+    s->offset = ki_alloc_raw(context, ki_exr_count_lines(d->box), sizeof *s->offset);
+    if (!s->offset || !allocate(context, d, s))
         return KILN_ERROR_MEMORY;
     kiln_result result = unpack_sections(context, d, s);
     if (result != KILN_OK)
         return result;
-    size_t *const lines[3] = {s->offset, s->offset + height, s->offset + 2 * height};
-    bool good =
-        transform_triples(d, s->triples, triple_count, lines) && put_other_channels(d, s, lines);
+    const size_t *lines[KI_EXR_MAX_CHANNELS];
+    ki_exr_find_lines(d->box, s->offset, lines);
+    for (int c = 0; c < d->box->channel_count; c++)
+        d->plans[c].lines = lines[c];
+    bool good = transform_triples(d, s->triples, triple_count) && put_other_channels(d, s);
     return good ? KILN_OK : KILN_ERROR_FORMAT;
 }
 
@@ -592,7 +573,7 @@ kiln_result ki_exr_decompress_dwa(const ki_exr_workspace *work, const ki_exr_box
                                   size_t size)
 {
     (void)size;
-    dwa *d = ki_alloc(work->context, 1, sizeof *d);
+    dwa *d = ki_alloc(work->context, 1, sizeof *d + (size_t)box->channel_count * sizeof *d->plans);
     if (!d)
         return KILN_ERROR_MEMORY;
     d->box = box;

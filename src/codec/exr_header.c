@@ -69,7 +69,7 @@ static bool read_channel(ki_reader *r, ki_exr_channel *c)
     c->linear = (ki_read_u32(r) & 0xff) != 0;
     uint32_t x = ki_read_u32(r), y = ki_read_u32(r);
     if (!c->name || !c->name[0] || r->failed || type >= KI_EXR_TYPES || x < 1 || y < 1 ||
-        x > KILN_MAX_SIZE || y > KILN_MAX_SIZE)
+        x > KI_EXR_MAX_SAMPLING || y > KI_EXR_MAX_SAMPLING)
         return false;
     c->type = (int)type;
     c->bytes = type == KI_EXR_HALF ? 2 : 4;
@@ -88,8 +88,8 @@ enum { STEP = 1024 }; // number of attributes or channels after which the caller
 static const char *read_channels(kiln_context *context, const attribute *a, ki_exr_part *p,
                                  stop *stopped)
 {
-    static const char wrong[] = "its list of channels is damaged or has a name of more than 255 "
-                                "bytes";
+    static const char wrong[] = "its list of channels is damaged, or has a name of more than "
+                                "255 bytes or samples more than 16 pixels apart";
     ki_exr_channel channel;
     ki_reader counting = ki_reader_make(a->bytes, a->size), r = counting;
     int count = 0;

@@ -88,36 +88,58 @@ static int modulo(int a, int b)
     return (a % b + b) % b;
 }
 
+// The lines of the chosen channels in a box: where a line begins, or NULL.
+typedef struct sources {
+    const uint8_t *start[3];
+} sources;
+
+// Finds where the chosen channels begin on line `y`, whose bytes begin at `raw`. Returns the end of
+// the line.
+static const uint8_t *find_sources(const ki_exr_picture *p, const ki_exr_box *box,
+                                   const ki_exr_run *runs, int count, int y, const uint8_t *raw,
+                                   sources *found)
+{
+    *found = (sources){{NULL}};
+    for (int i = 0; i < count; i++) {
+        if (!ki_exr_line_has(&box->channels[runs[i].channel], y))
+            continue;
+        for (int k = 0; k < 3; k++)
+            if (p->source[k] == runs[i].channel)
+                found->start[k] = raw;
+        raw += runs[i].bytes;
+    }
+    return raw;
+}
+
+// Writes line `y` of a box to the columns from `left` to `right` - 1 of the picture.
+static void put_sources(const ki_exr_picture *p, const ki_exr_box *box, const sources *found, int y,
+                        int left, int right)
+{
+    size_t row = (size_t)(y - p->top);
+    const uint8_t *samples[3] = {NULL};
+    const ki_exr_channel *channel[3] = {NULL};
+    float *rgb = p->pixels + 3 * (row * (size_t)p->width + (size_t)(left - p->left));
+    for (int k = 0; k < 3; k++) {
+        channel[k] = p->source[k] < 0 ? NULL : &box->channels[p->source[k]];
+        if (found->start[k] && channel[k]->x_sampling == 1)
+            samples[k] = found->start[k] + (size_t)(left - box->x) * (size_t)channel[k]->bytes;
+    }
+    put_line(samples, channel, right - left, rgb);
+    for (int k = 0; k < 3; k++)
+        if (found->start[k] && !samples[k])
+            put_samples(found->start[k], channel[k], modulo(-box->x, channel[k]->x_sampling),
+                        right - left, rgb + k);
+}
+
 void ki_exr_put_box(const ki_exr_picture *p, const ki_exr_box *box, const uint8_t *raw)
 {
     int left = ki_max(box->x, p->left), right = ki_min(box->x + box->width, p->left + p->width);
+    ki_exr_run runs[KI_EXR_MAX_CHANNELS];
+    int count = ki_exr_list_runs(box, runs);
     for (int y = box->y; y < box->y + box->height; y++) {
-        const uint8_t *start[KI_EXR_MAX_CHANNELS];
-        for (int c = 0; c < box->channel_count; c++) {
-            const ki_exr_channel *channel = &box->channels[c];
-            start[c] = raw;
-            if (ki_exr_line_has(channel, y))
-                raw += (size_t)ki_exr_columns(box, channel) * (size_t)channel->bytes;
-        }
-        int row = y - p->top;
-        if (row < 0 || row >= p->height || left >= right)
-            continue;
-        const uint8_t *samples[3] = {NULL};
-        const ki_exr_channel *channel[3] = {NULL};
-        float *rgb = p->pixels + 3 * ((size_t)row * (size_t)p->width + (size_t)(left - p->left));
-        for (int k = 0; k < 3; k++) {
-            const ki_exr_channel *c = p->source[k] < 0 ? NULL : &box->channels[p->source[k]];
-            if (!c || c->x_sampling != 1 || c->y_sampling != 1)
-                continue;
-            channel[k] = c;
-            samples[k] = start[p->source[k]] + (size_t)(left - box->x) * (size_t)c->bytes;
-        }
-        put_line(samples, channel, right - left, rgb);
-        for (int k = 0; k < 3; k++) {
-            const ki_exr_channel *c = p->source[k] < 0 ? NULL : &box->channels[p->source[k]];
-            if (c && !channel[k] && ki_exr_line_has(c, y))
-                put_samples(start[p->source[k]], c, modulo(-box->x, c->x_sampling), right - left,
-                            rgb + k);
-        }
+        sources found;
+        raw = find_sources(p, box, runs, count, y, raw, &found);
+        if (y >= p->top && y - p->top < p->height && left < right)
+            put_sources(p, box, &found, y, left, right);
     }
 }

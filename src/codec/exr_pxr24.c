@@ -41,15 +41,17 @@ kiln_result ki_exr_decompress_pxr24(const ki_exr_workspace *work, const ki_exr_b
     if (!ki_inflate(packed, packed_size, work->scratch, plain_size))
         return KILN_ERROR_FORMAT;
     const uint8_t *from = work->scratch;
+    ki_exr_run runs[KI_EXR_MAX_CHANNELS];
+    int count = ki_exr_list_runs(box, runs);
     for (int y = box->y; y < box->y + box->height; y++)
-        for (int c = 0; c < box->channel_count; c++) {
-            const ki_exr_channel *channel = &box->channels[c];
+        for (int i = 0; i < count; i++) {
+            const ki_exr_channel *channel = &box->channels[runs[i].channel];
             if (!ki_exr_line_has(channel, y))
                 continue;
-            size_t width = (size_t)ki_exr_columns(box, channel);
+            size_t width = runs[i].bytes / (size_t)channel->bytes;
             undo_line(from, width, channel, raw);
             from += stored_bytes(channel) * width;
-            raw += (size_t)channel->bytes * width;
+            raw += runs[i].bytes;
         }
     return KILN_OK;
 }
