@@ -597,6 +597,76 @@ KILN_API KILN_CHECKED kiln_result kiln_sh_filter(const kiln_sh *radiance, int ba
 /// may be negative.
 KILN_API void kiln_sh_evaluate(const kiln_sh *sh, const double direction[3], double value[3]);
 
+// ------------------------------------------------------------------------------------------- lights
+
+enum { KILN_MAX_LIGHTS = 64 };
+
+/// A compact source of light in an environment, such as the sun, a lamp or a window, as a disc of
+/// uniform radiance irradiance / (pi sin^2 angular_radius).
+typedef struct kiln_light {
+    /// Unit vector to the radiometric centroid: the mean of the directions of the light, weighted by
+    /// its radiance.
+    double direction[3];
+    /// Irradiance of a surface that faces the light: the sum over texels of the radiance above the
+    /// surroundings, times solid angle, times the cosine of the angle to `direction`. The unit is
+    /// that of the map's radiance times steradian.
+    double irradiance[3];
+    /// Angular radius in degrees of the disc with the same mean distance of light from the centre. A
+    /// map widens a sun that is smaller than its texels.
+    double angular_radius;
+    double share;       ///< the part of the map's light that the light holds, 0 to 1
+    size_t texel_count; ///< number of texels from which the light is taken
+} kiln_light;
+
+/// Lights, the one with the largest share first.
+typedef struct kiln_lights {
+    int count;
+    kiln_light light[KILN_MAX_LIGHTS];
+} kiln_lights;
+
+/// Which lights are wanted. {0} selects the light with the largest share, if it holds a hundredth of
+/// the map's light.
+typedef struct kiln_lights_def {
+    /// Largest number of lights, 1 to KILN_MAX_LIGHTS; 0 for 1, or for KILN_MAX_LIGHTS if `share` is
+    /// not 0.
+    int count;
+    double share; ///< smallest share of a light, 0 to 1; 0 for 0.01, KILN_ZERO for 0
+} kiln_lights_def;
+
+/// Finds the compact lights in level 0 of a map of any shape: connected texels that are much
+/// brighter than their surroundings. A light which one disc cannot replace, so that a coefficient of
+/// the first five bands would change by more than a thousandth of the map's mean, is left out.
+/// `def` may be NULL. Source: docs/lights.md.
+KILN_API KILN_CHECKED kiln_result kiln_lights_find(kiln_context *context, const kiln_map *map,
+                                                   const kiln_lights_def *def, kiln_lights *lights,
+                                                   kiln_error *error);
+/// Finds lights as kiln_lights_find does and takes them out of level 0 of the map: their texels
+/// receive what surrounds them, and are not negative. The map that remains and the lights together
+/// are as bright as the map was.
+KILN_API KILN_CHECKED kiln_result kiln_lights_extract(kiln_context *context, kiln_map *map,
+                                                      const kiln_lights_def *def,
+                                                      kiln_lights *lights, kiln_error *error);
+/// Sets `sh` to the spherical harmonics of the lights' discs, as kiln_map_sh does for a map. `bands`
+/// is 1 to KILN_MAX_BANDS.
+KILN_API KILN_CHECKED kiln_result kiln_lights_sh(const kiln_lights *lights, int bands, kiln_sh *sh,
+                                                 kiln_error *error);
+/// Saves lights as a .json file: {"lights": [{"direction": [x, y, z], "irradiance": [r, g, b],
+/// "angular_radius": degrees, "share": s, "texels": n}, ...]}.
+KILN_API KILN_CHECKED kiln_result kiln_lights_save(kiln_context *context, const kiln_lights *lights,
+                                                   const char *path, kiln_error *error);
+
+/// What a limit took from a map.
+typedef struct kiln_clamp {
+    double limit;       ///< largest value that a texel may have; 0 if the map was not clamped
+    size_t texel_count; ///< number of texels that were brighter
+    double light_share; ///< light that was lost, relative to all light of the map
+} kiln_clamp;
+/// Multiplies every texel of level 0 whose largest channel exceeds `limit` by limit / channel, so
+/// that its colour stays. `limit` 0 selects 32 times the mean of the map without its lights.
+/// `clamp` may be NULL.
+KILN_API KILN_CHECKED kiln_result kiln_map_clamp(kiln_context *context, kiln_map *map, double limit,
+                                                 kiln_clamp *clamp, kiln_error *error);
+
 // ----------------------------------------------------------------------------------- environments
 
 /// The maps and harmonics that light a scene, all computed from one source. kiln_bake and
@@ -615,7 +685,18 @@ typedef struct kiln_environment {
     /// Values of `levels` and of `irradiance` that were below zero after filtering and became 0. A
     /// source without negative texels has such values by rounding only.
     kiln_cut levels_cut, irradiance_cut;
+    /// Lights that were taken out of the source, in the directions of the levels, and what a limit
+    /// took from the source: see kiln_bake_def.sun.
+    kiln_lights lights;
+    kiln_clamp clamped;
 } kiln_environment;
+
+/// What becomes of the sun, lamps and other compact lights of a source.
+typedef enum kiln_sun {
+    KILN_SUN_KEEP = 0, ///< lights stay in the maps
+    KILN_SUN_EXTRACT,  ///< lights are taken out, as by kiln_lights_extract
+    KILN_SUN_CLAMP     ///< bright texels are made darker, as by kiln_map_clamp
+} kiln_sun;
 
 enum { KILN_NO_IRRADIANCE = -1 };
 
@@ -643,7 +724,11 @@ typedef struct kiln_bake_def {
     double exposure; ///< multiplies the source by 2^exposure, -600 to 600
     /// Size of the irradiance map, 1 to KILN_MAX_SIZE; 0 for 64, KILN_NO_IRRADIANCE for none.
     int irradiance_size;
-    int sh_bands; ///< number of bands of harmonics, 1 to KILN_MAX_BANDS; 0 for 3
+    int sh_bands;           ///< number of bands of harmonics, 1 to KILN_MAX_BANDS; 0 for 3
+    kiln_sun sun;           ///< what becomes of lights, after mirror and exposure
+    kiln_lights_def lights; ///< which lights are taken out; applies with KILN_SUN_EXTRACT
+    /// Limit of kiln_map_clamp, 0 for its own choice; applies with KILN_SUN_CLAMP.
+    double clamp;
 } kiln_bake_def;
 
 /// Computes an environment from level 0 of a map of any shape. The source is mirrored, exposed and
@@ -673,8 +758,9 @@ KILN_API KILN_CHECKED kiln_result kiln_plan_environment(const kiln_plan *plan,
                                                         kiln_error *error);
 /// Bakes into an environment made by kiln_plan_environment, or into maps of the same shape, size
 /// and levels. The result is bit-identical to that of kiln_bake. On failure the content of the maps
-/// is undefined. An execution allocates nothing, unless the source has more than 64 suns and more
-/// suns than any source before. A sun is a single texel with a thousandth of all light.
+/// is undefined. An execution allocates nothing, unless lights are taken out, or the source has more
+/// than 64 suns and more suns than any source before. A sun is a single texel with a thousandth of
+/// all light.
 KILN_API KILN_CHECKED kiln_result kiln_plan_execute(kiln_plan *plan, const kiln_map *source,
                                                     kiln_environment *environment,
                                                     kiln_error *error);
@@ -895,6 +981,8 @@ typedef struct kiln_environment_save_def {
     const char *sh_path;
     /// harmonics to write to sh_path; NULL for the field `sh` of the environment
     const kiln_sh *sh;
+    /// Path of the lights (.json), as for kiln_lights_save; NULL for no file of lights.
+    const char *lights_path;
 } kiln_environment_save_def;
 
 typedef struct kiln_environment_report {

@@ -1,7 +1,8 @@
 // Baking of an environment. In: a map of any shape. Out: prefiltered levels, irradiance and
 // spherical harmonics. Every bake runs this sequence:
 //
-//   source -> mirrored, exposed -> panorama -> spectrum -> levels      (bake/prefilter.c)
+//   source -> mirrored, exposed -> lights taken out or clamped      (bake/lights.c)
+//                               -> panorama -> spectrum -> levels      (bake/prefilter.c)
 //                                                       -> harmonics   (sphere/sh.c)
 //                                                       -> irradiance  (a level of the cosine lobe)
 //
@@ -15,6 +16,8 @@
 // which levels are computed.
 #include "bake/environment.h"
 
+#include "bake/lights.h"
+#include "bake/low_analysis.h"
 #include "image/light.h"
 #include "math/math.h"
 #include "sphere/grid.h"
@@ -24,34 +27,22 @@
 #include <string.h>
 
 enum {
-    // Degree of the spectrum from which irradiance is filtered. The series of the cosine lobe is
-    // cut off at degree 303, where its remaining terms are below 1e-7 of the sum.
-    IRRADIANCE_DEGREE = 320,
-    // Smallest degree of a panorama's analysis for the harmonics, which need degree KILN_MAX_BANDS
-    // - 1.
-    SH_DEGREE = 8,
     // Number of suns that a plan has memory for from the beginning. A sun is a single texel that
     // holds more than a thousandth of all light.
     RESERVED_SUNS = 64
 };
 
-// The memory of a separate analysis of the panorama to a low degree, for harmonics or irradiance,
-// and the spectrum of the last execution.
-typedef struct low_workspace {
-    ki_analysis_workspace *analysis;
-    kiln_spectrum *spectrum;
-} low_workspace;
-
 // The memory that the executions of a plan use, one execution after the other.
 typedef struct plan_workspace {
-    // the mirrored and exposed copy of the source; empty if the plan neither mirrors nor exposes
+    // the changed copy of the source; empty if the plan neither mirrors nor exposes the source and
+    // keeps its lights
     kiln_map changed;
     // the panorama that is made from a source of another shape; empty if the source is a panorama
     kiln_map panorama;
     ki_prefilter_workspace prefilter;
     // workspaces of the separate analyses for harmonics and for irradiance; empty where the plan
     // has no such analysis
-    low_workspace for_sh, for_irradiance;
+    ki_low_workspace for_sh, for_irradiance;
     bool has_scratch;
     ki_scratch scratch; // memory that one execution uses and frees, see ki_scratch
 } plan_workspace;
@@ -63,6 +54,9 @@ struct kiln_plan {
     int source_size;
     bool mirror;
     double exposure, rotation;
+    kiln_sun sun;
+    kiln_lights_def lights;
+    double clamp;
     // Size of the irradiance map, or 0 for no such map; number of bands of harmonics, or 0 for no
     // harmonics.
     int irradiance_size, sh_bands;
@@ -79,32 +73,10 @@ struct kiln_plan {
 
 // ---------------------------------------------------------------------------------------- analysis
 
-static void low_free(low_workspace *w)
-{
-    kiln_spectrum_destroy(w->spectrum);
-    ki_analysis_workspace_destroy(w->analysis);
-    *w = (low_workspace){0};
-}
-
-// Creates an analysis of panoramas of `size` rows to a low degree, and its workspace. The caller
-// frees *analysis and *w, also on failure.
-static kiln_result low_create(kiln_context *context, int size, int degree, ki_analysis **analysis,
-                              low_workspace *w, kiln_error *error)
-{
-    double density[IRRADIANCE_DEGREE + 1];
-    ki_model_density(degree, density);
-    kiln_result result = ki_analysis_create(context, size, degree, density, analysis, error);
-    if (result == KILN_OK)
-        result = ki_analysis_workspace_create(context, *analysis, true, &w->analysis, error);
-    if (result == KILN_OK)
-        result = ki_spectrum_create(context, *analysis, &w->spectrum, error);
-    return result;
-}
-
 // Returns the spectrum that `analysis`, to a low degree, computes from the panorama, or the
 // spectrum of the prefiltered levels if `analysis` is NULL.
 static const kiln_spectrum *find_spectrum(const plan_workspace *w, const ki_analysis *analysis,
-                                          const low_workspace *low, const kiln_map *panorama)
+                                          const ki_low_workspace *low, const kiln_map *panorama)
 {
     if (!analysis)
         return w->prefilter.spectrum;
@@ -113,13 +85,6 @@ static const kiln_spectrum *find_spectrum(const plan_workspace *w, const ki_anal
 }
 
 // -------------------------------------------------------------------------------------------- plan
-
-// Returns the number of rows of the panorama that a source is converted to. A cube with faces of
-// n x n texels gets 2 n rows, since half a turn, from pole to pole, crosses two faces.
-static int panorama_rows(kiln_shape shape, int size)
-{
-    return shape == KILN_SHAPE_PANORAMA ? size : ki_min(2 * size, KILN_MAX_SIZE / 2);
-}
 
 static kiln_result check_def(const ki_plan_def *def, kiln_error *error)
 {
@@ -140,7 +105,12 @@ static kiln_result check_def(const ki_plan_def *def, kiln_error *error)
     if (def->sh_bands < 0 || def->sh_bands > KILN_MAX_BANDS)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "sh_bands is %d, it must be 1 to %d",
                        def->sh_bands, KILN_MAX_BANDS);
-    return KILN_OK;
+    if ((unsigned)def->sun > KILN_SUN_CLAMP)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "sun is %d, it must be 0 to %d", (int)def->sun,
+                       (int)KILN_SUN_CLAMP);
+    if (!(def->clamp >= 0))
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "clamp is %g, it must be 0 or more", def->clamp);
+    return ki_lights_check(&def->lights, error);
 }
 
 // Allocates memory for the mirrored and exposed source and for the panorama made from it, and plans
@@ -149,13 +119,13 @@ static kiln_result plan_source(kiln_plan *p, kiln_error *error)
 {
     kiln_result result = KILN_OK;
     plan_workspace *w = &p->workspace;
-    if (p->mirror || p->exposure != 0) {
+    if (p->mirror || p->exposure != 0 || p->sun != KILN_SUN_KEEP) {
         w->changed = (kiln_map){.shape = p->source_shape, .size = p->source_size, .level_count = 1};
         result = ki_map_allocate(p->context, &w->changed, error);
     }
     if (result != KILN_OK || p->source_shape == KILN_SHAPE_PANORAMA)
         return result;
-    int rows = panorama_rows(p->source_shape, p->source_size);
+    int rows = ki_panorama_rows(p->source_shape, p->source_size);
     w->panorama = (kiln_map){.shape = KILN_SHAPE_PANORAMA, .size = rows, .level_count = 1};
     result = ki_map_allocate(p->context, &w->panorama, error);
     if (result == KILN_OK)
@@ -185,9 +155,9 @@ static kiln_result plan_irradiance(kiln_plan *p, int rows, kiln_error *error)
 {
     const ki_analysis *analysis = p->prefilter->analysis;
     kiln_result result = KILN_OK;
-    if (p->to_panorama || analysis->degree < IRRADIANCE_DEGREE) {
-        result = low_create(p->context, rows, IRRADIANCE_DEGREE, &p->for_irradiance,
-                            &p->workspace.for_irradiance, error);
+    if (p->to_panorama || analysis->degree < KI_IRRADIANCE_DEGREE) {
+        result = ki_low_create(p->context, rows, KI_IRRADIANCE_DEGREE, &p->for_irradiance,
+                               &p->workspace.for_irradiance, error);
         analysis = p->for_irradiance;
     }
     kiln_lobe lambert = kiln_lobe_lambert();
@@ -221,13 +191,17 @@ kiln_result ki_plan_create(kiln_context *context, const ki_plan_def *def, kiln_p
                      .mirror = def->mirror,
                      .exposure = def->exposure,
                      .irradiance_size = def->irradiance_size,
-                     .sh_bands = def->sh_bands};
-    int rows = panorama_rows(def->source_shape, def->source_size);
+                     .sh_bands = def->sh_bands,
+                     .sun = def->sun,
+                     .lights = def->lights,
+                     .clamp = def->clamp};
+    int rows = ki_panorama_rows(def->source_shape, def->source_size);
     result = plan_source(p, error);
     if (result == KILN_OK)
         result = plan_levels(p, def, rows, error);
     if (result == KILN_OK && p->sh_bands && p->to_panorama)
-        result = low_create(context, rows, SH_DEGREE, &p->for_sh, &p->workspace.for_sh, error);
+        result =
+            ki_low_create(context, rows, KI_SH_DEGREE, &p->for_sh, &p->workspace.for_sh, error);
     if (result == KILN_OK && p->irradiance_size)
         result = plan_irradiance(p, rows, error);
     if (result == KILN_OK)
@@ -243,8 +217,8 @@ void kiln_plan_destroy(kiln_plan *plan)
         return;
     plan_workspace *w = &plan->workspace;
     ki_scratch_free(&w->scratch);
-    low_free(&w->for_sh);
-    low_free(&w->for_irradiance);
+    ki_low_free(&w->for_sh);
+    ki_low_free(&w->for_irradiance);
     ki_prefilter_workspace_free(&w->prefilter);
     kiln_map_free(&w->panorama);
     kiln_map_free(&w->changed);
@@ -332,23 +306,44 @@ static kiln_result check_target(const kiln_plan *p, const kiln_environment *envi
     return KILN_OK;
 }
 
-// Mirrors and exposes the source and converts the result to a panorama, as far as the plan says.
-// *source then points to the mirrored and exposed map.
+// Takes lights out of the changed source, or clamps it, as far as the plan says.
+static kiln_result take_lights(const kiln_plan *p, kiln_map *changed, kiln_environment *environment,
+                               kiln_error *error)
+{
+    if (p->sun == KILN_SUN_CLAMP)
+        return kiln_map_clamp(p->context, changed, p->clamp, &environment->clamped, error);
+    if (p->sun == KILN_SUN_KEEP)
+        return KILN_OK;
+    kiln_lights *lights = &environment->lights;
+    kiln_result result = kiln_lights_extract(p->context, changed, &p->lights, lights, error);
+    for (int i = 0; i < lights->count; i++) {
+        double *d = lights->light[i].direction;
+        const double unturned[3] = {d[0], d[1], d[2]};
+        ki_turn(unturned, -p->rotation, d);
+    }
+    return result;
+}
+
+// Mirrors and exposes the source, takes lights out and converts the result to a panorama, as far as
+// the plan says. *source then points to the changed map.
 static kiln_result take_source(const kiln_plan *p, plan_workspace *w, const kiln_map **source,
-                               const kiln_map **panorama, kiln_error *error)
+                               const kiln_map **panorama, kiln_environment *environment,
+                               kiln_error *error)
 {
     static const ki_progress_range range = {"converting", 0, 1};
+    kiln_result result = KILN_OK;
     if (w->changed.size) {
         memcpy(w->changed.level[0], (*source)->level[0],
                3 * sizeof(float) * kiln_map_texels(*source, 0));
         if (p->mirror)
             kiln_map_mirror(&w->changed);
         kiln_map_expose(&w->changed, p->exposure);
+        result = take_lights(p, &w->changed, environment, error);
         *source = &w->changed;
     }
     *panorama = *source;
-    if (!p->to_panorama)
-        return KILN_OK;
+    if (!p->to_panorama || result != KILN_OK)
+        return result;
     *panorama = &w->panorama;
     return ki_resample_execute(p->context, p->to_panorama, &w->prefilter.resampling,
                                (*source)->level[0], w->panorama.level[0], &range)
@@ -360,7 +355,7 @@ static kiln_result execute_all(const kiln_plan *p, plan_workspace *w, const kiln
                                bool rehearses, kiln_environment *environment, kiln_error *error)
 {
     const kiln_map *panorama;
-    kiln_result result = take_source(p, w, &source, &panorama, error);
+    kiln_result result = take_source(p, w, &source, &panorama, environment, error);
     if (result == KILN_OK)
         result = ki_prefilter_execute(p->prefilter, &w->prefilter, panorama, source, rehearses,
                                       &environment->levels, error);
@@ -385,6 +380,8 @@ static kiln_result execute_all(const kiln_plan *p, plan_workspace *w, const kiln
 static kiln_result execute(const kiln_plan *p, plan_workspace *w, const kiln_map *source,
                            bool rehearses, kiln_environment *environment, kiln_error *error)
 {
+    environment->lights.count = 0;
+    environment->clamped = (kiln_clamp){0};
     environment->lobe = p->prefilter->def.lobe;
     environment->degree = p->prefilter->analysis->degree;
     environment->irradiance.roughness[0] = p->irradiance_size ? 1 : 0;
@@ -462,7 +459,7 @@ kiln_result ki_plan_reserve(kiln_plan *p, kiln_error *error)
         return result;
     size_t suns = ki_prefilter_suns_size(p->prefilter, RESERVED_SUNS);
     if (p->irradiance) {
-        int rows = panorama_rows(p->source_shape, p->source_size);
+        int rows = ki_panorama_rows(p->source_shape, p->source_size);
         size_t own = ki_level_suns_size(p->irradiance, rows, RESERVED_SUNS);
         suns = own > suns ? own : suns;
     }
@@ -472,35 +469,6 @@ kiln_result ki_plan_reserve(kiln_plan *p, kiln_error *error)
     return ki_scratch_reserve(p->context, &w->scratch, more)
                ? KILN_OK
                : ki_fail_memory(p->context, error, "a plan's scratch", w->scratch.peak + more);
-}
-
-// --------------------------------------------------------------------------------------- harmonics
-
-kiln_result kiln_map_sh(kiln_context *context, const kiln_map *map, int bands, double rotation,
-                        kiln_sh *sh, kiln_error *error)
-{
-    *sh = (kiln_sh){0};
-    kiln_map converted = {0};
-    ki_analysis *analysis = NULL;
-    low_workspace low = {0};
-    kiln_result result = ki_map_check(map, error);
-    if (result == KILN_OK)
-        result = ki_sh_check_bands(bands, 0, rotation, error);
-    if (result == KILN_OK && map->shape != KILN_SHAPE_PANORAMA) {
-        result = kiln_map_convert(context, map, KILN_SHAPE_PANORAMA,
-                                  panorama_rows(map->shape, map->size), 0, &converted, error);
-        map = &converted;
-    }
-    if (result == KILN_OK)
-        result = low_create(context, map->size, SH_DEGREE, &analysis, &low, error);
-    if (result == KILN_OK)
-        ki_analysis_execute(analysis, low.analysis, map->level[0], low.spectrum);
-    if (result == KILN_OK)
-        result = ki_sh_project(low.spectrum, bands, rotation, sh, error);
-    low_free(&low);
-    ki_analysis_destroy(analysis);
-    kiln_map_free(&converted);
-    return result;
 }
 
 void kiln_environment_free(kiln_environment *environment)

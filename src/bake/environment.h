@@ -16,6 +16,9 @@ typedef struct ki_plan_def {
     double exposure;     ///< exposure in stops: the source is multiplied by 2^exposure
     int irradiance_size; ///< size of the irradiance map; 0 for no irradiance
     int sh_bands;        ///< number of bands of harmonics; 0 for no harmonics
+    kiln_sun sun;        ///< what becomes of lights
+    kiln_lights_def lights;
+    double clamp;
 } ki_plan_def;
 
 kiln_result ki_plan_create(kiln_context *context, const ki_plan_def *def, kiln_plan **plan,

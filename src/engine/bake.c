@@ -88,7 +88,10 @@ static kiln_result create_plan(kiln_context *context, kiln_shape source_shape, i
                         .mirror = def->mirror,
                         .exposure = def->exposure,
                         .irradiance_size = def->irradiance_size ? def->irradiance_size : 64,
-                        .sh_bands = def->sh_bands ? def->sh_bands : 3};
+                        .sh_bands = def->sh_bands ? def->sh_bands : 3,
+                        .sun = def->sun,
+                        .lights = def->lights,
+                        .clamp = def->clamp};
     if (def->irradiance_size == KILN_NO_IRRADIANCE)
         full.irradiance_size = 0;
     return ki_plan_create(context, &full, plan, error);

@@ -1,5 +1,6 @@
 // Saves an environment to files or to memory: its levels in the files of kiln or of an engine, its
 // irradiance and its harmonics. Either all files appear or none.
+#include "codec/lights_text.h"
 #include "codec/save.h"
 #include "codec/sh_text.h"
 #include "engine/engine.h"
@@ -68,8 +69,10 @@ static kiln_result add_files(ki_file_set *set, void *data, kiln_error *error)
     if (result == KILN_OK && def->sh_path)
         result =
             ki_sh_write(set, e->context, def->sh ? def->sh : &environment->sh, def->sh_path, error);
-    report->file_count =
-        report->levels.file_count + report->irradiance.file_count + (def->sh_path ? 1 : 0);
+    if (result == KILN_OK && def->lights_path)
+        result = ki_lights_write(set, e->context, &environment->lights, def->lights_path, error);
+    report->file_count = report->levels.file_count + report->irradiance.file_count +
+                         (def->sh_path ? 1 : 0) + (def->lights_path ? 1 : 0);
     return result;
 }
 

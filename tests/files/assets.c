@@ -4,29 +4,6 @@
 #include "codec/codec.h"
 #include "kit/context.h"
 
-// Reads the file inside a module of JavaScript that exports the file as a data URL.
-static uint8_t *read_module(const char *name, size_t *size)
-{
-    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    char path[512];
-    size_t length;
-    snprintf(path, sizeof path, "%s/node_modules/@pmndrs/assets/hdri/%s.exr.js", KILN_ASSETS, name);
-    uint8_t *bytes = read_file(path, &length);
-    const char *at = strstr((const char *)bytes, "base64,"), *digit;
-    assert_non_null(at);
-    uint32_t bits = 0;
-    int count = 0;
-    *size = 0;
-    // What is written never passes what is read.
-    for (at += strlen("base64,"); *at && (digit = strchr(digits, *at)) != NULL; at++) {
-        bits = bits << 6 | (uint32_t)(digit - digits);
-        count += 6;
-        if (count >= 8)
-            bytes[(*size)++] = (uint8_t)(bits >> (count -= 8));
-    }
-    return bytes;
-}
-
 // Compares 24 texels of each level with the sum over all texels of the panorama, 0 standing for sums
 // below zero.
 static double level_error(const kiln_map *panorama, const kiln_map *map, int level)
@@ -69,7 +46,7 @@ static void mean_of(const kiln_map *map, double mean[3])
 static void check_panorama(const char *name, size_t negatives)
 {
     size_t size;
-    uint8_t *bytes = read_module(name, &size);
+    uint8_t *bytes = read_asset(KILN_ASSETS, name, &size);
     ki_decoded decoded;
     kiln_load_report report;
     kiln_load_def def = {.report = &report};

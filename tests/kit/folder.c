@@ -142,3 +142,25 @@ void check_same_files(const char *a, const char *b)
     free(bytes[0]);
     free(bytes[1]);
 }
+
+uint8_t *read_asset(const char *folder, const char *name, size_t *size)
+{
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    char path[512];
+    size_t length;
+    snprintf(path, sizeof path, "%s/node_modules/@pmndrs/assets/hdri/%s.exr.js", folder, name);
+    uint8_t *bytes = read_file(path, &length);
+    const char *at = strstr((const char *)bytes, "base64,"), *digit;
+    assert_non_null(at);
+    uint32_t bits = 0;
+    int count = 0;
+    *size = 0;
+    // What is written never passes what is read.
+    for (at += strlen("base64,"); *at && (digit = strchr(digits, *at)) != NULL; at++) {
+        bits = bits << 6 | (uint32_t)(digit - digits);
+        count += 6;
+        if (count >= 8)
+            bytes[(*size)++] = (uint8_t)(bits >> (count -= 8));
+    }
+    return bytes;
+}

@@ -28,6 +28,10 @@ int file_count(const char *path);
 /// The bytes of a file and a 0 behind them, to be released by free(). Fails if the file cannot be read.
 uint8_t *read_file(const char *path, size_t *size);
 
+/// The bytes of a panorama of npm's @pmndrs/assets under `folder`, to be released by free(). The panorama is a data
+/// URL inside of a module of JavaScript.
+uint8_t *read_asset(const char *folder, const char *name, size_t *size);
+
 typedef struct folder_file {
     char name[64];
     uint8_t *bytes; // to be released by free()

@@ -1,0 +1,146 @@
+// The public functions for compact lights. In: a map and how many lights are wanted. Out: the lights,
+// and the map without them. lights_search.c finds regions, lights_measure.c makes a light of each;
+// the functions here choose among them by their share of the map's light.
+#include "bake/lights.h"
+
+#include "image/image.h"
+#include "image/light.h"
+
+#include <math.h>
+#include <string.h>
+
+// Radiance, as a multiple of the base, at which a map is clamped if the caller names no limit.
+static const double clamp_over_base = 32;
+
+kiln_result ki_lights_check(const kiln_lights_def *def, kiln_error *error)
+{
+    if (def->count < 0 || def->count > KILN_MAX_LIGHTS)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "count of lights is %d, it must be 0 to %d",
+                       def->count, KILN_MAX_LIGHTS);
+    if (!(def->share >= 0 && def->share <= 1))
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "share of lights is %g, it must be 0 to 1",
+                       def->share);
+    return KILN_OK;
+}
+
+// Returns the region with the largest share that was not yet looked at, or NULL.
+static ki_region *largest(const ki_search *search, const bool *seen)
+{
+    ki_region *best = NULL;
+    for (int i = 0; i < search->region_count; i++)
+        if (!seen[i] && (!best || search->region[i].light.share > best->light.share))
+            best = &search->region[i];
+    return best;
+}
+
+// Adds a region's mismatch to those of the lights chosen before. Returns false, and adds nothing, if
+// the sum would be too large.
+static bool add_mismatch(const ki_region *region, double sum[KI_SH_COUNT][3])
+{
+    double next[KI_SH_COUNT][3];
+    for (int k = 0; k < KI_SH_COUNT; k++)
+        for (int c = 0; c < 3; c++)
+            next[k][c] = sum[k][c] + region->mismatch[k][c];
+    if (ki_mismatch_size((const double(*)[3])next) > ki_lights_mismatch)
+        return false;
+    memcpy(sum, next, sizeof next);
+    return true;
+}
+
+// Chooses the wanted lights, and takes them out of `target` if it is not NULL.
+static void choose(ki_search *search, const kiln_lights_def *def, kiln_map *target,
+                   kiln_lights *lights)
+{
+    bool seen[KI_MOST_REGIONS] = {false};
+    double sum[KI_SH_COUNT][3] = {{0}};
+    int count = def->count ? def->count : def->share != 0 ? KILN_MAX_LIGHTS : 1;
+    double share = def->share != 0 ? def->share : 0.01;
+    ki_region *region;
+    while (lights->count < count && (region = largest(search, seen)) != NULL &&
+           region->light.share >= share) {
+        seen[region - search->region] = true;
+        if (!add_mismatch(region, sum))
+            continue;
+        if (target)
+            ki_region_measure(search, region, target);
+        lights->light[lights->count++] = region->light;
+    }
+}
+
+static kiln_result run(kiln_context *context, const kiln_map *map, const kiln_lights_def *def,
+                       kiln_map *target, kiln_lights *lights, kiln_error *error)
+{
+    static const kiln_lights_def defaults = {0};
+    ki_search search = {0};
+    def = def ? def : &defaults;
+    memset(lights, 0, sizeof *lights);
+    kiln_result result = ki_map_check(map, error);
+    if (result == KILN_OK)
+        result = ki_lights_check(def, error);
+    if (result == KILN_OK)
+        result = ki_search_run(context, map, &search, error);
+    if (result == KILN_OK)
+        choose(&search, def, target, lights);
+    ki_search_free(&search);
+    return result;
+}
+
+kiln_result kiln_lights_find(kiln_context *context, const kiln_map *map, const kiln_lights_def *def,
+                             kiln_lights *lights, kiln_error *error)
+{
+    return run(context, map, def, NULL, lights, error);
+}
+
+kiln_result kiln_lights_extract(kiln_context *context, kiln_map *map, const kiln_lights_def *def,
+                                kiln_lights *lights, kiln_error *error)
+{
+    return run(context, map, def, map, lights, error);
+}
+
+kiln_result kiln_lights_sh(const kiln_lights *lights, int bands, kiln_sh *sh, kiln_error *error)
+{
+    *sh = (kiln_sh){0};
+    if (bands < 1 || bands > KILN_MAX_BANDS)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "bands is %d, it must be 1 to %d", bands,
+                       KILN_MAX_BANDS);
+    for (int i = 0; i < lights->count; i++)
+        ki_light_add_sh(&lights->light[i], sh->c);
+    sh->bands = bands;
+    for (int k = bands * bands; k < KI_SH_COUNT; k++)
+        sh->c[k][0] = sh->c[k][1] = sh->c[k][2] = 0;
+    return KILN_OK;
+}
+
+// -------------------------------------------------------------------------------------------- clamp
+
+kiln_result kiln_map_clamp(kiln_context *context, kiln_map *map, double limit, kiln_clamp *clamp,
+                           kiln_error *error)
+{
+    kiln_clamp unused;
+    double before[3], after[3], base;
+    clamp = clamp ? clamp : &unused;
+    *clamp = (kiln_clamp){0};
+    (void)context;
+    kiln_result result = ki_map_check(map, error);
+    if (result != KILN_OK)
+        return result;
+    if (!(limit >= 0))
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "limit of a clamp is %g, it must be 0 or more",
+                       limit);
+    ki_light_base(map, before, &base);
+    clamp->limit = limit > 0 ? limit : clamp_over_base * base;
+    size_t count = kiln_map_texels(map, 0);
+    for (size_t i = 0; i < count; i++) {
+        float *rgb = map->level[0] + 3 * i;
+        double largest_value = fmax(fmax((double)rgb[0], (double)rgb[1]), (double)rgb[2]);
+        if (!(largest_value > clamp->limit))
+            continue;
+        clamp->texel_count++;
+        for (int c = 0; c < 3; c++)
+            rgb[c] = (float)((double)rgb[c] * (clamp->limit / largest_value));
+    }
+    ki_light_base(map, after, &base);
+    double all = before[0] + before[1] + before[2];
+    clamp->light_share = all > 0 ? 1 - (after[0] + after[1] + after[2]) / all : 0;
+    return KILN_OK;
+}
