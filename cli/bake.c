@@ -54,6 +54,9 @@ static int bake_exactly(bake *b)
         .tune = b->engine ? (kiln_tune)(b->tuning + KILN_TUNE_NONE) : KILN_TUNE_AUTO,
         .irradiance_size = b->irradiance_path ? b->irradiance_size : KILN_NO_IRRADIANCE,
         .sh_bands = most_bands(b),
+        .sun = b->sun,
+        .lights = b->lights,
+        .clamp = b->clamp,
     };
     return kiln_bake(b->work.context, &b->source, &def, &b->made, &b->work.error) ? CLI_FAILED
                                                                                   : CLI_GO;
@@ -87,7 +90,7 @@ static int bake_by_textbook(bake *b)
         .theta_count = b->theta_steps,
         .sample_count = b->samples,
     };
-    if (make_panorama(b) != CLI_GO)
+    if (make_panorama(b) != CLI_GO || bake_sun_of_source(b) != CLI_GO)
         return CLI_FAILED;
     b->made.lobe = (kiln_lobe_kind)b->lobe;
     if (b->lobe == KILN_LOBE_LAMBERT
@@ -143,11 +146,13 @@ static int save(bake *b)
                                      .zstd = b->zstd,
                                      .irradiance_path = b->irradiance_path,
                                      .sh_path = b->sh_path,
+                                     .lights_path = b->lights_path,
                                      .sh = &sh};
     kiln_map_free(&b->source);
     if (kiln_sh_filter(&b->made.sh, b->sh_bands, b->sh_irradiance, b->sh_window, &sh, error) ||
         kiln_environment_save(context, &b->made, b->output, &def, &b->saved, error))
         return CLI_FAILED;
+    bake_say_sun(b);
     warn_of_negatives(b, &b->made.levels_cut, b->output);
     warn_of_clamping(b, &b->saved.levels, b->output);
     if (b->irradiance_path) {
@@ -198,6 +203,8 @@ static const cli_example examples[] = {
     {"kiln bake 'face_%s.png' -o out.dds --format b10g11r11 --roughness 0,0.25,0.5,1",
      "reads six faces, and writes four levels of the given roughnesses"},
     {"kiln bake city.exr --for three -o city.ktx2", "the file that three.js loads"},
+    {"kiln bake city.exr -o city.ktx2 --sun extract --lights-file sun.json",
+     "the environment without its sun, and the sun for a directional light"},
     {"kiln bake city.exr -o 'level_%d.hdr' --shape panorama --method textbook",
      "panoramas by importance sampling as courses teach, for comparison"},
     {NULL, NULL}};

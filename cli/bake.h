@@ -13,13 +13,15 @@ typedef enum bake_tuning { BAKE_EXACT, BAKE_SHARP, BAKE_SOFT } bake_tuning;
 typedef struct bake {
     cli_arguments arguments;
     // Values of the options, which the parser writes here by the option rows of bake_options.c.
-    const char *output, *irradiance_path, *sh_path, *roughness_text, *layer;
+    const char *output, *irradiance_path, *sh_path, *lights_path, *layer;
+    const char *roughness_text, *sun_text, *clamp_text;
     int size, level_count, shape, format, zstd, lobe, textbook;
     int engine_index; ///< index of the engine of --for in kiln's list; -1 without --for
     int tuning;       ///< a bake_tuning; -1 if the engine decides
     int samples, phi_steps, theta_steps;
     int irradiance_size, sh_bands, layout, negative, threads;
     double sh_window, rotation, exposure;
+    kiln_lights_def lights;
     bool mirror, json, quiet, verbose, sh_radiance, sh_irradiance;
     // Values that follow from several options together. The first are the names of the output
     // folders of levels and irradiance, with a final slash, which the user may omit.
@@ -29,6 +31,8 @@ typedef struct bake {
     /// harmonics
     bool has_roughness, stores_sh;
     float roughness[KILN_MAX_LEVELS];
+    kiln_sun sun;
+    double clamp; ///< radiance of --clamp; 0 if the library chooses
 
     cli_work work;
     kiln_map source;
@@ -47,6 +51,13 @@ extern const char *const bake_lobes[], *const bake_shapes[], *const bake_methods
 /// Parses the command line and checks all that can be checked before the work. Returns CLI_GO or an
 /// exit code.
 int bake_read_options(bake *b, const cli_command *command, const cli_call *call);
+/// Sets sun and clamp from --sun and --clamp, and checks the options of lights. Returns CLI_GO or an
+/// exit code.
+int bake_read_sun(bake *b, bool has_lights, bool has_share);
+/// Takes lights out of the source, or clamps it, for methods other than kiln_bake.
+int bake_sun_of_source(bake *b);
+/// Says on standard error which lights were taken out, or what light was lost.
+void bake_say_sun(bake *b);
 /// Prints the result of the bake, in words or as JSON.
 void bake_report(bake *b);
 

@@ -36,6 +36,11 @@ enum {
     ROTATE,
     EXPOSURE,
     MIRROR,
+    SUN,
+    CLAMP,
+    LIGHTS,
+    LIGHTS_SHARE,
+    LIGHTS_FILE,
     THREADS,
     JSON,
     QUIET,
@@ -152,6 +157,27 @@ const cli_option bake_options[OPTIONS + 1] = {
     [EXPOSURE] = {"exposure", CLI_NUMBER, AT(exposure), -64, 64, 0, "STOPS",
                   .help = "multiply the radiance by 2^STOPS"},
     [MIRROR] = {"mirror", CLI_FLAG, AT(mirror), .help = "swap left and right, before --rotate"},
+    [SUN] = {"sun", CLI_TEXT, AT(sun_text), .value = "WHICH", .group = "Sun and lamps",
+             .help = "what becomes of the sun and other compact lights: keep leaves them in the "
+                     "maps, extract takes the light with the largest share out, clamp=RADIANCE "
+                     "makes texels above a radiance darker, clamp=auto chooses the radiance",
+             .unset = "keep",
+             .more =
+                 "A light that is taken out is for an analytic light of the engine, which shows "
+                 "its highlight sharply and casts shadows. 'kiln lights' lists the lights of a "
+                 "panorama."},
+    [CLAMP] = {"clamp", CLI_TEXT, AT(clamp_text), .value = "RADIANCE",
+               .help = "the same as --sun clamp=RADIANCE; the word auto chooses the radiance"},
+    [LIGHTS] = {"lights", CLI_INTEGER, AT(lights.count), 1, KILN_MAX_LIGHTS, 0, "N",
+                .help = "with --sun extract: take N lights out at most, those with the largest "
+                        "shares",
+                .unset = "1, or all with --lights-share"},
+    [LIGHTS_SHARE] = {"lights-share", CLI_NUMBER, AT(lights.share), 0, 1, 0, "S",
+                      .help = "with --sun extract: take lights out that hold at least this part "
+                              "of all light",
+                      .unset = "0.01"},
+    [LIGHTS_FILE] = {"lights-file", CLI_FILE, AT(lights_path), .value = "FILE",
+                     .help = "with --sun extract: write the lights to a .json file"},
     [THREADS] = {"threads", CLI_INTEGER, AT(threads), 1, 256, 0, "N",
                  .help = "number of threads; the result is the same for every number",
                  .letter = 'j', .unset = "one per core", .group = "Work and report"},
@@ -235,10 +261,11 @@ static int check_output(const bake *b, const char *option, const char *path)
 
 static int check_paths(const bake *b)
 {
-    const char *paths[] = {b->output, b->irradiance_path, b->sh_path};
-    static const char *const names[] = {"--output", "--irradiance", "--sh"};
+    enum { PATHS = 4 };
+    const char *paths[PATHS] = {b->output, b->irradiance_path, b->sh_path, b->lights_path};
+    static const char *const names[] = {"--output", "--irradiance", "--sh", "--lights-file"};
     int code = CLI_GO;
-    for (int i = 0; i < 3; i++)
+    for (int i = 0; i < PATHS; i++)
         for (int k = 0; k < i; k++)
             if (paths[i] && paths[k] && !strcmp(paths[i], paths[k]))
                 return cli_wrong(b->arguments.command, "%s and %s are the same file, %s", names[k],
@@ -251,7 +278,7 @@ static int check_paths(const bake *b)
         code = check_output(b, "--output", b->output);
     if (code == CLI_GO && b->irradiance_path)
         code = check_output(b, "--irradiance", b->irradiance_path);
-    for (int i = 0; i < 3 && code == CLI_GO; i++)
+    for (int i = 0; i < PATHS && code == CLI_GO; i++)
         if (paths[i])
             code = cli_check_folder(paths[i]);
     return code;
@@ -411,6 +438,8 @@ int bake_read_options(bake *b, const cli_command *command, const cli_call *call)
 {
     cli_arguments *a = &b->arguments;
     int code = cli_read_arguments(a, command, call, b);
+    if (code == CLI_GO)
+        code = bake_read_sun(b, a->text[LIGHTS] != NULL, a->text[LIGHTS_SHARE] != NULL);
     b->shape += KILN_SHAPE_PANORAMA; // word 0 of --shape is `panorama`, enumerator 1
     if (code == CLI_GO)
         code = cli_check_input(command, a->rest, a->rest_count);

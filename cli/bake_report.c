@@ -35,6 +35,8 @@ static void report_output(const bake *b, json *j)
         json_text(j, "irradiance", b->irradiance_path);
     if (b->sh_path)
         json_text(j, "sh", b->sh_path);
+    if (b->lights_path)
+        json_text(j, "lights", b->lights_path);
     json_number(j, "file_count", b->saved.file_count);
     json_text(j, "shape", bake_shapes[b->made.levels.shape]);
     json_number(j, "size", b->made.levels.size);
@@ -80,6 +82,20 @@ static void report_losses(const bake *b, json *j)
     json_end(j);
 }
 
+static void report_sun(const bake *b, json *j)
+{
+    const kiln_clamp *clamped = &b->made.clamped;
+    if (b->sun == KILN_SUN_EXTRACT)
+        json_lights(j, &b->made.lights);
+    if (b->sun != KILN_SUN_CLAMP)
+        return;
+    json_object(j, "clamp");
+    json_number(j, "limit", clamped->limit);
+    json_number(j, "texels", (double)clamped->texel_count);
+    json_number(j, "light_share", clamped->light_share);
+    json_end(j);
+}
+
 static void report_seconds(const bake *b, json *j)
 {
     static const char *const stages[BAKE_STAGES] = {"load", "filter", "save"};
@@ -98,6 +114,7 @@ static void report_json(const bake *b)
     report_input(b, &j);
     report_output(b, &j);
     report_losses(b, &j);
+    report_sun(b, &j);
     json_text(&j, "method", bake_methods[b->textbook]);
     json_text(&j, "lobe", bake_lobes[b->lobe]);
     if (b->engine)
@@ -140,6 +157,7 @@ static void print_details(const bake *b)
     if (b->sh_path)
         printf("  harmonics  %s, %d bands of %s\n", b->sh_path, b->sh_bands,
                b->sh_irradiance ? "irradiance" : "radiance");
+    cli_print_lights(&b->made.lights);
     if (b->made.degree)
         printf("  degree     %d\n", b->made.degree);
     printf("  seconds    load %.3f, filter %.3f, save %.3f (%s)\n", s[BAKE_LOAD], s[BAKE_FILTER],

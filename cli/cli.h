@@ -59,7 +59,8 @@ struct cli_command {
     int (*run)(const cli_call *call);
 };
 
-extern const cli_command cli_bake, cli_engines, cli_eval, cli_fit, cli_info, cli_sky, cli_tables;
+extern const cli_command cli_bake, cli_engines, cli_eval, cli_fit, cli_info, cli_lights, cli_sky,
+    cli_tables;
 extern const cli_command cli_completions, cli_help;
 // commands that only builds with the CMake option KILN_VIEWER have
 extern const cli_command cli_assignment, cli_render, cli_view;
@@ -107,6 +108,9 @@ int cli_fail(const char *format, ...) CLI_PRINTF(1, 2);
 const char *cli_bytes(double bytes, char text[32]);
 /// Flushes standard output. Returns `code`, or the exit code of a failed write.
 int cli_close_output(int code);
+
+/// Prints a line for each light.
+void cli_print_lights(const kiln_lights *lights);
 
 // ------------------------------------------------------------------------------------- file names
 

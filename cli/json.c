@@ -182,3 +182,27 @@ void json_notes(json *j, const kiln_load_report *report)
         json_text(j, NULL, note.text);
     json_end(j);
 }
+
+static void number_vector(json *j, const char *key, const double v[3])
+{
+    json_array(j, key);
+    for (int k = 0; k < 3; k++)
+        json_number(j, NULL, v[k]);
+    json_end(j);
+}
+
+void json_lights(json *j, const kiln_lights *lights)
+{
+    json_array(j, "lights");
+    for (int i = 0; i < lights->count; i++) {
+        const kiln_light *light = &lights->light[i];
+        json_object(j, NULL);
+        number_vector(j, "direction", light->direction);
+        number_vector(j, "irradiance", light->irradiance);
+        json_number(j, "angular_radius", light->angular_radius);
+        json_number(j, "share", light->share);
+        json_number(j, "texels", (double)light->texel_count);
+        json_end(j);
+    }
+    json_end(j);
+}

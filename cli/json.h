@@ -33,5 +33,7 @@ void json_bool(json *j, const char *key, bool value);
 void json_text(json *j, const char *key, const char *text);
 /// Writes the array "notes" with the sentences of a report.
 void json_notes(json *j, const kiln_load_report *report);
+/// Writes the array "lights" with the members that kiln_lights_save writes.
+void json_lights(json *j, const kiln_lights *lights);
 
 #endif
