@@ -6,10 +6,10 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { LIGHTS, SHARE, OUTPUT, NEGATIVE, JSON, QUIET, OPTIONS };
+enum { LIGHTS, SHARE, OUTPUT, LAYER, NEGATIVE, JSON, QUIET, OPTIONS };
 
 typedef struct lights_values {
-    const char *output;
+    const char *output, *layer;
     kiln_lights_def def;
     int negative;
     bool json, quiet;
@@ -24,6 +24,7 @@ static const cli_option options[OPTIONS + 1] = {
                .help = "list lights that hold at least this part of all light"},
     [OUTPUT] = {"output", CLI_FILE, AT(output), .value = "FILE", .letter = 'o',
                 .help = "write the lights to a .json file too"},
+    [LAYER] = CLI_LAYER_ROW(lights_values),
     [NEGATIVE] = CLI_NEGATIVE_ROW(lights_values),
     [JSON] = {"json", CLI_FLAG, AT(json), .help = "print JSON for a program"},
     [QUIET] = CLI_QUIET_ROW(lights_values),
@@ -61,7 +62,7 @@ static void report(const lights_values *v, const char *name, const kiln_lights *
 static int work(cli_work *w, const cli_arguments *a, const lights_values *v, kiln_map *map)
 {
     kiln_lights lights;
-    const kiln_load_def load = {.negative = (kiln_negative)v->negative};
+    const kiln_load_def load = {.negative = (kiln_negative)v->negative, .layer = v->layer};
     int code = cli_load(w, a->rest, a->rest_count, &load, map);
     if (code != CLI_GO)
         return code;

@@ -100,6 +100,9 @@ kiln_result kiln_lights_extract(kiln_context *context, kiln_map *map, const kiln
 kiln_result kiln_lights_sh(const kiln_lights *lights, int bands, kiln_sh *sh, kiln_error *error)
 {
     *sh = (kiln_sh){0};
+    if (lights->count < 0 || lights->count > KILN_MAX_LIGHTS)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "count of lights is %d, it must be 0 to %d",
+                       lights->count, KILN_MAX_LIGHTS);
     if (bands < 1 || bands > KILN_MAX_BANDS)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "bands is %d, it must be 1 to %d", bands,
                        KILN_MAX_BANDS);

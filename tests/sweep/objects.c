@@ -260,6 +260,10 @@ static void bakes(void **state)
     BAKE(REAL_FIELD, exposure);
     BAKE(INT_FIELD, irradiance_size);
     BAKE(INT_FIELD, sh_bands);
+    BAKE(INT_FIELD, sun);
+    BAKE(REAL_FIELD, clamp);
+    BAKE(INT_FIELD, lights.count);
+    BAKE(REAL_FIELD, lights.share);
     EACH_REAL (x) {
         float roughness[2] = {0, (float)x};
         kiln_prefilter_def def = {.size = 4, .level_count = 2, .roughness = roughness};
@@ -301,6 +305,32 @@ static void bakes(void **state)
             SWEEP(kiln_reference_filter(c, &panorama, &lobe, 0, (const double(*)[3])direction, n,
                                         value, &e),
                   true);
+    }
+}
+
+static void lights(void **state)
+{
+    (void)state;
+    kiln_lights found;
+    kiln_sh sh;
+    kiln_clamp clamp;
+    memset(cube.level[0], 0, kiln_map_texels(&cube, 0) * 3 * sizeof(float));
+#define LIGHTS(kind, field)                                                                        \
+    kind(kiln_lights_def, field, kiln_lights_find(c, &panorama, &def, &found, &e), !found.count, ) \
+        kind(kiln_lights_def, field, kiln_lights_extract(c, &cube, &def, &found, &e),              \
+             !found.count, )
+    LIGHTS(INT_FIELD, count);
+    LIGHTS(REAL_FIELD, share);
+    EACH_REAL (x)
+        SWEEP(kiln_map_clamp(c, &cube, x, &clamp, &e), clamp.limit == 0);
+    EACH_INT (n) {
+        found.count = 0;
+        SWEEP(kiln_lights_sh(&found, n, &sh, &e), sh.bands == 0);
+        found.count = n;
+        if (n < 0 || n > KILN_MAX_LIGHTS)
+            SWEEP(kiln_lights_sh(&found, 3, &sh, &e), sh.bands == 0);
+        if (n < 0 || n > KILN_MAX_LIGHTS)
+            SWEEP(kiln_lights_save(c, &found, "none/lights.json", &e), true);
     }
 }
 
@@ -500,8 +530,8 @@ int main(void)
 {
 #define SWEPT(test) cmocka_unit_test_setup_teardown(test, begin, finish)
     const struct CMUnitTest tests[] = {
-        SWEPT(contexts), SWEPT(maps),    SWEPT(loads),  SWEPT(spectra), SWEPT(bakes),
-        SWEPT(saves),    SWEPT(engines), SWEPT(tables), SWEPT(courses),
+        SWEPT(contexts), SWEPT(maps),  SWEPT(loads),   SWEPT(spectra), SWEPT(bakes),
+        SWEPT(lights),   SWEPT(saves), SWEPT(engines), SWEPT(tables),  SWEPT(courses),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
