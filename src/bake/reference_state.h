@@ -1,11 +1,14 @@
-// The data of an integration by brute force, shared by reference.c, which sums over rows, and
-// reference_cell.c, which integrates the lobe over single texels.
+// The data of an integration by brute force, shared by reference.c, which prepares the
+// tables, reference_rows.inl, which sums over rows, and reference_cell.inl, which integrates the lobe
+// over single texels.
 #ifndef KI_REFERENCE_STATE_H
 #define KI_REFERENCE_STATE_H
 
 #include "bake/reference.h"
 
 enum {
+    // number of directions for which one pass over the panorama's rows sums
+    KI_REFERENCE_GROUP = 8,
     // Greatest number of times that a texel is halved along both sides: the 2^48th part of a texel
     // is smaller than a double resolves.
     KI_REFERENCE_DEPTH = 48
@@ -59,12 +62,10 @@ typedef struct ki_reference {
     size_t scratch_size;
 } ki_reference;
 
-/// Returns the length over which the lobe changes at a distance from its peak. Length and distance
-/// are in radians.
-double ki_reference_scale(const ki_reference *r, double distance);
-/// Returns the mean of lobe times sin theta over a cell of this depth of cutting, for the lobe's
-/// axis d, a unit vector. The angles theta and phi are those of the cell's centre.
-double ki_reference_cell(const ki_reference *r, const double d[3], int depth, double sin_theta,
-                         double cos_theta, double sin_phi, double cos_phi);
+/// Computes values[first ..] for the directions of group `index`, which starts at first = index *
+/// KI_REFERENCE_GROUP and has at most KI_REFERENCE_GROUP directions. `data` is a ki_reference. There
+/// is one function for each instruction set, and all of them give the same bits.
+ki_task ki_reference_group_scalar, ki_reference_group_simd128, ki_reference_group_avx2,
+    ki_reference_group_avx512;
 
 #endif

@@ -4,9 +4,9 @@
 // machine. math.h states the errors.
 #include "math/math.h"
 
+#include "math/power.inl"
+
 #include <math.h>
-#include <stdint.h>
-#include <string.h>
 
 // ------------------------------------------------------------------------------------ sine, cosine
 
@@ -86,79 +86,14 @@ double ki_cos(double x)
 
 // --------------------------------------------------------------------------------- exponent, power
 
-static double scale_by_power_of_two(double x, int exponent)
-{
-    // The power is split into two factors, because one factor may be outside the range of doubles.
-    // A result below the normal range is rounded once, by the last product.
-    int half = exponent / 2;
-    uint64_t bits1 = (uint64_t)(half + 1023) << 52, bits2 = (uint64_t)(exponent - half + 1023)
-                                                            << 52;
-    double f1, f2;
-    memcpy(&f1, &bits1, sizeof f1);
-    memcpy(&f2, &bits2, sizeof f2);
-    return x * f1 * f2;
-}
-
 double ki_exp(double x)
 {
-    static const double log2_high = 6.93147180369123816490e-01,
-                        log2_low = 1.90821492927058770002e-10;
-    if (x > 709)
-        return 1.7976931348623157e308;
-    if (!(x > -745))
-        return 0;
-    double n = floor(x * 1.44269504088896340736 + 0.5);
-    double r = (x - n * log2_high) - n * log2_low;
-    // exp r by its Taylor polynomial of degree 13. |r| <= 0.347, so that the next term is below
-    // 5e-18.
-    double p = 1.0 / 6227020800;
-    for (int k = 12; k >= 2; k--) {
-        static const double inverse[] = {0,
-                                         1,
-                                         1.0 / 2,
-                                         1.0 / 6,
-                                         1.0 / 24,
-                                         1.0 / 120,
-                                         1.0 / 720,
-                                         1.0 / 5040,
-                                         1.0 / 40320,
-                                         1.0 / 362880,
-                                         1.0 / 3628800,
-                                         1.0 / 39916800,
-                                         1.0 / 479001600};
-        p = p * r + inverse[k];
-    }
-    return scale_by_power_of_two(1 + (r + r * r * p), (int)n);
+    return exponential(x);
 }
 
 double ki_log(double x)
 {
-    static const double log2_high = 6.93147180369123816490e-01,
-                        log2_low = 1.90821492927058770002e-10;
-    int exponent = 0;
-    if (x < 2.2250738585072014e-308) {
-        x *= 18014398509481984.0; // 2^54, for subnormal x
-        exponent = -54;
-    }
-    uint64_t bits;
-    memcpy(&bits, &x, sizeof bits);
-    exponent += (int)(bits >> 52) - 1023;
-    bits = (bits & 0x000fffffffffffffu) | 0x3ff0000000000000u;
-    memcpy(&x, &bits, sizeof x);
-    if (x > 1.41421356237309514547) {
-        x *= 0.5;
-        exponent++;
-    }
-    // log x = 2 artanh(s) with s = (x - 1) / (x + 1), by the power series of artanh to s^21; |s| <=
-    // 0.1716.
-    double f = x - 1, s = f / (x + 1), y = s * s, p = 1.0 / 21;
-    for (int k = 19; k >= 3; k -= 2)
-        p = p * y + 1.0 / k;
-    double e = exponent;
-    // With f = x - 1, the series is log x = 2 s + 2 s y p = (f - s f) + 2 s y p, where y p is the
-    // sum after the first term. The sum starts from f, which is exact, to round as little as
-    // possible.
-    return e * log2_high + (f - (s * f - (2 * s * (y * p) + e * log2_low)));
+    return logarithm(x);
 }
 
 double ki_pow(double x, double y)

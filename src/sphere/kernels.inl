@@ -7,52 +7,17 @@
 // hold); and KI_TABLE, the name of the table of kernels.
 #include "sphere/kernels.h"
 
+#include "base/lanes.inl"
+
 #include <math.h>
 #include <string.h>
 
 enum { PARTS = KI_LANES / KI_WIDTH };
 
 #if KI_WIDTH == 1
-typedef double vec;
-#else
-typedef double vec __attribute__((vector_size(8 * KI_WIDTH), may_alias));
-#endif
-
-static inline vec splat(double x)
-{
-#if KI_WIDTH == 1
-    return x;
-#else
-    return (vec){0} + x;
-#endif
-}
-
-static inline vec load(const double *p)
-{
-    vec v;
-    memcpy(&v, p, sizeof v);
-    return v;
-}
-
-static inline void store(double *p, vec v)
-{
-    memcpy(p, &v, sizeof v);
-}
-
-#if KI_WIDTH == 1
-static inline vec positive(vec x)
-{
-    return x > 0 ? x : 0;
-}
 enum { FLOATS = 1 };
 typedef float floats;
 #else
-typedef int64_t mask __attribute__((vector_size(8 * KI_WIDTH)));
-
-static inline vec positive(vec x)
-{
-    return (vec)((mask)x & (mask)(x > 0));
-}
 enum { FLOATS = KI_WIDTH < 4 ? 4 : 8 };
 typedef float floats __attribute__((vector_size(4 * FLOATS), may_alias));
 #endif

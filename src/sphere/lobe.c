@@ -1,6 +1,7 @@
 #include "sphere/lobe.h"
 
 #include "math/math.h"
+#include "sphere/lobe.inl"
 
 #include <math.h>
 
@@ -59,12 +60,9 @@ double ki_lobe_weight(const kiln_lobe *lobe, double one_minus_cos)
     case KILN_LOBE_LAMBERT:
         return c > 0 ? c : 0;
     case KILN_LOBE_CHARLIE:
-        // The weight is D(h) cos theta, where D is proportional to (sin theta_h)^(1 / alpha). The
-        // half vector h of N and the light has sin^2 theta_h = (1 - c) / 2 with c = cos theta. D is
-        // divided by its value at the horizon, c = 0.
-        return c > 0 ? c * ki_pow(one_minus_cos, 0.5 / lobe->parameter) : 0;
+        return c > 0 ? charlie_weight(0.5 / lobe->parameter, one_minus_cos) : 0;
     case KILN_LOBE_PHONG:
-        return c > 0 ? ki_pow(c, lobe->parameter) : 0;
+        return c > 0 ? phong_weight(lobe->parameter, one_minus_cos) : 0;
     case KILN_LOBE_CUSTOM:
         return lobe->evaluate(lobe->user, c < -1 ? -1 : c > 1 ? 1 : c);
     }

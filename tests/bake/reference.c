@@ -242,6 +242,28 @@ static void threads_change_no_bit(void **state)
     kiln_map_free(&map);
 }
 
+static void instruction_sets_change_no_bit(void **state)
+{
+    (void)state;
+    kiln_map map =
+        make_panorama(context, 27); // rows of 54 texels, which is no multiple of a vector
+    fill(&map, 10);
+    double wanted[DIRECTIONS][3], values[DIRECTIONS][3];
+    for (int i = 0; i < ALPHAS + 5; i++) {
+        kiln_lobe lobe = lobe_number(i);
+        for (int cpu = KILN_CPU_SCALAR; cpu <= KILN_CPU_AVX512; cpu++) {
+            kiln_context *other = make_context_for(2, (enum kiln_cpu)cpu);
+            CHECK_OK(kiln_reference_filter(other, &map, &lobe, 5, (const double(*)[3])directions,
+                                           DIRECTIONS, values, &error));
+            if (cpu == KILN_CPU_SCALAR)
+                memcpy(wanted, values, sizeof wanted);
+            assert_memory_equal(values, wanted, sizeof wanted);
+            kiln_context_destroy(other);
+        }
+    }
+    kiln_map_free(&map);
+}
+
 static void wrong_arguments_are_named(void **state)
 {
     (void)state;
@@ -327,6 +349,7 @@ int main(void)
         cmocka_unit_test(alpha_zero_is_a_mirror),
         cmocka_unit_test(lambert_of_a_gradient_is_two_thirds),
         cmocka_unit_test(threads_change_no_bit),
+        cmocka_unit_test(instruction_sets_change_no_bit),
         cmocka_unit_test(wrong_arguments_are_named),
         cmocka_unit_test(stopping_and_small_memory_fail_cleanly),
     };
