@@ -136,6 +136,24 @@ static void warn_of_clamping(bake *b, const kiln_save_report *report, const char
              100 * report->light_share, way_out);
 }
 
+// Writes the one file of the environment to standard output.
+static int write_to_stdout(bake *b, const kiln_environment_save_def *def)
+{
+    kiln_files files;
+    if (kiln_environment_encode(b->work.context, &b->made, b->output, def, &files, &b->saved,
+                                &b->work.error))
+        return CLI_FAILED;
+    int code = CLI_GO;
+    if (files.count != 1)
+        code = cli_fail("%s: the environment takes %d files, and standard output holds one",
+                        b->output, files.count);
+    // A failed write is reported where the command closes standard output.
+    if (code == CLI_GO)
+        fwrite(files.file[0].bytes, 1, files.file[0].size, stdout);
+    kiln_files_free(&files);
+    return code;
+}
+
 static int save(bake *b)
 {
     kiln_context *context = b->work.context;
@@ -149,7 +167,11 @@ static int save(bake *b)
                                      .lights_path = b->lights_path,
                                      .sh = &sh};
     kiln_map_free(&b->source);
-    if (kiln_sh_filter(&b->made.sh, b->sh_bands, b->sh_irradiance, b->sh_window, &sh, error) ||
+    if (kiln_sh_filter(&b->made.sh, b->sh_bands, b->sh_irradiance, b->sh_window, &sh, error))
+        return CLI_FAILED;
+    if (b->to_stdout && write_to_stdout(b, &def) != CLI_GO)
+        return CLI_FAILED;
+    if (!b->to_stdout &&
         kiln_environment_save(context, &b->made, b->output, &def, &b->saved, error))
         return CLI_FAILED;
     bake_say_sun(b);
@@ -180,19 +202,24 @@ static int bake_all(bake *b)
     return CLI_DONE;
 }
 
+int bake_run(bake *b)
+{
+    int code = cli_begin_work(&b->work, b->threads, b->quiet);
+    b->since = os_seconds();
+    if (code == CLI_GO)
+        code = bake_all(b);
+    kiln_map_free(&b->source);
+    kiln_environment_free(&b->made);
+    return cli_end_work(&b->work, code);
+}
+
 static int run(const cli_call *call)
 {
     bake b = {0};
     int code = bake_read_options(&b, &cli_bake, call);
     if (code != CLI_GO)
         return code;
-    code = cli_begin_work(&b.work, b.threads, b.quiet);
-    b.since = os_seconds();
-    if (code == CLI_GO)
-        code = bake_all(&b);
-    kiln_map_free(&b.source);
-    kiln_environment_free(&b.made);
-    return cli_end_work(&b.work, code);
+    return bake_is_for_several(&b) ? bake_run_several(&b) : bake_run(&b);
 }
 
 static const cli_example examples[] = {
@@ -205,6 +232,8 @@ static const cli_example examples[] = {
     {"kiln bake city.exr --for three -o city.ktx2", "the file that three.js loads"},
     {"kiln bake city.exr -o city.ktx2 --sun extract --lights-file sun.json",
      "the environment without its sun, and the sun for a directional light"},
+    {"kiln bake *.hdr -o 'out/{name}.ktx2'",
+     "bakes every environment of the folder to a file of its own"},
     {"kiln bake city.exr -o 'level_%d.hdr' --shape panorama --method textbook",
      "panoramas by importance sampling as courses teach, for comparison"},
     {NULL, NULL}};
@@ -218,7 +247,9 @@ const cli_command cli_bake = {
         "a "
         "folder "
         "or pattern of six faces, six files, or - for standard input. In a pattern, and in OUT, %s "
-        "or {face} stands for the face; in OUT, %d or {level} stands for the level.",
+        "or {face} stands for the face; in OUT, %d or {level} stands for the level. If OUT holds "
+        "{name}, each IN is an environment of its own, and {name} stands for its file name without "
+        "the ending.",
     .more = "What a file says about its colours is honoured. Of KTX2, DDS and KTX files kiln reads "
             "level 0 of a cube or a "
             "2-D texture with 8 or 16 bits, 16-bit or 32-bit floats, or BC6H. "

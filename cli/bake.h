@@ -30,6 +30,8 @@ typedef struct bake {
     /// has_roughness: --roughness is given; stores_sh: the output file's metadata holds spherical
     /// harmonics
     bool has_roughness, stores_sh;
+    /// true: the file goes to standard output; `output` is then "-" with the ending of its format
+    bool to_stdout;
     float roughness[KILN_MAX_LEVELS];
     kiln_sun sun;
     double clamp; ///< radiance of --clamp; 0 if the library chooses
@@ -58,7 +60,14 @@ int bake_read_sun(bake *b, bool has_lights, bool has_share);
 int bake_sun_of_source(bake *b);
 /// Says on standard error which lights were taken out, or what light was lost.
 void bake_say_sun(bake *b);
+/// Does the work of one input with checked options. Returns the exit code.
+int bake_run(bake *b);
 /// Prints the result of the bake, in words or as JSON.
 void bake_report(bake *b);
+
+/// Returns whether an output path holds {name}: each input is then an environment of its own.
+bool bake_is_for_several(const bake *b);
+/// Bakes each input. Returns the exit code: of a failure if an input failed.
+int bake_run_several(const bake *b);
 
 #endif

@@ -2,6 +2,7 @@
 // numbers are in range, with the settings that the engine of --for decides, and with outputs whose
 // file format can hold the wanted data.
 #include "bake.h"
+#include "os.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -73,7 +74,10 @@ const cli_option bake_options[OPTIONS + 1] = {
                 .help = "what to write, chosen by the ending: .ktx2 and .dds files hold a cube "
                         "with all its levels; .exr, .hdr and .png files hold one face of one level "
                         "each; a folder, whose name ends in /, receives EXR files",
-                .more = "Every file is written whole or not at all."},
+                .more = "Every file is written whole or not at all. The name - is standard output, "
+                        "which takes one file: KTX2, or the format whose ending follows, as in "
+                        "-.dds. Several inputs are baked one after the other if the name holds "
+                        "{name}."},
     [ENGINE] = {"for", CLI_CHOICE, AT(engine_index), 0, 0, -1, "ENGINE", .word = engine_word,
                 .help = "write the files that an engine loads, with the engine's levels, "
                         "roughnesses, axes and encoding; 'kiln engines' describes each engine",
@@ -247,7 +251,7 @@ static int check_output(const bake *b, const char *option, const char *path)
     kiln_error error;
     if (!strcmp(path, "-"))
         return cli_wrong(b->arguments.command,
-                         "%s: kiln cannot write to standard output, name a file", option);
+                         "%s: only --output can be standard output, name a file", option);
     if (!kiln_map_save_check(path, (kiln_shape)b->shape, &def, &error))
         return CLI_GO;
     bool is_main = path == b->output;
@@ -257,6 +261,50 @@ static int check_output(const bake *b, const char *option, const char *path)
         return cli_wrong(b->arguments.command, "%s %s: .%s is a file for %s, add --for %s", option,
                          path, engine->ending, engine->title, engine->name);
     return cli_wrong(b->arguments.command, "%s %s", option, error.message);
+}
+
+// Takes "-" as standard output, and the letters after "-." as the ending of the format: KTX2, or the
+// engine's format, if none is named.
+static void take_stdout(bake *b)
+{
+    bool bare = !strcmp(b->output, "-");
+    b->to_stdout = bare || !strncmp(b->output, "-.", 2);
+    const kiln_engine *engine = kiln_engine_at(b->engine_index);
+    if (bare)
+        snprintf(b->folder[0], sizeof b->folder[0], "-.%s",
+                 engine && engine->ending[0] ? engine->ending : "ktx2");
+    b->output = bare ? b->folder[0] : b->output;
+}
+
+// Checks that standard output can take the file: one file, no report beside it, and no terminal.
+static int check_stdout(const bake *b)
+{
+    const cli_command *command = b->arguments.command;
+    bool one_file =
+        b->engine ? b->engine->ending[0] != 0
+                  : cli_ends_in(b->output, "ktx2") || cli_ends_in(b->output, "dds") ||
+                        ((b->shape == KILN_SHAPE_PANORAMA || b->shape == KILN_SHAPE_OCTAHEDRON) &&
+                         b->level_count == 1);
+    if (!b->to_stdout)
+        return CLI_GO;
+    if (!one_file)
+        return cli_wrong(command,
+                         "--output %s: standard output holds one file, and this environment takes "
+                         "several; choose -.ktx2, or --shape panorama --levels 1",
+                         b->output);
+    if (b->json || b->verbose)
+        return cli_wrong(command, "--output -: standard output holds the file, leave out --%s",
+                         b->json ? "json" : "verbose");
+    if (b->irradiance_path || b->sh_path || b->lights_path)
+        return cli_wrong(command, "--output -: standard output holds one file, leave out --%s",
+                         b->irradiance_path ? "irradiance"
+                         : b->sh_path       ? "sh"
+                                            : "lights-file");
+    if (os_is_terminal(OS_OUTPUT))
+        return cli_wrong(command,
+                         "--output -: standard output is a terminal, which cannot show the "
+                         "file; redirect it to a file or a program");
+    return CLI_GO;
 }
 
 static int check_paths(const bake *b)
@@ -428,7 +476,7 @@ static int check_combinations(const bake *b)
         return cli_wrong(b->arguments.command, "--zstd is for .ktx2 files, not for %s", b->output);
     if (given[IRRADIANCE_SIZE] && !b->irradiance_path)
         return cli_wrong(b->arguments.command, "--irradiance-size needs --irradiance FILE");
-    if (given[LAYOUT] && b->arguments.rest_count > 1)
+    if (given[LAYOUT] && b->arguments.rest_count > 1 && !bake_is_for_several(b))
         return cli_wrong(b->arguments.command,
                          "--layout is for one picture, leave it out for six faces");
     return check_harmonics(b);
@@ -441,12 +489,14 @@ int bake_read_options(bake *b, const cli_command *command, const cli_call *call)
     if (code == CLI_GO)
         code = bake_read_sun(b, a->text[LIGHTS] != NULL, a->text[LIGHTS_SHARE] != NULL);
     b->shape += KILN_SHAPE_PANORAMA; // word 0 of --shape is `panorama`, enumerator 1
-    if (code == CLI_GO)
+    bool several = code == CLI_GO && bake_is_for_several(b) && a->rest_count > 0;
+    if (code == CLI_GO && !several)
         code = cli_check_input(command, a->rest, a->rest_count);
     if (code != CLI_GO)
         return code;
     if (!b->output)
         return cli_wrong(b->arguments.command, "no output: name it by -o OUT");
+    take_stdout(b);
     b->output = add_slash(b->output, b->folder[0]);
     b->irradiance_path = add_slash(b->irradiance_path, b->folder[1]);
     b->stores_sh = cli_ends_in(b->output, "ktx2");
@@ -457,5 +507,6 @@ int bake_read_options(bake *b, const cli_command *command, const cli_call *call)
         b->tuning = BAKE_EXACT;
     if (b->lobe == KILN_LOBE_LAMBERT)
         b->level_count = 1;
-    return check_paths(b);
+    code = check_stdout(b);
+    return code == CLI_GO ? check_paths(b) : code;
 }

@@ -170,7 +170,7 @@ void bake_report(bake *b)
     cli_clear_progress(&b->work);
     if (b->json)
         report_json(b);
-    else if (!b->quiet)
+    else if (!b->quiet && !b->to_stdout)
         print_summary(b);
     if (b->verbose)
         print_details(b);

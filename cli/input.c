@@ -12,8 +12,11 @@ int cli_check_input(const cli_command *command, const char **names, int count)
     if (count == 0)
         return cli_wrong(command, "no input is named, name a panorama or six faces");
     if (count != 1 && count != FACES)
-        return cli_wrong(
-            command, "%d inputs are named, name one file, folder or pattern, or six faces", count);
+        return cli_wrong(command,
+                         "%d inputs are named, name one file, folder or pattern, or six faces, or "
+                         "write {name} in the "
+                         "output for several environments",
+                         count);
     if (count == 1)
         return CLI_GO;
     for (int i = 0; i < FACES; i++)

@@ -131,6 +131,46 @@ export small="--size 16 --exposure -8"
     rm odd.dds ./*.ktx2
 }
 
+# Standard output holds the bytes of the file and nothing else.
+expect 0 "" bake sky.exr -o a.ktx2 --size 16
+"$KILN" bake sky.exr -o - --size 16 >b.ktx2 2>log/err || die "standard output"
+same a.ktx2 b.ktx2
+expect 0 "" bake sky.exr -o a.dds --size 16
+"$KILN" bake sky.exr -o -.dds --size 16 | cat >b.dds
+same a.dds b.dds
+expect 0 "" bake sky.exr -o a.hdr --size 16 --shape panorama --levels 1
+"$KILN" bake sky.exr -o -.hdr --size 16 --shape panorama --levels 1 >b.hdr
+same a.hdr b.hdr
+if [ -e /dev/full ]; then
+    code=0
+    "$KILN" bake sky.exr -o - --size 16 >/dev/full 2>log/err || code=$?
+    [ $code = 1 ] || die "a full device gives exit code $code"
+    grep -q "standard output: " log/err || die "a full device is not named"
+fi
+
+# Several environments: each is written, a failure gives exit code 1 and does not stop the others.
+mkdir in out
+"$KILN" sky -o in/low.v2.exr --size 16 --elevation 5 -q
+cp sky.exr in/sky.exr
+echo nothing >in/bad.exr
+expect 0 "" bake in/sky.exr in/low.v2.exr -o 'out/{name}.ktx2' --size 16 --sh 'out/{name}.json'
+same a.ktx2 out/sky.ktx2
+[ -s out/low.v2.ktx2 ] && [ -s out/low.v2.json ] || die "the second environment is missing"
+rm out/*
+code=0
+"$KILN" bake in/bad.exr in/sky.exr -o 'out/{name}.ktx2' --size 16 >log/out 2>log/err || code=$?
+[ $code = 1 ] || die "a failed input gives exit code $code"
+grep -q "^kiln: in/bad.exr: " log/err || die "the failed input is not named"
+same a.ktx2 out/sky.ktx2
+[ "$(wc -l <log/out)" = 1 ] || die "one line for each environment"
+# The name of a folder and of a pattern of faces.
+mkdir in/hall
+expect 0 "" bake sky.exr -o in/hall/ --size 8 --levels 1
+expect 0 "" bake sky.exr -o 'in/yard_%s.exr' --size 8 --levels 1
+expect 0 "" bake in/hall 'in/yard_{face}.exr' -o 'out/{name}.ktx2' --size 8
+same out/hall.ktx2 out/yard.ktx2
+rm -r in out ./*.ktx2 ./*.dds ./*.hdr
+
 expect 0 "" tables --method textbook -o t.exr --size 16 --samples 16
 expect 0 "" tables --method textbook -o t.png --size 16 --samples 16 -q
 only sky.exr t.exr t.png

@@ -36,7 +36,14 @@ expect 2 "standard input" bake a b c d e - -o out.ktx2
 expect 2 "must end in" bake in.exr -o out
 expect 2 "must end in" bake in.exr -o out.jpg
 expect 2 "must end in" bake in.exr -o .exr
-expect 2 "standard output" bake in.exr -o -
+expect 2 "standard output holds one file, and this environment takes several" bake in.exr -o -.exr
+expect 2 "standard output holds one file, and this environment takes several" bake in.exr -o - --for filament
+expect 2 "leave out --json" bake in.exr -o - --json
+expect 2 "leave out --irradiance" bake in.exr -o - --irradiance d.ktx2
+expect 2 "only --output can be standard output" bake in.exr -o a.ktx2 --irradiance -
+expect 2 "write {name} in the output for several" bake a.exr b.exr -o out.ktx2
+expect 2 "a/x.exr and b/x.hdr would both be written to x.ktx2" bake a/x.exr b/x.hdr -o '{name}.ktx2'
+expect 1 "there is no folder none" bake a.exr b.exr -o 'none/{name}.ktx2'
 expect 2 "same file" bake in.exr -o out.exr --irradiance out.exr
 expect 2 "must end in .json" bake in.exr -o out.ktx2 --sh sh.xml
 expect 1 "there is no folder nowhere" bake in.exr -o nowhere/out.ktx2
