@@ -1,4 +1,4 @@
-// Binary glTF 2.0 with the extension EXT_lights_image_based. In: a cube and harmonics. Out: bytes
+// Binary glTF 2.0 with the extension EXT_lights_image_based. In: a cube, harmonics and lights. Out: bytes
 // of a file; or of a file that is read, the description of its first light. A file is 12 bytes of
 // header, a chunk of JSON padded with spaces, and a chunk of bytes padded with zeros. The images of
 // a light are PNG files in RGBD, level by level, face by face. The extension's figure has v upward
@@ -11,6 +11,7 @@
 #include "codec/rgbx_png.h"
 #include "math/math.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -69,17 +70,75 @@ static void write_light(const kiln_map *map, const kiln_sh *sh, ki_writer *json)
     ki_write_text(json, "]}");
 }
 
-kiln_result ki_gltf_encode(const kiln_map *map, const kiln_sh *sh, ki_writer *w, kiln_error *error)
+// Writes the array of a directional light's definition. The extension wants the colour and the
+// illuminance of a surface that faces the light apart; their product is the irradiance.
+static void write_sun(const kiln_light *light, bool first, ki_writer *json)
+{
+    const double *e = light->irradiance;
+    double most = e[0] > e[1] ? e[0] : e[1];
+    most = most > e[2] ? most : e[2];
+    ki_write_text(json, "%s{\"type\":\"directional\",\"intensity\":", first ? "" : ",");
+    ki_write_number(json, most);
+    ki_write_text(json, ",\"color\":[");
+    for (int c = 0; c < 3; c++) {
+        ki_write_text(json, "%s", c ? "," : "");
+        ki_write_number(json, most > 0 ? e[c] / most : 1);
+    }
+    ki_write_text(json, "]}");
+}
+
+// Writes the node of a directional light, which shines along the node's -Z. The quaternion turns +Z
+// to the direction d by the shortest way: its axis is Z x d, and its parts before normalisation are
+// (-d.y, d.x, 0, 1 + d.z).
+static void write_sun_node(const kiln_light *light, int index, ki_writer *json)
+{
+    const double *d = light->direction;
+    double q[4] = {-d[1], d[0], 0, 1 + d[2]};
+    double square = q[0] * q[0] + q[1] * q[1] + q[3] * q[3];
+    if (!(square > 1e-12)) { // -Z: half a turn about Y
+        q[0] = q[3] = 0;
+        q[1] = square = 1;
+    }
+    ki_write_text(json, "%s{\"rotation\":[", index ? "," : "");
+    for (int k = 0; k < 4; k++) {
+        ki_write_text(json, "%s", k ? "," : "");
+        ki_write_number(json, q[k] / sqrt(square));
+    }
+    ki_write_text(json, "],\"extensions\":{\"KHR_lights_punctual\":{\"light\":%d}}}", index);
+}
+
+// Writes the extensions and the scene: the light of the cube, and directional lights as nodes.
+static void write_scene(const kiln_map *map, const kiln_sh *sh, const kiln_lights *lights,
+                        ki_writer *json)
+{
+    int count = lights ? lights->count : 0;
+    ki_write_text(json, ",\"extensionsUsed\":[\"EXT_lights_image_based\"%s],\"extensions\":{",
+                  count ? ",\"KHR_lights_punctual\"" : "");
+    for (int i = 0; i < count; i++) {
+        ki_write_text(json, "%s", i ? "" : "\"KHR_lights_punctual\":{\"lights\":[");
+        write_sun(&lights->light[i], i == 0, json);
+    }
+    ki_write_text(json, "%s\"EXT_lights_image_based\":{\"lights\":[", count ? "]}," : "");
+    write_light(map, sh, json);
+    ki_write_text(json, "]}},");
+    for (int i = 0; i < count; i++) {
+        ki_write_text(json, "%s", i ? "" : "\"nodes\":[");
+        write_sun_node(&lights->light[i], i, json);
+    }
+    ki_write_text(json, "%s\"scene\":0,\"scenes\":[{", count ? "]," : "");
+    for (int i = 0; i < count; i++)
+        ki_write_text(json, "%s%d%s", i ? "," : "\"nodes\":[", i, i == count - 1 ? "]," : "");
+    ki_write_text(json, "\"extensions\":{\"EXT_lights_image_based\":{\"light\":0}}}]}");
+}
+
+kiln_result ki_gltf_encode(const kiln_map *map, const kiln_sh *sh, const kiln_lights *lights,
+                           ki_writer *w, kiln_error *error)
 {
     ki_writer json = {.context = w->context}, images = json;
     ki_write_text(&json, "{\"asset\":{\"version\":\"2.0\",\"generator\":\"kiln %s\"},",
                   kiln_version());
     kiln_result result = write_images(map, &json, &images, error);
-    ki_write_text(&json, ",\"extensionsUsed\":[\"EXT_lights_image_based\"],"
-                         "\"extensions\":{\"EXT_lights_image_based\":{\"lights\":[");
-    write_light(map, sh, &json);
-    ki_write_text(&json, "]}},\"scene\":0,\"scenes\":[{\"extensions\":{\"EXT_lights_image_based\":"
-                         "{\"light\":0}}}]}");
+    write_scene(map, sh, lights, &json);
     while (json.size % 4 && !json.failed)
         ki_write_u8(&json, ' ');
     const size_t size = HEADER + 8 + json.size + 8 + images.size;

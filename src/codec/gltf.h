@@ -4,10 +4,11 @@
 
 #include "codec/codec.h"
 
-/// Appends a binary glTF file whose scene has nothing but one light: a cube whose level k of n has
-/// roughness k / (n - 1), and the first three bands of radiance.
-kiln_result ki_gltf_encode(const kiln_map *map, const kiln_sh *sh, ki_writer *writer,
-                           kiln_error *error);
+/// Appends a binary glTF file whose scene has nothing but light: a cube whose level k of n has
+/// roughness k / (n - 1), the first three bands of radiance, and a directional light of the
+/// extension KHR_lights_punctual for each of `lights`, which may be NULL.
+kiln_result ki_gltf_encode(const kiln_map *map, const kiln_sh *sh, const kiln_lights *lights,
+                           ki_writer *writer, kiln_error *error);
 /// Describes the first light of a binary glTF file.
 kiln_result ki_gltf_describe(const uint8_t *bytes, size_t size, const char *name,
                              kiln_file_info *info, kiln_error *error);

@@ -283,8 +283,9 @@ static kiln_result write_turned(ki_export *to, const ki_recipe *recipe, const ki
 }
 
 kiln_result ki_engine_write(ki_file_set *set, kiln_context *context, const kiln_engine *engine,
-                            const kiln_map *map, const kiln_sh *sh, kiln_format format,
-                            const char *path, kiln_save_report *report, kiln_error *error)
+                            const kiln_map *map, const kiln_sh *sh, const kiln_lights *lights,
+                            kiln_format format, const char *path, kiln_save_report *report,
+                            kiln_error *error)
 {
     const ki_recipe *recipe;
     kiln_result result = find_recipe(engine, &recipe, error);
@@ -297,7 +298,8 @@ kiln_result ki_engine_write(ki_file_set *set, kiln_context *context, const kiln_
     bool least = format == KILN_FORMAT_B10G11R11;
     if (report)
         ki_count_cut(map, least ? kiln_format_limit(format) : engine->limit, report);
-    ki_export to = {.context = context, .format = format, .path = path, .set = set};
+    ki_export to = {
+        .context = context, .lights = lights, .format = format, .path = path, .set = set};
     result = write_turned(&to, recipe, map, sh, error);
     if (report)
         report->file_count = to.file_count;
@@ -317,8 +319,8 @@ typedef struct engine_files {
 static kiln_result add_files(ki_file_set *set, void *data, kiln_error *error)
 {
     const engine_files *e = data;
-    return ki_engine_write(set, e->context, e->engine, e->map, e->sh, e->format, e->path, e->report,
-                           error);
+    return ki_engine_write(set, e->context, e->engine, e->map, e->sh, NULL, e->format, e->path,
+                           e->report, error);
 }
 
 kiln_result kiln_engine_save(kiln_context *context, const kiln_engine *engine, const kiln_map *map,

@@ -21,6 +21,8 @@ typedef struct ki_export {
     kiln_context *context;
     const kiln_map *map;
     const kiln_sh *sh;
+    /// Lights that were taken out of the environment, in kiln's directions; NULL for none.
+    const kiln_lights *lights;
     // The texel format of the files, one of those that the engine reads; KILN_FORMAT_AUTO if there
     // is no choice.
     kiln_format format;
@@ -83,9 +85,11 @@ kiln_result ki_export_add(ki_export *to, const char *path, const ki_writer *byte
 /// Writes the cube of an export as a single .dds file in the texel format of the export.
 kiln_result ki_export_dds(ki_export *to, kiln_error *error);
 
-/// Adds the files that kiln_engine_save writes to a set. `report` may be NULL.
+/// Adds the files that kiln_engine_save writes to a set, and the lights, which may be NULL, to files
+/// of formats that hold lights. `report` may be NULL.
 kiln_result ki_engine_write(ki_file_set *set, kiln_context *context, const kiln_engine *engine,
-                            const kiln_map *map, const kiln_sh *sh, kiln_format format,
-                            const char *path, kiln_save_report *report, kiln_error *error);
+                            const kiln_map *map, const kiln_sh *sh, const kiln_lights *lights,
+                            kiln_format format, const char *path, kiln_save_report *report,
+                            kiln_error *error);
 
 #endif

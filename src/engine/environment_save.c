@@ -17,12 +17,15 @@ static kiln_result write_levels(ki_file_set *set, kiln_context *context,
     if ((unsigned)environment->lobe > KILN_LOBE_CUSTOM)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "lobe is %d, it must be 0 to %d",
                        (int)environment->lobe, (int)KILN_LOBE_CUSTOM);
+    if (environment->lights.count < 0 || environment->lights.count > KILN_MAX_LIGHTS)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "count of lights is %d, it must be 0 to %d",
+                       environment->lights.count, KILN_MAX_LIGHTS);
     if (def->engine && def->zstd)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
                        "%s: no engine's loader reads zstd, leave zstd 0", path);
     if (def->engine)
         return ki_engine_write(set, context, def->engine, &environment->levels, &environment->sh,
-                               def->format, path, report, error);
+                               &environment->lights, def->format, path, report, error);
     const kiln_save_def save = {.format = def->format,
                                 .zstd = def->zstd,
                                 .sh = environment->sh.bands ? &environment->sh : NULL,

@@ -1,6 +1,7 @@
 // Binary glTF with the extension EXT_lights_image_based. Level k of n has roughness k / (n - 1),
 // with sizes from 256 texels down to 16. The faces have the order and orientation of the
-// extension's figure, which are those of OpenGL and kiln. The axes of glTF are kiln's axes.
+// extension's figure, which are those of OpenGL and kiln. The axes of glTF are kiln's axes. Lights that
+// were taken out of the environment become directional lights of KHR_lights_punctual.
 #include "engine/engine.h"
 
 #include "codec/gltf.h"
@@ -9,7 +10,7 @@
 static kiln_result write_files(ki_export *to, kiln_error *error)
 {
     ki_writer bytes = {.context = to->context};
-    kiln_result result = ki_gltf_encode(to->map, to->sh, &bytes, error);
+    kiln_result result = ki_gltf_encode(to->map, to->sh, to->lights, &bytes, error);
     if (result == KILN_OK)
         result = ki_export_add(to, to->path, &bytes, error);
     ki_writer_free(&bytes);

@@ -52,6 +52,31 @@ small="--size 16 --exposure -8"
     expect 0 "dusk.exr: no compact light was found, and nothing was taken out" bake dusk.exr -o out.ktx2 $small --sun extract
     expect 0 "" bake sky.exr -o out.ktx2 $small --sun extract -q
 
+    # A .glb holds the sun as a directional light: its node's +Z points to the sun, and colour times intensity
+    # is the irradiance.
+    for turn in 0 90 200; do
+        expect 0 "taken out" bake sky.exr --for gltf --size 32 --exposure -8 -o sun.glb --sun extract --rotate $turn \
+            --lights-file out.json
+        node -e '
+            const fs = require("fs"), file = fs.readFileSync("sun.glb");
+            const gltf = JSON.parse(file.toString("utf8", 20, 20 + file.readUInt32LE(12)));
+            const [sun] = JSON.parse(fs.readFileSync("out.json")).lights;
+            const [light] = gltf.extensions.KHR_lights_punctual.lights, [node] = gltf.nodes;
+            const [x, y, z, w] = node.rotation;
+            const axis = [2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)];
+            const near = (a, b) => Math.abs(a - b) < 1e-6;
+            const good = axis.every((a, i) => near(a, sun.direction[i])) && light.type === "directional" &&
+                light.color.every((c, i) => c <= 1 && near(c * light.intensity, sun.irradiance[i])) &&
+                gltf.extensionsUsed.includes("KHR_lights_punctual") && node.extensions.KHR_lights_punctual.light === 0 &&
+                gltf.scenes[0].nodes.length === 1 && gltf.scenes[0].nodes[0] === 0 &&
+                gltf.scenes[0].extensions.EXT_lights_image_based.light === 0;
+            process.exit(good ? 0 : 1);' || die "the sun of a .glb, turned by $turn degrees"
+    done
+    expect 0 "" info sun.glb
+    expect 0 "" bake sky.exr --for gltf --size 32 --exposure -8 -o sun.glb
+    ! grep -q -a KHR_lights sun.glb || die "a .glb has a light that was not taken out"
+    rm sun.glb
+
     expect 0 "sky.exr: [0-9]* texels above 0.1 were made as dark as this, which lost 44[0-9.]* % of the light" \
         bake sky.exr -o a.ktx2 $small --sun clamp=0.1
     expect 0 "above 0.1 were" bake sky.exr -o b.ktx2 $small --clamp 0.1 --json

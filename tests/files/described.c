@@ -21,7 +21,7 @@ static ki_writer make_sample(int which)
     if (which == ENV)
         CHECK_OK(ki_env_encode(&map, 0.8, &sh, &w, &error));
     else if (which == GLB)
-        CHECK_OK(ki_gltf_encode(&map, &sh, &w, &error));
+        CHECK_OK(ki_gltf_encode(&map, &sh, NULL, &w, &error));
     else if (which == KTX1)
         CHECK_OK(ki_ktx1_encode(&map, &sh, "filament", KILN_FORMAT_RGBA16F, &w, &error));
     else
