@@ -3,14 +3,18 @@
 #include "work.h"
 
 #include <stdio.h>
+#include <string.h>
 
 typedef struct info_values {
-    bool json;
+    bool json, lights;
 } info_values;
 
 static const cli_option options[] = {
     {"json", CLI_FLAG, offsetof(info_values, json),
      .help = "print an array with one JSON object for each file"},
+    {"lights", CLI_FLAG, offsetof(info_values, lights),
+     .help = "read the texels of environments too, and list the sun and other compact lights as "
+             "'kiln lights' does"},
     {.name = NULL},
 };
 
@@ -43,7 +47,7 @@ static void print_layers(const kiln_file_info *info)
         printf("    and %d more\n", info->layer_count - shown);
 }
 
-static void print_text(const char *path, const kiln_file_info *info)
+static void print_text(const char *path, const kiln_file_info *info, const kiln_lights *lights)
 {
     char bytes[32];
     printf("%s\n", path);
@@ -81,6 +85,10 @@ static void print_text(const char *path, const kiln_file_info *info)
     kiln_note note;
     for (int i = 0; kiln_load_report_note(&info->report, i, &note); i++)
         printf("  %-12s %s\n", note.warning ? "warning" : "note", note.text);
+    if (lights && !lights->count)
+        printf("  lights       none that are compact\n");
+    else if (lights)
+        cli_print_lights(lights);
 }
 
 static void print_roughness_json(json *j, const kiln_file_info *info)
@@ -121,7 +129,8 @@ static void print_layers_json(json *j, const kiln_file_info *info)
     json_end(j);
 }
 
-static void print_json(json *j, const char *path, const kiln_file_info *info)
+static void print_json(json *j, const char *path, const kiln_file_info *info,
+                       const kiln_lights *lights)
 {
     json_object(j, NULL);
     json_text(j, "path", path);
@@ -153,29 +162,53 @@ static void print_json(json *j, const char *path, const kiln_file_info *info)
     if (info->layer_count)
         print_layers_json(j, info);
     json_notes(j, &info->report);
+    if (lights)
+        json_lights(j, lights);
     json_end(j);
 }
 
-static int describe(const cli_arguments *a, bool as_json, cli_work *work)
+// Finds the lights of a file. A file that holds no environment has none.
+static kiln_result find_lights(cli_work *work, const char *path, const kiln_file_info *info,
+                               kiln_lights *lights)
+{
+    static const char *const layouts[] = {"panorama", "cross", "strip", "cube", "octahedron"};
+    const kiln_lights_def def = {.share = 0.001};
+    kiln_map map = {0};
+    bool has_map = false;
+    for (size_t i = 0; i < sizeof layouts / sizeof *layouts; i++)
+        has_map |= !strcmp(info->layout, layouts[i]);
+    lights->count = 0;
+    if (!has_map)
+        return KILN_OK;
+    kiln_result result = kiln_map_load(work->context, path, NULL, &map, &work->error);
+    if (result == KILN_OK)
+        result = kiln_lights_find(work->context, &map, &def, lights, &work->error);
+    kiln_map_free(&map);
+    return result;
+}
+
+static int describe(const cli_arguments *a, const info_values *values, cli_work *work)
 {
     int code = CLI_DONE;
     json j = {0};
-    if (as_json)
+    if (values->json)
         json_array(&j, NULL);
     for (int i = 0; i < a->rest_count && !cli_interrupted(); i++) {
         kiln_file_info info;
-        if (kiln_file_describe(work->context, a->rest[i], &info, &work->error)) {
+        kiln_lights found, *lights = values->lights ? &found : NULL;
+        if (kiln_file_describe(work->context, a->rest[i], &info, &work->error) ||
+            (lights && find_lights(work, a->rest[i], &info, lights))) {
             if (!cli_interrupted())
                 cli_fail("%s", work->error.message);
             work->error.message[0] = 0; // keeps cli_end_work from printing the message again
             code = CLI_FAILED;
-        } else if (as_json) {
-            print_json(&j, a->rest[i], &info);
+        } else if (values->json) {
+            print_json(&j, a->rest[i], &info, lights);
         } else {
-            print_text(a->rest[i], &info);
+            print_text(a->rest[i], &info, lights);
         }
     }
-    if (as_json)
+    if (values->json)
         json_end(&j);
     return cli_interrupted() ? CLI_FAILED : code;
 }
@@ -192,7 +225,7 @@ static int run(const cli_call *call)
         return cli_wrong(&cli_info, "no input is named, name a file");
     code = cli_begin_work(&work, 1, false);
     if (code == CLI_GO)
-        code = describe(&a, values.json, &work);
+        code = describe(&a, &values, &work);
     return cli_end_work(&work, code);
 }
 

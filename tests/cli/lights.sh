@@ -26,6 +26,17 @@ node -e '
         sun.texels === same.texels && sun.texels > 0;
     process.exit(good ? 0 : 1);' || die "the values of the sun"
 
+# kiln info lists the same lights, where it is asked to.
+expect 0 "" info --lights --json sky.exr dusk.exr
+node -e '
+    const fs = require("fs"), [sky, dusk] = JSON.parse(fs.readFileSync("log/out"));
+    const same = JSON.stringify(sky.lights) === JSON.stringify(JSON.parse(fs.readFileSync("sun-printed.json")).lights);
+    process.exit(same && dusk.lights.length === 0 ? 0 : 1);' || die "the lights of kiln info"
+expect 0 "" info --lights dusk.exr
+grep -q '^  lights       none that are compact$' log/out || die "no lights"
+expect 0 "" info sky.exr
+! grep -q light log/out || die "lights that nobody asked for"
+
 # A bake without its sun: the note, the file, the report; and what remains is dimmer by the share.
 small="--size 16 --exposure -8"
 # shellcheck disable=SC2086 # $small is several words
