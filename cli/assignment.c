@@ -201,8 +201,8 @@ static kiln_result write_pictures(assignment *a)
 
 static void print_figures(const assignment *a)
 {
-    printf("%s: %d files, %d x %d, %d samples, %s, %.2f s\n", a->def->folder, a->file_count,
-           a->def->size, a->def->size, a->def->samples, kiln_g_names()[a->def->g],
+    printf("%s: %d files, %d x %d, %d samples, %s, %.2f s\n", cli_show(a->def->folder).text,
+           a->file_count, a->def->size, a->def->size, a->def->samples, kiln_g_names()[a->def->g],
            cli_elapsed(a->work));
     printf("  %-17s %9s %9s %10s\n", "error of", "largest", "rms", "mean");
     for (int t = 0; t < ASSIGNMENT_TABLES; t++)

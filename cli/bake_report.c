@@ -137,9 +137,9 @@ static void print_summary(const bake *b)
     char files[32] = "";
     if (b->saved.levels.file_count > 1)
         snprintf(files, sizeof files, " in %d files", b->saved.levels.file_count);
-    printf("%s: %s of %d, %d level%s%s, %s %s, from %s %s of %d x %d, %.2f s\n", b->output,
-           bake_shapes[b->made.levels.shape], b->made.levels.size, b->made.levels.level_count,
-           b->made.levels.level_count > 1 ? "s" : "", files,
+    printf("%s: %s of %d, %d level%s%s, %s %s, from %s %s of %d x %d, %.2f s\n",
+           cli_show(b->output).text, bake_shapes[b->made.levels.shape], b->made.levels.size,
+           b->made.levels.level_count, b->made.levels.level_count > 1 ? "s" : "", files,
            b->tuning != BAKE_EXACT ? "tuned" : bake_methods[b->textbook], bake_lobes[b->lobe],
            b->source_shape == KILN_SHAPE_OCTAHEDRON ? "an" : "a", bake_shapes[b->source_shape],
            b->source_width, b->source_height, total_seconds(b));
@@ -153,9 +153,10 @@ static void print_details(const bake *b)
         printf("  level %-2d  size %-5d  roughness %.4g\n", k,
                kiln_map_level_size(&b->made.levels, k), (double)b->made.levels.roughness[k]);
     if (b->irradiance_path)
-        printf("  irradiance %s, size %d\n", b->irradiance_path, b->made.irradiance.size);
+        printf("  irradiance %s, size %d\n", cli_show(b->irradiance_path).text,
+               b->made.irradiance.size);
     if (b->sh_path)
-        printf("  harmonics  %s, %d bands of %s\n", b->sh_path, b->sh_bands,
+        printf("  harmonics  %s, %d bands of %s\n", cli_show(b->sh_path).text, b->sh_bands,
                b->sh_irradiance ? "irradiance" : "radiance");
     cli_print_lights(&b->made.lights);
     if (b->made.degree)

@@ -7,6 +7,7 @@
 
 #include <kiln/brdf.h>
 
+#include <stdarg.h>
 #include <stdbool.h>
 
 /// Lets the compiler check a function's arguments against its printf format.
@@ -104,6 +105,17 @@ int cli_find_word(const cli_command *command, const char *what, const char *text
 int cli_wrong(const cli_command *command, const char *format, ...) CLI_PRINTF(2, 3);
 /// Prints "kiln: MESSAGE"; returns CLI_FAILED.
 int cli_fail(const char *format, ...) CLI_PRINTF(1, 2);
+/// Prints a sentence on standard error: what a terminal would obey rather than show, for example in
+/// the name of a file, becomes '?'.
+void cli_say(const char *opening, const char *format, va_list list) CLI_PRINTF(2, 0);
+
+/// A text of any origin, for example the name of a file, as one line that a terminal shows.
+typedef struct cli_shown {
+    char text[4096];
+} cli_shown;
+/// Returns `text` with '?' for every character that a terminal would obey rather than show. Usage:
+/// printf("%s", cli_show(path).text).
+cli_shown cli_show(const char *text);
 /// Writes a number of bytes for people, such as "4.2 MB", to `text`, and returns `text`.
 const char *cli_bytes(double bytes, char text[32]);
 /// Flushes standard output. Returns `code`, or the exit code of a failed write.

@@ -129,7 +129,7 @@ static int run(const cli_call *call)
     if (code == CLI_DONE && f.json)
         report_json(&f, &form, cli_elapsed(&work));
     else if (code == CLI_DONE && !f.quiet)
-        printf("%s: %d coefficients, max error %.3g, RMS %.3g, %.2f s\n", f.output,
+        printf("%s: %d coefficients, max error %.3g, RMS %.3g, %.2f s\n", cli_show(f.output).text,
                form.coefficient_count, form.max_error, form.rms_error, cli_elapsed(&work));
     return cli_end_work(&work, code);
 }

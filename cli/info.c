@@ -50,7 +50,7 @@ static void print_layers(const kiln_file_info *info)
 static void print_text(const char *path, const kiln_file_info *info, const kiln_lights *lights)
 {
     char bytes[32];
-    printf("%s\n", path);
+    printf("%s\n", cli_show(path).text);
     printf("  format       %s, %s, %s\n", info->format, info->encoding,
            cli_bytes((double)info->byte_count, bytes));
     printf("  layout       %s, %d x %d", info->layout, info->width, info->height);

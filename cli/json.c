@@ -116,54 +116,31 @@ void json_bool(json *j, const char *key, bool value)
 
 // -------------------------------------------------------------------------------------------- text
 
-// Length of the valid UTF-8 sequence at `at`; 0 if it is invalid. RFC 3629 excludes overlong
-// sequences, surrogates and values above U+10FFFF.
-static int sequence(const unsigned char *at)
-{
-    static const struct {
-        // range of the first byte of a UTF-8 sequence, and the range of the second byte that RFC
-        // 3629 allows after such a first byte
-        unsigned char first, last, low, high;
-        int length;
-    } forms[] = {
-        {0x00, 0x7f, 0x00, 0x00, 1}, {0xc2, 0xdf, 0x80, 0xbf, 2}, {0xe0, 0xe0, 0xa0, 0xbf, 3},
-        {0xe1, 0xec, 0x80, 0xbf, 3}, {0xed, 0xed, 0x80, 0x9f, 3}, {0xee, 0xef, 0x80, 0xbf, 3},
-        {0xf0, 0xf0, 0x90, 0xbf, 4}, {0xf1, 0xf3, 0x80, 0xbf, 4}, {0xf4, 0xf4, 0x80, 0x8f, 4}};
-    for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
-        if (*at < forms[i].first || *at > forms[i].last)
-            continue;
-        if (forms[i].length > 1 && (at[1] < forms[i].low || at[1] > forms[i].high))
-            return 0;
-        for (int k = 2; k < forms[i].length; k++)
-            if ((at[k] & 0xc0) != 0x80)
-                return 0;
-        return forms[i].length;
-    }
-    return 0;
-}
-
-static void print_escaped(unsigned char c)
+static void print_escaped(unsigned code)
 {
     static const char from[] = "\"\\\b\f\n\r\t", to[] = "\"\\bfnrt";
-    const char *known = strchr(from, c);
+    const char *known = code < 128 ? strchr(from, (int)code) : NULL;
     if (known)
         printf("\\%c", to[known - from]);
     else
-        printf("\\u%04x", c);
+        printf("\\u%04x", code);
 }
 
+// Characters that a terminal would obey are escaped too; the longest of their codes has four digits.
 static void print_text(const char *text)
 {
     putchar('"');
-    for (const unsigned char *at = (const unsigned char *)text; *at;) {
-        int length = sequence(at);
-        if (!length)
-            fputs("\xef\xbf\xbd", stdout); // U+FFFD, the replacement character
-        else if (*at < 32 || *at == '"' || *at == '\\')
-            print_escaped(*at);
+    while (*text) {
+        unsigned code;
+        bool shown;
+        int length = kiln_text_step(text, &code, &shown);
+        if (code == 0xfffd)
+            fputs("\xef\xbf\xbd", stdout); // the replacement character, also for invalid bytes
+        else if (!shown || code == '"' || code == '\\')
+            print_escaped(code);
         else
-            fwrite(at, 1, (size_t)length, stdout);
-        at += length ? length : 1;
+            fwrite(text, 1, (size_t)length, stdout);
+        text += length;
     }
     putchar('"');
 }

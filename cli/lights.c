@@ -53,8 +53,8 @@ static void report(const lights_values *v, const char *name, const kiln_lights *
         json_lights(&j, lights);
         json_end(&j);
     } else if (!v->quiet) {
-        printf("%s: %d compact light%s with %.2f %% of the light\n", name, lights->count,
-               lights->count == 1 ? "" : "s", 100 * share);
+        printf("%s: %d compact light%s with %.2f %% of the light\n", cli_show(name).text,
+               lights->count, lights->count == 1 ? "" : "s", 100 * share);
         cli_print_lights(lights);
     }
 }

@@ -219,7 +219,7 @@ static int run(const cli_call *call)
         code = kiln_image_save(work.context, &image, r.output, &work.error) ? CLI_FAILED : CLI_DONE;
     cli_clear_progress(&work);
     if (code == CLI_DONE && !r.quiet) {
-        printf("%s: %s, %d x %d, %s, %.2f s\n", r.output,
+        printf("%s: %s, %d x %d, %s, %.2f s\n", cli_show(r.output).text,
                view_scene_name((int)r.setup.options.scene), r.setup.width, r.setup.height, words,
                cli_elapsed(&work));
         print_errors(&r.setup.options, &errors);

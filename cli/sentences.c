@@ -7,18 +7,27 @@
 #include <stdio.h>
 #include <string.h>
 
-static void say(const char *format, va_list list)
+void cli_say(const char *opening, const char *format, va_list list)
 {
-    fputs("kiln: ", stderr);
-    vfprintf(stderr, format, list);
-    fputc('\n', stderr);
+    char text[8192];
+    vsnprintf(text, sizeof text, format, list);
+    kiln_text_clean(text);
+    fprintf(stderr, "%s%s\n", opening, text);
+}
+
+cli_shown cli_show(const char *text)
+{
+    cli_shown shown;
+    snprintf(shown.text, sizeof shown.text, "%s", text);
+    kiln_text_clean(shown.text);
+    return shown;
 }
 
 int cli_wrong(const cli_command *command, const char *format, ...)
 {
     va_list list;
     va_start(list, format);
-    say(format, list);
+    cli_say("kiln: ", format, list);
     va_end(list);
     fprintf(stderr, "Try 'kiln %s%s--help'.\n", command ? command->name : "", command ? " " : "");
     return CLI_WRONG;
@@ -28,7 +37,7 @@ int cli_fail(const char *format, ...)
 {
     va_list list;
     va_start(list, format);
-    say(format, list);
+    cli_say("kiln: ", format, list);
     va_end(list);
     return CLI_FAILED;
 }

@@ -72,8 +72,8 @@ static int run(const cli_call *call)
         code = make(&work, &s, &map);
     cli_clear_progress(&work);
     if (code == CLI_DONE && !s.quiet)
-        printf("%s: panorama of %d x %d, in kcd/m2, %.2f s\n", s.output, 2 * map.size, map.size,
-               cli_elapsed(&work));
+        printf("%s: panorama of %d x %d, in kcd/m2, %.2f s\n", cli_show(s.output).text,
+               2 * map.size, map.size, cli_elapsed(&work));
     kiln_map_free(&map);
     return cli_end_work(&work, code);
 }

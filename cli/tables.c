@@ -169,8 +169,8 @@ static int make_textbook(const tables *t)
                    : CLI_DONE;
     cli_clear_progress(&work);
     if (code == CLI_DONE && !t->quiet)
-        printf("%s: split-sum table of %d x %d, %d samples, %.2f s\n", t->output, size, size,
-               t->samples, cli_elapsed(&work));
+        printf("%s: split-sum table of %d x %d, %d samples, %.2f s\n", cli_show(t->output).text,
+               size, size, t->samples, cli_elapsed(&work));
     kiln_image_free(&rgb);
     kiln_image_free(&table);
     return cli_end_work(&work, code);

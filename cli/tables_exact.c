@@ -178,13 +178,14 @@ static void report(const cli_work *work, const tables *t, const kiln_table *tabl
     else
         snprintf(model, sizeof model, "%s, %s, ", kiln_d_names()[def->model.d],
                  kiln_g_names()[def->model.g]);
-    printf("%s: %s, %s%s, %s axis, texels at %s, %.2f s\n", t->output,
+    printf("%s: %s, %s%s, %s axis, texels at %s, %.2f s\n", cli_show(t->output).text,
            kiln_table_kind_names()[def->kind], model, size, kiln_axis_names()[def->axis],
            def->corners ? "corners" : "centres", cli_elapsed(work));
     if (t->average)
-        printf("%s: the average of this table, 1024 texels\n", t->average);
+        printf("%s: the average of this table, 1024 texels\n", cli_show(t->average).text);
     if (t->lookup)
-        printf("%s, %s: code that looks the table up\n", t->lookup_path[0], t->lookup_path[1]);
+        printf("%s, %s: code that looks the table up\n", cli_show(t->lookup_path[0]).text,
+               cli_show(t->lookup_path[1]).text);
 }
 
 static void report_json(const cli_work *work, const tables *t, const kiln_table *table)

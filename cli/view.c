@@ -151,7 +151,8 @@ static int open_window(cli_work *work, const view *v)
     kiln_map source = {0};
     kiln_image image = {0};
     show s = {.work = work, .setup = setup, .source = &source, .threads = v->threads};
-    view_window_def def = {.title = setup->input ? setup->input : "kiln",
+    cli_shown title = cli_show(setup->input ? setup->input : "kiln");
+    view_window_def def = {.title = title.text,
                            .width = setup->width,
                            .height = setup->height,
                            .options = setup->options,

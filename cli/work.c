@@ -87,10 +87,8 @@ int cli_end_work(cli_work *work, int code)
 void cli_note(cli_work *work, bool warning, const char *format, ...)
 {
     cli_clear_progress(work);
-    fputs(warning ? "kiln: warning: " : "kiln: note: ", stderr);
     va_list list;
     va_start(list, format);
-    vfprintf(stderr, format, list);
+    cli_say(warning ? "kiln: warning: " : "kiln: note: ", format, list);
     va_end(list);
-    fputc('\n', stderr);
 }

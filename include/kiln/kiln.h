@@ -76,6 +76,15 @@ typedef struct kiln_error {
 /// Returns the version of the running library as text, for example "0.2.0".
 KILN_API const char *kiln_version(void);
 
+/// Steps over one character of UTF-8 text that ends in NUL. Returns the character's length in bytes
+/// and sets *code to its code point; a byte that is not UTF-8 counts as one character U+FFFD.
+/// *shown becomes false for such a byte and for characters that a terminal obeys instead of showing
+/// them: controls, separators of lines, and marks that change the direction of text.
+KILN_API int kiln_text_step(const char *text, unsigned *code, bool *shown);
+/// Replaces every character that is not shown (see kiln_text_step) by '?', in place. Error messages,
+/// notes and the strings of kiln_file_info are clean in this sense, whatever the file holds.
+KILN_API void kiln_text_clean(char *text);
+
 // ---------------------------------------------------------------------------------------- context
 
 typedef struct kiln_context kiln_context;

@@ -34,6 +34,14 @@ void ki_describe(kiln_error *error, kiln_result result, const char *format, ...)
 /// compilers see at each call that the value is not KILN_OK.
 #define ki_fail(error, result, ...) (ki_describe((error), (result), __VA_ARGS__), (result))
 
+// -------------------------------------------------------------------------------------------- text
+
+/// Prints as snprintf does, with a decimal point in every locale.
+int ki_print(char *text, size_t room, const char *format, ...) KI_PRINTF(3, 4);
+/// Prints as vsnprintf does, with a decimal point in every locale, and replaces what a terminal
+/// would obey (see kiln_text_clean). All sentences of the library pass through this function.
+void ki_print_clean(char *text, size_t room, const char *format, va_list list) KI_PRINTF(3, 0);
+
 // ------------------------------------------------------------------------------------------ memory
 
 /// Allocates `count` times `size` bytes, zeroed and aligned to 64. Returns NULL if the context's

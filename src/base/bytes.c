@@ -1,4 +1,5 @@
 #include "base/bytes.h"
+#include "base/os.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -70,7 +71,7 @@ void ki_write_text(ki_writer *w, const char *format, ...)
     char text[1024];
     va_list list;
     va_start(list, format);
-    int length = vsnprintf(text, sizeof text, format, list);
+    int length = ki_os_print(text, sizeof text, format, list);
     va_end(list);
     if (length < 0 || (size_t)length >= sizeof text)
         w->failed = true;

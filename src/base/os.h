@@ -4,6 +4,7 @@
 #ifndef KI_OS_H
 #define KI_OS_H
 
+#include <stdarg.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -71,6 +72,13 @@ bool ki_os_list_folder(const char *path, void (*name)(void *user, const char *na
 
 /// Returns a number that no other running process has.
 long ki_os_process(void);
+
+// -------------------------------------------------------------------------------------------- text
+
+/// Prints as vsnprintf does in the locale "C", whatever locale the program has chosen.
+int ki_os_print(char *text, size_t room, const char *format, va_list list);
+/// Reads a number as strtof does in the locale "C".
+float ki_os_read_float(const char *text);
 
 // ------------------------------------------------------------------------------------------ memory
 

@@ -10,6 +10,7 @@
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <locale.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,6 +18,9 @@
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
+#if defined(__APPLE__)
+#include <xlocale.h>
+#endif
 
 // ------------------------------------------------------------------------------------------- files
 
@@ -214,6 +218,32 @@ bool ki_os_list_folder(const char *path, void (*name)(void *user, const char *na
 long ki_os_process(void)
 {
     return (long)getpid();
+}
+
+// -------------------------------------------------------------------------------------------- text
+
+// The locale of the calling thread is exchanged, since printf has no argument for the locale. Every
+// C library keeps the locale "C" ready, so that newlocale neither fails nor reads a file.
+int ki_os_print(char *text, size_t room, const char *format, va_list list)
+{
+    locale_t plain = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+    locale_t before = uselocale(plain);
+    int length = vsnprintf(text, room, format, list);
+    uselocale(before);
+    if (plain)
+        freelocale(plain);
+    return length;
+}
+
+float ki_os_read_float(const char *text)
+{
+    locale_t plain = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+    locale_t before = uselocale(plain);
+    float value = strtof(text, NULL);
+    uselocale(before);
+    if (plain)
+        freelocale(plain);
+    return value;
 }
 
 // ------------------------------------------------------------------------------------------ memory

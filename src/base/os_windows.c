@@ -12,9 +12,11 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <io.h>
+#include <locale.h>
 #include <malloc.h>
 #include <process.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <sys/stat.h>
 
 // ------------------------------------------------------------------------------------------- paths
@@ -293,6 +295,48 @@ bool ki_os_list_folder(const char *path, void (*name)(void *user, const char *na
 long ki_os_process(void)
 {
     return _getpid();
+}
+
+// -------------------------------------------------------------------------------------------- text
+
+// What a thread must restore after working in the locale "C".
+typedef struct saved_locale {
+    int per_thread;
+    char name[128];
+} saved_locale;
+
+// Gives the calling thread a locale of its own, "C" for numbers.
+static void enter_plain_locale(saved_locale *saved)
+{
+    saved->per_thread = _configthreadlocale(_ENABLE_PER_THREAD_LOCALE);
+    const char *name = setlocale(LC_NUMERIC, NULL);
+    snprintf(saved->name, sizeof saved->name, "%s", name ? name : "C");
+    setlocale(LC_NUMERIC, "C");
+}
+
+static void leave_plain_locale(const saved_locale *saved)
+{
+    setlocale(LC_NUMERIC, saved->name);
+    if (saved->per_thread > 0)
+        _configthreadlocale(saved->per_thread);
+}
+
+int ki_os_print(char *text, size_t room, const char *format, va_list list)
+{
+    saved_locale saved;
+    enter_plain_locale(&saved);
+    int length = vsnprintf(text, room, format, list);
+    leave_plain_locale(&saved);
+    return length;
+}
+
+float ki_os_read_float(const char *text)
+{
+    saved_locale saved;
+    enter_plain_locale(&saved);
+    float value = strtof(text, NULL);
+    leave_plain_locale(&saved);
+    return value;
 }
 
 // ------------------------------------------------------------------------------------------ memory

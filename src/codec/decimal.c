@@ -1,7 +1,6 @@
 #include "codec/decimal.h"
+#include "base/os.h"
 
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 const char *ki_parse_number(const char *text, double *value)
@@ -42,32 +41,18 @@ const char *ki_parse_number(const char *text, double *value)
     return text;
 }
 
-// Writes a number, whose text printf has made in the program's locale, with a decimal point instead
-// of the locale's decimal comma.
-static void write_with_point(ki_writer *writer, char *text)
-{
-    char *comma = strchr(text, ',');
-    if (comma)
-        *comma = '.';
-    ki_write_text(writer, "%s", text);
-}
-
 void ki_write_number(ki_writer *writer, double value)
 {
-    char text[40];
-    snprintf(text, sizeof text, "%.9g", value);
-    write_with_point(writer, text);
+    ki_write_text(writer, "%.9g", value);
 }
 
 void ki_write_float(ki_writer *writer, float value)
 {
     char text[40];
     for (int digits = 6; digits <= 9; digits++) {
-        snprintf(text, sizeof text, "%.*g", digits, (double)value);
-        if (strtof(text, NULL) == value)
+        ki_print(text, sizeof text, "%.*g", digits, (double)value);
+        if (ki_os_read_float(text) == value)
             break;
     }
-    write_with_point(writer, text);
-    if (!strpbrk(text, ".e"))
-        ki_write_text(writer, ".0");
+    ki_write_text(writer, strpbrk(text, ".e") ? "%s" : "%s.0", text);
 }

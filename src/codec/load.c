@@ -166,6 +166,15 @@ kiln_result kiln_file_describe(kiln_context *context, const char *path, kiln_fil
     kiln_result result = ki_decode_file(context, path, NULL, NULL, info, error);
     if (result == KILN_OK)
         note_envmap(info, &info->report);
+    char *const texts[] = {info->format, info->encoding,    info->layout, info->engine,
+                           info->writer, info->orientation, info->table};
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
+        kiln_text_clean(texts[i]);
+    for (int i = 0; i < KILN_MAX_LAYERS; i++) {
+        kiln_text_clean(info->layer[i].part);
+        kiln_text_clean(info->layer[i].name);
+        kiln_text_clean(info->layer[i].channels);
+    }
     return result;
 }
 

@@ -24,7 +24,7 @@ void ki_note(kiln_load_report *report, kiln_note_kind kind, bool warning, const 
     if (!report)
         return;
     va_start(list, format);
-    vsnprintf(note.text, sizeof note.text, format, list);
+    ki_print_clean(note.text, sizeof note.text, format, list);
     va_end(list);
     add_note(report, &note);
 }
@@ -45,7 +45,7 @@ static bool say_count(const kiln_load_report *report, size_t count, kiln_note_ki
     if (!count)
         return false;
     *note = (kiln_note){.kind = kind, .warning = warning};
-    snprintf(note->text, sizeof note->text, "%zu of %zu texels %s %s", count, report->texel_count,
+    ki_print(note->text, sizeof note->text, "%zu of %zu texels %s %s", count, report->texel_count,
              count == 1 ? "is" : "are", what);
     return true;
 }
@@ -63,7 +63,7 @@ static bool say_kind(const kiln_load_report *report, int kind, kiln_note *note)
         return say_count(report, report->nan_count, KILN_NOTE_NAN, true,
                          "not a number and became the mean of the texels around", note);
     case KILN_NOTE_NEGATIVE:
-        snprintf(negative, sizeof negative, "negative and %s, with %.3g %% of the light",
+        ki_print(negative, sizeof negative, "negative and %s, with %.3g %% of the light",
                  report->negative == KILN_NEGATIVE_KEEP ? "kept" : "became 0",
                  100 * report->negative_share);
         return say_count(report, report->negative_count, KILN_NOTE_NEGATIVE, false, negative, note);
@@ -88,7 +88,7 @@ bool kiln_load_report_note(const kiln_load_report *report, int index, kiln_note 
     else
         return false;
     if (index == stored)
-        snprintf(note->text, sizeof note->text, "%d more notes were left out",
+        ki_print(note->text, sizeof note->text, "%d more notes were left out",
                  report->note_count - stored);
     return true;
 }
@@ -98,7 +98,7 @@ bool kiln_cut_note(const kiln_load_report *source, const kiln_cut *cut, kiln_not
     if (!cut->cut_count || !source->negative_count || source->negative != KILN_NEGATIVE_KEEP)
         return false;
     *note = (kiln_note){.kind = KILN_NOTE_CUT, .warning = true};
-    snprintf(note->text, sizeof note->text,
+    ki_print(note->text, sizeof note->text,
              "%zu of %zu values were negative, with %.3g %% of the light, and became 0",
              cut->cut_count, cut->value_count, 100 * cut->share);
     return true;

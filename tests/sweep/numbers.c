@@ -37,6 +37,46 @@ static void names_end(void **state)
     }
 }
 
+// Every string of up to two bytes and every code point: the text that remains is UTF-8 that a terminal shows.
+static void text_is_cleaned(void **state)
+{
+    (void)state;
+    unsigned code;
+    bool shown;
+    for (int i = 0; i < 1 << 16; i++) {
+        char text[3] = {(char)(i & 255), (char)(i >> 8), 0};
+        kiln_text_clean(text);
+        for (const char *at = text; *at; at += kiln_text_step(at, &code, &shown))
+            assert_true(kiln_text_step(at, &code, &shown) >= 1 && shown);
+    }
+    static const struct {
+        const char *text;
+        int length;
+        unsigned code;
+        bool shown;
+    } steps[] = {{"A", 1, 'A', true},
+                 {"\n", 1, '\n', false},
+                 {"\x7f", 1, 0x7f, false},
+                 {"\xc2\x9b", 2, 0x9b, false},
+                 {"\xc3\xa9", 2, 0xe9, true},
+                 {"\xe2\x80\xae", 3, 0x202e, false},
+                 {"\xe6\xbc\xa2", 3, 0x6f22, true},
+                 {"\xf0\x9f\x98\x80", 4, 0x1f600, true},
+                 {"\xff", 1, 0xfffd, false},
+                 {"\xc0\x80", 1, 0xfffd, false},         // an overlong zero
+                 {"\xed\xa0\x80", 1, 0xfffd, false},     // a surrogate
+                 {"\xf4\x90\x80\x80", 1, 0xfffd, false}, // above U+10FFFF
+                 {"\xe6\xbc", 1, 0xfffd, false}};        // cut off
+    for (size_t i = 0; i < sizeof steps / sizeof *steps; i++) {
+        assert_int_equal(kiln_text_step(steps[i].text, &code, &shown), steps[i].length);
+        assert_int_equal(code, steps[i].code);
+        assert_int_equal(shown, steps[i].shown);
+    }
+    char text[] = "caf\xc3\xa9\x1b[0m\xe6\xbc";
+    kiln_text_clean(text);
+    assert_string_equal(text, "caf\xc3\xa9?[0m??");
+}
+
 static void shares_stay_shares(void **state)
 {
     (void)state;
@@ -189,6 +229,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(names_end),
+        cmocka_unit_test(text_is_cleaned),
         cmocka_unit_test(shares_stay_shares),
         cmocka_unit_test(choices_out_of_range_do_no_harm),
         cmocka_unit_test(samples_are_directions),

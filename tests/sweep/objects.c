@@ -147,6 +147,10 @@ static void loads(void **state)
         SWEEP(kiln_map_decode(c, bytes, i, paths[i], NULL, &m, &e), !m.owner);
     }
     SWEEP(kiln_map_decode(c, NULL, 0, "empty", NULL, &m, &e), !m.owner);
+    int order[6];
+    assert_true(kiln_faces_order(faces, order));
+    for (int i = 0; i < 6; i++)
+        assert_int_equal(order[i], i);
     SWEEP(kiln_map_load_faces(c, faces, NULL, &m, &e), !m.owner);
     INT_FIELD(kiln_load_def, layout, kiln_map_decode(c, bytes, 64, "x", &def, &m, &e), !m.owner, );
     INT_FIELD(kiln_load_def, negative, kiln_map_decode(c, bytes, 64, "x", &def, &m, &e),
