@@ -15,7 +15,7 @@
 // A progressive picture may have any number of scans, each of which costs the time of a picture and
 // may have few bytes, as may a scan with arithmetic coding. The pixels of all scans are therefore
 // limited by the number of bytes. libjpeg's own writer makes 10 scans; its pictures of one colour
-// have 3000 such pixels a byte.
+// have 1700 such pixels a byte.
 enum { PIXELS_A_BYTE = 8192, PIXELS_ALWAYS = 1 << 26 };
 
 typedef struct decoder {

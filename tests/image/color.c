@@ -93,10 +93,11 @@ static void what_is_no_set_of_primaries_is_refused(void **unused)
         {{0.64, 0.33, 0.64, 0.33, 0.15, 0.06, 0.3127, 0.329}}, // two alike
         {{0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.7, 0.29}},     // white outside
         {{0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0}},     // white without luminance
-        {{NAN, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.329}},
-        {{0.64, 0.33, 0.30, INFINITY, 0.15, 0.06, 0.3127, 0.329}},
+        {{(double)NAN, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.329}},
+        {{0.64, 0.33, 0.30, (double)INFINITY, 0.15, 0.06, 0.3127, 0.329}},
     };
-    static const double bad_whites[][2] = {{0.3, 0}, {NAN, 0.3}, {0.3, -1}, {INFINITY, 0.3}};
+    static const double bad_whites[][2] = {
+        {0.3, 0}, {(double)NAN, 0.3}, {0.3, -1}, {(double)INFINITY, 0.3}};
     ki_matrix3 a;
     (void)unused;
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
