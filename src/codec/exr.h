@@ -122,6 +122,7 @@ typedef struct ki_exr_layer {
     ki_exr_kind kind;
     int channel[KI_EXR_ROLES]; // indices of the channels that have a role; -1 for no channel
     bool coordinates;          // true: the layer has a channel X or Z
+    bool single;               // true: not a layer but one channel, whose whole name is `name`
 } ki_exr_layer;
 
 typedef struct ki_exr_layers {

@@ -19,20 +19,23 @@
 #include <string.h>
 
 /// Names of the layer that holds the picture, in the order of preference; upper and lower case
-/// count as equal. A layer counts by the last component of its name, a part without layers by its
-/// own.
+/// count as equal. A layer counts by the end of its name after a dot, a part without layers by its
+/// own name.
 static const char *const picture_names[] = {
-    "Combined",   // written by Blender and Cycles: ViewLayer.Combined
-    "rgba",       // written by Arnold, and by Nuke for its main layer
-    "rgb",        // written by Nuke
-    "beauty",     // written by Arnold, Redshift, Octane and Maya (masterLayer.beauty)
-    "RGB_color",  // written by V-Ray
-    "RGB color",  // written by V-Ray in 3ds Max
-    "Ci",         // written by RenderMan
-    "C",          // written by Mantra and Karma
-    "FinalImage", // written by Unreal Engine
-    "Image",      // written by Blender's file output node
-    "color",      "main", "default",
+    "Composite.Combined", // written by Blender's compositor, from the layer below
+    "Combined",           // written by Blender and Cycles: ViewLayer.Combined
+    "rgba",               // written by Arnold, and by Nuke for its main layer
+    "rgb",                // written by Nuke
+    "beauty",             // written by Arnold, Redshift, Octane and Maya (masterLayer.beauty)
+    "RGB_color",          // written by V-Ray
+    "RGB color",          // written by V-Ray in 3ds Max
+    "Ci",                 // written by RenderMan
+    "C",                  // written by Mantra and Karma
+    "FinalImage",         // written by Unreal Engine
+    "Image",              // written by Blender's file output node
+    "color",
+    "main",
+    "default",
 };
 enum { PICTURE_NAMES = sizeof picture_names / sizeof *picture_names };
 
@@ -147,29 +150,23 @@ kiln_result ki_exr_list_layers(kiln_context *context, const ki_exr_header *heade
 
 // ------------------------------------------------------------------------------------------- names
 
-// The last component of the name of a layer, or of its part if the layer has no name.
-typedef struct word {
-    const char *text;
-    size_t length;
-} word;
-
-static word last_component(const ki_exr_header *header, const ki_exr_layer *l)
+// Returns whether a name ends in a word, at its beginning or after a dot.
+static bool ends_in(const char *name, size_t length, const char *word)
 {
-    const ki_exr_part *p = &header->parts[l->part];
-    word w = {l->length ? l->name : p->name, l->length ? l->length : p->name_length};
-    for (size_t i = w.length; i-- > 0;)
-        if (w.text[i] == '.')
-            return (word){w.text + i + 1, w.length - i - 1};
-    return w;
+    size_t size = strlen(word);
+    return size <= length && same_word(name + length - size, size, word) &&
+           (size == length || name[length - size - 1] == '.');
 }
 
-// Returns the index of a layer's name in picture_names, or PICTURE_NAMES if the table lacks the
-// name.
+// Returns the place in the table of a layer's name, or of its part's name if the layer has none; or
+// PICTURE_NAMES.
 static int find_picture_name(const ki_exr_header *header, const ki_exr_layer *l)
 {
-    word w = last_component(header, l);
+    const ki_exr_part *p = &header->parts[l->part];
+    const char *name = l->length ? l->name : p->name;
+    size_t length = l->length ? l->length : p->name_length;
     int i = 0;
-    while (i < PICTURE_NAMES && (!w.length || !same_word(w.text, w.length, picture_names[i])))
+    while (i < PICTURE_NAMES && !(length && ends_in(name, length, picture_names[i])))
         i++;
     return i;
 }
@@ -328,8 +325,11 @@ static int find_channels(const ki_exr_header *header, const ki_exr_layers *layer
             const char *full = header->parts[part].channels[c].name;
             if (strcmp(full, wanted) != 0 || count++)
                 continue;
-            *chosen = (ki_exr_layer){
-                .part = part, .name = full, .length = strlen(full), .kind = KI_EXR_GREY};
+            *chosen = (ki_exr_layer){.part = part,
+                                     .name = full,
+                                     .length = strlen(full),
+                                     .kind = KI_EXR_GREY,
+                                     .single = true};
             chosen->channel[KI_EXR_LUMINANCE] = c;
         }
     }
@@ -393,6 +393,24 @@ static void list_channels(const ki_exr_part *p, const ki_exr_layer *l, char *tex
         snprintf(text + used, room - used, " and %d more", left_out);
 }
 
+// Lists the channels that are the picture, in the order of their roles: "R, G, B".
+static void list_picture(const ki_exr_part *p, const ki_exr_layer *l, char *text, size_t room)
+{
+    bool luminance = l->kind == KI_EXR_CHROMA || l->kind == KI_EXR_GREY;
+    int first = luminance ? KI_EXR_LUMINANCE : KI_EXR_RED;
+    int last = l->kind == KI_EXR_CHROMA ? KI_EXR_BLUE_CHROMA : luminance ? first : KI_EXR_BLUE;
+    size_t used = 0;
+    text[0] = 0;
+    for (int role = first; role <= last; role++) {
+        char one[16];
+        if (l->channel[role] < 0)
+            continue;
+        const char *suffix = ki_exr_suffix(p->channels[l->channel[role]].name);
+        ki_escape_text(one, sizeof one, suffix, strlen(suffix));
+        used += (size_t)snprintf(text + used, room - used, "%s%s", used ? ", " : "", one);
+    }
+}
+
 void ki_exr_note_layer(const ki_exr_header *header, const ki_exr_layers *layers,
                        const ki_exr_layer *chosen, kiln_load_report *report)
 {
@@ -400,8 +418,8 @@ void ki_exr_note_layer(const ki_exr_header *header, const ki_exr_layers *layers,
     const ki_exr_part *p = &header->parts[chosen->part];
     char name[64], channels[64];
     label(header, chosen, name, sizeof name);
-    list_channels(p, chosen, channels, sizeof channels);
-    if (!channels[0])
+    list_picture(p, chosen, channels, sizeof channels);
+    if (chosen->single)
         ki_note(report, KILN_NOTE_CHOICE, false, "channel %s alone is the picture, as grey", name);
     else if (layers->count > 1 && (chosen->length || (header->multipart && p->name_length)))
         ki_note(report, KILN_NOTE_CHOICE, false,

@@ -1,5 +1,6 @@
 #!/bin/sh
 # Bakes that work: what is written, where, and that it says the same by every way.
+good=$(cd "$(dirname "$0")/../files/good" && pwd)
 # shellcheck source=lib.sh
 . "$(dirname "$0")/lib.sh"
 
@@ -58,6 +59,19 @@ export small="--size 16 --exposure -8"
         process.exit(good ? 0 : 1);' || die "info"
     expect 0 "" info a.ktx2
     grep -q '5 levels' log/out || die "info in words"
+    # The layers of an EXR file, and one of them by its name.
+    expect 0 "" info --json "$good/dwaa-layers.exr"
+    node -e '
+        const [a] = JSON.parse(require("fs").readFileSync("log/out", "utf8"));
+        const wanted = [["A", "B, G, R", false], ["", "B, G, R, Y, Z", true],
+            ["left", "A, B, G, R", false]];
+        process.exit(a.part_count === 1 && a.layer_count === 3 && a.layers.every((l, i) =>
+            l.name === wanted[i][0] && l.channels === wanted[i][1] && l.picture === wanted[i][2])
+            ? 0 : 1);' || die "layers"
+    expect 0 "layer left (channels R, G, B), one of 3 layers, is the picture" \
+        bake "$good/dwaa-layers.exr" -o e.ktx2 --layout panorama --layer left --size 16
+    expect 1 "has no picture or channel named right" \
+        bake "$good/dwaa-layers.exr" -o d.ktx2 --layout panorama --layer right --size 16
     # Irradiance of a cube, and beside a level that needs fewer degrees than the cosine.
     expect 0 "" bake a.ktx2 -o e.ktx2 -q --size 16 --irradiance d.ktx2
     expect 0 "" bake sky.exr -o e.ktx2 -q --size 16 --roughness 0.5 --irradiance d.ktx2

@@ -157,6 +157,9 @@ static void what_is_no_picture_is_never_taken_for_one(void **state)
     check_refused(ONE(RGB("AO"), RGB("Normal")), NULL,
                   "a.exr: 2 of its layers may be the picture; choose one by --layer NAME: AO, "
                   "Normal");
+    // Blender's compositor writes its result beside the layers that it was made of.
+    check_choice(ONE(RGB("Composite.Combined"), RGB("RenderLayer.Combined")), NULL, 0,
+                 "Composite.Combined.R", "Composite.Combined.G", "Composite.Combined.B");
     check_refused(ONE(RGB("One.Combined"), RGB("Two.Combined")), NULL,
                   "a.exr: 2 of its layers may be the picture; choose one by --layer NAME: "
                   "One.Combined, Two.Combined");
@@ -184,9 +187,9 @@ static void the_choice_is_told(void **state)
     (void)state;
     check_notes(ONE("A", "B", "G", "R", "Z"), NULL, NULL, NULL);
     check_notes(ONE(RGB("AO"), RGB("Combined"), "Depth.Z"), NULL,
-                "layer Combined (channels B, G, R), one of 3 layers, is the picture", NULL);
+                "layer Combined (channels R, G, B), one of 3 layers, is the picture", NULL);
     check_notes(ONE(RGB("AO"), "B", "G", "R"), NULL,
-                "channels B, G, R, which have no layer's name, are the picture; the file has 2 "
+                "channels R, G, B, which have no layer's name, are the picture; the file has 2 "
                 "layers",
                 NULL);
     check_notes(ONE(RGB("AO"), "Depth.Z"), "Depth.Z",
