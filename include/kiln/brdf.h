@@ -344,8 +344,9 @@ typedef struct kiln_fit_def {
 
 enum { KILN_MAX_FIT = 160, KILN_MAX_FIT_TERMS = 12 };
 
-/// The argument x of a part of a closed form, before it is scaled to [-1, 1]. t = n.v (1 + c) /
-/// (n.v + c), with c as for KILN_AXIS_GRAZING.
+/// Which function of n.v and roughness the argument x of P and Q in a kiln_fit_part is, before it
+/// is scaled to [-1, 1]: none (P and Q depend on the roughness alone), t, sqrt(t), n.v or
+/// sqrt(n.v). Here t = n.v (1 + c) / (n.v + c), with the c of KILN_AXIS_GRAZING.
 typedef enum kiln_fit_axis {
     KILN_FIT_AXIS_NONE,
     KILN_FIT_AXIS_T,
@@ -354,9 +355,10 @@ typedef enum kiln_fit_axis {
     KILN_FIT_AXIS_SQRT_NOV
 } kiln_fit_axis;
 
-/// A rational function P(x, y) / Q(x, y), where y is the roughness scaled to [-1, 1]. p[j * x_count
-/// + i] is the coefficient of x^i y^j in P. Q has the same powers, q[0] = 1 and no zero on the
-/// square [-1, 1]^2, which kiln proves. Without `rational`, Q is 1 and q is not used.
+/// A rational function P(x, y) / Q(x, y). x is the function of n.v and roughness that `axis` names.
+/// y is linear in the roughness: -1 at roughness_min of the kiln_fit_def, 1 at roughness 1. p[j *
+/// x_count + i] is the coefficient of x^i y^j in P. Q has the same powers, q[0] = 1 and no zero on
+/// the square [-1, 1]^2, which kiln proves. Without `rational`, Q is 1 and q is not used.
 typedef struct kiln_fit_part {
     kiln_fit_axis axis;
     bool rational;

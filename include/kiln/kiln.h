@@ -214,7 +214,9 @@ KILN_API void kiln_map_expose(kiln_map *map, double stops);
 typedef struct kiln_cut {
     size_t value_count; ///< number of values in all levels: three per texel
     size_t cut_count;   ///< number of values that were below zero
-    double share;       ///< light that was cut off, relative to the light of the values above zero
+    /// Light below zero that was cut off, relative to the light of the values above zero, where
+    /// light is the absolute value times the solid angle of its texel.
+    double share;
 } kiln_cut;
 /// Sets values below zero to 0 in every level, in place. `cut` receives what was cut off and may be
 /// NULL. kiln_bake, kiln_plan_execute, kiln_prefilter and kiln_spectrum_filter end with this step;
@@ -668,7 +670,9 @@ KILN_API KILN_CHECKED kiln_result kiln_lights_save(kiln_context *context, const 
 typedef struct kiln_clamp {
     double limit;       ///< largest value that a texel may have; 0 if the map was not clamped
     size_t texel_count; ///< number of texels that were brighter
-    double light_share; ///< light that was lost, relative to all light of the map
+    /// Light that the limit removed, relative to all light of the map, where light is a value times
+    /// the solid angle of its texel.
+    double light_share;
 } kiln_clamp;
 /// Multiplies every texel of level 0 whose largest channel exceeds `limit` by limit / channel, so
 /// that its colour stays. `limit` 0 selects 32 times the mean of the map without its lights.

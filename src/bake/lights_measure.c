@@ -83,10 +83,12 @@ static void surroundings(const ring *border, const double direction[3], double r
         rgb[c] = sum > 0 ? all[c] / sum : 0;
 }
 
-// Sums over a region of what is taken out.
+// Sums over the light that is taken out of a region: radiance times solid angle.
 typedef struct region_sums {
-    double flux[3], vector[3][3]; // by channel; vector irradiance by channel and axis
-    double distance;              // from the centre, weighted by the light of all channels
+    double flux[3];      // light of each channel
+    double vector[3][3]; // [channel][axis]: vector irradiance, the sum of light times direction
+    // sum over all channels of light times its distance from the centre of the region's light
+    double distance;
     double harmonics[KI_SH_COUNT][3];
 } region_sums;
 

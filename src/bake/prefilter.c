@@ -86,10 +86,14 @@ kiln_result ki_prefilter_resolve(const kiln_prefilter_def *def, kiln_prefilter_d
     return KILN_OK;
 }
 
-// Plans a mirror level, which shows the environment unfiltered. It is resampled directly from the
-// source, which keeps a source cube as sharp as it was. If the texels of the source are much finer
-// than those of the level, the level is resampled from the panorama instead. The panorama contains
-// every texel of the source, so that the level is as sharp.
+// Plans a mirror level, which shows the environment unfiltered. `source` is the cube or octahedron
+// that the environment's panorama was made from, or NULL if the environment is a panorama itself.
+// The level is resampled from `source` where that conversion is exact (from cube to cube, turned by
+// a multiple of 90 degrees), and also where the source has less than 4 times the texels of the
+// level, because resampling twice, by way of the panorama, would blur the level. In all other cases
+// the level is resampled from the panorama, whose texels are then much smaller than those of the
+// level. That conversion averages exact areas, whereas a direct conversion would average a limited
+// number of sample points in each texel.
 static kiln_result plan_mirror(kiln_context *context, ki_prefilter *p, int level,
                                const kiln_map *source, kiln_error *error)
 {

@@ -155,9 +155,8 @@ static double arc_cosine(double x)
 // sine and cosine are h[0] and h[1]. The integrand has a singularity at the distance `margin`
 // beyond the arc's end, so the quadrature nodes are closer towards the end: margin + reach - phi =
 // margin (1 + slope x)^16 with x evenly spaced in [0, 1]. The 16th power is nearly an exponential
-// and costs four products. With `root` the integrand behaves as a square root at the end itself,
-// which the substitution x = y^2 with y evenly spaced removes. With `coarse` a panel has 8 nodes
-// instead of 16.
+// and costs four products. With `root` the integrand behaves as a square root at the end itself. x
+// = y^2 with y evenly spaced removes this root. With `coarse` a panel has 8 nodes instead of 16.
 static double integrate_arc(const boundary *s, part what, const double h[2], double reach,
                             double margin, bool root, bool coarse)
 {

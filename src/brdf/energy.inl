@@ -126,8 +126,9 @@ static void hyperbolic(double h, double sinh_y[HALF], double cosh_y[HALF])
     }
 }
 
-// Sets delta, the light's cosine mu_i minus the view's, and Q, the root in int D dphi, of nodes
-// whose mu_i is known. Serves substitutions that give Q no closed form.
+// Sets delta, the light's cosine mu_i minus the view's, and Q, the root in int D dphi, at nodes
+// whose mu_i is known. Called where the nodes are not evenly spaced in t with mu_i = m + d sinh t,
+// for which Q is s d cosh t.
 static void finish_nodes(const view *v, panel *p)
 {
     double back = 2 * v->alpha2 * v->mu, wide = 4 * v->alpha2 * v->sin2;
@@ -392,8 +393,8 @@ static void add(const view *v, const panel *p, double e[HALF], double b[HALF], b
         add_b(v, p, top, bottom, b);
 }
 
-// An interval of a quadrature variable x, which is u or t of the substitutions for the light's
-// cosine mu_i, cut into `count` panels of equal length.
+// An interval of a quadrature variable x, cut into `count` panels of equal length. x is u or t, in
+// which the light's cosine is mu_i = c (e^u - 1) or mu_i = m + d sinh t.
 typedef struct tiling {
     double from;     // e^x at the lower end of the interval of x
     double ratio;    // e^x at the upper end of the interval over e^x at its lower end

@@ -187,8 +187,8 @@ typedef struct average {
     double n, k, kink, end, node[NODES], weight[NODES];
 } average;
 
-// Returns the part of the integral 2 int F mu dmu between two values of the substitution's variable
-// t, by one Gauss-Legendre rule.
+// Returns the integral of 2 F(mu) mu dmu over mu = kink + (end - kink) t^2 with t between the
+// values `from` and `to`, by one Gauss-Legendre rule in t.
 static double panel(const average *f, double from, double to)
 {
     double sum = 0, half = (to - from) / 2, length = f->end - f->kink;
@@ -199,8 +199,9 @@ static double panel(const average *f, double from, double to)
     return sum * 4 * half * fabs(length);
 }
 
-// Adaptive quadrature of 2 int F mu dmu: halves an interval of t until, at two depths in
-// succession, the sum over the halves agrees to 1e-14 with the integral over the whole interval.
+// Adaptive quadrature of 2 int F(mu) mu dmu with mu = kink + (end - kink) t^2, over an interval of
+// t. Halves the interval until, at two depths in succession, the sum over the halves agrees to
+// 1e-14 with the integral `whole` over the whole interval.
 static double refine(const average *f, double from, double to, double whole, bool agreed, int depth)
 {
     double middle = (from + to) / 2;

@@ -21,7 +21,8 @@
 enum {
     // number of independent estimates of the albedo, whose variance gives the standard error
     REPLICATES = 16,
-    // number of random numbers of a path that come from a lattice; later ones are hashed
+    // number of random numbers of a path that come from a lattice; the path's further random
+    // numbers come from a hash of its index
     DIMENSIONS = 16,
     MAX_BOUNCES = 1024 // number of bounces at which a path is stopped
 };
@@ -99,7 +100,9 @@ typedef struct lattice {
     // step of each coordinate from a lattice point to the next, in units of 2^-32
     uint32_t step[DIMENSIONS];
     uint32_t shift[DIMENSIONS]; // random shift of each coordinate of the lattice, in units of 2^-32
-    uint64_t key;               // seed of the shifts, and of the random numbers that are hashed
+    // seed of the hash that makes the shifts, and those random numbers of a path that do not come
+    // from the lattice
+    uint64_t key;
 } lattice;
 
 // A hash of 64 bits: the finaliser of splitmix64 (Steele, Lea and Flood 2014).
@@ -120,9 +123,10 @@ static void make_lattice(uint32_t seed, int replicate, int bits, lattice *l)
     }
 }
 
-// Coordinate `d` of path `index`, in (0, 1): of the lattice point for d < DIMENSIONS, a hashed
-// number for others. The map x -> 1 - |2 x - 1| makes integrands periodic (Hickernell 2002), which
-// lowers the variance of the albedo by a factor of three.
+// Returns random number `d` of path `index`, in (0, 1). For d < DIMENSIONS the number is a
+// coordinate of the path's lattice point, for larger d a hash of `index` and d. The map x -> 1 - |2
+// x - 1| of the lattice's coordinates makes integrands periodic (Hickernell 2002), which lowers the
+// variance of the albedo by a factor of three.
 static double coordinate(const lattice *l, uint32_t index, int d)
 {
     if (d >= DIMENSIONS)

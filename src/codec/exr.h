@@ -101,7 +101,8 @@ typedef enum ki_exr_role {
     KI_EXR_RED_CHROMA,  // RY = (R - Y) / Y
     KI_EXR_BLUE_CHROMA, // BY = (B - Y) / Y
     KI_EXR_ROLES,
-    KI_EXR_COORDINATE = KI_EXR_ROLES, // X or Z, which with Y is a position or a normal
+    /// a channel X or Z, which together with a channel Y stores a position or a normal, no colour
+    KI_EXR_COORDINATE = KI_EXR_ROLES,
     KI_EXR_OTHER
 } ki_exr_role;
 

@@ -78,7 +78,7 @@ typedef struct dwa {
     int rule_count;
     uint8_t *raw;
     const uint16_t *ac, *ac_end, *dc, *dc_end;
-    dwa_plan plans[]; // of all channels
+    dwa_plan plans[]; // how each channel is stored
 } dwa;
 
 static void read_counts(ki_reader *r, counts *c)

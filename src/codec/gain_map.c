@@ -31,12 +31,12 @@ static bool read_iso(ki_span span, ki_gain_map *map)
 {
     enum { SEVERAL_CHANNELS = 128, COMMON_DENOMINATOR = 8 };
     ki_reader r = ki_reader_make(span.bytes, span.size);
-    // skips the version that a reader must know and the version that the writer knows
+    // Skips two versions of the format of ISO 21496-1, two bytes each: the least version that a
+    // reader must know, and the version that the writer used. kiln reads least version 0 only.
     ki_read_bytes(&r, 4);
     int flags = ki_read_u8(&r), count = flags & SEVERAL_CHANNELS ? 3 : 1;
     uint32_t common = flags & COMMON_DENOMINATOR ? read_u32(&r) : 0;
-    if (r.failed || span.bytes[0] || span.bytes[1] ||
-        (flags & COMMON_DENOMINATOR && !common)) // the gain map needs a reader of a later version
+    if (r.failed || span.bytes[0] || span.bytes[1] || (flags & COMMON_DENOMINATOR && !common))
         return false;
     map->base_headroom = read_fraction(&r, false, common);
     map->other_headroom = read_fraction(&r, false, common);

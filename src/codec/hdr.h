@@ -26,9 +26,10 @@ typedef struct ki_hdr_header {
     ki_matrix3 to_rec709;
 } ki_hdr_header;
 
-/// Reads the header up to the line with the resolution, after which the texels begin. What is
-/// converted or assumed is noted in the report. `info`, which may be NULL, gets the name of the
-/// program that wrote the file.
+/// Reads the header up to the line with the resolution, after which the texels begin. Adds notes to
+/// *report about conversions that the header asks for (exposure, colour correction, XYZ,
+/// primaries), and about numbers of 0 in the header that are taken as 1. `info`, which may be NULL,
+/// gets the name of the program that wrote the file.
 kiln_result ki_hdr_read_header(kiln_context *context, ki_reader *r, const char *name,
                                ki_hdr_header *header, kiln_file_info *info,
                                kiln_load_report *report, kiln_error *error);

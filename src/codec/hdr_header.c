@@ -210,8 +210,8 @@ static void note_primaries(const header_reader *h)
             xy[0], xy[1], xy[2], xy[3], xy[4], xy[5], xy[6], xy[7]);
 }
 
-// Sets the divisor and the colour matrix by which the file's values become radiance in Rec. 709,
-// and notes both in the report.
+// Sets the divisor and the colour matrix by which the file's values become radiance in Rec. 709.
+// Adds a note to h->report about each of the two that changes values.
 static void find_conversion(const header_reader *h)
 {
     static const ki_matrix3 identity = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};

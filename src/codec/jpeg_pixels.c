@@ -24,7 +24,8 @@ typedef struct decoder {
     struct jpeg_progress_mgr progress;
     jmp_buf stop;
     kiln_context *context;
-    double pixels, pixels_most; // of a scan, and of all scans
+    double pixels;      // number of pixels of the picture, which each scan can cover once
+    double pixels_most; // greatest sum of pixels over all scans that is decoded
     bool cancelled, too_many_scans;
     char fault[JMSG_LENGTH_MAX];
 } decoder;

@@ -46,7 +46,8 @@ static kiln_result begin(const kiln_load_def **def, kiln_map *map, kiln_error *e
 }
 
 // Ends a public function that loads a map, whose result so far is `result`. If the map was read,
-// replaces its values that are no radiance and hands out the report. On failure frees the map.
+// replaces its values that are no radiance, and copies `report` to def->report unless that is NULL.
+// On failure frees the map.
 static kiln_result finish(kiln_context *context, const char *name, const kiln_load_def *def,
                           kiln_result result, kiln_load_report *report, kiln_map *map,
                           kiln_error *error)

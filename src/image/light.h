@@ -1,4 +1,5 @@
-// The light of maps: values times the solid angles of their texels.
+// Light in maps. The light of a value, of one channel of a texel, is the value times the solid
+// angle of its texel.
 #ifndef KI_LIGHT_H
 #define KI_LIGHT_H
 
@@ -10,21 +11,23 @@
 /// pictures, whose shape is KILN_SHAPE_AUTO.
 double ki_texel_weight(kiln_shape shape, int size, int row, int x);
 
-/// Light: sums over the values of texels, each multiplied by its texel's ki_texel_weight.
+/// Sums over the three channels of texels. Each value of a channel is multiplied by the solid angle
+/// of its texel, up to the constant factor of ki_texel_weight.
 typedef struct ki_light {
-    /// light of the values above 0, and of the magnitudes of the values below 0
-    double above_zero, below_zero;
-    double above_limit; ///< light of the amounts by which values exceed ki_add_light's `limit`
+    double above_zero;  ///< sum over the values above 0
+    double below_zero;  ///< sum over the absolute values of the values below 0
+    double above_limit; ///< sum over (value - limit) for the values above `limit`
 } ki_light;
 
-/// Adds the light of a row of RGB texels to *light. `limit` may be infinite.
+/// Adds the values of a row of RGB texels, times the solid angles of the texels, to the sums in
+/// *light. `limit` may be infinite.
 void ki_add_light(kiln_shape shape, int size, int row, int width, const float *rgb, double limit,
                   ki_light *light);
-/// Returns the light of values below zero relative to that of values above zero; 1 if there is only
-/// light below zero.
+/// Returns below_zero / above_zero. If no value is above zero, returns 1 if there are values below
+/// zero, else 0.
 double ki_share_below(const ki_light *light);
-/// Returns the light of all levels of a map. `above_limit` of the result is the light by which
-/// values exceed `limit`.
+/// Returns the sums of ki_light over the texels of all levels of a map. `above_limit` of the result
+/// counts from `limit`.
 ki_light ki_map_light(const kiln_map *map, double limit);
 
 /// Sets the values below zero of `count` levels from `first` on to 0, as kiln_map_cut_negative

@@ -185,8 +185,9 @@ void ki_resample_subsample(void *data, int index)
                     double r2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
                     area = 1 / (r2 * sqrt(r2));
                 } else {
-                    // The octahedron's point in the unit direction d has the length 1 / sum. The
-                    // solid angle of the sample is proportional to 1 / length^3.
+                    // The unit direction d meets the octahedron |x| + |y| + |z| = 1 at the distance
+                    // 1 / sum from its centre. The solid angle of a sample of fixed area on a face
+                    // is proportional to 1 / distance^3.
                     ki_octahedron_direction(u, v, d);
                     double sum = fabs(d[0]) + fabs(d[1]) + fabs(d[2]);
                     area = sum * sum * sum;

@@ -28,8 +28,9 @@ static double point(const kiln_map *map, int face, double x, double y, double di
         ki_octahedron_direction(x / n, y / n, d);
         length = 1 / (fabs(d[0]) + fabs(d[1]) + fabs(d[2]));
     }
-    // For both shapes du dv / length^3 on the unfolded plane, whose sides are 2 long, is the solid
-    // angle; a texel's sides are 2 / n long.
+    // A surface element du dv of a cube's face or of the octahedron's unfolded plane, whose sides
+    // are 2 long, has the solid angle du dv / length^3, where `length` is its distance from the
+    // centre before it is scaled to the unit sphere. A texel has du = dv = 2 / n.
     return 4 / (n * n * length * length * length);
 }
 

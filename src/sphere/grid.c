@@ -96,9 +96,13 @@ void ki_taps_design(double step, const double *density, int degree, double *taps
     }
 }
 
-// The power of an environment is modelled as 1 / l^2 for each coefficient a_lm; summed over the
-// orders m of a degree, that is about 1 / (l + 1). The coefficients of a GGX lobe are modelled as
-// exp(-2 alpha l), with alpha chosen so that the coefficient of the last degree is exp(-10.4).
+// density[l] is the product of two models, of an environment's power at degree l and of a GGX
+// lobe's squared Legendre coefficient.
+// The power of each coefficient a_lm of a photographed environment is about proportional to 1 /
+// l^2. The sum over the 2 l + 1 orders m of a degree is then about proportional to 1 / l. 1 / (l +
+// 1) takes its place, which is finite at l = 0. Constant factors do not matter to ki_taps_design.
+// The lobe's coefficient is about exp(-2 alpha l). For the narrowest lobe that `degree` can
+// represent, alpha is such that the coefficient of the last degree is exp(-10.4).
 void ki_model_density(int degree, double *density)
 {
     for (int l = 0; l <= degree; l++)

@@ -13,9 +13,11 @@
 /// constants are reproduced. Writes KI_TAP_TABLE doubles to `taps`.
 void ki_taps_design(double step, const double *density, int degree, double *taps);
 
-/// Sets `density` for ki_taps_design to the power of a typical filtered environment, l = 0 ..
-/// degree. The squared coefficients of the environment are taken to fall like 1 / l^2, as those of
-/// photographs do, and the lobe to be the narrowest GGX lobe that `degree` can represent.
+/// Sets density[l] for ki_taps_design, l = 0 .. degree, to the power at degree l of a typical
+/// filtered environment: the power of the unfiltered environment times the squared Legendre
+/// coefficient of the lobe. The squared coefficients a_lm of the environment are taken to fall like
+/// 1 / l^2, as those of photographs do, and the lobe to be the narrowest GGX lobe that `degree` can
+/// represent.
 void ki_model_density(int degree, double *density);
 
 /// Interpolates the eight weights for a position between two grid points, at a fraction in [0, 1]

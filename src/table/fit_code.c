@@ -119,7 +119,8 @@ static void write_arguments(ki_writer *w, const kiln_fit *fit, const language *l
     }
 }
 
-// Writes the code that sets x in [-1, 1], the argument of a part's polynomials.
+// Writes the code that sets x in [-1, 1], the first argument of the polynomials P and Q of one part
+// of a closed form.
 static void write_x(ki_writer *w, const kiln_fit_part *part, const language *l)
 {
     static const char *const from[] = {"", "t", "t", "m", "m"};
@@ -150,7 +151,8 @@ static void write_horner(ki_writer *w, const language *l, const float *c, int co
     ki_write_text(w, ";\n");
 }
 
-// Writes the code that sets the variable `name` to a part's polynomial of x and y.
+// Writes the code that sets the variable `name` to a polynomial in x and y, P or Q of one part of a
+// closed form, with the coefficients c.
 static void write_polynomial(ki_writer *w, const language *l, const kiln_fit_part *part,
                              const float *c, const char *name)
 {

@@ -22,8 +22,8 @@ static float axis_t(const kiln_fit_def *def, float nov, float roughness)
     return s > 0 ? nov * (1 + c) / s : 1;
 }
 
-// The argument x in [-1, 1] of a part's polynomials, a function of n.v and roughness that `axis`
-// names.
+// Returns the argument x in [-1, 1] of the polynomials P and Q of one part of a closed form. `axis`
+// says which function of n.v and roughness x is.
 static float axis_x(const kiln_fit_def *def, kiln_fit_axis axis, float nov, float roughness)
 {
     switch (axis) {

@@ -91,8 +91,8 @@ void ki_fit_points_free(ki_fit_points *points)
     *points = (ki_fit_points){0};
 }
 
-// Returns the n.v that belongs to the argument x in [-1, 1] of a part's polynomials at this
-// roughness, where x is the function of n.v that `axis` names.
+// Returns the n.v at which the polynomials P and Q of one part of a closed form have the argument x
+// in [-1, 1], at this roughness. `axis` says which function of n.v and roughness x is.
 static double nov_of(const kiln_fit_def *def, kiln_fit_axis axis, double roughness, double x)
 {
     double u = ki_clamp((1 + x) / 2, 0, 1);
@@ -109,8 +109,8 @@ static double nov_of(const kiln_fit_def *def, kiln_fit_axis axis, double roughne
     }
 }
 
-// Returns the roughness from def->roughness_min to 1 that belongs to the argument y in [-1, 1] of a
-// part's polynomials.
+// Returns the roughness, from def->roughness_min to 1, at which the polynomials P and Q of one part
+// of a closed form have the argument y in [-1, 1].
 static double roughness_of(const kiln_fit_def *def, double y)
 {
     return ki_clamp(def->roughness_min + (1 - def->roughness_min) * (1 + y) / 2, def->roughness_min,

@@ -147,8 +147,9 @@ static void write_c_head(const code_writer *j)
     ki_write_text(j->w, ")\n{\n");
 }
 
-// Writes the code that interpolates between the four texels of a slice nearest to the arguments
-// into a variable `name`. The pointer t is at the first of them.
+// Writes the code that sets the variable `name` to an interpolated value of one slice of the table,
+// between the four texels that lie around the arguments. In the written code, t points to the first
+// of these texels.
 static void write_c_slice(const code_writer *j, const char *name)
 {
     ki_writer *w = j->w;
@@ -264,8 +265,8 @@ static void write_glsl_array(const code_writer *j)
     ki_writer *w = j->w;
     const kiln_table_def *def = j->def;
     const char *type = vectors[j->channels - 1], *n = j->name;
-    // Writes GLSL functions that read a texel, and that interpolate between the four texels of a
-    // slice.
+    // Writes two GLSL functions: NAME_texel reads the texel (x, y, z) of the table, and NAME_slice
+    // interpolates in slice z between the texel (x, y) and its neighbours at x + 1 and y + 1.
     ki_write_text(w,
                   "%s %s_texel(int x, int y, int z)\n"
                   "{\n"

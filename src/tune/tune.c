@@ -1,9 +1,9 @@
 // Makes the tuned levels of tune.h. In: the spectrum of an environment, and how an engine reads
 // levels. Out: the texels of the tuned levels. Method: tune_mix.c finds the mixture of lobes of
-// each level. A large level is evaluated from its mixture at its texels. The texels of a cube's
-// level with faces of at most MOST_READS texels are solved for instead: the mixture is evaluated on
-// a finer grid, and tune_read.c finds the texels whose bilinear interpolation comes nearest to the
-// values on this grid. docs/theory/tuning.md derives the method.
+// each level. A large level is evaluated from its mixture at its texels. For a cube's level with
+// faces of at most MOST_READS texels, the mixture is evaluated on a finer grid instead, and
+// tune_read.c finds the texels whose bilinear interpolation comes nearest to the values on this
+// grid. docs/theory/tuning.md derives the method.
 #include "tune/tune.h"
 
 #include "image/image.h"
@@ -20,9 +20,10 @@
 // Spherical harmonics of degrees with less than this share of the power of degree 0 are dropped.
 // They are the rounding errors of floats, which a mixture with negative weights would amplify.
 static const double rounding = 1e-14;
-// MOST_READS: greatest size of a cube level's faces, in texels, for which the texels are solved for
-// bilinear reads. COARSE: greatest size of faces that are compared with their target at 4 x 4
-// points per texel; larger faces are compared at 2 x 2 points.
+// MOST_READS: greatest size of a cube level's faces, in texels, for which ki_solve_texels chooses
+// the texels such that bilinear reads of the level show the least error. COARSE: greatest size of
+// faces that are compared with their target at 4 x 4 points per texel; larger faces are compared at
+// 2 x 2 points.
 enum { MOST_READS = 256, COARSE = 32 };
 
 struct ki_tune {
@@ -52,8 +53,8 @@ typedef struct run {
     // (ki_make_mirrors)
     kiln_map mirror;
     kiln_map *map; // map whose tuned levels are written
-    // For each level that is solved for bilinear reads, the radiance that the level should show;
-    // empty for levels that are not solved.
+    // For each level whose texels ki_solve_texels computes, the radiance that bilinear reads of the
+    // level should show; empty for other levels.
     kiln_map targets[KILN_MAX_LEVELS];
 } run;
 
@@ -243,8 +244,8 @@ static kiln_result make_target(const run *r, int level, kiln_map *map, int index
     return result;
 }
 
-// Returns true if the texels of `level` are solved for bilinear reads. `level` may be one beyond
-// the last level, for which the function returns false.
+// Returns true if ki_solve_texels computes the texels of `level`, for the least error of bilinear
+// reads. `level` may be one beyond the last level, for which the function returns false.
 static bool is_read(const ki_tune *t, int level)
 {
     if (level >= t->level_count || level >= KILN_MAX_LEVELS)
@@ -279,10 +280,10 @@ static void correct_row(void *data, int row)
     }
 }
 
-// Makes a level by solving for the texels whose bilinear reads come nearest to a goal. The goal is
-// the environment filtered by the level's mixture, on a finer grid, corrected to make up for the
-// error that the next, coarser level already has. r->targets[level] keeps the uncorrected goal for
-// the next finer level.
+// Makes a level whose texels ki_solve_texels computes, such that bilinear reads of the level come
+// nearest to a goal. The goal is the environment filtered by the level's mixture, on a finer grid,
+// corrected to make up for the error that the next, coarser level already has. r->targets[level]
+// keeps the uncorrected goal for the next finer level.
 static kiln_result make_read(run *r, int level, kiln_error *error)
 {
     const ki_tune *t = r->tune;

@@ -15,9 +15,10 @@
 //
 // A is the same for all harmonics. Therefore each level is the environment filtered by one kernel,
 // a mixture of GGX lobes and of a mirror, whose weights (some negative) sum to 1. The environment
-// enters through |T_r| only, which follows from its power per degree. tune_mix.h uses two norms at
-// once, which gives one such system for each axis of their common eigenbasis. docs/theory/tuning.md
-// derives the method and lists its errors.
+// enters through |T_r| only, which follows from its power per degree. tune_mix.h minimises the
+// sum of two such errors, whose norms |.| are over the whole sphere and over the sphere away from
+// suns. This gives one such system for each generalised eigenvector of the two norms' matrices of
+// scalar products. docs/theory/tuning.md derives the method and lists its errors.
 #ifndef KI_TUNE_H
 #define KI_TUNE_H
 

@@ -1,9 +1,11 @@
 // Finds the mixtures of lobes of tuned levels. In: quadrature nodes over roughness and the
 // environment's spectrum. Out: the weight of each lobe in each level. The normal equations of the
-// least-squares problem in tune.h are tridiagonal in the levels. The error is measured in two
-// norms, over the whole sphere and away from suns (tune_norms.h). The equations are solved once for
-// each common eigenvector ("axis") of the norms, and the components of the solutions along their
-// axes are added. docs/theory/tuning.md derives the method.
+// least-squares problem in tune.h are tridiagonal in the levels. The error is the sum of two
+// squared norms of the same difference, one over the whole sphere and one away from suns. Each norm
+// is given by a matrix of scalar products (tune_norms.h). Both matrices become diagonal in the
+// basis of their generalised eigenvectors ("axes"). The equations are solved once for each axis,
+// and the components of the solutions along their axes are added. docs/theory/tuning.md derives the
+// method.
 #include "tune/tune_norms.h"
 
 #include "math/math.h"
@@ -23,8 +25,8 @@ static const double prior = 1e-3;
 static const double mirror_weight = 1e-3;
 // Weights of lobes in a mixture that are smaller than this in absolute value are set to 0.
 static const double least_weight = 1e-5;
-// The weight of errors away from suns (the second norm of tune_norms.h) relative to errors on the
-// whole sphere (the first norm).
+// The weight of errors over the sphere without 8 degrees around each sun, relative to errors over
+// the whole sphere.
 static const double far_weight = 30;
 // Errors away from suns are divided by the light there. This constant is added to the square of
 // that light, in units of the squared mean radiance. Without it, the errors of a black sky around a
@@ -134,8 +136,10 @@ static void solve_equations(const ki_nodes *nodes, equations *e)
         }
 }
 
-// Adds to the mixtures `to` the component of the mixtures e->weights along one axis, a common
-// eigenvector of the two norms of tune_norms.h.
+// Adds to the mixtures `to` the component of the mixtures e->weights along the eigenvector number
+// `axis` of tune_norms.h. The component is the eigenvector times the scalar product, over the whole
+// sphere, of the environment filtered by the eigenvector's mixture of lobes and of the environment
+// filtered by the level's mixture.
 static void add_part(const ki_norms *n, size_t axis, const equations *e, int level_count,
                      ki_mixtures *to)
 {

@@ -1,9 +1,10 @@
-// Computes the two norms of tune_norms.h: of errors over the whole sphere, and of errors away from
-// suns. In: the spectra of lobes and of the environment. Out: the matrix of scalar products of
-// filtered environments in each norm, and the common eigenvectors of both matrices. The products
-// over the whole sphere come from the power per degree. Away from suns, the suns' light is
-// integrated over the tails of lobes. The generalised eigenproblem becomes an ordinary one by a
-// Cholesky decomposition. docs/theory/tuning.md.
+// Computes the two norms in which tuned levels minimise their error: over the whole sphere, and
+// away from suns. In: the spectra of lobes and of the environment. Out: for each norm, the matrix
+// of scalar products of the environment filtered by each pair of lobes; and the generalised
+// eigenvectors of the two matrices, which make both matrices diagonal. The products over the whole
+// sphere come from the power per degree. Away from suns, the suns' light is integrated over the
+// tails of lobes. The generalised eigenproblem becomes an ordinary one by a Cholesky decomposition.
+// docs/theory/tuning.md derives the method.
 #include "tune/tune_norms.h"
 
 #include "math/math.h"
@@ -141,7 +142,8 @@ static void divide(int count, const double *lower, double *a)
 }
 
 // Converts eigenvectors q of L^-1 H L^-T to the basis of lobes: along = L^-T q and across = L q. G
-// and H are the matrices of scalar products in the two norms of tune_norms.h, and L L' = G.
+// and H are the matrices of the scalar products of filtered environments, G over the whole sphere
+// and H away from suns, and L L' = G (L is `lower`).
 static void turn_axes(ki_norms *n, const double *lower, const double *axes)
 {
     size_t count = (size_t)n->count;

@@ -18,14 +18,14 @@ typedef struct ki_norms {
     // squared norm away from suns of the environment filtered by each lobe, over the squared mean
     // radiance
     double away[KI_MOST_LOBES];
-    // for each axis, a common eigenvector of both norms, the ratio of its squared norm away from
-    // suns to that over the whole sphere
+    // eigenvalue of each axis (eigenvector): the ratio of the axis' squared norm away from suns to
+    // its squared norm over the whole sphere
     double ratio[KI_MOST_LOBES];
-    // [axis][lobe]: the weights of lobes that each axis, a common eigenvector of both norms,
-    // consists of
+    // [axis][lobe]: the components of each axis (eigenvector): the weights of the lobes in the
+    // mixture that the axis stands for
     double *along;
-    // [axis][lobe]: scalar product over the whole sphere of each axis and the environment filtered
-    // by each lobe
+    // [axis][lobe]: scalar product, over the whole sphere, of the environment filtered by the
+    // mixture of each axis and of the environment filtered by each lobe
     double *across;
 } ki_norms;
 

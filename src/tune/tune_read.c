@@ -1,6 +1,6 @@
-// Solves for the texels of a cube level whose bilinear interpolation comes nearest to a finer cube,
-// the goal. In: the goal. Out: texels >= 0. Method: a linear least-squares problem, by conjugate
-// gradients.
+// Computes the texels of a cube level such that the level, interpolated bilinearly, comes nearest
+// to a finer cube, the goal. In: the goal. Out: texels >= 0. Method: a linear least-squares
+// problem, by conjugate gradients.
 #include "tune/tune_read.h"
 
 #include "image/image.h"
@@ -11,9 +11,9 @@
 // The points are the directions of the goal's texels. B x are the values that bilinear reads of the
 // texels x give at the points; each read has four taps. W is the diagonal matrix of the points'
 // solid angles. The normal equations B' W B x = B' W goal are solved by conjugate gradients,
-// preconditioned by the diagonal of B' W B. The condition number of that matrix is about 9, so that
-// STEPS steps suffice. Texels that become negative are fixed at 0 and the others are solved for
-// again, in up to ROUNDS rounds. Tasks process CHUNK texels or points.
+// preconditioned by the diagonal of B' W B. The condition number of B' W B is about 9, so that
+// STEPS steps suffice. Texels that become negative are fixed at 0, and the equations of the
+// remaining texels are solved again, in up to ROUNDS rounds. Tasks process CHUNK texels or points.
 enum { STEPS = 14, ROUNDS = 3, CHUNK = 2048 };
 
 typedef struct tap {
@@ -269,8 +269,10 @@ static void turn_direction(void *data, int index)
                 r->residual[t][c] / r->diagonal[t] + s->turn[c] * r->direction[t][c];
 }
 
-// Solves for the texels that are not fixed at 0, by STEPS steps of preconditioned conjugate
-// gradients in each colour channel.
+// Solves the normal equations B' W B x = B' W goal for the texels x, by STEPS steps of
+// preconditioned conjugate gradients in each colour channel. B is the matrix of the weights of
+// bilinear reads, W the diagonal matrix of the points' solid angles. Texels with `held` set keep
+// the value 0 and have no equation.
 static void solve(reads *r)
 {
     int texel_chunks = chunks(r->texel_count);

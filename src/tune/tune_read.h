@@ -1,4 +1,5 @@
-// Solves for the texels of a cube whose bilinear interpolation comes nearest to a finer cube.
+// Computes the texels of a cube such that the cube, interpolated bilinearly, comes nearest to a
+// finer cube.
 #ifndef KI_TUNE_READ_H
 #define KI_TUNE_READ_H
 
