@@ -645,9 +645,9 @@ typedef struct kiln_lights_def {
 } kiln_lights_def;
 
 /// Finds the compact lights in level 0 of a map of any shape: connected texels that are much
-/// brighter than their surroundings. A light which one disc cannot replace, so that a coefficient of
-/// the first five bands would change by more than a thousandth of the map's mean, is left out.
-/// `def` may be NULL. Source: docs/lights.md.
+/// brighter than their surroundings. Lights are left out where discs in their place would change a
+/// coefficient of the first five bands of harmonics by a thousandth of the norm of all these
+/// coefficients. `def` may be NULL. Source: docs/lights.md.
 KILN_API KILN_CHECKED kiln_result kiln_lights_find(kiln_context *context, const kiln_map *map,
                                                    const kiln_lights_def *def, kiln_lights *lights,
                                                    kiln_error *error);

@@ -1,6 +1,6 @@
-// The public functions for compact lights. In: a map and how many lights are wanted. Out: the lights,
-// and the map without them. lights_search.c finds regions, lights_measure.c makes a light of each;
-// the functions here choose among them by their share of the map's light.
+// The public functions for compact lights. In: a map and how many lights are wanted. Out: the
+// lights, and the map without them. lights_search.c finds regions, lights_measure.c makes a light
+// of each; the functions here choose among them by their share of the map's light.
 #include "bake/lights.h"
 
 #include "image/image.h"
@@ -33,8 +33,8 @@ static ki_region *largest(const ki_search *search, const bool *seen)
     return best;
 }
 
-// Adds a region's mismatch to those of the lights chosen before. Returns false, and adds nothing, if
-// the sum would be too large.
+// Adds a region's mismatch to those of the lights chosen before. Returns false, and adds nothing,
+// if the sum would be too large.
 static bool add_mismatch(const ki_region *region, double sum[KI_SH_COUNT][3])
 {
     double next[KI_SH_COUNT][3];

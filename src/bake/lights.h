@@ -32,10 +32,13 @@ typedef struct ki_search {
     uint16_t *owner;
     size_t *list; ///< texels of all regions, one region after the other
     size_t used;
+    size_t *seed; ///< texels that are bright enough to begin a region
+    size_t seed_count;
     /// Sum over all texels of radiance times solid angle, and the mean brightness of the map with
     /// its lights cut off.
     double light[3], base;
-    /// Root of the sum of squares of the map's harmonics in five bands, as the mean of the channels.
+    /// Root of the sum of squares of the map's harmonics in five bands, as the mean of the
+    /// channels.
     double norm;
     ki_region *region; ///< room for KI_MOST_REGIONS
     int region_count;
@@ -43,8 +46,8 @@ typedef struct ki_search {
 
 enum { KI_REJECTED = 65535 };
 
-/// Largest mismatch of one light, and of the sum of all lights that are taken out, so that the lights
-/// and the map that remains have the harmonics of the map to a thousandth.
+/// Largest mismatch of one light, and of the sum of all lights that are taken out, so that the
+/// lights and the map that remains have the harmonics of the map to a thousandth.
 extern const double ki_light_mismatch, ki_lights_mismatch;
 
 /// Fails unless the numbers are in the ranges that kiln_lights_def states.

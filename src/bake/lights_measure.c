@@ -2,19 +2,19 @@
 // texels that remain, and how well the disc replaces what was taken out.
 //
 // Every texel of the region receives what surrounds the region: the mean of the texels along its
-// border, each weighted by 1 / distance^2, or the texel's own value where this is smaller. The light
-// is the difference d_i in each texel, so that the sum of both is the map, whatever the surroundings
-// are. With the solid angle w_i and the direction v_i of texel i, the light is
+// border, each weighted by 1 / distance^2, or the texel's own value where this is smaller. The
+// light is the difference d_i in each texel, so that the sum of both is the map, whatever the
+// surroundings are. With the solid angle w_i and the direction v_i of texel i, the light is
 //
 //     F = sum d_i w_i v_i         the vector irradiance; its direction is the centroid, its length
 //                                 the irradiance of a surface that faces the light
 //     r = 3/2 sum d_i w_i |v_i - F / |F|| / sum d_i w_i     the angular radius of a uniform disc
 //                                 with the same mean distance from its centre
 //
-// Harmonics of degree 0 and 1 of this disc agree with those of the texels, and those of higher
-// degrees are compared. The mean distance decides how much of the light a surface receives whose
-// horizon cuts through the light. Faint glow around a sun widens the disc less than the root mean
-// square of the distance would.
+// Harmonics of degree 1 of this disc agree with those of the texels, and those of other degrees are
+// compared. The mean distance decides how much of the light a surface receives whose horizon cuts
+// through the light. Faint glow around a sun widens the disc less than the root mean square of the
+// distance would.
 #include "bake/lights.h"
 
 #include "image/texel.h"
@@ -107,9 +107,9 @@ static void add_texel(const ki_texel_nodes *nodes, const double taken[3], region
     }
 }
 
-// Takes one texel apart into what remains and what is taken out. Values below zero inside of a light
-// are errors of lossy compression, whose counterpart is in the light: `negative` says in which channels these are
-// replaced too.
+// Takes one texel apart into what remains and what is taken out. Values below zero inside of a
+// light are errors of lossy compression, whose counterpart is in the light: `negative` says in
+// which channels these are replaced too.
 static void split(const float *texel, const double around[3], const bool negative[3],
                   double left[3], double taken[3])
 {

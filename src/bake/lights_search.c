@@ -1,13 +1,14 @@
-// Finds regions of bright texels. In: a map of any shape. Out: connected regions that stand far above
-// their surroundings, each with the light that it holds.
+// Finds regions of bright texels. In: a map of any shape. Out: connected regions that stand far
+// above their surroundings, each with the light that it holds.
 //
-// The base is the mean brightness of the map after texels above 8 times the base are cut off at this
-// limit, which suns then do not move. The brightest texel above 100 times the base begins a region.
-// The region is all texels above a threshold that are connected, across gaps of one texel too: 8 times the base, and 4 times the median of
-// three circles 8 to 12 degrees around the beginning, which are the surroundings. A region that
-// reaches further than 10 degrees, or that a disc cannot replace, is grown again with twice the
-// threshold, which leaves glow and haze in the map and keeps the core. A region that is still too
-// large at half the brightness of its beginning is no compact light.
+// The base is the mean brightness of the map after texels above 8 times the base are cut off at
+// this limit, which suns then do not move. The brightest texel above 100 times the base begins a
+// region. The region is all texels above a threshold that are connected, across gaps of one texel
+// too: 8 times the base, and 4 times the median of three circles 8 to 12 degrees around the
+// beginning, which are the surroundings. A region that reaches further than 10 degrees, or that a
+// disc cannot replace, is grown again with twice the threshold, which leaves glow and haze in the
+// map and keeps the core. A region that is still too large at half the brightness of its beginning
+// is no compact light.
 #include "bake/lights.h"
 
 #include "image/texel.h"
@@ -186,29 +187,38 @@ static void take_region(ki_search *search, size_t seed)
 
 // ------------------------------------------------------------------------------------------ search
 
-// Returns the brightest texel that belongs to no region, or texel_count if none is bright.
+// Returns the brightest seed that belongs to no region, or texel_count if there is none.
 static size_t next_seed(const ki_search *search)
 {
     size_t best = search->texel_count;
-    float most = (float)(seed_over_base * search->base);
-    for (size_t i = 0; i < search->texel_count; i++)
-        if (search->brightness[i] > most && !search->owner[i]) {
-            most = search->brightness[i];
-            best = i;
+    float most = 0;
+    for (size_t i = 0; i < search->seed_count; i++) {
+        size_t index = search->seed[i];
+        if (search->brightness[index] > most && !search->owner[index]) {
+            most = search->brightness[index];
+            best = index;
         }
+    }
     return best;
 }
 
-// Sets the brightness of every texel and returns the number of texels that regions may hold.
-static size_t fill_brightness(ki_search *search)
+// Sets the brightness of every texel, and lists the seeds: texels that are bright enough to begin a
+// region. Allocates the list of the texels that regions may hold.
+static bool list_texels(ki_search *search)
 {
-    size_t count = 0;
-    double least = least_over_base * search->base;
+    size_t room = 0, count = 0;
+    double least = least_over_base * search->base, bright = seed_over_base * search->base;
     for (size_t i = 0; i < search->texel_count; i++) {
         search->brightness[i] = (float)brightness_of(search->map->level[0] + 3 * i);
-        count += (double)search->brightness[i] > least || is_negative(search, i);
+        room += (double)search->brightness[i] > least || is_negative(search, i);
+        count += (double)search->brightness[i] > bright;
     }
-    return count;
+    search->list = ki_alloc_raw(search->context, room + 1, sizeof *search->list);
+    search->seed = ki_alloc_raw(search->context, count + 1, sizeof *search->seed);
+    for (size_t i = 0; i < search->texel_count && search->list && search->seed; i++)
+        if ((double)search->brightness[i] > bright)
+            search->seed[search->seed_count++] = i;
+    return search->list && search->seed;
 }
 
 static kiln_result find_norm(ki_search *search, kiln_error *error)
@@ -226,7 +236,7 @@ static kiln_result find_norm(ki_search *search, kiln_error *error)
 kiln_result ki_search_run(kiln_context *context, const kiln_map *map, ki_search *search,
                           kiln_error *error)
 {
-    size_t count = kiln_map_texels(map, 0), room;
+    size_t count = kiln_map_texels(map, 0);
     *search = (ki_search){.context = context, .map = map, .texel_count = count};
     search->brightness = ki_alloc_raw(context, count, sizeof *search->brightness);
     search->owner = ki_alloc(context, count, sizeof *search->owner);
@@ -234,10 +244,8 @@ kiln_result ki_search_run(kiln_context *context, const kiln_map *map, ki_search 
     if (!search->brightness || !search->owner || !search->region)
         return ki_fail_memory(context, error, "the search for lights", count * sizeof(float));
     ki_light_base(map, search->light, &search->base);
-    room = fill_brightness(search);
-    search->list = ki_alloc_raw(context, room + 1, sizeof *search->list);
-    if (!search->list)
-        return ki_fail_memory(context, error, "the search for lights", room * sizeof(size_t));
+    if (!list_texels(search))
+        return ki_fail_memory(context, error, "the search for lights", count * sizeof(size_t));
     kiln_result result = find_norm(search, error);
     if (result != KILN_OK || !(search->light[0] + search->light[1] + search->light[2] > 0))
         return result;
@@ -260,5 +268,6 @@ void ki_search_free(ki_search *search)
     ki_free(search->brightness);
     ki_free(search->owner);
     ki_free(search->list);
+    ki_free(search->seed);
     ki_free(search->region);
 }

@@ -1,6 +1,6 @@
 // Single texels of level 0 of a map. In: a map and the index of a texel, or a direction. Out: nodes
-// within the texel, its solid angle, the texels that touch it. Method: all shapes map a rectangle of
-// (u, v) to the sphere; the solid angle is the integral of the map's Jacobian determinant.
+// within the texel, its solid angle, the texels that touch it. Method: all shapes map a rectangle
+// of (u, v) to the sphere; the solid angle is the integral of the map's Jacobian determinant.
 #include "image/texel.h"
 
 #include "math/math.h"
@@ -94,8 +94,8 @@ static size_t panorama_texel(int n, int x, int y)
     return (size_t)y * (size_t)(2 * n) + (size_t)((x + 2 * n) % (2 * n));
 }
 
-// Returns the texel (x, y) of an octahedron, one texel beyond its edges at most. Each edge is folded
-// in its middle, so that its two halves touch.
+// Returns the texel (x, y) of an octahedron, one texel beyond its edges at most. Each edge is
+// folded in its middle, so that its two halves touch.
 static size_t octahedron_texel(int n, int x, int y)
 {
     if (x < 0 || x >= n) {

@@ -5,8 +5,8 @@
 
 #include "image/image.h"
 
-/// Points that represent the area of a texel: Gauss-Legendre nodes, with weights in steradians whose
-/// sum is the solid angle of the texel.
+/// Points that represent the area of a texel: Gauss-Legendre nodes, with weights in steradians
+/// whose sum is the solid angle of the texel.
 typedef struct ki_texel_nodes {
     int count;
     double direction[16][3], weight[16];
