@@ -28,6 +28,8 @@ static const bench_case cases[] = {
      bench_tables, false},
     {"tune", "errors of what engines show of exact and tuned levels against brute force",
      bench_tune, false},
+    {"lights", "the same errors after suns and lamps were taken out of the panoramas", bench_lights,
+     false},
     {"fixed", "a small bake with AVX2, whose instructions are counted", bench_fixed, true},
 };
 enum { CASE_COUNT = sizeof cases / sizeof *cases };

@@ -38,6 +38,7 @@ bool bench_peer(bench *b);
 bool bench_memory(bench *b);
 bool bench_tables(bench *b);
 bool bench_tune(bench *b);
+bool bench_lights(bench *b);
 
 /// bench_cpu returns the seconds of CPU time that all threads of the process have used, bench_wall
 /// the seconds of a clock.

@@ -1,5 +1,5 @@
-// The case tune. In: eight panoramas. Out: the errors of what engines show of exact and of tuned
-// levels. An engine maps the roughness to a fractional level, mixes two levels linearly, and reads
+// The cases tune and lights. In: eight panoramas, in the case lights without their suns and lamps.
+// Out: the errors of what engines show of exact and of tuned levels. An engine maps the roughness to a fractional level, mixes two levels linearly, and reads
 // each bilinearly. The result is compared with the exact environment at the same roughness.
 #include "bench.h"
 
@@ -47,13 +47,27 @@ typedef struct tuning {
     // curve
     double seen[LAYOUT_COUNT][TUNINGS];
     double mean; // mean radiance of the environment
+    // The case lights: lights are taken out of the source, and the first layout and the last tuning
+    // are left out.
+    bool lights;
+    kiln_lights taken;
     double (*directions)[3], (*values)[3];
 } tuning;
 
+static int first_layout(const tuning *d)
+{
+    return d->lights ? 1 : 0;
+}
+
+static int tuning_count(const tuning *d)
+{
+    return d->lights ? SOFT : TUNINGS;
+}
+
 static bool bake(bench *b, tuning *d)
 {
-    for (int i = 0; i < LAYOUT_COUNT; i++)
-        for (int v = 0; v < TUNINGS; v++) {
+    for (int i = first_layout(d); i < LAYOUT_COUNT; i++)
+        for (int v = 0; v < tuning_count(d); v++) {
             const layout *l = &layouts[i];
             const kiln_engine *engine = kiln_engine_find(l->engine);
             float roughness[KILN_MAX_LEVELS];
@@ -120,6 +134,8 @@ static bool compare(bench *b, tuning *d, double roughness)
     double bright = done ? find_bright(&truth) : 0;
     for (int m = 0; m < LAYOUT_COUNT * TUNINGS && done; m++) {
         int i = m / TUNINGS, v = m % TUNINGS;
+        if (i < first_layout(d) || v >= tuning_count(d))
+            continue;
         double off = 0, whole = 0, far_off = 0, far_whole = 0, seen_off = 0, sphere = 0;
         done = !kiln_engine_show(d->context, kiln_engine_find(layouts[i].engine), &d->maps[i][v],
                                  roughness, (const double(*)[3])d->directions, count, d->values,
@@ -154,9 +170,9 @@ static bool compare(bench *b, tuning *d, double roughness)
 
 static void report(bench *b, tuning *d, const char *name)
 {
-    for (int i = 0; i < LAYOUT_COUNT; i++) {
-        printf("  %-10s %-24s", i ? "" : name, layouts[i].title);
-        for (int v = 0; v < TUNINGS; v++) {
+    for (int i = first_layout(d); i < LAYOUT_COUNT; i++) {
+        printf("  %-10s %-24s", i > first_layout(d) ? "" : name, layouts[i].title);
+        for (int v = 0; v < tuning_count(d); v++) {
             char row[96];
             bench_figures *f = &d->figures[i][v];
             f->rms = sqrt(f->rms);
@@ -177,7 +193,7 @@ static void report(bench *b, tuning *d, const char *name)
     }
     fflush(stdout);
     // Only courtyard (even light) and sunrise (sun) have bars that their errors must reach.
-    if (strcmp(name, "courtyard") != 0 && strcmp(name, "sunrise") != 0)
+    if (d->lights || (strcmp(name, "courtyard") != 0 && strcmp(name, "sunrise") != 0))
         return;
     const bench_figures *f = d->figures[0];
     bench_bar(b, "rms of sharp over none, three, 9 levels", f[SHARP].rms / f[NONE].rms, "", bar,
@@ -188,12 +204,27 @@ static void report(bench *b, tuning *d, const char *name)
         bench_aim("rms of soft over none, babylon", f[SOFT].rms / f[NONE].rms, "", soft_aim);
 }
 
-static bool check_environment(bench *b, tuning *d, const char *name)
+// Loads a panorama, and takes its lights out in the case lights.
+static bool load(bench *b, tuning *d, const char *name)
 {
+    static const kiln_lights_def def = {.share = 0.001};
     char path[1024];
     snprintf(path, sizeof path, "%s/%s.exr", b->data, name);
+    if (kiln_map_load(d->context, path, NULL, &d->source, &b->error) ||
+        (d->lights && kiln_lights_extract(d->context, &d->source, &def, &d->taken, &b->error)))
+        return false;
+    double share = 0;
+    for (int i = 0; i < d->taken.count; i++)
+        share += d->taken.light[i].share;
+    if (d->lights)
+        printf("  %-10s %d lights with %.1f %% of the light\n", name, d->taken.count, 100 * share);
+    return true;
+}
+
+static bool check_environment(bench *b, tuning *d, const char *name)
+{
     bool done =
-        !kiln_map_load(d->context, path, NULL, &d->source, &b->error) &&
+        load(b, d, name) &&
         !kiln_spectrum_analyze(d->context, &d->source, KILN_MAX_DEGREE, &d->spectrum, &b->error) &&
         bake(b, d);
     double(*power)[3] = malloc((KILN_MAX_DEGREE + 1) * sizeof *power);
@@ -217,10 +248,26 @@ static bool check_environment(bench *b, tuning *d, const char *name)
     return done;
 }
 
-bool bench_tune(bench *b)
+// Without its sun, a sunny panorama shall err no more than courtyard, and night, which has many
+// lamps, no more than twice as much.
+static void compare_with_calm(bench *b, const tuning *d, const tuning *calm, const char *name)
+{
+    double limit = !strcmp(name, "night") ? 2 : 1;
+    for (int i = first_layout(d); i < LAYOUT_COUNT; i++)
+        for (int v = 0; v < tuning_count(d); v++) {
+            char what[96];
+            snprintf(what, sizeof what, "%s over courtyard, %s, %s, rms", name, layouts[i].title,
+                     tunings[v]);
+            bench_bar(b, what, d->figures[i][v].rms / calm->figures[i][v].rms, "", limit, false);
+        }
+}
+
+// Compares all panoramas.
+static bool run(bench *b, bool lights)
 {
     enum { MOST = 1024 * 1024 };
     kiln_context *context = NULL;
+    tuning calm = {0};
     if (kiln_context_create(NULL, &context, &b->error))
         return false;
     printf("  errors of what the engine shows, in %%: relative RMS error over roughness 0.05 to 1 "
@@ -234,10 +281,27 @@ bool bench_tune(bench *b)
     double(*directions)[3] = malloc((size_t)2 * MOST * sizeof *directions);
     bool done = directions != NULL || bench_fail(b, "no memory");
     for (int i = 0; i < NAME_COUNT && done; i++) {
-        tuning d = {.context = context, .directions = directions, .values = directions + MOST};
+        tuning d = {.context = context,
+                    .directions = directions,
+                    .values = directions + MOST,
+                    .lights = lights};
         done = check_environment(b, &d, names[i]);
+        if (i == 0)
+            calm = d;
+        else if (lights && done)
+            compare_with_calm(b, &d, &calm, names[i]);
     }
     free(directions);
     kiln_context_destroy(context);
     return done;
+}
+
+bool bench_tune(bench *b)
+{
+    return run(b, false);
+}
+
+bool bench_lights(bench *b)
+{
+    return run(b, true);
 }
