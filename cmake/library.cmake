@@ -8,6 +8,7 @@ if(EMSCRIPTEN) # part of a page: nothing is shared, nothing installed
     return()
 endif()
 add_library(kiln_shared SHARED ${KILN_OBJECTS})
+kiln_harden(kiln_shared)
 foreach(kind static shared)
     set_target_properties(kiln_${kind} PROPERTIES OUTPUT_NAME kiln)
     target_include_directories(kiln_${kind} INTERFACE
