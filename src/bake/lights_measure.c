@@ -25,15 +25,17 @@
 
 const double ki_light_mismatch = 6e-4, ki_lights_mismatch = 8e-4;
 
-enum { MOST_BORDER = 256 }; // texels of a border that are used, evenly spread
+// greatest number of texels along the border of a region that are used, spread evenly
+enum { MOST_BORDER = 256 };
 
 typedef struct ring {
     double direction[MOST_BORDER][3], rgb[MOST_BORDER][3];
     int count;
 } ring;
 
-// Calls for each texel along the border of a region: counts these texels if `border` is NULL, else
-// takes every `stride`-th of them.
+// Visits the texels that touch a region and belong to no region. If `border` is NULL, only counts
+// them; otherwise adds every `stride`-th of them to *border. Returns their number; a texel that
+// touches several texels of the region counts several times.
 static size_t walk_border(const ki_search *search, const ki_region *region, size_t stride,
                           ring *border)
 {

@@ -176,10 +176,10 @@ static void refine(const ki_reference *r, const ray_sums *ray, const ki_row_geom
     }
 }
 
-// Returns true if in a row the lobe need be evaluated only once for each texel; otherwise texels
-// need 2 x 2 nodes. The decision is for the part of the row that is nearest to the lobe's peak.
-// *near receives the cosine of the distance from the peak below which even 2 x 2 nodes do not
-// suffice.
+// Returns true if, for every texel of a row, the lobe's value at one direction is near enough to
+// the lobe's mean over the texel; otherwise texels need 2 x 2 nodes. The decision is made for the
+// point of the row that is nearest to the lobe's peak. Texels nearer to the peak than some angle
+// need more than 2 x 2 nodes; *near receives the cosine of this angle.
 static bool means_suffice(const ki_reference *r, const ray_sums *ray, const ki_row_geometry *row,
                           double *near)
 {

@@ -12,7 +12,7 @@ enum { KI_HDR_RUNS_LEAST = 8, KI_HDR_RUNS_MOST = 32767 };
 /// What the header of a Radiance HDR file says.
 typedef struct ki_hdr_header {
     int width, height; ///< size of the picture when its first row is the top row
-    /// number of lines, and texels of a line, in the order of the file
+    /// number of lines in the file, and number of texels of a line; a line is a row or a column
     int line_count, line_length;
     bool columns; ///< true: a line of the file is a column of the picture
     /// flip_line: each line is stored from right to left, or from bottom to top if it is a column;

@@ -23,8 +23,8 @@ typedef struct ki_light {
 /// *light. `limit` may be infinite.
 void ki_add_light(kiln_shape shape, int size, int row, int width, const float *rgb, double limit,
                   ki_light *light);
-/// Returns below_zero / above_zero. If no value is above zero, returns 1 if there are values below
-/// zero, else 0.
+/// Returns the light of values below zero relative to the light of values above zero, below_zero /
+/// above_zero. If no value is above zero, returns 1 if there are values below zero, else 0.
 double ki_share_below(const ki_light *light);
 /// Returns the sums of ki_light over the texels of all levels of a map. `above_limit` of the result
 /// counts from `limit`.

@@ -5,8 +5,8 @@
 
 #include <math.h>
 
-// Number of entries of padding after the last degree of each order's row of coefficients. The
-// kernels read them when they handle several degrees at once.
+// Number of unused entries after the last degree in each order's row of coefficients. The kernels
+// handle several degrees at once, and may read these entries beyond the last degree.
 enum { ROW_PADDING = 8 };
 
 size_t ki_legendre_row(const ki_legendre *legendre, int m)

@@ -119,9 +119,10 @@ kiln_result ki_analysis_create(kiln_context *context, int size, int degree, cons
         !ki_fft_create(context, 2 * size, &a->fft))
         goto failed;
 
-    // With d the width of a column of texels in radians, the integral of exp(-i m phi) over column
-    // x is exp(-i m (x + 1/2) d) d sinc(m d / 2). The Fourier transform supplies the factor exp(-i
-    // m x d), `column` the rest.
+    // Integrates exp(-i m phi) over the columns of texels, each d radians wide. The integral over
+    // column x is exp(-i m x d) times exp(-i m d / 2) d sinc(m d / 2). The Fourier transform
+    // supplies the first factor, which depends on x. `column` holds the product of the others, with
+    // sinc(y) = sin(y) / y.
     double d = KI_PI / size;
     for (int m = 0; m <= degree; m++) {
         double sine, cosine, width = m ? ki_sin(m * d / 2) * 2 / m : d;

@@ -63,8 +63,9 @@ typedef struct equations {
     int columns;    // number of unknowns: the coefficients of P, and of Q without its constant 1
     int rows;       // number of equations: one for each node, and one for each unknown of Q
     double *matrix; // coefficients of the unknowns in the equations, column after column
-    double *right;  // right-hand side of each equation, and after a round the error at each node
-    double *weight; // weight of each node's squared error, with sum 1
+    // first the right-hand side of each equation; after a round, the absolute error at each node
+    double *right;
+    double *weight;      // weight of each node's squared error, with sum 1
     double *denominator; // denominator Q of the previous round at each node
     double *basis;       // products of Chebyshev polynomials T_i(x) T_j(y), `terms` for each node
     double ridge; // weight of equations that draw the coefficients of Q to 0, to keep Q positive
