@@ -182,7 +182,8 @@ static kiln_result check_directions(const double (*directions)[3], int count, ki
 {
     for (int i = 0; i < count; i++) {
         const double *d = directions[i];
-        if (!isfinite(d[0]) || !isfinite(d[1]) || !isfinite(d[2]) || !(d[0] || d[1] || d[2]))
+        if (!isfinite(d[0]) || !isfinite(d[1]) || !isfinite(d[2]) ||
+            (d[0] == 0 && d[1] == 0 && d[2] == 0))
             return ki_fail(error, KILN_ERROR_ARGUMENT,
                            "direction %d is (%g, %g, %g), it must be finite and not 0", i, d[0],
                            d[1], d[2]);

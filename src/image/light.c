@@ -96,7 +96,7 @@ static void cut_strip(void *data, int index)
     for (int row = first_row(c, index); row < first_row(c, index + 1); row++) {
         float *rgb = c->map->level[c->level] + row_floats * (size_t)row;
         ki_add_light(c->map->shape, kiln_map_level_size(c->map, c->level), row, c->width, rgb,
-                     INFINITY, &c->light[index]);
+                     (double)INFINITY, &c->light[index]);
         for (size_t i = 0; i < row_floats; i++)
             rgb[i] = rgb[i] < 0 ? 0 : rgb[i];
     }

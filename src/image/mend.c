@@ -230,7 +230,7 @@ static void weigh_strip(void *data, int index)
     s->light[index] = (ki_light){0};
     for (int row = first_row(s, index); row < first_row(s, index + 1); row++) {
         float *rgb = row_of(s, row);
-        ki_add_light(s->plane.shape, s->plane.size, row, s->plane.width, rgb, INFINITY,
+        ki_add_light(s->plane.shape, s->plane.size, row, s->plane.width, rgb, (double)INFINITY,
                      &s->light[index]);
         for (int i = 0; i < 3 * s->plane.width && s->negative == KILN_NEGATIVE_ZERO; i++)
             rgb[i] = rgb[i] < 0 ? 0 : rgb[i];
