@@ -317,13 +317,14 @@ typedef struct kiln_load_def {
     const char *layer;
 } kiln_load_def;
 
-/// Loads a map from an EXR, Radiance HDR or PNG file (PNG values are sRGB and are decoded to
-/// linear), from a cube or 2-D texture in a KTX2, DDS or KTX 1 file, or from six face files. Six faces are given by
-/// a folder or by a path with `%s` or `{face}` in place of the face, with any of the names in
-/// docs/conventions.md: px nx py ny pz nz and the like. A folder that holds two sets of faces is
-/// refused. The content of a file decides its format, never the ending of its name. Texels that are
-/// infinite or not a number are replaced as kiln_load_report says. A picture in which no texel is a
-/// number is refused. `def` may be NULL.
+/// Loads a map from an EXR, Radiance HDR, PNG or JPEG file (values are decoded to linear radiance
+/// with Rec. 709 primaries, by what the file says about its colours; a gain map in a JPEG file is
+/// applied), from a cube or 2-D texture in a KTX2, DDS or KTX 1 file, or from six face files. Six
+/// faces are given by a folder or by a path with `%s` or `{face}` in place of the face, with any
+/// of the names in docs/conventions.md: px nx py ny pz nz and the like. A folder that holds two
+/// sets of faces is refused. The content of a file decides its format, never the ending of its
+/// name. Texels that are infinite or not a number are replaced as kiln_load_report says. A picture
+/// in which no texel is a number is refused. `def` may be NULL.
 KILN_API KILN_CHECKED kiln_result kiln_map_load(kiln_context *context, const char *path,
                                                 const kiln_load_def *def, kiln_map *map,
                                                 kiln_error *error);
@@ -424,7 +425,8 @@ typedef struct kiln_file_info {
     kiln_layer_info layer[KILN_MAX_LAYERS];
 } kiln_file_info;
 
-/// Describes any file that kiln can read, and of the files that kiln only writes .env (Babylon.js), .glb with EXT_lights_image_based, atlases, and spherical harmonics as text.
+/// Describes any file that kiln can read. Of the files that kiln only writes, describes .env
+/// (Babylon.js), .glb with EXT_lights_image_based, atlases, and spherical harmonics as text.
 KILN_API KILN_CHECKED kiln_result kiln_file_describe(kiln_context *context, const char *path,
                                                      kiln_file_info *info, kiln_error *error);
 

@@ -70,8 +70,7 @@ static const uint16_t length_from[29] = {3,  4,  5,  6,   7,   8,   9,   10,  11
                                          15, 17, 19, 23,  27,  31,  35,  43,  51, 59,
                                          67, 83, 99, 115, 131, 163, 195, 227, 258};
 
-// Returns the number of extra bits after a length symbol; `symbol` counts from deflate's symbol
-// 257.
+// Returns the number of extra bits after a length symbol. `symbol` counts from deflate's 257.
 static int length_extra(int symbol)
 {
     return symbol < 8 || symbol == 28 ? 0 : symbol / 4 - 1;
@@ -104,8 +103,7 @@ static int distance_extra(int symbol)
     return symbol < 4 ? 0 : symbol / 2 - 1;
 }
 
-// Writes the whole bytes that wait in d->bits. The caller has checked that the output has room for
-// them.
+// Writes the whole bytes that wait in d->bits. The caller has checked the room in the output.
 static void flush(ki_deflater *d)
 {
     if (d->out_end - d->out >= 8) {
@@ -133,8 +131,7 @@ static void put_flush(ki_deflater *d, uint32_t value, int count)
     flush(d);
 }
 
-// Returns whether `bits` more bits, rounded up to whole bytes, fit in the output; sets `full` if
-// not.
+// Returns whether `bits` more bits, rounded up to bytes, fit in the output; sets `full` if not.
 static bool fits(ki_deflater *d, uint64_t bits)
 {
     d->full = d->full || ((uint64_t)d->held + bits + 7) / 8 > (uint64_t)(d->out_end - d->out);
