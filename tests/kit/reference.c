@@ -71,7 +71,7 @@ scene_errors scene_compare(kiln_context *context, const kiln_map *panorama, cons
     return (scene_errors){sqrt(square / whole), most};
 }
 
-double furnace_error(kiln_context *context, int size, int face, enum kiln_lobe_kind lobe)
+double filtered_furnace_error(kiln_context *context, int size, int face, enum kiln_lobe_kind lobe)
 {
     kiln_error error;
     kiln_map in = make_panorama(context, size), out;

@@ -24,6 +24,6 @@ scene_errors scene_compare(kiln_context *context, const kiln_map *panorama, cons
 
 /// White furnace: a uniform environment of `size` rows stays uniform. Returns the largest relative error over all
 /// levels of a cube with `face` x `face` texels in level 0, filtered by `lobe`.
-double furnace_error(kiln_context *context, int size, int face, enum kiln_lobe_kind lobe);
+double filtered_furnace_error(kiln_context *context, int size, int face, enum kiln_lobe_kind lobe);
 
 #endif
