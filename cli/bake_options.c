@@ -457,6 +457,15 @@ static int check_levels(const bake *b)
     return CLI_GO;
 }
 
+bool bake_is_for_several(const bake *b)
+{
+    const char *paths[] = {b->output, b->irradiance_path, b->sh_path, b->lights_path};
+    for (size_t i = 0; i < sizeof paths / sizeof *paths; i++)
+        if (paths[i] && strstr(paths[i], "{name}"))
+            return true;
+    return false;
+}
+
 // Checks options that are valid only with a certain method, lobe or file.
 static int check_combinations(const bake *b)
 {

@@ -15,15 +15,6 @@ typedef struct job {
     char *path[PATHS];
 } job;
 
-bool bake_is_for_several(const bake *b)
-{
-    const char *paths[PATHS] = {b->output, b->irradiance_path, b->sh_path, b->lights_path};
-    for (int i = 0; i < PATHS; i++)
-        if (paths[i] && strstr(paths[i], "{name}"))
-            return true;
-    return false;
-}
-
 // Finds the name of an input: the last part of its path without ending. A pattern loses the place of
 // the face and the characters _ - and . next to it. Sets *length.
 static const char *name_of(const char *input, size_t *length)

@@ -156,10 +156,9 @@ static void what_is_not_read_says_what_it_is(void **state)
     static const char *const names[][2] = {
         {"a.env", "is a .env file, which kiln writes and describes but does not read"},
         {"g.glb", "is a .glb file, which kiln writes and describes but does not read"},
-        {"f_ibl.ktx", "is a .ktx file, which kiln writes and describes but does not read"},
         {"a.exr", "is the atlas of three-cubeuv, which kiln describes but does not read"},
         {"p.png", "is the atlas of playcanvas, which kiln describes but does not read"},
-        {"p.dds", "kiln reads DDS files of one cube with six faces"}};
+        {"p.dds", "is the atlas of playcanvas-dds, which kiln describes but does not read"}};
     kiln_map map;
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         assert_int_equal(kiln_map_load(context, in_folder(names[i][0]), NULL, &map, &error),
@@ -169,11 +168,25 @@ static void what_is_not_read_says_what_it_is(void **state)
     }
 }
 
+// Filament's KTX 1 file is read as what it is, a cube, by its first level.
+static void filaments_cube_is_read(void **state)
+{
+    (void)state;
+    kiln_file_info info;
+    kiln_map map;
+    CHECK_OK(kiln_file_describe(context, in_folder("f_ibl.ktx"), &info, &error));
+    CHECK_OK(kiln_map_load(context, in_folder("f_ibl.ktx"), NULL, &map, &error));
+    assert_int_equal(map.shape, KILN_SHAPE_CUBE);
+    assert_int_equal(map.size, info.width);
+    kiln_map_free(&map);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_engines_files_are_described),
         cmocka_unit_test(filaments_text_is_described),
+        cmocka_unit_test(filaments_cube_is_read),
         cmocka_unit_test(what_is_not_read_says_what_it_is),
     };
     return cmocka_run_group_tests(tests, set_up_folder, tear_down_folder);

@@ -13,13 +13,20 @@ fs.mkdirSync(folder, { recursive: true });
 execFileSync(write, [folder]);
 fs.writeFileSync(path.join(folder, 'index.html'), '<!doctype html><title>png</title><link rel="icon" href="data:,">');
 
-// The same values as in write.c, of 0 to 255.
+// random_hash of tests/kit/random.h, of 64 bits.
+function randomHash(value) {
+    value = BigInt.asUintN(64, (value ^ value >> 30n) * 0xbf58476d1ce4e5b9n);
+    value = BigInt.asUintN(64, (value ^ value >> 27n) * 0x94d049bb133111ebn);
+    return value ^ value >> 31n;
+}
+
+// The values of tests/files/pictures/write.c, from 0 to 255.
 function wanted(channels) {
     const single = Math.fround, bytes = [];
     for (let i = 0; i < WIDTH * HEIGHT; i++) {
         const x = i % WIDTH, y = Math.floor(i / WIDTH), rgba = [];
         for (let c = 0; c < channels; c++) {
-            const noise = Math.imul(i * 4 + c, 2654435761) >>> 16;
+            const noise = Number(randomHash(BigInt(i * 4 + c)) >> 48n);
             const slope = single((x + 2 * y + 40 * c) / (WIDTH + 2 * HEIGHT + 160));
             const value = channels % 2 === 0 && c === channels - 1 ? 1
                         : x < 60 ? 0.25 * c : y % 40 < 20 ? slope : single(noise / 65535);
