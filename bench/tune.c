@@ -248,10 +248,13 @@ static bool check_environment(bench *b, tuning *d, const char *name)
     return done;
 }
 
-// Without its sun, a sunny panorama shall err no more than courtyard, and night, which has many
-// lamps, no more than twice as much.
+// Without its lights, a panorama with a sun or with small windows shall err no more than courtyard,
+// and night, which has many lamps, no more than twice as much. The softboxes of studio and the gaps
+// between the trees of forest are too large for this.
 static void compare_with_calm(bench *b, const tuning *d, const tuning *calm, const char *name)
 {
+    if (!strcmp(name, "studio") || !strcmp(name, "forest"))
+        return;
     double limit = !strcmp(name, "night") ? 2 : 1;
     for (int i = first_layout(d); i < LAYOUT_COUNT; i++)
         for (int v = 0; v < tuning_count(d); v++) {
