@@ -89,11 +89,10 @@ void ki_file_color_set_curve(ki_file_color *color, const ki_curve *curve)
 
 bool ki_file_color_set_primaries(ki_file_color *color, const ki_primaries *primaries)
 {
-    static const ki_matrix3 identity = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     if (!ki_rec709_from_rgb(primaries, NULL, &color->to_rec709) ||
         !ki_luminance_weights(primaries, color->luminance))
         return false;
-    color->converts = memcmp(&color->to_rec709, &identity, sizeof identity) != 0;
+    color->converts = !ki_matrix_is_identity(&color->to_rec709);
     return true;
 }
 

@@ -214,7 +214,6 @@ static void note_primaries(const header_reader *h)
 // Adds a note to h->report about each of the two that changes values.
 static void find_conversion(const header_reader *h)
 {
-    static const ki_matrix3 identity = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     ki_hdr_header *to = h->header;
     const double *correction = h->correction;
     for (int c = 0; c < 3; c++)
@@ -232,7 +231,7 @@ static void find_conversion(const header_reader *h)
                 "colours were converted to Rec. 709 from CIE XYZ, whose white is X = Y = Z");
     } else if (h->has_primaries) {
         to->converts = ki_rec709_from_rgb(&h->primaries, NULL, &to->to_rec709) &&
-                       memcmp(&to->to_rec709, &identity, sizeof identity) != 0;
+                       !ki_matrix_is_identity(&to->to_rec709);
         if (to->converts)
             note_primaries(h);
     }

@@ -144,7 +144,7 @@ static bool read_column(const icc_file *f, const char *name, int c, ki_matrix3 *
     size_t size;
     const uint8_t *data = find_tag(f, name, 20, &size);
     for (int i = 0; data && i < 3; i++)
-        to_xyz->m[i][c] = fixed_at(data + 8 + 4 * i);
+        to_xyz->m[i][c] = fixed_at(data + 8 + 4 * (size_t)i);
     return data && !memcmp(data, "XYZ ", 4);
 }
 

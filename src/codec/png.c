@@ -166,7 +166,7 @@ static kiln_result join_data(png_file *f, chunk *c, kiln_error *error)
     f->packed = f->joined;
     size_t at = 0;
     f->reader = first;
-    for (next = *c; count > 0; count--) {
+    for (next = *c; count > 0 && next.bytes; count--) {
         memcpy(f->joined + at, next.bytes, next.size);
         at += next.size;
         if (count > 1)

@@ -66,7 +66,7 @@ static kiln_result find_chunks(kiln_context *context, ki_reader *r, found *f,
         const uint8_t *head = ki_read_bytes(r, 8);
         size_t size = head ? u32_at(head) : 0;
         const uint8_t *data = ki_read_bytes(r, size), *sum = ki_read_bytes(r, 4);
-        if (r->failed || !memcmp(head + 4, "IDAT", 4))
+        if (!head || !sum || !memcmp(head + 4, "IDAT", 4))
             return KILN_OK;
         if (i % CHUNKS == 0 && !ki_go_on(context))
             return ki_fail_cancelled(error, "reading");
@@ -178,7 +178,7 @@ static void read_chromaticities(const found *f, ki_png_meaning *meaning, kiln_lo
 {
     ki_primaries p;
     for (int i = 0; i < 8; i++)
-        p.xy[(i + 6) % 8] = u32_at(f->chrm.bytes + 4 * i) / 100000.0;
+        p.xy[(i + 6) % 8] = u32_at(f->chrm.bytes + 4 * (size_t)i) / 100000.0;
     if (!ki_file_color_set_primaries(&meaning->color, &p))
         ki_note(report, KILN_NOTE_ASSUMPTION, true,
                 "the chunk cHRM names no usable primaries, so those of Rec. 709 were assumed");

@@ -20,6 +20,14 @@ static const ki_matrix3 bradford = {
 
 // -------------------------------------------------------------------------------------- matrices
 
+bool ki_matrix_is_identity(const ki_matrix3 *matrix)
+{
+    for (int i = 0; i < 9; i++)
+        if (matrix->m[i / 3][i % 3] != (i % 4 == 0))
+            return false;
+    return true;
+}
+
 ki_matrix3 ki_matrix_multiply(const ki_matrix3 *a, const ki_matrix3 *b)
 {
     ki_matrix3 p;
@@ -73,9 +81,9 @@ static bool xyz_from_rgb(const ki_primaries *primaries, ki_matrix3 *matrix)
     ki_matrix3 columns, inverse;
     double white[3], scale[3];
     for (int c = 0; c < 3; c++) {
-        columns.m[0][c] = xy[2 * c];
-        columns.m[1][c] = xy[2 * c + 1];
-        columns.m[2][c] = 1 - xy[2 * c] - xy[2 * c + 1];
+        columns.m[0][c] = xy[2 * (size_t)c];
+        columns.m[1][c] = xy[2 * (size_t)c + 1];
+        columns.m[2][c] = 1 - columns.m[0][c] - columns.m[1][c];
     }
     if (!white_xyz(xy + 6, white) || !invert(&columns, &inverse))
         return false;

@@ -36,6 +36,7 @@ bool ki_rec709_from_xyz(const double white[2], ki_matrix3 *matrix);
 /// ki_rec709_from_rgb does.
 bool ki_luminance_weights(const ki_primaries *primaries, double weights[3]);
 
+bool ki_matrix_is_identity(const ki_matrix3 *matrix);
 ki_matrix3 ki_matrix_multiply(const ki_matrix3 *a, const ki_matrix3 *b);
 /// Multiplies each RGB value of a picture of three channels by the matrix. A texel with a channel
 /// that is not finite stays as it is, because no colour can be computed for it.

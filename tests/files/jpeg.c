@@ -47,7 +47,7 @@ static ki_writer encode(const uint8_t *rows, int width, int height, int channels
         jpeg_simple_progression(&jpeg);
     jpeg_start_compress(&jpeg, TRUE);
     for (int y = 0; y < height; y++) {
-        JSAMPROW row = (JSAMPROW)rows + y * step;
+        JSAMPROW row = (JSAMPROW)rows + (ptrdiff_t)y * step;
         jpeg_write_scanlines(&jpeg, &row, 1);
     }
     jpeg_finish_compress(&jpeg);
@@ -79,7 +79,7 @@ static picture witness(const ki_writer *w)
     p.height = (int)jpeg.output_height;
     p.channels = jpeg.output_components;
     while (jpeg.output_scanline < jpeg.output_height) {
-        JSAMPROW row = p.samples + (int)jpeg.output_scanline * p.width * p.channels;
+        JSAMPROW row = p.samples + (size_t)jpeg.output_scanline * (size_t)(p.width * p.channels);
         jpeg_read_scanlines(&jpeg, &row, 1);
     }
     jpeg_finish_decompress(&jpeg);
