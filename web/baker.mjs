@@ -22,9 +22,9 @@ export class Baker {
             throw new Error(this.module.UTF8ToString(this.module._baker_message(this.self)));
     }
 
-    // Opens an image file from its bytes, which are copied; error messages quote `name`. Returns
-    // the source's shape and size.
-    open(bytes, name) {
+    // Opens an image file from its bytes, which are copied; error messages quote `name`. `told` are
+    // sentences about what became of the file before. Returns the source's shape and size.
+    open(bytes, name, told = []) {
         const at = this.module._malloc(bytes.length);
         if (!at)
             throw new Error(`${name}: its ${bytes.length} bytes do not fit into the page's memory`);
@@ -34,11 +34,13 @@ export class Baker {
         } finally {
             this.module._free(at);
         }
+        this.told = told;
         return this.source();
     }
 
     sky({ size = 512, elevation = 30, azimuth = 0, turbidity = 3 } = {}) {
         this.call('baker_sky', size, elevation, azimuth, turbidity);
+        this.told = [];
         return this.source();
     }
 
@@ -59,7 +61,7 @@ export class Baker {
         const { module, self } = this, notes = [];
         for (let at; (at = module._baker_note(self, notes.length)) !== 0;)
             notes.push(module.UTF8ToString(at));
-        return notes;
+        return [...(this.told ?? []), ...notes];
     }
 
     // Bakes the source. Returns each level's size, roughness and texels, the harmonics, the notes

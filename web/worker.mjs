@@ -2,6 +2,7 @@
 // order. It answers {id, result} or {id, error, fatal}, and reports progress as {stage, fraction}.
 import makeModule from './baker.js';
 import { Baker } from './baker.mjs';
+import { readable } from './jpeg.mjs';
 
 let told = 0;
 const ready = Baker.make(makeModule, {
@@ -17,7 +18,8 @@ const ready = Baker.make(makeModule, {
 async function answer({ id, work, values }) {
     try {
         const baker = await ready;
-        const result = baker[work](...values);
+        const given = work === 'open' ? await readable(...values) : values;
+        const result = baker[work](...given);
         postMessage({ id, result }, result?.levels?.map((level) => level.texels.buffer) ?? []);
     } catch (error) {
         postMessage({ id, error: error.message, fatal: error instanceof WebAssembly.RuntimeError });
