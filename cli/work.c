@@ -1,5 +1,6 @@
 // The context, the progress line and the signals of a command's work.
 #include "work.h"
+#include "cgroup.h"
 #include "os.h"
 
 #include <stdarg.h>
@@ -43,6 +44,14 @@ bool cli_progress(void *user, const char *stage, double fraction)
     return !cli_interrupted();
 }
 
+// A bake that needs more than the memory of the machine, or than the control group of the process
+// may use, fails with an error message. Without a limit the system would kill the bake.
+static size_t memory_limit(void)
+{
+    size_t physical = os_physical_memory(), group = cgroup_memory_limit("");
+    return group && (!physical || group < physical) ? group : physical;
+}
+
 static void create_context(void *user)
 {
     cli_work *work = user;
@@ -50,9 +59,7 @@ static void create_context(void *user)
         .thread_count = work->threads,
         .progress = cli_progress,
         .progress_user = work,
-        // A bake that needs more than the physical memory fails with an error message. Without a
-        // limit the system would kill it.
-        .memory_limit = os_physical_memory(),
+        .memory_limit = memory_limit(),
     };
     work->error.result = kiln_context_create(&def, &work->context, &work->error);
 }
