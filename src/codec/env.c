@@ -250,8 +250,8 @@ static void describe(manifest *m, kiln_file_info *info)
         make_harmonics(m->polynomial, info);
 }
 
-kiln_result ki_env_describe(const uint8_t *bytes, size_t size, const char *name,
-                            kiln_file_info *info, kiln_error *error)
+kiln_result ki_env_describe(kiln_context *context, const uint8_t *bytes, size_t size,
+                            const char *name, kiln_file_info *info, kiln_error *error)
 {
     const uint8_t *from = bytes + sizeof magic;
     const uint8_t *end = size > sizeof magic ? memchr(from, 0, size - sizeof magic) : NULL;
@@ -259,8 +259,10 @@ kiln_result ki_env_describe(const uint8_t *bytes, size_t size, const char *name,
         return ki_fail(error, KILN_ERROR_FORMAT,
                        "%s: the manifest does not end within the file's %zu bytes", name, size);
     manifest m = {.lod_scale = 0.8}; // the level scale that Babylon.js uses if a file states none
-    ki_json json = ki_json_make(from, (size_t)(end - from));
+    ki_json json = ki_json_make(context, from, (size_t)(end - from));
     read_manifest(&json, &m);
+    if (json.stopped)
+        return ki_fail_cancelled(error, "reading");
     if (json.failed)
         return ki_fail(error, KILN_ERROR_FORMAT, "%s: the manifest is damaged at byte %zu", name,
                        (size_t)(json.at - (const char *)bytes));

@@ -11,7 +11,7 @@ double ki_env_roughness(int level, double lod_scale, int size);
 /// three bands of its radiance in spherical harmonics.
 kiln_result ki_env_encode(const kiln_map *map, double lod_scale, const kiln_sh *sh,
                           ki_writer *writer, kiln_error *error);
-kiln_result ki_env_describe(const uint8_t *bytes, size_t size, const char *name,
-                            kiln_file_info *info, kiln_error *error);
+kiln_result ki_env_describe(kiln_context *context, const uint8_t *bytes, size_t size,
+                            const char *name, kiln_file_info *info, kiln_error *error);
 
 #endif

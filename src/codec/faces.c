@@ -209,6 +209,7 @@ static kiln_result list_folder(kiln_context *context, const char *folder, listin
 // The sets of files in a folder: the complete sets, of which two are kept, and else the set that
 // lacks the fewest faces.
 typedef struct search {
+    kiln_context *context;
     const listing *listing;
     char *text; // room for the name of a file of the folder
     size_t room;
@@ -259,9 +260,12 @@ static void complete_set(search *s, const ki_face_set *set, int face, const char
     }
 }
 
-static void search_names(search *s)
+// Returns false if the caller asks to stop.
+static bool search_names(search *s)
 {
-    for (size_t i = 0; i < s->listing->count; i++)
+    for (size_t i = 0; i < s->listing->count; i++) {
+        if (i % 1024 == 0 && !ki_go_on(s->context))
+            return false;
         for (int k = 0; k < SETS; k++)
             for (int face = 0; face < FACES; face++) {
                 const char *name = s->listing->name[i], *word = sets[k].word[face];
@@ -269,6 +273,8 @@ static void search_names(search *s)
                 if (at && !is_small_level(at + strlen(word)))
                     complete_set(s, &sets[k], face, name, at);
             }
+    }
+    return true;
 }
 
 static kiln_result say_search(const search *s, const char *folder, kiln_error *error)
@@ -315,7 +321,7 @@ kiln_result ki_faces_in_folder(kiln_context *context, const char *folder, ki_fac
                                kiln_error *error)
 {
     listing l;
-    search s = {.listing = &l};
+    search s = {.context = context, .listing = &l};
     *files = (ki_face_files){0};
     kiln_result result = list_folder(context, folder, &l, error);
     for (size_t i = 0; i < l.count && result == KILN_OK; i++)
@@ -325,8 +331,8 @@ kiln_result ki_faces_in_folder(kiln_context *context, const char *folder, ki_fac
     if (result == KILN_OK && !s.text)
         result = ki_fail_memory(context, error, folder, s.room);
     if (result == KILN_OK) {
-        search_names(&s);
-        result = say_search(&s, folder, error);
+        result = search_names(&s) ? say_search(&s, folder, error)
+                                  : ki_fail_cancelled(error, "looking for six faces");
     }
     if (result == KILN_OK) {
         files->set = s.set[0];

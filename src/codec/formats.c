@@ -302,7 +302,7 @@ static kiln_result read_bytes(kiln_context *context, const uint8_t *bytes, size_
                        format->endings[0]);
     kiln_load_report *report = decoded ? &decoded->report : &info->report;
     if (format->describe)
-        return format->describe(bytes, size, name, info, error);
+        return format->describe(context, bytes, size, name, info, error);
     if (format->read)
         return format->read(context, bytes, size, name, decoded, info, error);
     if (format->read_layer)

@@ -37,8 +37,8 @@ typedef kiln_result ki_read_layer(kiln_context *context, const uint8_t *bytes, s
 typedef kiln_result ki_read_file(kiln_context *context, const uint8_t *bytes, size_t size,
                                  const char *name, ki_decoded *decoded, kiln_file_info *info,
                                  kiln_error *error);
-typedef kiln_result ki_describe_file(const uint8_t *bytes, size_t size, const char *name,
-                                     kiln_file_info *info, kiln_error *error);
+typedef kiln_result ki_describe_file(kiln_context *context, const uint8_t *bytes, size_t size,
+                                     const char *name, kiln_file_info *info, kiln_error *error);
 typedef kiln_result ki_write_picture(const kiln_image *image, const ki_picture_about *about,
                                      ki_writer *writer, kiln_error *error);
 typedef kiln_result ki_write_cube(const kiln_map *map, const kiln_save_def *def, ki_writer *writer,

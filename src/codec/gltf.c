@@ -324,8 +324,8 @@ static const uint8_t *read_chunk(ki_reader *r, uint32_t type, uint32_t *size)
     return good ? bytes : NULL;
 }
 
-kiln_result ki_gltf_describe(const uint8_t *bytes, size_t size, const char *name,
-                             kiln_file_info *info, kiln_error *error)
+kiln_result ki_gltf_describe(kiln_context *context, const uint8_t *bytes, size_t size,
+                             const char *name, kiln_file_info *info, kiln_error *error)
 {
     ki_reader r = ki_reader_make(bytes, size);
     ki_read_u32(&r);
@@ -337,8 +337,10 @@ kiln_result ki_gltf_describe(const uint8_t *bytes, size_t size, const char *name
                        "%u bytes, the file has %zu bytes",
                        name, version, stated, size);
     light l = {0};
-    ki_json json = ki_json_make(text, json_size);
+    ki_json json = ki_json_make(context, text, json_size);
     read_json(&json, &l);
+    if (json.stopped)
+        return ki_fail_cancelled(error, "reading");
     if (json.failed)
         return ki_fail(error, KILN_ERROR_FORMAT, "%s: its JSON is damaged at byte %zu", name,
                        (size_t)(json.at - (const char *)text));

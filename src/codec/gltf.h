@@ -10,7 +10,7 @@
 kiln_result ki_gltf_encode(const kiln_map *map, const kiln_sh *sh, const kiln_lights *lights,
                            ki_writer *writer, kiln_error *error);
 /// Describes the first light of a binary glTF file.
-kiln_result ki_gltf_describe(const uint8_t *bytes, size_t size, const char *name,
-                             kiln_file_info *info, kiln_error *error);
+kiln_result ki_gltf_describe(kiln_context *context, const uint8_t *bytes, size_t size,
+                             const char *name, kiln_file_info *info, kiln_error *error);
 
 #endif

@@ -8,17 +8,34 @@
 #include <math.h>
 #include <string.h>
 
-ki_json ki_json_make(const void *bytes, size_t size)
+enum { BYTES_BETWEEN_QUESTIONS = 1 << 20 };
+
+ki_json ki_json_make(kiln_context *context, const void *bytes, size_t size)
 {
-    return (ki_json){bytes, (const char *)bytes + size, false};
+    return (ki_json){
+        .at = bytes, .end = (const char *)bytes + size, .ask = bytes, .context = context};
+}
+
+// Asks the caller of the library, once for each megabyte, whether to go on.
+static void ask(ki_json *j)
+{
+    size_t left = (size_t)(j->end - j->at);
+    j->ask = j->at + (left < BYTES_BETWEEN_QUESTIONS ? left : BYTES_BETWEEN_QUESTIONS);
+    if (!ki_go_on(j->context))
+        j->failed = j->stopped = true;
 }
 
 // Returns the next byte that is not white space, without consuming it; 0 at the end.
 static char peek(ki_json *j)
 {
-    while (j->at < j->end && (*j->at == ' ' || *j->at == '\t' || *j->at == '\n' || *j->at == '\r'))
-        j->at++;
-    return j->at < j->end && !j->failed ? *j->at : 0;
+    for (;; j->at++) {
+        if (j->at >= j->ask && j->at < j->end)
+            ask(j);
+        if (j->at == j->end || j->failed)
+            return 0;
+        if (*j->at != ' ' && *j->at != '\t' && *j->at != '\n' && *j->at != '\r')
+            return *j->at;
+    }
 }
 
 static bool take(ki_json *j, char wanted)
@@ -79,6 +96,8 @@ void ki_json_string(ki_json *j, char *text, size_t room)
         if (length + 1 < room)
             text[length++] = *j->at;
         j->at++;
+        if (j->at >= j->ask && j->at < j->end)
+            ask(j);
     }
     text[length] = 0;
     if (j->at == j->end)

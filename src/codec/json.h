@@ -8,10 +8,13 @@
 
 typedef struct ki_json {
     const char *at, *end;
-    bool failed;
+    const char *ask; // position from which on the caller of the library is asked whether to go on
+    kiln_context *context;
+    bool failed,
+        stopped; // stopped: the caller of the library asked to stop, so that reading failed
 } ki_json;
 
-ki_json ki_json_make(const void *bytes, size_t size);
+ki_json ki_json_make(kiln_context *context, const void *bytes, size_t size);
 
 /// Enter an object or an array. Fail if the next value is of another kind.
 void ki_json_enter_object(ki_json *json);

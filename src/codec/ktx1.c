@@ -225,11 +225,16 @@ static void read_pair(const char *key, const char *value, kiln_file_info *info)
 }
 
 // Reads the key-value pairs of the metadata into `info`. Returns false if the pairs are longer or
-// shorter than `size`. Pairs whose value is not text are skipped.
-static bool read_pairs(const uint8_t *bytes, size_t size, kiln_file_info *info)
+// shorter than `size`, or if the caller asks to stop, which sets *stopped. Pairs whose value is not
+// text are skipped.
+static bool read_pairs(kiln_context *context, const uint8_t *bytes, size_t size,
+                       kiln_file_info *info, bool *stopped)
 {
     ki_reader r = ki_reader_make(bytes, size);
-    while (ki_reader_left(&r) >= 4) {
+    for (unsigned count = 0; ki_reader_left(&r) >= 4; count++) {
+        *stopped = count % 65536 == 0 && !ki_go_on(context);
+        if (*stopped)
+            return false;
         uint32_t length = ki_read_u32(&r);
         const uint8_t *pair = ki_read_bytes(&r, length);
         if (!pair)
@@ -331,7 +336,11 @@ kiln_result ki_ktx1_decode(kiln_context *context, const uint8_t *bytes, size_t s
     if (result != KILN_OK)
         return result;
     const uint8_t *pairs = ki_read_bytes(&r, h.pair_bytes);
-    if (!pairs || !read_pairs(pairs, h.pair_bytes, info))
+    bool stopped = false;
+    bool good = pairs && read_pairs(context, pairs, h.pair_bytes, info, &stopped);
+    if (stopped)
+        return ki_fail_cancelled(error, "reading");
+    if (!good)
         return ki_fail(error, KILN_ERROR_FORMAT, "%s: its %u bytes of key-value pairs are damaged",
                        name, h.pair_bytes);
     if (!has_levels(&r, &h, &first))

@@ -17,7 +17,7 @@ kiln_result ki_ktx2_decode(kiln_context *context, const uint8_t *bytes, size_t s
                            kiln_error *error)
 {
     ki_ktx2_source s;
-    kiln_result result = ki_ktx2_open(&s, bytes, size, name, info, error);
+    kiln_result result = ki_ktx2_open(context, &s, bytes, size, name, info, error);
     if (result != KILN_OK)
         return result;
     kiln_load_report *report = decoded ? &decoded->report : &info->report;

@@ -80,8 +80,8 @@ typedef struct ki_ktx2_level {
 } ki_ktx2_level;
 
 /// Reads a file's header into `source`, and its metadata into `info`.
-kiln_result ki_ktx2_open(ki_ktx2_source *source, const uint8_t *bytes, size_t size,
-                         const char *name, kiln_file_info *info, kiln_error *error);
+kiln_result ki_ktx2_open(kiln_context *context, ki_ktx2_source *source, const uint8_t *bytes,
+                         size_t size, const char *name, kiln_file_info *info, kiln_error *error);
 /// Reads the next entry of the file's index of levels, that of level k, whose texels take `wanted`
 /// bytes. Its offset and size are checked before any memory is allocated.
 kiln_result ki_ktx2_find_level(ki_ktx2_source *source, uint32_t k, uint64_t wanted,

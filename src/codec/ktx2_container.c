@@ -290,29 +290,35 @@ static void read_entry(const char *key, const char *value, kiln_file_info *info)
 }
 
 // Reads the metadata. Entries whose value is not text that ends within the entry are skipped.
-static void read_metadata(const uint8_t *bytes, size_t size, kiln_file_info *info)
+// Returns false if the caller asks to stop.
+static bool read_metadata(kiln_context *context, const uint8_t *bytes, size_t size,
+                          kiln_file_info *info)
 {
     ki_reader r = ki_reader_make(bytes, size);
-    while (ki_reader_left(&r) >= 4) {
+    for (unsigned count = 0; ki_reader_left(&r) >= 4; count++) {
+        if (count % 65536 == 0 && !ki_go_on(context))
+            return false;
         uint32_t length = ki_read_u32(&r);
         const uint8_t *entry = ki_read_bytes(&r, length);
         if (!entry)
-            return;
+            return true;
         const uint8_t *end = memchr(entry, 0, length);
         if (end && end + 1 < entry + length && entry[length - 1] == 0)
             read_entry((const char *)entry, (const char *)end + 1, info);
         ki_read_bytes(&r, (4 - length % 4) % 4);
     }
+    return true;
 }
 
-kiln_result ki_ktx2_open(ki_ktx2_source *s, const uint8_t *bytes, size_t size, const char *name,
-                         kiln_file_info *info, kiln_error *error)
+kiln_result ki_ktx2_open(kiln_context *context, ki_ktx2_source *s, const uint8_t *bytes,
+                         size_t size, const char *name, kiln_file_info *info, kiln_error *error)
 {
     *s = (ki_ktx2_source){
         .bytes = bytes, .size = size, .name = name, .reader = ki_reader_make(bytes, size)};
     kiln_result result = read_header(s, error);
     if (result == KILN_OK && s->metadata_offset <= size &&
-        s->metadata_size <= size - s->metadata_offset)
-        read_metadata(bytes + s->metadata_offset, s->metadata_size, info);
+        s->metadata_size <= size - s->metadata_offset &&
+        !read_metadata(context, bytes + s->metadata_offset, s->metadata_size, info))
+        result = ki_fail_cancelled(error, "reading");
     return result;
 }

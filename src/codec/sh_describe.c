@@ -66,13 +66,13 @@ static kiln_result finish(const char *format, int count, const char *name, kiln_
     return KILN_OK;
 }
 
-kiln_result ki_sh_json_describe(const uint8_t *bytes, size_t size, const char *name,
-                                kiln_file_info *info, kiln_error *error)
+kiln_result ki_sh_json_describe(kiln_context *context, const uint8_t *bytes, size_t size,
+                                const char *name, kiln_file_info *info, kiln_error *error)
 {
     char key[16];
     double triple[3];
     int count = 0;
-    ki_json json = ki_json_make(bytes, size);
+    ki_json json = ki_json_make(context, bytes, size);
     ki_json_enter_object(&json);
     while (ki_json_member(&json, key, sizeof key)) {
         if (!strcmp(key, "irradiance")) {
@@ -88,6 +88,8 @@ kiln_result ki_sh_json_describe(const uint8_t *bytes, size_t size, const char *n
             ki_json_skip(&json);
         }
     }
+    if (json.stopped)
+        return ki_fail_cancelled(error, "reading");
     if (json.failed)
         return ki_fail(error, KILN_ERROR_FORMAT, "%s: the JSON is damaged at byte %zu", name,
                        (size_t)(json.at - (const char *)bytes));
@@ -115,9 +117,10 @@ static int read_lines(const char **at, kiln_file_info *info)
     return count;
 }
 
-kiln_result ki_sh_lines_describe(const uint8_t *bytes, size_t size, const char *name,
-                                 kiln_file_info *info, kiln_error *error)
+kiln_result ki_sh_lines_describe(kiln_context *context, const uint8_t *bytes, size_t size,
+                                 const char *name, kiln_file_info *info, kiln_error *error)
 {
+    (void)context; // the text is short
     text t;
     copy_text(bytes, size, sizeof t.bytes, &t);
     if (size && bytes[0] == '(') {
@@ -131,9 +134,10 @@ kiln_result ki_sh_lines_describe(const uint8_t *bytes, size_t size, const char *
     return finish("text", *at ? 0 : count, name, info, error);
 }
 
-kiln_result ki_sh_array_describe(const uint8_t *bytes, size_t size, const char *name,
-                                 kiln_file_info *info, kiln_error *error)
+kiln_result ki_sh_array_describe(kiln_context *context, const uint8_t *bytes, size_t size,
+                                 const char *name, kiln_file_info *info, kiln_error *error)
 {
+    (void)context; // the text is short
     text t;
     copy_text(bytes, size, sizeof t.bytes, &t);
     const char *array = strstr(t.bytes, "= {\n");

@@ -12,11 +12,11 @@ bool ki_sh_array_begins(const uint8_t *bytes, size_t size);
 
 /// Fill in `info` from a file that the function above with JSON, lines or array in its name
 /// recognises.
-kiln_result ki_sh_json_describe(const uint8_t *bytes, size_t size, const char *name,
-                                kiln_file_info *info, kiln_error *error);
-kiln_result ki_sh_lines_describe(const uint8_t *bytes, size_t size, const char *name,
-                                 kiln_file_info *info, kiln_error *error);
-kiln_result ki_sh_array_describe(const uint8_t *bytes, size_t size, const char *name,
-                                 kiln_file_info *info, kiln_error *error);
+kiln_result ki_sh_json_describe(kiln_context *context, const uint8_t *bytes, size_t size,
+                                const char *name, kiln_file_info *info, kiln_error *error);
+kiln_result ki_sh_lines_describe(kiln_context *context, const uint8_t *bytes, size_t size,
+                                 const char *name, kiln_file_info *info, kiln_error *error);
+kiln_result ki_sh_array_describe(kiln_context *context, const uint8_t *bytes, size_t size,
+                                 const char *name, kiln_file_info *info, kiln_error *error);
 
 #endif
