@@ -20,7 +20,7 @@ typedef struct bake {
     int tuning;       ///< a bake_tuning; -1 if the engine decides
     int samples, phi_steps, theta_steps;
     int irradiance_size, sh_bands, layout, negative, threads;
-    double sh_window, rotation, exposure;
+    double sh_window, exposure;
     kiln_lights_def lights;
     bool mirror, json, quiet, verbose, sh_radiance, sh_irradiance;
     // Values that follow from several options together. The first are the names of the output
@@ -33,6 +33,9 @@ typedef struct bake {
     /// true: the file goes to standard output; `output` is then "-" with the ending of its format
     bool to_stdout;
     float roughness[KILN_MAX_LEVELS];
+    const char *rotation_text;    ///< text of --rotate; NULL without the option
+    double rotation, pitch, roll; ///< angles of --rotate in degrees
+    int up;                       ///< a kiln_up
     kiln_sun sun;
     double clamp; ///< radiance of --clamp; 0 if the library chooses
 

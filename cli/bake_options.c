@@ -34,6 +34,7 @@ enum {
     LAYOUT,
     LAYER,
     NEGATIVE,
+    UP,
     ROTATE,
     EXPOSURE,
     MIRROR,
@@ -55,6 +56,8 @@ const char *const bake_methods[] = {"exact", "textbook", NULL};
 const char *const bake_tunings[] = {"none", "sharp", "soft", NULL};
 static const char *const layouts[] = {"auto",       "panorama", "cross", "strip",
                                       "octahedron", "probe",    "ball",  NULL};
+
+static const char *const ups[] = {"y", "z", "-z", NULL};
 
 static const char *format_word(int index)
 {
@@ -155,9 +158,17 @@ const cli_option bake_options[OPTIONS + 1] = {
                  "ball the square photograph of a mirror ball; both become a panorama."},
     [LAYER] = CLI_LAYER_ROW(bake),
     [NEGATIVE] = CLI_NEGATIVE_ROW(bake),
-    [ROTATE] = {"rotate", CLI_NUMBER, AT(rotation), -3600, 3600, 0, "DEGREES",
-                .help = "turn the environment about the vertical axis, after --mirror; the content "
-                        "of a panorama moves to the left"},
+    [UP] = {"up", CLI_CHOICE, AT(up), .value = "AXIS", .words = ups,
+            .help =
+                "the axis of the input that points up, after --mirror; with z, kiln's direction "
+                "(x, y, z) shows the input's (x, -z, y)"},
+    [ROTATE] = {"rotate", CLI_TEXT, AT(rotation_text), .value = "YAW[,PITCH[,ROLL]]",
+                .help =
+                    "turn the environment by angles in degrees, after --mirror and --up: by ROLL "
+                    "about the view axis, by PITCH about +X, which moves what is ahead up, and "
+                    "by YAW about the vertical axis, which moves the content of a panorama to "
+                    "the left",
+                .unset = "0,0,0"},
     [EXPOSURE] = {"exposure", CLI_NUMBER, AT(exposure), -64, 64, 0, "STOPS",
                   .help = "multiply the radiance by 2^STOPS"},
     [MIRROR] = {"mirror", CLI_FLAG, AT(mirror), .help = "swap left and right, before --rotate"},
@@ -227,6 +238,32 @@ static int read_roughness(bake *b)
                          count, b->level_count);
     b->level_count = count;
     b->has_roughness = true;
+    return CLI_GO;
+}
+
+// ---------------------------------------------------------------------------------------- rotation
+
+static int read_rotation(bake *b)
+{
+    enum { LIMIT = 3600 };
+    double *angles[] = {&b->rotation, &b->pitch, &b->roll};
+    const char *at = b->rotation_text;
+    for (int i = 0; at && i < 3; i++) {
+        char *end;
+        double angle = strtod(at, &end);
+        if (end == at || (*end && *end != ',') || (*end && i == 2))
+            return cli_wrong(
+                b->arguments.command,
+                "--rotate is '%s', it must be a number of degrees, or up to three with "
+                "commas between them",
+                b->rotation_text);
+        if (!(angle >= -LIMIT && angle <= LIMIT))
+            return cli_wrong(b->arguments.command,
+                             "--rotate: number %d is %g, it must be from -%d to %d", i + 1, angle,
+                             LIMIT, LIMIT);
+        *angles[i] = angle;
+        at = *end ? end + 1 : NULL;
+    }
     return CLI_GO;
 }
 
@@ -396,6 +433,11 @@ static int check_textbook(const bake *b)
         return cli_wrong(b->arguments.command,
                          "--method textbook knows the lobes ggx and lambert, not %s",
                          bake_lobes[b->lobe]);
+    if (b->pitch != 0 || b->roll != 0 || b->up != KILN_UP_Y)
+        return cli_wrong(
+            b->arguments.command,
+            "--method textbook turns about the vertical axis only, leave out --up, and "
+            "pitch and roll of --rotate");
     if (b->has_roughness)
         return cli_wrong(b->arguments.command,
                          "--method textbook spaces its roughness linearly, leave "
@@ -509,8 +551,8 @@ int bake_read_options(bake *b, const cli_command *command, const cli_call *call)
     b->output = add_slash(b->output, b->folder[0]);
     b->irradiance_path = add_slash(b->irradiance_path, b->folder[1]);
     b->stores_sh = cli_ends_in(b->output, "ktx2");
-    if ((code = read_roughness(b)) != CLI_GO || (code = apply_engine(b)) != CLI_GO ||
-        (code = check_combinations(b)) != CLI_GO)
+    if ((code = read_roughness(b)) != CLI_GO || (code = read_rotation(b)) != CLI_GO ||
+        (code = apply_engine(b)) != CLI_GO || (code = check_combinations(b)) != CLI_GO)
         return code;
     if (b->tuning < 0)
         b->tuning = BAKE_EXACT;

@@ -538,6 +538,13 @@ KILN_API KILN_CHECKED kiln_result kiln_spectrum_filter(kiln_context *context,
 
 typedef struct kiln_engine kiln_engine; // defined in the section on engines below
 
+/// The axis that points up in a source. kiln's own axes have y up.
+typedef enum kiln_up {
+    KILN_UP_Y = 0,
+    KILN_UP_Z,      ///< z is up: kiln's direction (x, y, z) shows the source's (x, -z, y)
+    KILN_UP_MINUS_Z ///< -z is up: kiln's direction (x, y, z) shows the source's (x, z, -y)
+} kiln_up;
+
 /// What kiln_prefilter computes. {0} selects a cube of size 256 with all levels, filtered by GGX
 /// with roughness from 0 to 1 in equal steps.
 typedef struct kiln_prefilter_def {
@@ -567,6 +574,13 @@ typedef struct kiln_prefilter_def {
     /// With tune_for: level 0 may be blurred where a blurred level 0 makes the engine's error
     /// smaller.
     bool tune_soft;
+    /// Turns of the source about the other axes in degrees. The source is first turned to y up from
+    /// the axis `up`, then by `roll` about the view axis -Z (what is above moves to the right), by
+    /// `pitch` about +X (what is ahead moves up), and by `rotation` about +Y. Filtered levels,
+    /// irradiance and harmonics are turned as exactly as they are filtered. A mirror image has
+    /// means of 256 points or more in each texel, unless cubes are turned by quarter turns.
+    double pitch, roll;
+    kiln_up up;
 } kiln_prefilter_def;
 
 /// Filters level 0 of `source`, a map of any shape, with one lobe for each level of `map`, from one
@@ -727,8 +741,8 @@ typedef enum kiln_tune {
 /// What kiln_bake computes. {0} selects the defaults of kiln_prefilter_def, an irradiance map of
 /// size 64 and three bands of harmonics.
 typedef struct kiln_bake_def {
-    /// The definition of the levels. `levels.rotation` turns irradiance and harmonics too, after
-    /// `mirror` is applied.
+    /// The definition of the levels. `levels.rotation`, `pitch`, `roll` and `up` turn irradiance and
+    /// harmonics too, after `mirror` is applied.
     kiln_prefilter_def levels;
     /// Engine that the levels are for, or NULL. The engine decides lobe, roughness, smallest and
     /// tuning of `levels`, whose own fields of these names must be 0; also size and level_count if

@@ -129,8 +129,9 @@ static kiln_result plan_source(kiln_plan *p, kiln_error *error)
     w->panorama = (kiln_map){.shape = KILN_SHAPE_PANORAMA, .size = rows, .level_count = 1};
     result = ki_map_allocate(p->context, &w->panorama, error);
     if (result == KILN_OK)
-        result = ki_resample_plan_create(p->context, p->source_shape, p->source_size,
-                                         KILN_SHAPE_PANORAMA, rows, 0, &p->to_panorama, error);
+        result =
+            ki_resample_plan_create(p->context, p->source_shape, p->source_size,
+                                    KILN_SHAPE_PANORAMA, rows, NULL, 0, &p->to_panorama, error);
     return result;
 }
 
@@ -169,7 +170,7 @@ static kiln_result plan_irradiance(kiln_plan *p, int rows, kiln_error *error)
     if (result == KILN_OK)
         result =
             ki_level_create(p->context, &analysis->legendre, &zonal, &lobe, p->prefilter->def.shape,
-                            p->irradiance_size, &p->irradiance, error);
+                            p->irradiance_size, &p->prefilter->tilt, &p->irradiance, error);
     if (result == KILN_OK)
         result = ki_level_reserve(p->context, p->irradiance, &p->workspace.prefilter.levels, error);
     return result;
@@ -320,6 +321,7 @@ static kiln_result take_lights(const kiln_plan *p, kiln_map *changed, kiln_envir
         double *d = lights->light[i].direction;
         const double unturned[3] = {d[0], d[1], d[2]};
         ki_turn(unturned, -p->rotation, d);
+        ki_tilt_undo(&p->prefilter->tilt, d);
     }
     return result;
 }
@@ -361,7 +363,7 @@ static kiln_result execute_all(const kiln_plan *p, plan_workspace *w, const kiln
                                       &environment->levels, error);
     if (result == KILN_OK && p->sh_bands)
         result = ki_sh_project(find_spectrum(w, p->for_sh, &w->for_sh, panorama), p->sh_bands,
-                               p->rotation, &environment->sh, error);
+                               &p->prefilter->tilt, p->rotation, &environment->sh, error);
     if (result == KILN_OK && p->irradiance_size)
         result = ki_level_execute(p->irradiance, &w->prefilter.levels,
                                   find_spectrum(w, p->for_irradiance, &w->for_irradiance, panorama),
@@ -452,7 +454,7 @@ kiln_result ki_plan_reserve(kiln_plan *p, kiln_error *error)
         result = rehearse(p, error);
     } else if (p->sh_bands) {
         ki_scratch_begin(p->context, &w->scratch);
-        result = ki_sh_project(w->prefilter.spectrum, p->sh_bands, 0, &sh, error);
+        result = ki_sh_project(w->prefilter.spectrum, p->sh_bands, NULL, 0, &sh, error);
         ki_scratch_end(p->context);
     }
     if (result != KILN_OK)

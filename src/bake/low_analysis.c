@@ -51,7 +51,7 @@ kiln_result kiln_map_sh(kiln_context *context, const kiln_map *map, int bands, d
     if (result == KILN_OK)
         ki_analysis_execute(analysis, low.analysis, map->level[0], low.spectrum);
     if (result == KILN_OK)
-        result = ki_sh_project(low.spectrum, bands, rotation, sh, error);
+        result = ki_sh_project(low.spectrum, bands, NULL, rotation, sh, error);
     ki_low_free(&low);
     ki_analysis_destroy(analysis);
     kiln_map_free(&converted);

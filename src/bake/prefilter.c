@@ -65,6 +65,13 @@ kiln_result ki_prefilter_resolve(const kiln_prefilter_def *def, kiln_prefilter_d
     if (!(fabs(d.rotation) <= 1e6))
         return ki_fail(error, KILN_ERROR_ARGUMENT,
                        "rotation is %g degrees, it must be from -1e6 to 1e6", d.rotation);
+    if (!(fabs(d.pitch) <= 1e6) || !(fabs(d.roll) <= 1e6))
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "pitch and roll are %g and %g degrees, they must be from -1e6 to 1e6",
+                       d.pitch, d.roll);
+    if ((unsigned)d.up > KILN_UP_MINUS_Z)
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "up is %d, it must be 0 to %d", (int)d.up,
+                       (int)KILN_UP_MINUS_Z);
     d.tolerance = d.tolerance != 0 ? d.tolerance : ki_lobe_tolerance;
     if (!(d.tolerance >= 1e-6 && d.tolerance <= 0.01))
         return ki_fail(error, KILN_ERROR_ARGUMENT, "tolerance is %g, it must be 1e-6 to 0.01",
@@ -104,13 +111,13 @@ static kiln_result plan_mirror(kiln_context *context, ki_prefilter *p, int level
                        .smallest = p->def.smallest};
     if (source) {
         bool exact = source->shape == KILN_SHAPE_CUBE && target.shape == KILN_SHAPE_CUBE &&
-                     fmod(p->def.rotation, 90) == 0;
+                     fmod(p->def.rotation, 90) == 0 && (!p->tilt.any || p->tilt.quarter);
         p->direct[level] =
             exact || kiln_map_texels(source, 0) < 4 * kiln_map_texels(&target, level);
     }
     const kiln_map *from = source && p->direct[level] ? source : &panorama;
     return ki_resample_plan_create(context, from->shape, from->size, target.shape,
-                                   kiln_map_level_size(&target, level), p->def.rotation,
+                                   kiln_map_level_size(&target, level), &p->tilt, p->def.rotation,
                                    &p->mirrors[level], error);
 }
 
@@ -128,7 +135,7 @@ static kiln_result plan_tuning(kiln_context *context, ki_prefilter *p, const ki_
     if (p->def.size & (p->def.size - 1))
         return ki_fail(error, KILN_ERROR_ARGUMENT,
                        "size is %d, it must be a power of two for tuned levels", p->def.size);
-    return ki_tune_create(context, &p->def, p->roughness, reading, &p->tune, error);
+    return ki_tune_create(context, &p->def, &p->tilt, p->roughness, reading, &p->tune, error);
 }
 
 kiln_result ki_prefilter_create(kiln_context *context, int panorama_size, const kiln_map *source,
@@ -148,6 +155,9 @@ kiln_result ki_prefilter_create(kiln_context *context, int panorama_size, const 
     result = ki_prefilter_resolve(def, &p->def, p->roughness, lobes, error);
     if (result != KILN_OK)
         goto done;
+    ki_tilt_make(p->def.rotation, p->def.pitch, p->def.roll, p->def.up, &p->tilt);
+    if (p->tilt.any)
+        p->def.rotation = 0;
 
     // Least degree to which the panorama is analysed. Low degrees cost little, and with the larger
     // number of latitude rings a constant environment stays constant to the last bit of a float.
@@ -182,7 +192,7 @@ kiln_result ki_prefilter_create(kiln_context *context, int panorama_size, const 
             result = plan_mirror(context, p, i, source, error);
         else if (!is_tuned(p, i))
             result = ki_level_create(context, &p->analysis->legendre, &zonals[i], &spectra[i],
-                                     p->def.shape, size, &p->levels[i], error);
+                                     p->def.shape, size, &p->tilt, &p->levels[i], error);
     }
 done:
     ki_free(density);

@@ -22,7 +22,10 @@ bool ki_is_mirror(const kiln_lobe *lobe);
 /// size. An execution changes nothing in the plan.
 typedef struct ki_prefilter {
     kiln_prefilter_def def; // definition of the levels, with each default replaced by its value
-    int source_size;        // number of rows of the panorama that is analysed
+    // The turn by rotation, pitch, roll and up of the definition. If the turn is not about +Y alone,
+    // def.rotation is 0 afterwards.
+    ki_tilt tilt;
+    int source_size; // number of rows of the panorama that is analysed
     float roughness[KILN_MAX_LEVELS];
     ki_analysis *analysis;
     // Each level either is a mirror, resampled by `mirrors`, or is filtered by `levels`, or is

@@ -124,3 +124,54 @@ void ki_turn(const double direction[3], double degrees, double turned[3])
     turned[1] = direction[1];
     turned[2] = z * cosine + x * sine;
 }
+
+void ki_tilt_apply(const ki_tilt *tilt, double d[3])
+{
+    if (!tilt || !tilt->any)
+        return;
+    const double from[3] = {d[0], d[1], d[2]};
+    for (int i = 0; i < 3; i++)
+        d[i] = tilt->m[i][0] * from[0] + tilt->m[i][1] * from[1] + tilt->m[i][2] * from[2];
+}
+
+void ki_tilt_undo(const ki_tilt *tilt, double d[3])
+{
+    if (!tilt || !tilt->any)
+        return;
+    const double from[3] = {d[0], d[1], d[2]};
+    for (int i = 0; i < 3; i++)
+        d[i] = tilt->m[0][i] * from[0] + tilt->m[1][i] * from[1] + tilt->m[2][i] * from[2];
+}
+
+// Turns a direction back by yaw, pitch and roll, and then from y up to the axes of the source.
+static void turn_back(double rotation, double pitch, double roll, kiln_up up, double d[3])
+{
+    double s, c, turned[3], x, y, z;
+    ki_turn(d, fmod(rotation, 360), turned);
+    ki_sincos(fmod(pitch, 360) * KI_PI / 180, &s, &c);
+    y = turned[1] * c + turned[2] * s;
+    z = turned[2] * c - turned[1] * s;
+    ki_sincos(fmod(roll, 360) * KI_PI / 180, &s, &c);
+    x = turned[0] * c - y * s;
+    y = turned[0] * s + y * c;
+    d[0] = x;
+    d[1] = up == KILN_UP_Z ? -z : up == KILN_UP_MINUS_Z ? z : y;
+    d[2] = up == KILN_UP_Z ? y : up == KILN_UP_MINUS_Z ? -y : z;
+}
+
+void ki_tilt_make(double rotation, double pitch, double roll, kiln_up up, ki_tilt *tilt)
+{
+    tilt->quarter = true;
+    tilt->any = pitch != 0 || roll != 0 || up != KILN_UP_Y;
+    for (int axis = 0; axis < 3; axis++) {
+        double d[3] = {axis == 0, axis == 1, axis == 2};
+        turn_back(rotation, pitch, roll, up, d);
+        for (int i = 0; i < 3; i++) {
+            // Sines and cosines of quarter turns differ from whole numbers by rounding.
+            double whole = floor(d[i] + 0.5);
+            bool is_whole = fabs(d[i] - whole) < 1e-14;
+            tilt->m[i][axis] = is_whole ? whole : d[i];
+            tilt->quarter = tilt->quarter && is_whole;
+        }
+    }
+}

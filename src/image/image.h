@@ -32,6 +32,22 @@ void ki_direction_octahedron(const double direction[3], double *u, double *v);
 /// turn(d).
 void ki_turn(const double direction[3], double degrees, double turned[3]);
 
+/// A turn of the environment about any axis: the turned environment has in direction d the value
+/// that the unturned one has in direction m d.
+typedef struct ki_tilt {
+    bool any;     ///< false: no turn, `m` is not used
+    bool quarter; ///< true: the turn maps the axes to axes
+    double m[3][3];
+} ki_tilt;
+
+/// Makes the turn of the angles `rotation`, `pitch` and `roll` in degrees and of the upward axis,
+/// as kiln_prefilter_def defines these.
+void ki_tilt_make(double rotation, double pitch, double roll, kiln_up up, ki_tilt *tilt);
+/// Replaces d by m d, or does nothing if `tilt` is NULL or no turn.
+void ki_tilt_apply(const ki_tilt *tilt, double d[3]);
+/// Replaces d by the direction that ki_tilt_apply turns to d.
+void ki_tilt_undo(const ki_tilt *tilt, double d[3]);
+
 /// Allocates the levels of a map whose shape, size and level_count are set, with texels 0.
 kiln_result ki_map_allocate(kiln_context *context, kiln_map *map, kiln_error *error);
 kiln_result ki_image_allocate(kiln_context *context, kiln_image *image, kiln_error *error);

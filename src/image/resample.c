@@ -29,8 +29,8 @@ static kiln_result check_numbers(kiln_shape shape, int size, const char *which, 
 }
 
 kiln_result ki_resample_plan_create(kiln_context *context, kiln_shape source_shape, int source_size,
-                                    kiln_shape shape, int size, double rotation,
-                                    ki_resample_plan **plan, kiln_error *error)
+                                    kiln_shape shape, int size, const ki_tilt *tilt,
+                                    double rotation, ki_resample_plan **plan, kiln_error *error)
 {
     *plan = NULL;
     if (check_numbers(source_shape, source_size, "source", error) ||
@@ -47,10 +47,16 @@ kiln_result ki_resample_plan_create(kiln_context *context, kiln_shape source_sha
     p->source_size = source_size;
     p->size = size;
     p->rotation = rotation;
+    if (tilt)
+        p->tilt = *tilt;
 
     kiln_result result = KILN_OK;
-    bool quarter = fmod(rotation, 90) == 0;
-    if (source_shape == KILN_SHAPE_PANORAMA && shape == KILN_SHAPE_PANORAMA) {
+    bool quarter = fmod(rotation, 90) == 0 && (!p->tilt.any || p->tilt.quarter);
+    bool cubes = source_shape == KILN_SHAPE_CUBE && shape == KILN_SHAPE_CUBE;
+    if (p->tilt.any && !(cubes && quarter)) {
+        p->method = KI_RESAMPLE_SUBSAMPLE;
+        p->sub = ki_max(16, ki_min(64, (int)ceil(4.0 * source_size / size)));
+    } else if (source_shape == KILN_SHAPE_PANORAMA && shape == KILN_SHAPE_PANORAMA) {
         p->method = KI_RESAMPLE_SEPARABLE;
         result = ki_resample_plan_separable(context, p, error);
     } else if (source_shape == KILN_SHAPE_PANORAMA) {
@@ -176,7 +182,7 @@ kiln_result ki_map_resample(kiln_context *context, const kiln_map *source, doubl
     ki_buffer buffer = {0};
     kiln_result result =
         ki_resample_plan_create(context, source->shape, source->size, target->shape,
-                                kiln_map_level_size(target, level), rotation, &plan, error);
+                                kiln_map_level_size(target, level), NULL, rotation, &plan, error);
     if (result || !plan)
         return result;
     static const ki_progress_range range = {"converting", 0, 1};

@@ -9,10 +9,11 @@
 /// An execution changes nothing in the plan.
 typedef struct ki_resample_plan ki_resample_plan;
 
-/// Prepares a resampling, turned by `rotation` degrees about +Y as in kiln_map_convert.
+/// Prepares a resampling, turned by `rotation` degrees about +Y as in kiln_map_convert, and by
+/// `tilt`, which may be NULL, before.
 kiln_result ki_resample_plan_create(kiln_context *context, kiln_shape source_shape, int source_size,
-                                    kiln_shape shape, int size, double rotation,
-                                    ki_resample_plan **plan, kiln_error *error);
+                                    kiln_shape shape, int size, const ki_tilt *tilt,
+                                    double rotation, ki_resample_plan **plan, kiln_error *error);
 /// Makes `buffer` large enough for executions of the plan by the context's threads.
 kiln_result ki_resample_reserve(kiln_context *context, const ki_resample_plan *plan,
                                 ki_buffer *buffer, kiln_error *error);

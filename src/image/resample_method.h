@@ -36,6 +36,7 @@ typedef struct ki_resample_span {
 struct ki_resample_plan {
     kiln_shape source_shape, shape;
     int source_size, size;
+    ki_tilt tilt;
     double rotation;
 
     // `method` decides which member of the union is in use.

@@ -116,6 +116,7 @@ void ki_resample_faces(void *data, int index)
     for (int x = 0; x < n; x++) {
         double d[3], s, t, rgb[3] = {0, 0, 0}, total = 0;
         ki_face_direction(face, (2 * x + 1.0) / n - 1, (2 * y + 1.0) / n - 1, d);
+        ki_tilt_apply(&plan->tilt, d);
         ki_turn(d, plan->rotation, d);
         int source_face = ki_direction_face(d, &s, &t);
         double s0 = s - 1.0 / n, s1 = s + 1.0 / n, t0 = t - 1.0 / n, t1 = t + 1.0 / n;
@@ -150,6 +151,11 @@ static size_t texel_towards(kiln_shape shape, int n, const double direction[3])
 {
     double u, v;
     int face = 0;
+    if (shape == KILN_SHAPE_PANORAMA) {
+        ki_direction_panorama(direction, &u, &v);
+        int x = ki_min(2 * n - 1, (int)(u * 2 * n)), y = ki_min(n - 1, (int)(v * n));
+        return (size_t)y * 2 * (size_t)n + (size_t)x;
+    }
     if (shape == KILN_SHAPE_CUBE) {
         face = ki_direction_face(direction, &u, &v);
         u = 0.5 * u + 0.5;
@@ -170,17 +176,21 @@ void ki_resample_subsample(void *data, int index)
     const ki_resample_run *run = data;
     const ki_resample_plan *plan = run->plan;
     int n = plan->size, sub = plan->sub, face = index / n, y = index % n;
-    bool cube = plan->shape == KILN_SHAPE_CUBE;
+    bool cube = plan->shape == KILN_SHAPE_CUBE, panorama = plan->shape == KILN_SHAPE_PANORAMA;
+    int width = panorama ? 2 * n : n;
     // the axis +X turned by the rotation: its x and z are the rotation's cosine and sine
     double turned[3];
     ki_turn((const double[3]){1, 0, 0}, plan->rotation, turned);
-    for (int x = 0; x < n; x++) {
+    for (int x = 0; x < width; x++) {
         double rgb[3] = {0, 0, 0}, total = 0;
-        float *out = run->target + 3 * ((size_t)index * (size_t)n + (size_t)x);
+        float *out = run->target + 3 * ((size_t)index * (size_t)width + (size_t)x);
         for (int j = 0; j < sub; j++) {
             for (int i = 0; i < sub; i++) {
-                double u = (x + (i + 0.5) / sub) / n, v = (y + (j + 0.5) / sub) / n, d[3], area;
-                if (cube) {
+                double u = (x + (i + 0.5) / sub) / width, v = (y + (j + 0.5) / sub) / n, d[3], area;
+                if (panorama) {
+                    ki_panorama_direction(u, v, d);
+                    area = ki_sin(KI_PI * v);
+                } else if (cube) {
                     ki_face_direction(face, 2 * u - 1, 2 * v - 1, d);
                     double r2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
                     area = 1 / (r2 * sqrt(r2));
@@ -192,6 +202,7 @@ void ki_resample_subsample(void *data, int index)
                     double sum = fabs(d[0]) + fabs(d[1]) + fabs(d[2]);
                     area = sum * sum * sum;
                 }
+                ki_tilt_apply(&plan->tilt, d);
                 double right = d[0] * turned[0] - d[2] * turned[2];
                 d[2] = d[2] * turned[0] + d[0] * turned[2];
                 d[0] = right;

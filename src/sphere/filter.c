@@ -43,7 +43,7 @@ kiln_result kiln_spectrum_filter(kiln_context *context, const kiln_spectrum *spe
                               ki_coefficient_count(spectrum->degree) * sizeof(double));
     }
     result = ki_level_create(context, &legendre, &zonal, &zonal_spectrum, map->shape,
-                             kiln_map_level_size(map, level), &plan, error);
+                             kiln_map_level_size(map, level), NULL, &plan, error);
     if (result == KILN_OK)
         result = ki_level_reserve(context, plan, &workspace, error);
     if (result == KILN_OK)

@@ -37,6 +37,7 @@ struct ki_level {
     ki_zonal_spectrum lobe;
     kiln_shape shape;
     int size, degree;
+    ki_tilt tilt; // the turn that texel directions take before they meet the spectrum
     ki_rings rings;
     size_t scratch_size; // number of doubles of scratch memory that each thread needs
 
@@ -54,7 +55,7 @@ struct ki_level {
     // [channel][PAD + rings + PAD][pitch].
     size_t pitch, plane;
     // Positions of texels on the grid as {index of the latitude ring, column}, both with fractions:
-    // of the texels of the faces +X and +Y of a cube, or of all texels of a map of another shape.
+    // of the texels of the faces +X and +Y of a cube without tilt, or of all texels of other maps.
     double *positions;
 };
 
@@ -108,10 +109,11 @@ static void place_row(void *data, int row)
     kiln_map map = {.shape = level->shape, .size = level->size, .level_count = 1};
     ki_level_extent(&map, 0, &width, &height);
     size_t face = (size_t)width * (size_t)width, first = (size_t)row * (size_t)width;
-    bool top = level->shape == KILN_SHAPE_CUBE && row >= width;
+    bool top = level->shape == KILN_SHAPE_CUBE && row >= width && !level->tilt.any;
     for (size_t i = first; i < first + (size_t)width; i++) {
         double direction[3], u, v;
         kiln_map_direction(&map, 0, top ? i + face : i, direction);
+        ki_tilt_apply(&level->tilt, direction);
         ki_direction_panorama(direction, &u, &v);
         level->positions[2 * i] = v * 2 * level->rings.pair_count - 0.5 + (PAD - TAP_OFFSET);
         level->positions[2 * i + 1] = u * level->fft.length;
@@ -141,6 +143,7 @@ static bool plan_places(kiln_context *context, ki_level *v, const kiln_map *map)
         double d[3], sine;
         place *p = &v->places[i];
         kiln_map_direction(map, 0, (size_t)i, d);
+        ki_tilt_apply(&v->tilt, d);
         sine = sqrt(d[0] * d[0] + d[2] * d[2]);
         p->theta = ki_atan2(sine, fabs(d[1]));
         p->sign = d[1] < 0 ? -1 : 1;
@@ -174,7 +177,8 @@ static bool plan_places(kiln_context *context, ki_level *v, const kiln_map *map)
 // Prepares a level that is interpolated on a grid. `map` has the shape and size of the level.
 static bool plan_grid(kiln_context *context, ki_level *v, const kiln_map *map)
 {
-    size_t texels = kiln_map_texels(map, 0) / (v->shape == KILN_SHAPE_CUBE ? 3 : 1);
+    bool alike = v->shape == KILN_SHAPE_CUBE && !v->tilt.any; // faces have each other's positions
+    size_t texels = kiln_map_texels(map, 0) / (alike ? 3 : 1);
     if (!ki_rings_create_grid(context, v->degree, &v->rings) ||
         !ki_fft_create(context, ki_fft_good_length(4 * v->rings.pair_count), &v->fft))
         return false;
@@ -193,7 +197,7 @@ static bool plan_grid(kiln_context *context, ki_level *v, const kiln_map *map)
 
 kiln_result ki_level_create(kiln_context *context, const ki_legendre *legendre,
                             const ki_zonal *zonal, ki_zonal_spectrum *spectrum, kiln_shape shape,
-                            int size, ki_level **level, kiln_error *error)
+                            int size, const ki_tilt *tilt, ki_level **level, kiln_error *error)
 {
     ki_level *v = *level = ki_alloc(context, 1, sizeof *v);
     if (!v) {
@@ -208,6 +212,8 @@ kiln_result ki_level_create(kiln_context *context, const ki_legendre *legendre,
                     .size = size,
                     .degree = ki_min(ki_max(spectrum->degree, 8), legendre->degree)};
     *spectrum = (ki_zonal_spectrum){0};
+    if (tilt)
+        v->tilt = *tilt;
     kiln_map map = {.shape = shape, .size = size, .level_count = 1};
     bool small = kiln_map_texels(&map, 0) <= SMALL;
     v->scratch_size = (size_t)(v->degree + 1) * 2 * 96;
@@ -435,7 +441,7 @@ static void find_positions(const ki_level *v, size_t first, int count, double *p
 {
     size_t n = (size_t)v->size, face = first / (n * n), at = first % (n * n);
     int length = v->fft.length;
-    if (v->shape != KILN_SHAPE_CUBE) {
+    if (v->shape != KILN_SHAPE_CUBE || v->tilt.any) {
         memcpy(positions, v->positions + 2 * first, 2 * (size_t)count * sizeof *positions);
         return;
     }
@@ -455,7 +461,7 @@ static void find_positions(const ki_level *v, size_t first, int count, double *p
 }
 
 // Finds the direction of a texel as kiln_map_direction does, but faster for cubes.
-static void find_direction(const run *r, size_t texel, double d[3])
+static void texel_direction(const run *r, size_t texel, double d[3])
 {
     const ki_level *v = r->level;
     if (v->shape != KILN_SHAPE_CUBE) {
@@ -468,6 +474,13 @@ static void find_direction(const run *r, size_t texel, double d[3])
     double scale = 1 / sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
     for (int k = 0; k < 3; k++)
         d[k] *= scale;
+}
+
+// Finds the direction in which the untilted environment has what a texel shows.
+static void find_direction(const run *r, size_t texel, double d[3])
+{
+    texel_direction(r, texel, d);
+    ki_tilt_apply(&r->level->tilt, d);
 }
 
 // Adds the light of the suns through the lobe to the texels first .. first + count - 1.
@@ -496,6 +509,7 @@ static void add_surroundings(const run *r, size_t first, int count, float *rgb)
     for (int i = 0; i < count; i++) {
         double direction[3], turned[3], sum[3] = {0};
         kiln_map_direction(r->map, r->index, first + (size_t)i, direction);
+        ki_tilt_apply(&v->tilt, direction);
         ki_turn(direction, r->rotation, turned);
         ki_surroundings_add(r->panorama, &v->zonal, v->lobe.integral, turned, sum);
         for (int c = 0; c < 3; c++)

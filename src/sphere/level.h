@@ -2,6 +2,7 @@
 #ifndef KI_LEVEL_H
 #define KI_LEVEL_H
 
+#include "image/image.h"
 #include "sphere/spectrum.h"
 #include "sphere/zonal.h"
 
@@ -12,10 +13,11 @@ typedef struct ki_level ki_level;
 
 /// Prepares a level of `size` in the given shape, filtered by the lobe of `zonal`. The level takes
 /// over `spectrum`, the lobe's coefficients, also on failure. `legendre` must outlive the level and
-/// have at least the degree of `spectrum`.
+/// have at least the degree of `spectrum`. `tilt` turns the environment before the rotation of an
+/// execution is applied; NULL for no turn.
 kiln_result ki_level_create(kiln_context *context, const ki_legendre *legendre,
                             const ki_zonal *zonal, ki_zonal_spectrum *spectrum, kiln_shape shape,
-                            int size, ki_level **level, kiln_error *error);
+                            int size, const ki_tilt *tilt, ki_level **level, kiln_error *error);
 /// Frees a level. `level` may be NULL.
 void ki_level_destroy(ki_level *level);
 

@@ -54,8 +54,8 @@ void ki_sh_basis(const double d[3], double y[25])
 // The spectrum has the polar axis +Y, the basis the polar axis z. Therefore the sum of the first
 // bands is evaluated on a product grid of directions and projected onto the basis anew. The grid
 // integrates products of two harmonics of these bands exactly.
-kiln_result ki_sh_project(const kiln_spectrum *spectrum, int bands, double rotation, kiln_sh *sh,
-                          kiln_error *error)
+kiln_result ki_sh_project(const kiln_spectrum *spectrum, int bands, const ki_tilt *tilt,
+                          double rotation, kiln_sh *sh, kiln_error *error)
 {
     enum { DEGREE = KILN_MAX_BANDS - 1, RINGS = 8, COLUMNS = 16 };
     kiln_context *context = spectrum->context;
@@ -101,7 +101,9 @@ kiln_result ki_sh_project(const kiln_spectrum *spectrum, int bands, double rotat
             // ki_panorama_direction defines it. `nodes[j]` is cos theta.
             double y[25], s, c;
             ki_sincos(2 * KI_PI * u, &s, &c);
-            ki_sh_basis((double[3]){-sine * s, nodes[j], sine * c}, y);
+            double direction[3] = {-sine * s, nodes[j], sine * c};
+            ki_tilt_undo(tilt, direction);
+            ki_sh_basis(direction, y);
             for (int k = 0; k < bands * bands; k++)
                 for (int n = 0; n < 3; n++)
                     sh->c[k][n] += y[k] * value[n] * weights[j] * 2 * KI_PI / COLUMNS;
@@ -161,7 +163,7 @@ kiln_result kiln_spectrum_sh(const kiln_spectrum *spectrum, int bands, bool irra
     kiln_sh radiance = {0};
     kiln_result result = ki_sh_check_bands(bands, window, rotation, error);
     if (result == KILN_OK)
-        result = ki_sh_project(spectrum, bands, rotation, &radiance, error);
+        result = ki_sh_project(spectrum, bands, NULL, rotation, &radiance, error);
     if (result == KILN_OK)
         result = kiln_sh_filter(&radiance, bands, irradiance, window, sh, error);
     return result;

@@ -28,6 +28,7 @@ enum { MOST_READS = 256, COARSE = 32 };
 
 struct ki_tune {
     ki_reading reading;
+    ki_tilt tilt;
     kiln_shape shape;
     int size, smallest, level_count;
     double tolerance;
@@ -84,13 +85,14 @@ static kiln_result analyze_lobes(kiln_context *context, ki_tune *t, kiln_error *
 }
 
 kiln_result ki_tune_create(kiln_context *context, const kiln_prefilter_def *def,
-                           const float roughness[KILN_MAX_LEVELS], const ki_reading *reading,
-                           ki_tune **tune, kiln_error *error)
+                           const ki_tilt *tilt, const float roughness[KILN_MAX_LEVELS],
+                           const ki_reading *reading, ki_tune **tune, kiln_error *error)
 {
     ki_tune *t = *tune = ki_alloc(context, 1, sizeof *t);
     if (!t)
         return ki_fail_memory(context, error, "a tuning", sizeof *t);
     t->reading = *reading;
+    t->tilt = *tilt;
     t->shape = def->shape;
     t->size = def->size;
     t->smallest = ki_max(1, def->smallest);
@@ -229,7 +231,7 @@ static kiln_result make_target(const run *r, int level, kiln_map *map, int index
     kiln_result result = make_kernel(r, level, &zonal, mixture, &kernel, error);
     if (result == KILN_OK)
         result = ki_level_create(r->context, r->legendre, &zonal, &kernel, r->tune->shape,
-                                 kiln_map_level_size(map, index), &plan, error);
+                                 kiln_map_level_size(map, index), &r->tune->tilt, &plan, error);
     if (result == KILN_OK)
         result = ki_level_reserve(r->context, plan, &workspace, error);
     if (result == KILN_OK)

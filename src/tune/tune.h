@@ -40,10 +40,10 @@ typedef struct ki_tune ki_tune;
 /// Prepares tuning for a map of the sizes and number of levels in `def`. The fields of `def` are
 /// complete (0 no longer stands for a default value): the lobe is GGX, level 0 the unfiltered
 /// environment (a mirror), and the size a power of two. roughness[] has the roughness of each level
-/// where levels are exact.
+/// where levels are exact. `tilt` turns the environment before the rotation is applied.
 kiln_result ki_tune_create(kiln_context *context, const kiln_prefilter_def *def,
-                           const float roughness[KILN_MAX_LEVELS], const ki_reading *reading,
-                           ki_tune **tune, kiln_error *error);
+                           const ki_tilt *tilt, const float roughness[KILN_MAX_LEVELS],
+                           const ki_reading *reading, ki_tune **tune, kiln_error *error);
 void ki_tune_destroy(ki_tune *tune);
 /// Returns the degree of spherical harmonics that ki_tune_execute needs of the spectrum.
 int ki_tune_degree(const ki_tune *tune);

@@ -85,6 +85,10 @@ expect 2 "from 1 to 256" bake in.exr -o out.ktx2 --threads 0
 expect 2 "must be from -64 to 64" bake in.exr -o out.ktx2 --exposure 65
 expect 2 "must be from -64 to 64" bake in.exr -o out.ktx2 --exposure nan
 expect 2 "must be a number" bake in.exr -o out.ktx2 --rotate left
+expect 2 "must be a number" bake in.exr -o out.ktx2 --rotate 1,2,3,4
+expect 2 "number 2 is 3601, it must be from -3600 to 3600" bake in.exr -o out.ktx2 --rotate 0,3601
+expect 2 "up is 'x', it must be" bake in.exr -o out.ktx2 --up x
+expect 2 "turns about the vertical axis only" bake in.exr -o out.ktx2 --method textbook --rotate 0,1
 expect 2 "number 2 is 1.5" bake in.exr -o out.ktx2 --roughness 0,1.5
 expect 2 "commas" bake in.exr -o out.ktx2 --roughness 0,,1
 expect 2 "commas" bake in.exr -o out.ktx2 --roughness 0,1,

@@ -441,8 +441,8 @@ static void plans_are_small_and_repeat(void **state)
     kiln_context_memory(context, &before, NULL);
     ki_resample_plan *plan;
     ki_buffer buffer = {0};
-    CHECK_OK(ki_resample_plan_create(context, KILN_SHAPE_PANORAMA, 1024, KILN_SHAPE_CUBE, 256, 0,
-                                     &plan, &error));
+    CHECK_OK(ki_resample_plan_create(context, KILN_SHAPE_PANORAMA, 1024, KILN_SHAPE_CUBE, 256, NULL,
+                                     0, &plan, &error));
     CHECK_OK(ki_resample_reserve(context, plan, &buffer, &error));
     kiln_context_memory(context, &after, NULL);
     CHECK_BELOW((double)(after - before), 4e6);
