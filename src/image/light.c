@@ -21,8 +21,12 @@ double ki_texel_weight(kiln_shape shape, int size, int row, int x)
 void ki_add_light(kiln_shape shape, int size, int row, int width, const float *rgb, double limit,
                   ki_light *light)
 {
+    // Only a cube's texels differ in weight within a row.
+    bool cube = shape == KILN_SHAPE_CUBE;
+    double weight = ki_texel_weight(shape, size, row, 0);
     for (int x = 0; x < width; x++) {
-        double weight = ki_texel_weight(shape, size, row, x), above = 0, below = 0, over = 0;
+        weight = cube ? ki_texel_weight(shape, size, row, x) : weight;
+        double above = 0, below = 0, over = 0;
         for (int c = 0; c < 3; c++) {
             double value = (double)rgb[3 * (size_t)x + (size_t)c];
             above += value > 0 ? value : 0;
