@@ -55,8 +55,11 @@ if(processor MATCHES "^(aarch64|arm64)$" AND CMAKE_C_COMPILER_ID STREQUAL GNU
     # no longer see that its argument is. The golden hashes of PNG and EXR files show the fault.
     target_compile_options(kiln_settings INTERFACE -fno-ipa-modref -fno-ipa-pure-const)
 endif()
-if(MINGW AND CMAKE_C_COMPILER_ID STREQUAL GNU)
-    # GCC stores vectors of 32 and 64 bytes on stacks that Windows aligns to 16 (GCC's bug 54412).
+# GCC stores vectors of 32 and 64 bytes where a stack is aligned to less: on Windows' stacks, which are aligned to
+# 16 bytes (GCC's bug 54412), and in the frames that AddressSanitizer allocates to find uses after a return, which
+# are not aligned to 64 (LLVM's pull request 152819; that search is on by default since GCC 13). The assembler
+# then writes moves that need no alignment.
+if(CMAKE_C_COMPILER_ID STREQUAL GNU AND (MINGW OR CMAKE_C_FLAGS MATCHES "sanitize=[a-z,]*address"))
     list(APPEND options_avx2 -Wa,-muse-unaligned-vector-move)
     list(APPEND options_avx512 -Wa,-muse-unaligned-vector-move)
 endif()
