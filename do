@@ -72,13 +72,14 @@ need() {
     fail "please install what is missing, named by Debian$debian; by Fedora$fedora; by Arch$arch; by Homebrew$homebrew"
 }
 
-# build PRESET [-D...]
+# build PRESET [-D...]: `low` is what the compilers are run by, such as nice, or is empty.
+low=
 build() {
     preset=$1
     shift
     say "building $preset"
     cmake --preset "$preset" "$@" >"build/$preset.log" 2>&1 || { cat "build/$preset.log"; exit 1; }
-    cmake --build --preset "$preset"
+    $low cmake --build --preset "$preset"
 }
 
 # build_release [PART...]: the command, and of TESTS, GOLDEN, BENCH and EXAMPLES the named parts only. All
@@ -95,13 +96,20 @@ build_release() {
     build release "$@"
 }
 
-# start_release [PART...]: build_release while the shell goes on, to what downloads and unpacks;
-# await_release waits for it and shows what it printed.
-start_release() {
-    build_release "$@" >build/compiling.log 2>&1 &
+# build_asan: tests of the library; the command and the renderer are not run under the sanitizers. The low priority
+# leaves the processor to the release tests, which run at the same time and wait much of theirs.
+build_asan() {
+    low="nice -n 19"
+    build asan -DKILN_BENCH=OFF -DKILN_EXAMPLES=OFF -DKILN_CLI=OFF -DKILN_VIEWER=OFF
+}
+
+# start BUILD [PART...]: builds while the shell goes on, to what downloads, unpacks or tests; await waits for the
+# build and shows what it printed.
+start() {
+    "$@" >build/compiling.log 2>&1 &
     compiling=$!
 }
-await_release() {
+await() {
     wait $compiling || { cat build/compiling.log; exit 1; }
     cat build/compiling.log
 }
@@ -154,16 +162,16 @@ build)
     ;;
 test)
     need build
-    start_release EXAMPLES
+    start build_release EXAMPLES
     need render web test
     panoramas
     npm_packages web tests/web tests/files/assets tests/files/ktx tests/brdf/witness tests/engines
-    await_release
+    await
     build_release TESTS GOLDEN BENCH EXAMPLES
     build wasm
+    start build_asan
     run_tests release
-    # Tests of the library: the command and the renderer are not run under the sanitizers.
-    build asan -DKILN_BENCH=OFF -DKILN_EXAMPLES=OFF -DKILN_CLI=OFF -DKILN_VIEWER=OFF
+    await
     run_tests asan -L unit -LE slow
     printf '\n%d passed, %d failed\n' "$passed" "$failed"
     [ "$failed" = 0 ]
@@ -180,10 +188,10 @@ demo)
     mkdir -p build/demo
     set -- build/data/blender/city.exr
     if [ -e "$1" ]; then
-        start_release EXAMPLES
+        start build_release EXAMPLES
         need demo
         npm_packages tests/web tests/engines
-        await_release
+        await
         say "drawing in the engines"
         node examples/gallery.mjs build/release/bin build/gallery build/demo/gallery.part \
             build/data/blender/courtyard.exr
