@@ -15,8 +15,8 @@ shown=$(nm -gD --defined-only "$shared" | awk 'NF == 3 && $3 !~ /^kiln_/ { print
     grep -v '^__\(asan\|odr_asan\|ubsan\|tsan\)' || true)
 count=$(nm -gD --defined-only "$shared" | grep -c ' T kiln_' || true)
 needed=$(nm -u "$archive" | awk 'NF == 2 { print $2 }' | sort -u)
-taken=$(find "$@" -name '*.[ch]' -o -name '*.inl' | xargs sed -n 's/^static [^(=;]*[ *]\([a-z0-9_]*\)(.*/\1/p' |
-    sort -u | grep -Fx "$needed" || true)
+taken=$(find "$@" \( -name '*.[ch]' -o -name '*.inl' \) \
+    -exec sed -n 's/^static [^(=;]*[ *]\([a-z0-9_]*\)(.*/\1/p' {} + | sort -u | grep -Fx "$needed" || true)
 [ -z "$stray" ] || printf "%s defines, without kiln_ or ki_:\n%s\n" "$archive" "$stray"
 [ -z "$shown" ] || printf "%s shows, without kiln_:\n%s\n" "$shared" "$shown"
 [ -z "$taken" ] || printf "static functions have the name of a function that %s needs:\n%s\n" "$archive" "$taken"

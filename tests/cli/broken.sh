@@ -68,6 +68,7 @@ fi
 # Address space for some of 256 threads, whose stacks take 2 MB each: the work goes on with these, though the
 # little that is left may not be enough for the bake.
 got=0
+# shellcheck disable=SC3045 # the shells of Debian, dash and bash, have -v
 (ulimit -v 450000 && "$KILN" bake sky.exr -o few.ktx2 --size 8 --exposure -8 --threads 256) >log/out 2>log/err || got=$?
 grep -q "^kiln: note: [0-9]* of 256 threads work, the system starts no more$" log/err || die "no note on threads"
 [ $got = 0 ] || grep -q "^kiln: out of memory" log/err || die "too few threads: exit $got"

@@ -70,7 +70,7 @@ BASH
     completes "ggx" bake --lobe = g
     completes "none sharp soft" bake --tune ""
     completes "none sharp soft" bake --tune =
-    completes "" bake -o fi
+    completes "" bake -o "fi"
     completes "" bake --size ""
     completes "babylon filament" tables --for ""
     completes "schlick schlick-avg" eval schl

@@ -6,8 +6,8 @@ root=$(cd "$(dirname "$0")/../.." && pwd)
 
 # Prints the calls in a tree that make a part of an environment by another way.
 calls() {
-    (cd "$1" && find cli web viewer -name node_modules -prune -o -name '*.[ch]' -print |
-        xargs grep -nE 'kiln_spectrum_[a-z]+|kiln_prefilter *\(' /dev/null || true)
+    (cd "$1" && find cli web viewer -name node_modules -prune -o -name '*.[ch]' \
+        -exec grep -nE 'kiln_spectrum_[a-z]+|kiln_prefilter *\(' /dev/null {} + || true)
 }
 found=$(calls "$root")
 [ -z "$found" ] || { echo "$found"; exit 1; }
