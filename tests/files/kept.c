@@ -1,5 +1,5 @@
 // What a writer owes to a folder: an overwritten file keeps its mode, a link stays, long names work, the folder
-// is synchronised after the renames, and neither killed nor simultaneous writers damage or leave anything.
+// is synchronised after the renames, and neither a full disk nor killed or simultaneous writers damage or leave anything.
 #include "base/file.h"
 
 #include <dirent.h>
@@ -18,15 +18,50 @@ enum { N = 8, LEVELS = 2, FILES = 6 * LEVELS, MOMENTS = 200, ROUNDS = 40 };
 
 // ------------------------------------------------------------------------- calls of the system, recorded
 
-// The linker sends the library's calls of fsync and rename here: F for a synchronised file, D for a folder,
+// The linker sends the library's calls of write, fsync and rename here: F for a synchronised file, D for a folder,
 // R for a renamed file.
 static char calls[256];
 static size_t call_count;
 
-static void record(char c)
+// What the disk refuses. `room`: bytes that the disk still takes, -1 for any number. `calls_left`: calls of fsync and
+// rename before the disk fails for good, -1 for any number.
+static struct {
+    ssize_t room;
+    int calls_left;
+} disk = {-1, -1};
+
+static void forget_calls(void)
+{
+    memset(calls, 0, sizeof calls);
+    call_count = 0;
+}
+
+// Records a call, and returns false with errno set if the disk refuses the call.
+static bool record(char c)
 {
     if (call_count + 1 < sizeof calls)
         calls[call_count++] = c;
+    if (disk.calls_left != 0) {
+        disk.calls_left -= disk.calls_left > 0;
+        return true;
+    }
+    errno = EIO;
+    return false;
+}
+
+// A disk that has room for a part of the bytes takes this part.
+ssize_t __real_write(int file, const void *bytes, size_t size);
+ssize_t __wrap_write(int file, const void *bytes, size_t size);
+ssize_t __wrap_write(int file, const void *bytes, size_t size)
+{
+    if (disk.room < 0)
+        return __real_write(file, bytes, size);
+    ssize_t put = __real_write(file, bytes, (size_t)disk.room < size ? (size_t)disk.room : size);
+    disk.room -= put;
+    if (put > 0 || !size)
+        return put;
+    errno = ENOSPC;
+    return -1;
 }
 
 int __real_fsync(int file);
@@ -35,16 +70,14 @@ int __wrap_fsync(int file)
 {
     struct stat status;
     assert_int_equal(fstat(file, &status), 0);
-    record(S_ISDIR(status.st_mode) ? 'D' : 'F');
-    return __real_fsync(file);
+    return record(S_ISDIR(status.st_mode) ? 'D' : 'F') ? __real_fsync(file) : -1;
 }
 
 int __real_rename(const char *from, const char *to);
 int __wrap_rename(const char *from, const char *to);
 int __wrap_rename(const char *from, const char *to)
 {
-    record('R');
-    return __real_rename(from, to);
+    return record('R') ? __real_rename(from, to) : -1;
 }
 
 // ------------------------------------------------------------------------------------------- single files
@@ -143,12 +176,10 @@ static kiln_result add_three(ki_file_set *set, void *data, kiln_error *e)
 static void the_folder_is_synchronised_after_the_renames(void **state)
 {
     (void)state;
-    memset(calls, 0, sizeof calls);
-    call_count = 0;
+    forget_calls();
     write_text(in_folder("one"), "1");
     assert_string_equal(calls, "FRD");
-    memset(calls, 0, sizeof calls);
-    call_count = 0;
+    forget_calls();
     CHECK_OK(ki_file_set_make(context, add_three, NULL, NULL, &error));
     assert_string_equal(calls, "FFFRRRDD"); // the folder of "a" and "sub", then "sub"
 }
@@ -183,16 +214,15 @@ static void leftovers_are_removed_unless_their_writer_lives(void **state)
 }
 
 // Saves a cube of two levels whose texels are all `value`, in twelve files.
-static bool save_constant(kiln_context *c, float value)
+static bool save_constant(kiln_context *c, float value, kiln_error *e)
 {
     kiln_map cube;
-    kiln_error e;
-    if (kiln_map_create(c, KILN_SHAPE_CUBE, N, LEVELS, &cube, &e) != KILN_OK)
+    if (kiln_map_create(c, KILN_SHAPE_CUBE, N, LEVELS, &cube, e) != KILN_OK)
         return false;
     for (int k = 0; k < LEVELS; k++)
         for (size_t i = 0; i < kiln_map_texels(&cube, k) * 3; i++)
             cube.level[k][i] = value;
-    bool good = kiln_map_save(c, &cube, in_folder("cube.exr"), NULL, NULL, &e) == KILN_OK;
+    bool good = kiln_map_save(c, &cube, in_folder("cube.exr"), NULL, NULL, e) == KILN_OK;
     kiln_map_free(&cube);
     return good;
 }
@@ -231,17 +261,60 @@ static pid_t start_writer(float first, float step, int count)
     if (child)
         return child;
     kiln_context *own = NULL;
+    kiln_error e;
     bool good = kiln_context_create(&(kiln_context_def){.thread_count = 1}, &own, NULL) == KILN_OK;
     for (int i = 0; good && i < count; i++)
-        good = save_constant(own, first + step * (float)i);
+        good = save_constant(own, first + step * (float)i, &e);
     _exit(!good);
+}
+
+// Checks that saving failed with a sentence that ends in `reason`, and that the folder holds whole pictures and nothing
+// else, of which `fresh` have the value 2 and all others the value 1.
+static void check_refused(bool saved, const char *reason, int fresh)
+{
+    assert_false(saved);
+    CHECK_SAYS(error.message, reason);
+    assert_int_equal(file_count(folder_path()), FILES);
+    assert_int_equal(check_pictures(2), fresh);
+    assert_int_equal(check_pictures(1), FILES - fresh);
+}
+
+// A disk with room for any part of a set keeps the old set.
+static void a_full_disk_damages_nothing(void **state)
+{
+    (void)state;
+    enum { MUCH = 1 << 20, STEP = 97 };
+    disk.room = MUCH;
+    bool saved = save_constant(context, 1, &error);
+    ssize_t size = MUCH - disk.room;
+    for (disk.room = -1; saved && size > 0; size -= STEP) {
+        disk.room = size - 1;
+        bool fits = save_constant(context, 2, &error);
+        disk.room = -1;
+        check_refused(fits, "No space left on device", 0);
+    }
+    assert_true(saved);
+}
+
+// A disk that fails from one of the 12 synchronisations or 12 renames on. A synchronisation that fails keeps the old
+// set; a rename that fails keeps the new files that were renamed before.
+static void a_failing_disk_damages_no_file(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 2 * FILES; k++) {
+        assert_true(save_constant(context, 1, &error));
+        disk.calls_left = k;
+        bool saved = save_constant(context, 2, &error);
+        disk.calls_left = -1;
+        check_refused(saved, "Input/output error", k < FILES ? 0 : k - FILES);
+    }
 }
 
 static void a_killed_writer_damages_nothing(void **state)
 {
     (void)state;
     int caught = 0, status;
-    assert_true(save_constant(context, 1));
+    assert_true(save_constant(context, 1, &error));
     for (int moment = 0; moment < MOMENTS; moment++) {
         pid_t child = start_writer(2, 1, 1000000);
         nanosleep(&(struct timespec){.tv_nsec = 200000 + 37000L * moment}, NULL);
@@ -254,7 +327,7 @@ static void a_killed_writer_damages_nothing(void **state)
     }
     printf("%d of %d moments left temporary files\n", caught, MOMENTS);
     assert_true(caught > MOMENTS / 20);
-    assert_true(save_constant(context, 5));
+    assert_true(save_constant(context, 5, &error));
     assert_int_equal(file_count(folder_path()), FILES);
     assert_int_equal(check_pictures(5), FILES);
 }
@@ -285,6 +358,8 @@ int main(void)
         IN_FOLDER(names_may_be_as_long_as_the_file_system_allows),
         IN_FOLDER(the_folder_is_synchronised_after_the_renames),
         IN_FOLDER(leftovers_are_removed_unless_their_writer_lives),
+        IN_FOLDER(a_full_disk_damages_nothing),
+        IN_FOLDER(a_failing_disk_damages_no_file),
         IN_FOLDER(a_killed_writer_damages_nothing),
         IN_FOLDER(two_writers_leave_one_whole_set),
     };
