@@ -12,7 +12,7 @@ usage() {
 ./do bench     measures speed and accuracy beside other bakers
 ./do lint      clang-tidy, cppcheck, shellcheck, formatting, layers
 ./do format    formats the sources
-./do fuzz [S]  runs every fuzz target for S seconds (60)
+./do fuzz [TARGET|all [S]]   runs a fuzz target, or every one, for S seconds (60)
 ./do test-bare [bookworm|trixie]   demo and test on a bare Debian 12, 13 or both, made by debootstrap
 ./do clean     removes what was built and fetched
 
@@ -239,15 +239,12 @@ format)
     ;;
 fuzz)
     need build fuzz
+    case ${1:-all} in
+    *[!0-9]*) ;;
+    *) set -- all "$1" ;; # seconds alone
+    esac
     build fuzz
-    for target in build/fuzz/bin/fuzz_*; do
-        name=${target##*/fuzz_}
-        say "fuzzing $name"
-        mkdir -p "build/corpus/$name" "build/finds"
-        "$target" -max_total_time="${1:-60}" -rss_limit_mb=2048 -timeout=10 \
-            -artifact_prefix="build/finds/$name-" "build/corpus/$name" tests/files/good \
-            tests/files/bad
-    done
+    fuzz/run.sh build/fuzz/bin "$@"
     ;;
 test-bare)
     [ "$(id -u)" = 0 ] ||

@@ -1,7 +1,22 @@
 #include "codec/decimal.h"
 #include "base/os.h"
 
+#include <float.h>
 #include <string.h>
+
+// Returns value * 10^exponent, which is infinite or 0 where a double ends.
+static double scale(double value, int exponent)
+{
+    for (; exponent > 0 && value > 0 && value <= DBL_MAX; exponent--)
+        value *= 10;
+    while (exponent < 0 && value > 0) {
+        double divisor = 1;
+        for (; exponent < 0 && divisor < 1e300; exponent++)
+            divisor *= 10;
+        value /= divisor;
+    }
+    return value;
+}
 
 const char *ki_parse_number(const char *text, double *value)
 {
@@ -24,19 +39,14 @@ const char *ki_parse_number(const char *text, double *value)
         at += *at == '-' || *at == '+';
         int power = 0;
         const char *first = at;
-        for (; *at >= '0' && *at <= '9' && power < 1000; at++)
-            power = power * 10 + (*at - '0');
+        for (; *at >= '0' && *at <= '9'; at++) // from 1000 on, exponents need no more digits
+            power = power < 1000 ? power * 10 + (*at - '0') : power;
         if (at > first) {
             exponent += down ? -power : power;
             text = at;
         }
     }
-    for (; exponent > 0 && mantissa < 1e300; exponent--)
-        mantissa *= 10;
-    double divisor = 1;
-    for (; exponent < 0 && divisor < 1e300; exponent++)
-        divisor *= 10;
-    mantissa /= divisor;
+    mantissa = scale(mantissa, exponent);
     *value = negative ? -mantissa : mantissa;
     return text;
 }

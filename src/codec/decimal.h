@@ -4,8 +4,9 @@
 
 #include "base/bytes.h"
 
-/// Reads a number after spaces and tabs, precise to about 15 digits. Returns a pointer to the text
-/// after the number, or NULL if there is no number.
+/// Reads a number of at most 300 digits after spaces and tabs, precise to about 15 digits. A number
+/// too large for a double is infinite. Returns a pointer to the text after the number, or NULL if
+/// there is no number.
 const char *ki_parse_number(const char *text, double *value);
 /// Writes a number with nine digits, from which reading gives the same float.
 void ki_write_number(ki_writer *writer, double value);

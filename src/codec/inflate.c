@@ -442,8 +442,8 @@ static bool unpack(state *st)
 // Prepares decompression. Returns false unless the data begin with zlib's header of two bytes.
 static bool begin(state *st, const uint8_t *packed, size_t packed_size, uint8_t *plain, size_t size)
 {
-    if (packed_size < 6 || (packed[0] & 15) != 8 || (packed[0] << 8 | packed[1]) % 31 ||
-        packed[1] & 0x20)
+    if (packed_size < 6 || (packed[0] & 15) != 8 || packed[1] & 0x20 ||
+        !ki_checksum_agrees((uint32_t)(packed[0] << 8 | packed[1]) % 31, 0))
         return false;
     st->s = (stream){.in = packed + 2, .in_end = packed + packed_size};
     st->out = st->begin = plain;
@@ -461,7 +461,7 @@ bool ki_inflate_own(const uint8_t *packed, size_t packed_size, uint8_t *plain, s
     uint32_t sum = 0;
     for (int i = 0; i < 4; i++)
         sum = sum << 8 | take(&st.s, 8);
-    return !overdrawn(&st.s) && sum == ki_adler32(1, plain, size);
+    return !overdrawn(&st.s) && ki_checksum_agrees(ki_adler32(1, plain, size), sum);
 }
 
 bool ki_inflate_beginning(const uint8_t *packed, size_t packed_size, uint8_t *plain, size_t size)

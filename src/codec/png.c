@@ -77,7 +77,7 @@ static bool next_chunk(png_file *f, chunk *c)
     if (r->failed)
         return false;
     memcpy(c->type, type, 4);
-    c->intact = ki_crc32(&f->crc, 0, type, c->size + 4) == sum;
+    c->intact = ki_checksum_agrees(ki_crc32(&f->crc, 0, type, c->size + 4), sum);
     return true;
 }
 

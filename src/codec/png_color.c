@@ -73,7 +73,7 @@ static kiln_result find_chunks(kiln_context *context, ki_reader *r, found *f,
         content *place = place_of(f, head + 4, data, size);
         if (!place || place->bytes)
             continue;
-        if (ki_crc32(&table, 0, head + 4, size + 4) == u32_at(sum))
+        if (ki_checksum_agrees(ki_crc32(&table, 0, head + 4, size + 4), u32_at(sum)))
             *place = (content){data, size};
         else
             ki_note(report, KILN_NOTE_ASSUMPTION, true,
