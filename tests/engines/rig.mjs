@@ -8,7 +8,7 @@ import fs from 'node:fs';
 import path from 'node:path';
 import { promisify } from 'node:util';
 
-const [kilnPath, writePath, panorama, folder] =
+export const [kilnPath, writePath, panorama, folder] =
     process.argv.slice(2).map((name) => path.resolve(name));
 const here = import.meta.dirname ?? path.dirname(new URL(import.meta.url).pathname);
 
@@ -17,8 +17,8 @@ export function check(good, sentence) {
         throw new Error(sentence);
 }
 
-const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-const add = (a, s, b) => a.map((x, i) => x + s * b[i]);
+export const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+export const add = (a, s, b) => a.map((x, i) => x + s * b[i]);
 const normalize = (a) => a.map((x) => x / Math.hypot(...a));
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
                          a[0] * b[1] - a[1] * b[0]];
@@ -59,7 +59,7 @@ function faceOf([x, y, z]) {
 }
 
 // A level of a cube, read bilinearly across faces. row(i) has the rgba of row i of all faces' rows.
-function readLevel({ size, row }, direction) {
+export function readLevel({ size, row }, direction) {
     const [face, s, t] = faceOf(direction);
     const u = (s + 1) / 2 * size - 0.5, v = (t + 1) / 2 * size - 0.5;
     const sum = [0, 0, 0];
@@ -263,9 +263,9 @@ async function engineOf(name) {
 }
 
 // Levels as kiln bakes them without --for.
-async function bakePlain(size, roughness) {
-    const file = `plain-${size}-${roughness.map((r) => Math.round(1e6 * r)).join('-')}.ktx2`;
-    await kiln('bake', panorama, '-q', '-o', file, '--format', 'rgba32f', '--size', size, '--levels', roughness.length,
+export async function bakePlain(size, roughness, from = panorama) {
+    const file = [path.parse(from).name, size, ...roughness.map((r) => Math.round(1e6 * r))].join('-') + '.ktx2';
+    await kiln('bake', from, '-q', '-o', file, '--format', 'rgba32f', '--size', size, '--levels', roughness.length,
                '--roughness', roughness.join());
     return readCube(file);
 }

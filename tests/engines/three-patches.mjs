@@ -18,6 +18,20 @@ function patches(view, row, rows, material) {
 }
 
 const renderer = new THREE.WebGLRenderer();
+renderer.shadowMap.enabled = true;
+
+// White metal, or, where a page is asked for it, white without any reflection: diffuse light alone.
+const white = (roughness, asked) => (asked.diffuse
+    ? new THREE.MeshPhysicalMaterial({ color: 0xffffff, metalness: 0, roughness, specularIntensity: 0 })
+    : new THREE.MeshStandardMaterial({ color: 0xffffff, metalness: 1, roughness }));
+
+// The ball that casts its shadow on the patches.
+function makeBall({ centre, radius }) {
+    const ball = new THREE.Mesh(new THREE.SphereGeometry(radius, 64, 32), white(1, { diffuse: true }));
+    ball.position.set(...centre);
+    ball.castShadow = true;
+    return ball;
+}
 
 // What three.js itself makes of a panorama.
 export async function filterPanorama(file) {
@@ -26,13 +40,17 @@ export async function filterPanorama(file) {
     return new THREE.PMREMGenerator(renderer).fromEquirectangular(panorama).texture;
 }
 
-export async function drawPatches(environment, views, roughness, cell) {
+// asked: diffuse, of materials; ball, which casts a shadow. light(scene) adds what else lights the scene.
+export async function drawPatches(environment, views, roughness, cell, asked = {}, light = () => {}) {
     return views.map((view) => {
         const columns = view.normals.length, rows = roughness.length;
         const scene = new THREE.Scene();
         scene.environment = environment;
-        roughness.forEach((r, row) => scene.add(patches(view, row, rows,
-            new THREE.MeshStandardMaterial({ color: 0xffffff, metalness: 1, roughness: r }))));
+        roughness.forEach((r, row) => scene.add(patches(view, row, rows, white(r, asked))));
+        scene.children.forEach((mesh) => { mesh.receiveShadow = true; });
+        if (asked.ball)
+            scene.add(makeBall(asked.ball));
+        light(scene);
         const camera = new THREE.OrthographicCamera(-columns / 2, columns / 2, rows / 2, -rows / 2, 1, 100);
         camera.position.fromArray(view.toEye).multiplyScalar(50);
         camera.up.fromArray(view.up);

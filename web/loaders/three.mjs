@@ -1,6 +1,7 @@
 // Loads what `kiln bake --for three` writes, for three.js from r187 on:
 //     scene.environment = await loadEnvironment('city.ktx2');
-import { CompressedCubeTexture, HalfFloatType, LinearMipmapLinearFilter, RGBAFormat } from 'three';
+// addLights() adds the lights that kiln took out of the environment.
+import { Color, CompressedCubeTexture, DirectionalLight, HalfFloatType, LinearMipmapLinearFilter, RGBAFormat } from 'three';
 import { read } from 'three/addons/libs/ktx-parse.module.js';
 
 // Makes a texture from the bytes of the file. The texture is prefiltered, so three.js makes no PMREM of it.
@@ -27,4 +28,26 @@ export async function loadEnvironment(url) {
     if (!response.ok)
         throw new Error(`${url}: the server answers ${response.status}`);
     return parseEnvironment(new Uint8Array(await response.arrayBuffer()));
+}
+
+// Puts the lights that `kiln bake --sun extract --lights-file sun.json` took out of the environment into a scene:
+//     addLights(scene, await (await fetch('sun.json')).json());
+// A directional light of three.js has the intensity of the irradiance of a surface that faces the light, so that
+// white diffuse surfaces reflect the radiance irradiance / pi. kiln's (x, y, z) is (-z, y, x) in three.js.
+// `shadows` is the radius of the sphere around the origin in which objects cast and receive shadows. Returns the
+// lights, whose shadows may be changed.
+export function addLights(scene, { lights }, { shadows = 0 } = {}) {
+    return lights.map(({ direction: [x, y, z], irradiance }) => {
+        const brightest = Math.max(...irradiance);
+        const light = new DirectionalLight(new Color(...irradiance.map((e) => e / brightest)), brightest);
+        light.position.set(-z, y, x).multiplyScalar(2 * (shadows || 1)); // shines to the origin
+        if (shadows) {
+            light.castShadow = true;
+            light.shadow.mapSize.set(2048, 2048);
+            Object.assign(light.shadow.camera, { left: -shadows, right: shadows, bottom: -shadows, top: shadows,
+                                                 near: shadows, far: 3 * shadows });
+        }
+        scene.add(light);
+        return light;
+    });
 }

@@ -1,0 +1,105 @@
+// The sun of sunrise.exr, which holds 57 % of the light and stands 8 degrees high, is taken out of the environment
+// and put back into engines as a light.
+//
+// The ball: white diffuse patches of 192 normals, lit by the file without the sun and by the light that addLights()
+// or the page makes of lights.json, show irradiance / pi of the whole environment, which kiln integrates exactly.
+// The ground: patches below a ball. Whether a patch lies in the ball's shadow follows from lights.json alone;
+// there the rest shows, and elsewhere the light is added.
+import path from 'node:path';
+import { babylon, playcanvas, three } from './models.mjs';
+import { CELL, COLUMNS, add, bakePlain, check, dot, kiln, makeViews, panorama, readFile, readLevel }
+    from './rig.mjs';
+
+const INPUT = path.join(path.dirname(panorama), 'sunrise.exr');
+const BALL_VIEWS = makeViews([[1, 0.1, 0], [-1, 0.1, 0], [0.1, 1, 0], [0.1, -1, 0], [0, 0.1, 1], [0, 0.1, -1]]);
+const GROUND = { toEye: [0, 1, 0], right: [1, 0, 0], up: [0, 0, -1], normals: Array(COLUMNS).fill([0, 1, 0]) };
+const ROWS = Array(COLUMNS).fill(1);
+const ALONE = 1e-5; // what the light adds is exact but for rounding
+const BALL = { centre: [0, 1.7, 0], radius: 1.5 };
+
+async function prepare({ name, ending, size }) {
+    const bake = (what, ...more) => kiln('bake', INPUT, '--for', name, '-o', `lights-${name}-${what}${ending}`,
+                                         ...(size ? ['--size', size] : []), '--tune=none', '-q', ...more);
+    await bake('rest', '--sun', 'extract', '--lights-file', `lights-${name}.json`);
+    await bake('all');
+    const [whole] = await bakePlain(64, [1], INPUT);
+    return { whole, lights: JSON.parse(readFile(`lights-${name}.json`)) };
+}
+
+// The largest difference of numbers [view][row][normal][channel] as a part of the largest number, and the RMS
+// difference as a part of the RMS number.
+function compare(shown, wanted) {
+    const a = shown.flat(3), b = wanted.flat(3);
+    const root = (values) => Math.sqrt(values.reduce((sum, x) => sum + x * x, 0));
+    const off = a.map((x, i) => x - b[i]);
+    return { most: Math.max(...off.map(Math.abs)) / Math.max(...b), rms: root(off) / root(b) };
+}
+const percent = (x) => `${(100 * x).toFixed(2)} %`;
+
+// Both bounds are of parts of the ball's brightest number: near zero, on the side away from the sun, engines show
+// coarse levels and three bands of harmonics, with or without the light. What the light alone adds is
+// a cosine.
+async function checkBall({ name, model, loads }, { whole, lights }, draw, say) {
+    const { toKiln } = model(6, 64), [{ direction, irradiance }] = lights.lights;
+    const overBall = (value) => BALL_VIEWS.map(({ normals }) => [normals.map((n) => value(toKiln(n)))]);
+    const show = (what, more) =>
+        draw(`lights-${name}-${what}${loads}`, BALL_VIEWS, [1], CELL, { diffuse: true, ...more });
+    const exact = overBall((n) => readLevel(whole, n));
+    const all = await show('all'), rest = await show('rest'), both = await show('rest', { lights });
+    const tell = ({ rms, most }) => `${percent(rms)} rms and ${percent(most)} at most`;
+    const good = compare(both, exact);
+    say(`ball: ${tell(good)} from the exact; with the sun in the texture ${tell(compare(all, exact))}; ` +
+        `between the two ${tell(compare(both, all))}`);
+    check(good.rms < 0.01 && good.most < 0.01, `the ball is off by ${good.rms} rms, ${good.most} at most`);
+
+    const added = both.map((view, v) => [view[0].map((value, x) => value.map((e, c) => e - rest[v][0][x][c]))]);
+    const alone = compare(added, overBall((n) => irradiance.map((e) => e * Math.max(0, dot(n, direction)) / Math.PI)));
+    say(`the light alone: ${tell(alone)}`);
+    check(alone.rms < ALONE && alone.most < ALONE, `the light is off by ${alone.rms} rms, ${alone.most} at most`);
+}
+
+// The distance of the ball's centre from the ray towards the light, as far as it lies in front.
+function missOf(place, toLight, centre) {
+    const way = add(centre, -1, place), along = Math.max(0, dot(way, toLight));
+    return Math.hypot(...add(way, -along, toLight));
+}
+
+async function checkGround({ name, model, loads }, { lights }, draw, say) {
+    const { toKiln } = model(6, 64), [{ direction, irradiance }] = lights.lights;
+    const toLight = [[1, 0, 0], [0, 1, 0], [0, 0, 1]].map((axis) => dot(toKiln(axis), direction));
+    const show = (more) => draw(`lights-${name}-rest${loads}`, [GROUND], ROWS, CELL, { diffuse: true, ...more });
+    const [dark] = await show({}), [shown] = await show({ lights, ball: BALL, shadows: 30 });
+    const counts = { lit: 0, shadow: 0 };
+    let most = 0;
+    shown.forEach((row, y) => row.forEach((value, x) => {
+        const at = (i) => i + 0.5 + 0.5 / CELL - COLUMNS / 2;
+        const place = add([at(x), 0, 0], at(y), GROUND.up);
+        const miss = missOf(place, toLight, BALL.centre) - BALL.radius;
+        const hidden = Math.hypot(place[0], place[2]) < BALL.radius + 0.3;
+        if (hidden || Math.abs(miss) < 0.3) // below the ball, or at the shadow's edge
+            return;
+        counts[miss < 0 ? 'shadow' : 'lit']++;
+        value.forEach((v, c) => {
+            const wanted = dark[y][x][c] + (miss < 0 ? 0 : irradiance[c] * toLight[1] / Math.PI);
+            most = Math.max(most, Math.abs(v - wanted) / wanted);
+        });
+    }));
+    say(`ground: ${counts.shadow} patches in the shadow and ${counts.lit} in the light, ` +
+        `off by ${percent(most)} at most`);
+    check(counts.shadow > 20 && counts.lit > 500, `the ground has ${counts.shadow} and ${counts.lit} patches`);
+    check(most < 0.01, `the ground is off by ${most}`);
+}
+
+const proofOf = (engine) => ({
+    ...engine, title: `lights in ${engine.name}`, prepare: () => prepare(engine),
+    check: async (files, draw, say) => {
+        await checkBall(engine, files, draw, say);
+        if (engine.ground)
+            await checkGround(engine, files, draw, say);
+    },
+});
+export default [
+    proofOf({ ...three, size: 64, ground: true }),
+    proofOf({ ...babylon, size: 64, ground: true }),
+    proofOf(playcanvas),
+];
