@@ -22,9 +22,9 @@ void ki_print_clean(char *text, size_t room, const char *format, va_list list)
     kiln_text_clean(text);
 }
 
-// Length of the UTF-8 sequence at `at`; 0 if the bytes are no such sequence. Overlong sequences,
-// surrogates and values above U+10FFFF are none.
-static int sequence(const unsigned char *at)
+// Length of the UTF-8 sequence at `at`; 0 if the `left` bytes there do not begin with such a
+// sequence. Overlong sequences, surrogates and values above U+10FFFF are none.
+static int sequence(const unsigned char *at, size_t left)
 {
     static const struct {
         // range of first bytes, and the range of second bytes that UTF-8 allows after these first
@@ -38,6 +38,8 @@ static int sequence(const unsigned char *at)
     for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
         if (*at < forms[i].first || *at > forms[i].last)
             continue;
+        if (left < (size_t)forms[i].length)
+            return 0;
         if (forms[i].length > 1 && (at[1] < forms[i].low || at[1] > forms[i].high))
             return 0;
         for (int k = 2; k < forms[i].length; k++)
@@ -68,13 +70,19 @@ static bool is_obeyed(uint32_t code)
            (code >= 0x2066 && code <= 0x2069) || code == 0xfeff;
 }
 
-int kiln_text_step(const char *text, unsigned *code, bool *shown)
+int ki_text_step(const char *text, size_t left, unsigned *code, bool *shown)
 {
     const unsigned char *at = (const unsigned char *)text;
-    int length = sequence(at);
+    int length = sequence(at, left);
     *code = length ? decode(at, length) : 0xfffd;
     *shown = length && !is_obeyed(*code);
     return length ? length : 1;
+}
+
+int kiln_text_step(const char *text, unsigned *code, bool *shown)
+{
+    enum { LONGEST = 4 }; // a NUL ends a shorter sequence, since no sequence has a NUL inside
+    return ki_text_step(text, LONGEST, code, shown);
 }
 
 void kiln_text_clean(char *text)
