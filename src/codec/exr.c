@@ -376,6 +376,7 @@ static void note_all(const exr_file *f, kiln_load_report *report)
         ki_note(report, KILN_NOTE_CHOICE, false,
                 "%zu pixels of the data window lie outside the display window and were left out",
                 outside);
+    ki_exr_note_aspect(f->part, report);
     ki_exr_note_color(&f->color, f->layer.kind, report);
 }
 
@@ -395,8 +396,11 @@ static kiln_result read_pixels(exr_file *f, kiln_image *image, kiln_load_report 
         return result;
     *image = (kiln_image){p->width, p->height, 3, p->pixels, p->pixels};
     p->pixels = NULL;
-    if (f->layer.kind != KI_EXR_GREY && f->color.converts)
-        ki_image_transform(f->context, &f->color.matrix, image);
+    if (f->layer.kind != KI_EXR_GREY && f->color.converts &&
+        !ki_image_transform(f->context, &f->color.matrix, image)) {
+        kiln_image_free(image);
+        return ki_fail_cancelled(error, "reading");
+    }
     if (report)
         report->missing_count = area(&f->part->display) - common;
     return KILN_OK;

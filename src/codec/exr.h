@@ -271,6 +271,8 @@ typedef struct ki_exr_color {
 /// chromaticities are no set of primaries.
 kiln_result ki_exr_read_color(const ki_exr_part *part, const char *name, ki_exr_color *color,
                               kiln_error *error);
+/// Notes that the attribute pixelAspectRatio is ignored, if it is not 1.
+void ki_exr_note_aspect(const ki_exr_part *part, kiln_load_report *report);
 /// Notes which colours are converted, for a layer of this kind.
 void ki_exr_note_color(const ki_exr_color *color, ki_exr_kind kind, kiln_load_report *report);
 

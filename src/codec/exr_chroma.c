@@ -184,9 +184,11 @@ kiln_result ki_exr_reconstruct(kiln_context *context, const ki_exr_picture *pict
     job j = {.context = context, .picture = picture, .sampling = sampling, .rgb = rgb};
     for (int c = 0; c < 3; c++)
         j.weights[c] = (float)weights[c];
-    if (sampling == 2)
-        ki_parallel_for(context, (picture->height + 1) / 2, fill_line, &j);
-    ki_parallel_for(context, STRIPS, write_strip, &j);
+    if (sampling == 2 &&
+        !ki_parallel_steps(context, NULL, (picture->height + 1) / 2, fill_line, &j))
+        return ki_fail_cancelled(error, "reading");
+    if (!ki_parallel_steps(context, NULL, STRIPS, write_strip, &j))
+        return ki_fail_cancelled(error, "reading");
     for (int i = 0; i < STRIPS; i++)
         if (j.starved[i])
             return ki_fail_memory(context, error, name, 9 * (size_t)picture->width * sizeof(float));

@@ -45,6 +45,13 @@ kiln_result ki_exr_read_color(const ki_exr_part *part, const char *name, ki_exr_
     return KILN_OK;
 }
 
+void ki_exr_note_aspect(const ki_exr_part *part, kiln_load_report *report)
+{
+    double aspect;
+    if (read_floats(part, "pixelAspectRatio", "float", 1, &aspect))
+        ki_note_pixel_aspect(report, "the attribute pixelAspectRatio", aspect);
+}
+
 void ki_exr_note_color(const ki_exr_color *color, ki_exr_kind kind, kiln_load_report *report)
 {
     const double *xy = color->primaries.xy, *w = color->weights;

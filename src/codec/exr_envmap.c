@@ -103,7 +103,11 @@ kiln_result ki_exr_place_envmap(kiln_context *context, kiln_image *image, bool c
     j.to = ki_alloc_raw(context, count, sizeof *j.to);
     if (!j.to)
         return ki_fail_memory(context, error, name, count * sizeof *j.to);
-    ki_parallel_for(context, image->height, cube ? make_cube_row : make_panorama_row, &j);
+    if (!ki_parallel_steps(context, NULL, image->height, cube ? make_cube_row : make_panorama_row,
+                           &j)) {
+        ki_free(j.to);
+        return ki_fail_cancelled(error, "reading");
+    }
     kiln_image placed = {image->width, image->height, image->channels, j.to, j.to};
     kiln_image_free(image);
     *image = placed;

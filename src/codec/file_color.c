@@ -187,11 +187,13 @@ static void show_row(void *data, int row)
     }
 }
 
-void ki_file_color_finish(kiln_context *context, const ki_file_color *color, kiln_image *image)
+kiln_result ki_file_color_finish(kiln_context *context, const ki_file_color *color,
+                                 kiln_image *image, kiln_error *error)
 {
     hlg_job job = {color, image};
-    if (color->hlg)
-        ki_parallel_for(context, image->height, show_row, &job);
-    if (color->converts)
-        ki_image_transform(context, &color->to_rec709, image);
+    if (color->hlg && !ki_parallel_steps(context, NULL, image->height, show_row, &job))
+        return ki_fail_cancelled(error, "reading");
+    if (color->converts && !ki_image_transform(context, &color->to_rec709, image))
+        return ki_fail_cancelled(error, "reading");
+    return KILN_OK;
 }

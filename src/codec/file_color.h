@@ -55,7 +55,8 @@ extern const char ki_cicp_known[];
 /// Fills a table with the linear value of each of the `count` samples that a channel can have.
 void ki_file_color_fill(const ki_file_color *color, int channel, float *table, int count);
 /// Converts a picture of linear values in the file's colours to Rec. 709. Does nothing for a file
-/// of sRGB.
-void ki_file_color_finish(kiln_context *context, const ki_file_color *color, kiln_image *image);
+/// of sRGB. Fails only if the caller asks to stop.
+kiln_result ki_file_color_finish(kiln_context *context, const ki_file_color *color,
+                                 kiln_image *image, kiln_error *error);
 
 #endif

@@ -232,9 +232,10 @@ static kiln_result decode_all(hdr_file *f, kiln_image *image, kiln_error *error)
         return ki_fail_cancelled(error, "reading");
     *image = (kiln_image){h->width, h->height, 3, f->pixels, f->pixels};
     f->pixels = NULL;
-    if (h->converts)
-        ki_image_transform(f->context, &h->to_rec709, image);
-    return KILN_OK;
+    if (!h->converts || ki_image_transform(f->context, &h->to_rec709, image))
+        return KILN_OK;
+    kiln_image_free(image);
+    return ki_fail_cancelled(error, "reading");
 }
 
 static void describe(const hdr_file *f, size_t start, kiln_file_info *info)

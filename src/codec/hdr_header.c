@@ -21,6 +21,7 @@ typedef struct header_reader {
     kiln_file_info *info;
     // product of the header's lines EXPOSURE, and of its lines COLORCORR for each channel
     double exposure, correction[3];
+    double aspect; // width of a pixel divided by its height
     bool has_primaries;
     ki_primaries primaries;
     kiln_load_report *report;
@@ -164,6 +165,17 @@ static kiln_result read_primaries(header_reader *h, const char *line, const char
                : bad_line(h, line, "set of primaries that spans its white", error);
 }
 
+// Reads the height of a pixel divided by its width. Several such lines multiply.
+static kiln_result read_aspect(header_reader *h, const char *line, const char *text,
+                               kiln_error *error)
+{
+    double value;
+    if (!read_numbers(text, &value, 1) || !(value > 1e-6 && value < 1e6))
+        return bad_line(h, line, "usable shape of pixels", error);
+    h->aspect /= value;
+    return KILN_OK;
+}
+
 static kiln_result read_format(header_reader *h, const char *line, const char *text,
                                kiln_error *error)
 {
@@ -188,7 +200,8 @@ static kiln_result read_line(header_reader *h, const char *line, kiln_error *err
     } rows[] = {{"FORMAT=", read_format},
                 {"EXPOSURE=", read_exposure},
                 {"COLORCORR=", read_correction},
-                {"PRIMARIES=", read_primaries}};
+                {"PRIMARIES=", read_primaries},
+                {"PIXASPECT=", read_aspect}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         size_t length = strlen(rows[i].keyword);
         if (!strncmp(line, rows[i].keyword, length))
@@ -270,11 +283,14 @@ kiln_result ki_hdr_read_header(kiln_context *context, ki_reader *r, const char *
                        .header = header,
                        .info = info,
                        .exposure = 1,
+                       .aspect = 1,
                        .correction = {1, 1, 1},
                        .report = report};
     *header = (ki_hdr_header){0};
     kiln_result result = read_lines(&h, error);
-    if (result == KILN_OK)
-        find_conversion(&h);
+    if (result != KILN_OK)
+        return result;
+    find_conversion(&h);
+    ki_note_pixel_aspect(report, "the header's PIXASPECT", h.aspect);
     return result;
 }

@@ -6,6 +6,7 @@
 #include "codec/icc.h"
 #include "codec/jpeg_pixels.h"
 #include "codec/report.h"
+#include "codec/upright.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -109,24 +110,31 @@ static kiln_result read_head(jpeg_file *f, kiln_load_report *report, kiln_error 
     }
     if (result == KILN_OK)
         read_color(f, report);
-    if (result == KILN_OK && f->head.orientation != 1)
-        ki_note(report, KILN_NOTE_CONVERSION, false,
-                "the picture was turned upright by Exif's orientation %d", f->head.orientation);
+    if (result == KILN_OK)
+        ki_note_upright(f->head.orientation, report);
     return result;
 }
 
 // --------------------------------------------------------------------------------------- pixels
 
-static void to_linear(const jpeg_file *f, const uint8_t *samples, kiln_image *image)
+enum { ROUND = 64 }; // rows after which the caller is asked whether to go on
+
+// Converts samples to linear values. Returns false if the caller asks to stop.
+static bool to_linear(const jpeg_file *f, const uint8_t *samples, kiln_image *image)
 {
     float tables[3][256];
-    size_t channels = (size_t)f->head.components;
-    size_t count = (size_t)f->head.width * (size_t)f->head.height;
+    size_t channels = (size_t)f->head.components, width = (size_t)f->head.width;
+    float *to = image->pixels;
     for (int c = 0; c < 3; c++)
         ki_file_color_fill(&f->color, c, tables[c], 256);
-    for (size_t i = 0; i < count; i++)
-        for (size_t c = 0; c < 3; c++)
-            image->pixels[3 * i + c] = tables[c][samples[channels * i + (channels == 3 ? c : 0)]];
+    for (int y = 0; y < f->head.height; y++) {
+        if (y % ROUND == ROUND - 1 && !ki_go_on(f->context))
+            return false;
+        for (size_t x = 0; x < width; x++, samples += channels, to += 3)
+            for (size_t c = 0; c < 3; c++)
+                to[c] = tables[c][samples[channels == 3 ? c : 0]];
+    }
+    return true;
 }
 
 static kiln_result apply_gain_map(jpeg_file *f, kiln_image *image, kiln_error *error)
@@ -142,31 +150,6 @@ static kiln_result apply_gain_map(jpeg_file *f, kiln_image *image, kiln_error *e
     return result;
 }
 
-// Turns the picture by Exif's orientation: from 5 on rows and columns are exchanged. Pixel (x, y)
-// of the upright picture is then read from the left or the right, and from the top or the bottom.
-static kiln_result turn_upright(jpeg_file *f, kiln_image *image, kiln_error *error)
-{
-    int o = f->head.orientation, w = image->width, h = image->height;
-    bool exchanged = o >= 5, from_right = o == 2 || o == 3 || o == 7 || o == 8;
-    bool from_bottom = o == 3 || o == 4 || o == 6 || o == 7;
-    kiln_image upright = {.width = exchanged ? h : w, .height = exchanged ? w : h, .channels = 3};
-    kiln_result result = ki_image_allocate(f->context, &upright, error);
-    if (result != KILN_OK)
-        return result;
-    for (int y = 0; y < upright.height; y++)
-        for (int x = 0; x < upright.width; x++) {
-            int from_x = exchanged ? y : x, from_y = exchanged ? x : y;
-            from_x = from_right ? w - 1 - from_x : from_x;
-            from_y = from_bottom ? h - 1 - from_y : from_y;
-            memcpy(upright.pixels + 3 * ((size_t)y * (size_t)upright.width + (size_t)x),
-                   image->pixels + 3 * ((size_t)from_y * (size_t)w + (size_t)from_x),
-                   3 * sizeof(float));
-        }
-    kiln_image_free(image);
-    *image = upright;
-    return KILN_OK;
-}
-
 static kiln_result read_pixels(jpeg_file *f, kiln_image *image, kiln_error *error)
 {
     uint8_t *samples;
@@ -174,15 +157,15 @@ static kiln_result read_pixels(jpeg_file *f, kiln_image *image, kiln_error *erro
     kiln_result result = ki_jpeg_samples(f->context, f->file, &f->head, f->name, &samples, error);
     if (result == KILN_OK)
         result = ki_image_allocate(f->context, image, error);
-    if (result == KILN_OK)
-        to_linear(f, samples, image);
+    if (result == KILN_OK && !to_linear(f, samples, image))
+        result = ki_fail_cancelled(error, "reading");
     ki_free(samples);
     if (result == KILN_OK && f->has_gain)
         result = apply_gain_map(f, image, error);
     if (result == KILN_OK)
-        ki_file_color_finish(f->context, &f->color, image);
-    if (result == KILN_OK && f->head.orientation != 1)
-        result = turn_upright(f, image, error);
+        result = ki_file_color_finish(f->context, &f->color, image, error);
+    if (result == KILN_OK)
+        result = ki_turn_upright(f->context, f->head.orientation, image, error);
     if (result != KILN_OK)
         kiln_image_free(image);
     return result;

@@ -63,7 +63,7 @@ static size_t find_entry(const tiff *t, unsigned tag)
     return 0;
 }
 
-static int read_orientation(ki_span exif)
+int ki_exif_orientation(ki_span exif)
 {
     tiff t;
     size_t entry = open_tiff(exif, &t) ? find_entry(&t, 0x0112) : 0;
@@ -89,7 +89,7 @@ static void read_app1(ki_jpeg_head *head, ki_span segment)
 {
     ki_span rest;
     if (!head->orientation && is_named(segment, "Exif\0\0", 6, &rest))
-        head->orientation = read_orientation(rest);
+        head->orientation = ki_exif_orientation(rest);
     else if (!head->xmp.bytes && NAMED(segment, "http://ns.adobe.com/xap/1.0/", &rest))
         head->xmp = rest;
 }

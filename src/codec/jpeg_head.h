@@ -25,6 +25,9 @@ typedef struct ki_jpeg_head {
     size_t end;        ///< number of bytes from the picture's first byte to its end
 } ki_jpeg_head;
 
+/// Returns the orientation, 1 to 8, that Exif data state, which have the form of a TIFF file; 1 if
+/// the data state none.
+int ki_exif_orientation(ki_span exif);
 /// Reads the segments of the JPEG picture that begins at `bytes`. Fails unless the picture has a
 /// frame header, which states its size.
 kiln_result ki_jpeg_read_head(kiln_context *context, const uint8_t *bytes, size_t size,

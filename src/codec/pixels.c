@@ -82,8 +82,10 @@ kiln_result kiln_map_from_pixels(kiln_context *context, const kiln_pixels *pixel
         return result;
     convert_job job = {pixels, pixels->row_stride ? pixels->row_stride : (ptrdiff_t)row_bytes,
                        image.pixels};
-    ki_parallel_for(context, pixels->height, convert_row, &job);
-    result = ki_lay_out(context, &image, "pixels", pixels->layout, map, report, error);
+    if (!ki_parallel_steps(context, NULL, pixels->height, convert_row, &job))
+        result = ki_fail_cancelled(error, "reading");
+    if (result == KILN_OK)
+        result = ki_lay_out(context, &image, "pixels", pixels->layout, map, report, error);
     if (result == KILN_OK)
         result = ki_map_mend(context, "pixels", pixels->negative, map, report, error);
     if (result != KILN_OK) {

@@ -14,6 +14,7 @@
 #include "codec/deflate.h"
 #include "codec/png_color.h"
 #include "codec/report.h"
+#include "codec/upright.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -280,13 +281,19 @@ static inline bool undo_filter(int filter, uint8_t *row, const uint8_t *above, s
     return filter < KI_PNG_FILTERS;
 }
 
+enum { ROUND = 1 << 22 }; // number of pixels between two reports of progress
+
 // Undoes the filters of all rows of a pass, each of which follows its filter byte. `zeros` is a row
 // of zeros that stands for the row above the first.
-static bool undo_filters(uint8_t *raw, const pass *p, size_t step, const uint8_t *zeros)
+static kiln_result undo_filters(const png_file *f, uint8_t *raw, const pass *p, size_t step,
+                                const uint8_t *zeros, kiln_error *error)
 {
     const uint8_t *above = zeros;
     bool good = true;
+    size_t rows = 1 + ROUND / p->width;
     for (size_t y = 0; good && y < p->height; y++, raw += p->row + 1) {
+        if (y % rows == rows - 1 && !ki_go_on(f->context))
+            return ki_fail_cancelled(error, "reading");
         if (step == 3)
             good = undo_filter(raw[0], raw + 1, above, p->row, 3);
         else if (step == 4)
@@ -295,7 +302,7 @@ static bool undo_filters(uint8_t *raw, const pass *p, size_t step, const uint8_t
             good = undo_filter(raw[0], raw + 1, above, p->row, step);
         above = raw + 1;
     }
-    return good;
+    return good ? KILN_OK : damaged(f, error, "a row has a filter that PNG does not define");
 }
 
 // ------------------------------------------------------------------------------------------ pixels
@@ -372,7 +379,6 @@ static void put_pass(const png_file *f, const pass *p, const uint8_t *raw, size_
 
 static kiln_result put_all(png_file *f, kiln_error *error)
 {
-    enum { ROUND = 1 << 22 }; // number of pixels between two progress reports
     const uint8_t *raw = f->raw;
     for (int i = 0; i < f->pass_count; i++) {
         const pass *p = &f->passes[i];
@@ -407,13 +413,10 @@ static kiln_result unpack(png_file *f, kiln_error *error)
                     "its data does not inflate to the picture's size or has a wrong Adler-32 sum");
     } else {
         uint8_t *raw = f->raw;
-        bool good = true;
-        for (int i = 0; good && i < f->pass_count; i++) {
-            good = undo_filters(raw, &f->passes[i], step, zeros);
+        for (int i = 0; result == KILN_OK && i < f->pass_count; i++) {
+            result = undo_filters(f, raw, &f->passes[i], step, zeros, error);
             raw += f->passes[i].height * (f->passes[i].row + 1);
         }
-        if (!good)
-            result = damaged(f, error, "a row has a filter that PNG does not define");
     }
     ki_free(zeros);
     return result;
@@ -432,12 +435,17 @@ static kiln_result read_pixels(png_file *f, kiln_image *image, kiln_error *error
     f->pixels = ki_alloc_raw(f->context, texels * 3, sizeof(float));
     if (!f->pixels || !make_tables(f))
         return ki_fail_memory(f->context, error, f->name, texels * 3 * sizeof(float));
+    kiln_image linear = {f->width, f->height, 3, f->pixels, NULL};
     result = put_all(f, error);
-    if (result == KILN_OK) {
-        *image = (kiln_image){f->width, f->height, 3, f->pixels, f->pixels};
-        f->pixels = NULL;
-        ki_file_color_finish(f->context, &f->meaning.color, image);
-    }
+    if (result == KILN_OK)
+        result = ki_file_color_finish(f->context, &f->meaning.color, &linear, error);
+    if (result != KILN_OK)
+        return result;
+    *image = (kiln_image){f->width, f->height, 3, f->pixels, f->pixels};
+    f->pixels = NULL;
+    result = ki_turn_upright(f->context, f->meaning.orientation, image, error);
+    if (result != KILN_OK)
+        kiln_image_free(image);
     return result;
 }
 
@@ -451,8 +459,9 @@ static void describe(const png_file *f, kiln_file_info *info)
                                        : "grey",
              f->color & KI_PNG_ALPHA ? " with alpha" : "", f->meaning.name,
              f->interlaced ? ", interlaced" : "");
-    info->width = f->width;
-    info->height = f->height;
+    bool exchanged = f->meaning.orientation >= 5;
+    info->width = exchanged ? f->height : f->width;
+    info->height = exchanged ? f->width : f->height;
     info->channel_count = color ? 3 : 1;
     info->level_count = 1;
 }
@@ -470,7 +479,7 @@ static kiln_result read_meaning(png_file *f, const uint8_t *bytes, size_t size,
                        "%s: says that its texels are %s, which has four channels of 8 bits, but "
                        "the picture has %d channels of %d bits",
                        f->name, f->meaning.name, f->channels, f->depth);
-    if (f->color & KI_PNG_ALPHA && !f->meaning.unpack)
+    if ((f->color & KI_PNG_ALPHA || f->meaning.transparent) && !f->meaning.unpack)
         ki_note(report, KILN_NOTE_CHOICE, false, "alpha was ignored: every pixel counts as opaque");
     return KILN_OK;
 }

@@ -1,5 +1,5 @@
-// What the samples of a PNG mean. In: the chunks before the picture's data. Out: curves and a
-// matrix to linear Rec. 709, or the coding by which kiln stored radiance in four bytes.  By the
+// What the samples of a PNG mean. In: the chunks beside the picture's data. Out: curves and a matrix
+// to linear Rec. 709, or the coding by which kiln stored radiance in four bytes; the orientation.  By the
 // third edition of the specification (W3C, "Portable Network Graphics", section 11.3.2), the first
 // of these chunks decides: cICP, iCCP, sRGB, then gAMA and cHRM. A file without any of them counts
 // as sRGB. kiln's own text chunk "kiln:texels" comes before all.
@@ -8,8 +8,10 @@
 #include "base/bytes.h"
 #include "codec/deflate.h"
 #include "codec/icc.h"
+#include "codec/jpeg_head.h"
 #include "codec/png.h"
 #include "codec/report.h"
+#include "codec/upright.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -23,7 +25,7 @@ typedef struct content {
 } content;
 
 typedef struct found {
-    content cicp, iccp, srgb, gama, chrm, text;
+    content cicp, iccp, srgb, gama, chrm, text, exif, phys, actl, trns;
 } found;
 
 static uint32_t u32_at(const uint8_t *at)
@@ -38,7 +40,7 @@ static bool is_own_text(const uint8_t *data, size_t size)
 }
 
 // Returns where the content of a chunk of this type is kept, or NULL if the chunk says nothing
-// about colours or has too few bytes.
+// about the picture or has too few bytes.
 static content *place_of(found *f, const uint8_t *type, const uint8_t *data, size_t size)
 {
     const struct {
@@ -46,7 +48,9 @@ static content *place_of(found *f, const uint8_t *type, const uint8_t *data, siz
         size_t least;
         content *place;
     } rows[] = {{"cICP", 4, &f->cicp}, {"iCCP", 3, &f->iccp},  {"sRGB", 1, &f->srgb},
-                {"gAMA", 4, &f->gama}, {"cHRM", 32, &f->chrm}, {"tEXt", 1, &f->text}};
+                {"gAMA", 4, &f->gama}, {"cHRM", 32, &f->chrm}, {"tEXt", 1, &f->text},
+                {"eXIf", 8, &f->exif}, {"pHYs", 9, &f->phys},  {"acTL", 8, &f->actl},
+                {"tRNS", 1, &f->trns}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
         if (!memcmp(type, rows[i].type, 4) && size >= rows[i].least &&
             (rows[i].place != &f->text || is_own_text(data, size)))
@@ -54,7 +58,8 @@ static content *place_of(found *f, const uint8_t *type, const uint8_t *data, siz
     return NULL;
 }
 
-// Finds the chunks about colours before the first IDAT chunk, or before the end of the bytes.
+// Finds the chunks that say something about the picture. Only eXIf may stand after the data, and the
+// others are not looked for there.
 static kiln_result find_chunks(kiln_context *context, ki_reader *r, found *f,
                                kiln_load_report *report, kiln_error *error)
 {
@@ -62,16 +67,18 @@ static kiln_result find_chunks(kiln_context *context, ki_reader *r, found *f,
     ki_crc32_table table;
     ki_crc32_fill(&table);
     ki_read_bytes(r, 8);
+    bool before = true;
     for (int i = 1;; i++) {
         const uint8_t *head = ki_read_bytes(r, 8);
         size_t size = head ? u32_at(head) : 0;
         const uint8_t *data = ki_read_bytes(r, size), *sum = ki_read_bytes(r, 4);
-        if (!head || !sum || !memcmp(head + 4, "IDAT", 4))
+        if (!head || !sum)
             return KILN_OK;
+        before = before && memcmp(head + 4, "IDAT", 4) != 0;
         if (i % CHUNKS == 0 && !ki_go_on(context))
             return ki_fail_cancelled(error, "reading");
         content *place = place_of(f, head + 4, data, size);
-        if (!place || place->bytes)
+        if (!place || place->bytes || (!before && place != &f->exif))
             continue;
         if (ki_checksum_agrees(ki_crc32(&table, 0, head + 4, size + 4), u32_at(sum)))
             *place = (content){data, size};
@@ -189,16 +196,37 @@ static void read_chromaticities(const found *f, ki_png_meaning *meaning, kiln_lo
                 p.xy[0], p.xy[1], p.xy[2], p.xy[3], p.xy[4], p.xy[5], p.xy[6], p.xy[7]);
 }
 
+// Reads what the chunks say about the picture as a whole, and notes what of it is ignored.
+static void read_picture(const found *f, ki_png_meaning *meaning, kiln_load_report *report)
+{
+    meaning->orientation =
+        f->exif.bytes ? ki_exif_orientation((ki_span){f->exif.bytes, f->exif.size}) : 1;
+    ki_note_upright(meaning->orientation, report);
+    meaning->transparent = f->trns.bytes != NULL;
+    if (f->actl.bytes && u32_at(f->actl.bytes) > 1)
+        ki_note(report, KILN_NOTE_CHOICE, false,
+                "the file is an animation of %u frames, of which the still picture was read",
+                (unsigned)u32_at(f->actl.bytes));
+    // The chunk pHYs has the pixels per unit along x and y.
+    uint32_t x = f->phys.bytes ? u32_at(f->phys.bytes) : 1;
+    uint32_t y = f->phys.bytes ? u32_at(f->phys.bytes + 4) : 1;
+    if (x && y)
+        ki_note_pixel_aspect(report, "the chunk pHYs", (double)y / (double)x);
+}
+
 kiln_result ki_png_read_meaning(kiln_context *context, const uint8_t *bytes, size_t size,
                                 const char *name, ki_png_meaning *meaning, kiln_load_report *report,
                                 kiln_error *error)
 {
     found f = {0};
     ki_reader r = ki_reader_make(bytes, size);
-    *meaning = (ki_png_meaning){.name = "srgb"};
+    *meaning = (ki_png_meaning){.name = "srgb", .orientation = 1};
     kiln_result result = find_chunks(context, &r, &f, report, error);
-    if (result != KILN_OK || read_own(&f, meaning, report))
+    if (result != KILN_OK)
         return result;
+    read_picture(&f, meaning, report);
+    if (read_own(&f, meaning, report))
+        return KILN_OK;
     if (f.cicp.bytes)
         return read_cicp(&f, name, meaning, report, error);
     if (f.iccp.bytes) {

@@ -12,9 +12,11 @@ typedef struct ki_png_meaning {
     ki_from_rgbx *unpack;
     ki_file_color color;
     const char *name; ///< short name of the coding of the samples, for example "srgb"
+    int orientation;  ///< Exif's orientation, 1 to 8; 1 is upright
+    bool transparent; ///< true: the chunk tRNS names transparent colours
 } ki_png_meaning;
 
-/// Reads the chunks about colours before the first IDAT chunk. Fails if a chunk names colours that
+/// Reads the chunks about colours and orientation, and notes what other chunks say. Fails if a chunk names colours that
 /// kiln cannot convert.
 kiln_result ki_png_read_meaning(kiln_context *context, const uint8_t *bytes, size_t size,
                                 const char *name, ki_png_meaning *meaning, kiln_load_report *report,

@@ -29,6 +29,15 @@ void ki_note(kiln_load_report *report, kiln_note_kind kind, bool warning, const 
     add_note(report, &note);
 }
 
+void ki_note_pixel_aspect(kiln_load_report *report, const char *where, double aspect)
+{
+    if (aspect != 1)
+        ki_note(report, KILN_NOTE_ASSUMPTION, false,
+                "%s says that a pixel is %.4g times as wide as high, which was ignored: pixels "
+                "cover equal steps of the sphere",
+                where, aspect);
+}
+
 void ki_report_add(kiln_load_report *sum, const kiln_load_report *report)
 {
     sum->missing_count += report->missing_count;

@@ -130,12 +130,32 @@ static void read_row(void *data, int row)
             to[c] = read_channel(job, from + channel * (texels->blue_first ? 2 - c : c));
 }
 
+// A picture in a format of kiln_format, which is unpacked in strips of whole rows of blocks.
+typedef struct unpack_job {
+    const ki_pixel_format *pixel;
+    const uint8_t *bytes;
+    int width, height;
+    float *rgb;
+} unpack_job;
+
+enum { STRIP = 64 }; // rows of a strip
+
+// Task of one thread: unpacks one strip.
+static void unpack_strip(void *data, int index)
+{
+    const unpack_job *job = data;
+    int first = index * STRIP, count = ki_min(STRIP, job->height - first);
+    ki_pixels_unpack(job->pixel, job->bytes + (size_t)ki_pixels_size(job->pixel, job->width, first),
+                     job->width, count, job->rgb + 3 * (size_t)job->width * (size_t)first);
+}
+
 bool ki_texels_read(kiln_context *context, const ki_texels *texels, const uint8_t *bytes, int width,
                     int height, int align, float *rgb)
 {
     if (texels->pixel) {
-        ki_pixels_unpack(texels->pixel, bytes, width, height, rgb);
-        return ki_go_on(context);
+        unpack_job unpack = {texels->pixel, bytes, width, height, rgb};
+        return ki_parallel_steps(context, NULL, (height + STRIP - 1) / STRIP, unpack_strip,
+                                 &unpack);
     }
     read_job job = {texels, bytes, (size_t)row_bytes(texels, width, align), width, rgb, {0}};
     for (int i = 0; i < 256; i++)

@@ -188,8 +188,8 @@ static void transform_row(void *data, int row)
     }
 }
 
-void ki_image_transform(kiln_context *context, const ki_matrix3 *matrix, kiln_image *image)
+bool ki_image_transform(kiln_context *context, const ki_matrix3 *matrix, kiln_image *image)
 {
     transform_job job = {matrix, image};
-    ki_parallel_for(context, image->height, transform_row, &job);
+    return ki_parallel_steps(context, NULL, image->height, transform_row, &job);
 }

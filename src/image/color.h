@@ -40,6 +40,7 @@ bool ki_matrix_is_identity(const ki_matrix3 *matrix);
 ki_matrix3 ki_matrix_multiply(const ki_matrix3 *a, const ki_matrix3 *b);
 /// Multiplies each RGB value of a picture of three channels by the matrix. A texel with a channel
 /// that is not finite stays as it is, because no colour can be computed for it.
-void ki_image_transform(kiln_context *context, const ki_matrix3 *matrix, kiln_image *image);
+/// Returns false if the caller asks to stop; some rows are then not converted.
+bool ki_image_transform(kiln_context *context, const ki_matrix3 *matrix, kiln_image *image);
 
 #endif

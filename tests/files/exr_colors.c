@@ -183,6 +183,24 @@ static void the_luminance_of_white_is_told_and_not_applied(void **state)
     kiln_map_free(&map);
 }
 
+static void the_shape_of_pixels_is_told_and_ignored(void **state)
+{
+    (void)state;
+    plain_file file = constant_file(0.25F, 0.5F, 1);
+    kiln_load_report report;
+    kiln_map map;
+    CHECK_OK(load(&file, &report, &map));
+    assert_int_equal(report.note_count, 0);
+    kiln_map_free(&map);
+    file.aspect = 2;
+    CHECK_OK(load(&file, &report, &map));
+    check_note(&report, 0, KILN_NOTE_ASSUMPTION,
+               "the attribute pixelAspectRatio says that a pixel is 2 times as wide as high, which "
+               "was ignored: pixels cover equal steps of the sphere");
+    assert_int_equal(map.size, 2);
+    kiln_map_free(&map);
+}
+
 // ------------------------------------------------------------------------------ luminance and chroma
 
 enum { YC_W = 64, YC_H = 32 };
@@ -452,6 +470,7 @@ int main(void)
         cmocka_unit_test(the_adopted_neutral_becomes_white),
         cmocka_unit_test(strange_colours_are_kept_or_refused),
         cmocka_unit_test(the_luminance_of_white_is_told_and_not_applied),
+        cmocka_unit_test(the_shape_of_pixels_is_told_and_ignored),
         cmocka_unit_test(luminance_and_chroma_are_read_as_openexr_reads_them),
         cmocka_unit_test(grey_pictures_stay_exactly_grey),
         cmocka_unit_test(luminance_has_the_weights_of_the_primaries),

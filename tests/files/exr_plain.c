@@ -45,7 +45,7 @@ static void write_channels(const plain_file *f, const plain_part *p, ki_writer *
 
 static void write_header(const plain_file *f, const plain_part *p, ki_writer *w)
 {
-    const float one = 1, zeros[2] = {0};
+    const float one = 1, zeros[2] = {0}, aspect = f->aspect != 0 ? f->aspect : 1;
     const int32_t data[4] = {0, 0, f->width - 1, f->height - 1};
     bool same = !f->display[2] && !f->display[3];
     const char *type = p->deep ? "deepscanline" : "scanlineimage";
@@ -54,7 +54,7 @@ static void write_header(const plain_file *f, const plain_part *p, ki_writer *w)
     plain_attribute(w, "dataWindow", "box2i", data, sizeof data);
     plain_attribute(w, "displayWindow", "box2i", same ? data : f->display, sizeof data);
     plain_attribute(w, "lineOrder", "lineOrder", "", 1);
-    plain_attribute(w, "pixelAspectRatio", "float", &one, sizeof one);
+    plain_attribute(w, "pixelAspectRatio", "float", &aspect, sizeof aspect);
     plain_attribute(w, "screenWindowCenter", "v2f", zeros, sizeof zeros);
     plain_attribute(w, "screenWindowWidth", "float", &one, sizeof one);
     if (p->name)

@@ -22,6 +22,7 @@ typedef struct plain_file {
     const float *chromaticities; // 8 numbers; NULL for no attribute, and so below
     const float *neutral;        // 2 numbers
     const float *luminance;      // 1 number
+    float aspect;                // pixelAspectRatio; 0 for 1
     int envmap;                  // value of the attribute plus 1; 0 for no attribute
     int sampling;                // of the channels RY and BY; 0 for 1
     /// The value of a sample; NULL for plain_number.

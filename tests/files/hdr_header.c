@@ -75,6 +75,11 @@ static void exposure_and_correction_are_divided_out(void **state)
     check_divided("COLORCORR= 2 4 0.5\nEXPOSURE=2.5\r\nCOLORCORR=3\t3 5\n", both, 2,
                   KILN_NOTE_CONVERSION, false,
                   "values were divided by the header's exposure of 2.5");
+    check_divided("PIXASPECT=1\nPIXASPECT=2\nPIXASPECT= 0.5\n", one, 0, 0, false, NULL);
+    check_divided(
+        "PIXASPECT=2\nPIXASPECT=2\n", one, 1, KILN_NOTE_ASSUMPTION, false,
+        "the header's PIXASPECT says that a pixel is 0.25 times as wide as high, which was "
+        "ignored: pixels cover equal steps of the sphere");
     check_divided("EXPOSURE=0\n", one, 1, KILN_NOTE_ASSUMPTION, true,
                   "the header's EXPOSURE of 0 was taken as 1");
     check_divided("EXPOSURE=0\nEXPOSURE=10\n", ten, 2, KILN_NOTE_ASSUMPTION, true,

@@ -659,6 +659,110 @@ static void radiance_needs_four_bytes(void **state)
     ki_writer_free(&w);
 }
 
+// ------------------------------------------------------------------------------- the picture as a whole
+
+static void add_at_end(ki_writer *w, const char *type, const uint8_t *data, size_t size)
+{
+    ki_crc32_table table;
+    uint8_t number[4];
+    ki_crc32_fill(&table);
+    w->size -= 12; // the chunk IEND
+    uint8_t end[12];
+    memcpy(end, w->bytes + w->size, sizeof end);
+    size_t start = w->size + 4;
+    put_u32(number, (uint32_t)size);
+    ki_write(w, number, 4);
+    ki_write(w, type, 4);
+    ki_write(w, data, size);
+    put_u32(number, ki_crc32(&table, 0, w->bytes + start, size + 4));
+    ki_write(w, number, 4);
+    ki_write(w, end, sizeof end);
+}
+
+// Where the stored picture's first row and first column are in the upright picture, for the orientations of Exif; the
+// chunk may stand before and after the data.
+static void orientations_are_honoured(void **state)
+{
+    static const char *const first[8] = {"top left", "top right", "bottom right", "bottom left",
+                                         "left top", "right top", "right bottom", "left bottom"};
+    const uint8_t intent = 0;
+    (void)state;
+    for (int o = 1; o <= 8; o++)
+        for (int behind = 0; behind < 2; behind++) {
+            uint8_t exif[26] = "MM\0*\0\0\0\x08\0\1\1\x12\0\3\0\0\0\1\0\0\0\0\0\0";
+            char text[80];
+            ki_decoded decoded;
+            kiln_file_info info;
+            ki_writer w = make(KI_PNG_PLAIN16);
+            exif[19] = (uint8_t)o;
+            add_chunk(&w, "sRGB", &intent, 1);
+            if (behind)
+                add_at_end(&w, "eXIf", exif, sizeof exif);
+            else
+                add_chunk(&w, "eXIf", exif, sizeof exif);
+            CHECK_OK(ki_decode(context, w.bytes, w.size, "a.png", &decoded, &info, &error));
+            int width = o < 5 ? W : H, height = o < 5 ? H : W;
+            assert_int_equal(decoded.image.width, width);
+            assert_int_equal(decoded.image.height, height);
+            assert_int_equal(info.width, width);
+            assert_int_equal(info.height, height);
+            bool right = strstr(first[o - 1], "right") != NULL;
+            bool bottom = strstr(first[o - 1], "bottom") != NULL;
+            for (int i = 0; i < SAMPLES; i++) {
+                int row = i / 3 / W, column = i / 3 % W;
+                int x = o < 5 ? column : row, y = o < 5 ? row : column;
+                x = right ? width - 1 - x : x;
+                y = bottom ? height - 1 - y : y;
+                double wanted = srgb((double)stored(i));
+                CHECK_NEAR((double)decoded.image.pixels[3 * (y * width + x) + i % 3], wanted,
+                           2e-6 * wanted + 1e-9);
+            }
+            snprintf(text, sizeof text, "the picture was turned upright by Exif's orientation %d",
+                     o);
+            const wanted_note turned = {KILN_NOTE_CONVERSION, false, text};
+            check_note(&decoded.report, o == 1 ? &nothing : &turned);
+            ki_decoded_free(&decoded);
+            ki_writer_free(&w);
+        }
+}
+
+static void what_is_ignored_is_said(void **state)
+{
+    static const wanted_note animation = {
+        KILN_NOTE_CHOICE, false,
+        "the file is an animation of 3 frames, of which the still picture was read"};
+    static const wanted_note aspect = {
+        KILN_NOTE_ASSUMPTION, false,
+        "the chunk pHYs says that a pixel is 0.5 times as wide as high, which was ignored: pixels "
+        "cover equal steps of the sphere"};
+    static const wanted_note alpha = {KILN_NOTE_CHOICE, false,
+                                      "alpha was ignored: every pixel counts as opaque"};
+    static const uint32_t frames[2] = {3, 0}, one_frame[2] = {1, 0};
+    static const uint8_t phys[9] = {0, 0, 0, 200, 0, 0, 0, 100, 0}, key[6] = {0},
+                         square[9] = {0, 0, 11, 19, 0, 0, 11, 19, 1};
+    static const struct {
+        const char *type;
+        const void *data;
+        size_t size;
+        const wanted_note *note;
+    } rows[] = {
+        {"pHYs", phys, 9, &aspect}, {"pHYs", square, 9, &nothing}, {"tRNS", key, 6, &alpha}};
+    const uint8_t intent = 0;
+    (void)state;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        ki_writer w = make(KI_PNG_PLAIN8);
+        add_chunk(&w, "sRGB", &intent, 1);
+        add_chunk(&w, rows[i].type, rows[i].data, rows[i].size);
+        check(&w, srgb, &ki_rec709, "8 bits rgb, srgb", rows[i].note);
+    }
+    for (int i = 0; i < 2; i++) {
+        ki_writer w = make(KI_PNG_PLAIN8);
+        add_chunk(&w, "sRGB", &intent, 1);
+        add_u32s(&w, "acTL", i ? one_frame : frames, 2);
+        check(&w, srgb, &ki_rec709, "8 bits rgb, srgb", i ? &nothing : &animation);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -676,6 +780,8 @@ int main(void)
         cmocka_unit_test(profiles_that_kiln_cannot_use_count_as_srgb),
         cmocka_unit_test(radiance_in_four_bytes_is_read_back),
         cmocka_unit_test(radiance_needs_four_bytes),
+        cmocka_unit_test(orientations_are_honoured),
+        cmocka_unit_test(what_is_ignored_is_said),
     };
     return cmocka_run_group_tests_name("png_color", tests, set_up_folder, tear_down_folder);
 }

@@ -123,7 +123,7 @@ static void pictures_are_converted(void **unused)
     (void)unused;
     CHECK_OK(kiln_context_create(NULL, &context, &error));
     assert_true(ki_rec709_from_rgb(&acescg, NULL, &a));
-    ki_image_transform(context, &a, &image);
+    assert_true(ki_image_transform(context, &a, &image));
     for (int c = 0; c < 3; c++) {
         CHECK_NEAR((double)pixels[c], 1, 1e-7);
         CHECK_NEAR((double)pixels[3 + c], a.m[c][0] / 2 + a.m[c][1] / 4 + a.m[c][2] / 8, 1e-7);

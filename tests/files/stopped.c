@@ -1,0 +1,193 @@
+// The reading of a picture can be stopped while its colours are converted: each conversion of a picture of 64 rows asks
+// as often as it has rows, beside what the same picture without the conversion asks.
+#include "codec/codec.h"
+#include "codec/deflate.h"
+#include "image/pack.h"
+#include "kit/context.h"
+#include "kit/stopping.h"
+
+#include "exr_plain.h"
+
+enum { WIDTH = 128, HEIGHT = 64, PNG_HEAD = 8 + 25 };
+
+static const float acescg[8] = {0.713F, 0.293F, 0.165F, 0.830F, 0.128F, 0.044F, 0.32168F, 0.33767F};
+
+static void put_exr(ki_writer *w, const float *chromaticities, int envmap, bool chroma)
+{
+    plain_file file = {.width = WIDTH,
+                       .height = HEIGHT,
+                       .part_count = 1,
+                       .parts = {{.channels = {"B", "G", "R"}}},
+                       .chromaticities = chromaticities,
+                       .envmap = envmap};
+    if (chroma) {
+        file.parts[0] = (plain_part){.channels = {"BY", "RY", "Y"}};
+        file.sampling = 2;
+    }
+    plain_write(&file, w);
+}
+
+static void put_plain_exr(ki_writer *w)
+{
+    put_exr(w, NULL, 0, false);
+}
+
+static void put_acescg(ki_writer *w)
+{
+    put_exr(w, acescg, 0, false);
+}
+
+static void put_chroma(ki_writer *w)
+{
+    put_exr(w, NULL, 0, true);
+}
+
+static void put_envmap(ki_writer *w)
+{
+    put_exr(w, NULL, 1, false);
+}
+
+static void put_hdr_with(ki_writer *w, const char *line)
+{
+    ki_write_text(w, "#?RADIANCE\n%sFORMAT=32-bit_rle_rgbe\n\n-Y %d +X %d\n", line, HEIGHT, WIDTH);
+    for (int i = 0; i < WIDTH * HEIGHT; i++)
+        ki_write(w, "\x40\x80\xc0\x80", 4);
+}
+
+static void put_hdr(ki_writer *w)
+{
+    put_hdr_with(w, "");
+}
+
+static void put_wide_hdr(ki_writer *w)
+{
+    put_hdr_with(w, "PRIMARIES=0.708 0.292 0.170 0.797 0.131 0.046 0.3127 0.3290\n");
+}
+
+static void put_u32(uint8_t *to, uint32_t value)
+{
+    for (int i = 0; i < 4; i++)
+        to[i] = (uint8_t)(value >> (24 - 8 * i));
+}
+
+// Writes a picture whose chunk cICP says primaries and transfer function.
+static void put_png_with(ki_writer *w, uint8_t primaries, uint8_t transfer)
+{
+    static float pixels[3 * WIDTH * HEIGHT];
+    const uint8_t cicp[4] = {primaries, transfer, 0, 1};
+    ki_crc32_table table;
+    uint8_t chunk[16] = {0};
+    ki_writer whole = {.context = context};
+    for (size_t i = 0; i < sizeof pixels / sizeof *pixels; i++)
+        pixels[i] = (float)(i % 256) / 255;
+    CHECK_OK(ki_png_encode(pixels, WIDTH, HEIGHT, 3, KI_PNG_PLAIN8, &whole, &error));
+    put_u32(chunk, 4);
+    memcpy(chunk + 4, "cICP", 4);
+    memcpy(chunk + 8, cicp, 4);
+    ki_crc32_fill(&table);
+    put_u32(chunk + 12, ki_crc32(&table, 0, chunk + 4, 8));
+    ki_write(w, whole.bytes, PNG_HEAD);
+    ki_write(w, chunk, sizeof chunk);
+    ki_write(w, whole.bytes + PNG_HEAD, whole.size - PNG_HEAD);
+    ki_writer_free(&whole);
+}
+
+static void put_png(ki_writer *w)
+{
+    put_png_with(w, 1, 13);
+}
+
+static void put_wide_png(ki_writer *w)
+{
+    put_png_with(w, 9, 13);
+}
+
+static void put_hlg_png(ki_writer *w)
+{
+    put_png_with(w, 9, 18);
+}
+
+static void put_cube(ki_writer *w, int size, kiln_format format)
+{
+    kiln_map cube = make_map(context, KILN_SHAPE_CUBE, size, 1);
+    const kiln_save_def def = {.format = format};
+    kiln_files files;
+    fill_constant(&cube, 1);
+    CHECK_OK(kiln_map_encode(context, &cube, "a.ktx2", &def, &files, NULL, &error));
+    ki_write(w, files.file[0].bytes, files.file[0].size);
+    kiln_files_free(&files);
+    kiln_map_free(&cube);
+}
+
+// Cubes of one and of four strips of 64 rows a face.
+static void put_small_cube(ki_writer *w)
+{
+    put_cube(w, 64, KILN_FORMAT_B10G11R11);
+}
+
+static void put_large_cube(ki_writer *w)
+{
+    put_cube(w, 256, KILN_FORMAT_B10G11R11);
+}
+
+static const struct {
+    void (*plain)(ki_writer *w), (*converted)(ki_writer *w);
+    int more; // least number of further questions
+} cases[] = {
+    {put_plain_exr, put_acescg, HEIGHT},
+    {put_plain_exr, put_chroma, HEIGHT / 2 + HEIGHT}, // pairs of lines, then strips
+    {put_plain_exr, put_envmap, HEIGHT},
+    {put_hdr, put_wide_hdr, HEIGHT},
+    {put_png, put_wide_png, HEIGHT},
+    {put_png, put_hlg_png, 2 * HEIGHT}, // the system gamma, then the primaries
+    {put_small_cube, put_large_cube, 6 * 3},
+};
+
+static countdown reports;
+static kiln_context *own;
+
+static kiln_result decode(const ki_writer *w, int left, kiln_map *map)
+{
+    reports = (countdown){.left = left};
+    return kiln_map_decode(own, w->bytes, w->size, "a", NULL, map, &error);
+}
+
+// Returns the number of questions while a file is read, at each of which the reading can be stopped.
+static int count_questions(void (*put)(ki_writer *w))
+{
+    ki_writer w = {.context = context};
+    kiln_map map;
+    put(&w);
+    assert_false(w.failed);
+    CHECK_OK(decode(&w, 1 << 30, &map));
+    kiln_map_free(&map);
+    int asked = reports.calls;
+    for (int stop = 0; stop < asked; stop++) {
+        assert_int_equal(decode(&w, stop, &map), KILN_ERROR_CANCELLED);
+        assert_int_equal(reports.calls, stop + 1);
+        assert_null(map.level[0]);
+    }
+    ki_writer_free(&w);
+    return asked;
+}
+
+static void conversions_can_be_stopped(void **state)
+{
+    (void)state;
+    kiln_context_def def = {.thread_count = 1, .progress = count_down, .progress_user = &reports};
+    CHECK_OK(kiln_context_create(&def, &own, &error));
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        int plain = count_questions(cases[i].plain), all = count_questions(cases[i].converted);
+        if (all < plain + cases[i].more)
+            fail_msg("case %zu: %d questions, and %d without the conversion", i, all, plain);
+    }
+    kiln_context_destroy(own);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(conversions_can_be_stopped, set_up, tear_down),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
