@@ -12,7 +12,7 @@ usage() {
 ./do bench     measures speed and accuracy beside other bakers
 ./do lint      clang-tidy, cppcheck, shellcheck, formatting, layers
 ./do format    formats the sources
-./do fuzz [TARGET|all [S]]   runs a fuzz target, or every one, for S seconds (60)
+./do fuzz [TARGET|all|process [S]]   runs a fuzz target, every one, or the command for S seconds (60)
 ./do test-bare [bookworm|trixie]   demo and test on a bare Debian 12, 13 or both, made by debootstrap
 ./do clean     removes what was built and fetched
 

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Runs fuzz targets: fuzz/run.sh FOLDER_OF_PROGRAMS [TARGET|all [SECONDS]]
+# Runs fuzz targets: fuzz/run.sh FOLDER_OF_PROGRAMS [TARGET|all|process [SECONDS]]
 # What a target has learned is kept in build/corpus/TARGET, and bytes that break a law or a sanitizer's rule
 # are written to build/finds. The last lines name executions, edges and finds of each target.
 set -eu
@@ -18,6 +18,10 @@ for file in tests/files/good/*.exr tests/files/bad/*; do
 done
 
 [ ! -d tests/corpus ] || cp -r tests/corpus/. "$seeds/"
+
+if [ "$wanted" = process ]; then
+    exec "$bin/process" "$bin/kiln" "$seeds" "$finds" "$seconds"
+fi
 
 # run NAME: one target. Inputs are at most 8 kB, more than any law here needs.
 run() {

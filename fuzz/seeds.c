@@ -1,5 +1,7 @@
 // Writes seeds for the fuzz targets: small whole files of every kind that kiln reads, made by kiln's own
 // writers, by OpenEXRCore and, byte by byte, here. In: a folder. Out: FOLDER/TARGET/NAME.
+#include "seeds.h"
+
 #include "codec/codec.h"
 #include "codec/deflate.h"
 #include "codec/engine_text.h"
@@ -53,7 +55,19 @@ static void save_writer(const char *target, const char *name, ki_writer *w)
     *w = (ki_writer){.context = context};
 }
 
-static kiln_map cube(int size, int level_count)
+ki_writer seed_writer(void)
+{
+    return (ki_writer){.context = context};
+}
+
+void seed_save(const char *target, int index, ki_writer *w)
+{
+    char name[32];
+    snprintf(name, sizeof name, "made-%d", index);
+    save_writer(target, name, w);
+}
+
+kiln_map seed_cube(int size, int level_count)
 {
     kiln_map map;
     must(kiln_map_create(context, KILN_SHAPE_CUBE, size, level_count, &map, &error));
@@ -101,7 +115,7 @@ static void save_files(const char *prefix, kiln_files *files)
 static void write_maps(void)
 {
     static const char *const names[] = {"a.ktx2", "a.dds", "a_%s.exr", "a_%s.hdr", "a_%s.png"};
-    kiln_map map = cube(4, 0);
+    kiln_map map = seed_cube(4, 0);
     kiln_sh sh = {.bands = 3, .c = {{1, 2, 3}, {0.5, 0, -0.5}}};
     for (size_t n = 0; n < sizeof names / sizeof *names; n++)
         for (int format = 0; format <= KILN_FORMAT_RGBP; format++)
@@ -123,7 +137,7 @@ static void write_engines(void)
     for (int i = 0; kiln_engine_at(i); i++)
         for (int size = 4; size <= 64; size *= 2) {
             const kiln_engine *engine = kiln_engine_at(i);
-            kiln_map map = cube(size, 0);
+            kiln_map map = seed_cube(size, 0);
             kiln_files files;
             char name[64];
             snprintf(name, sizeof name, "a.%s", engine->ending[0] ? engine->ending : "exr");
@@ -137,7 +151,7 @@ static void write_engines(void)
 static void write_harmonics(void)
 {
     static const char *const names[] = {"sh.json", "sh.txt", "sh.h"};
-    kiln_environment environment = {.levels = cube(1, 1), .lobe = KILN_LOBE_GGX};
+    kiln_environment environment = {.levels = seed_cube(1, 1), .lobe = KILN_LOBE_GGX};
     for (int bands = 1; bands <= KILN_MAX_BANDS; bands += 2)
         for (size_t i = 0; i < 3; i++) {
             const kiln_sh sh = {.bands = bands, .irradiance = bands == 3, .c = {{1, -2, 0.25}}};
@@ -568,6 +582,7 @@ int main(int argc, char **argv)
     write_texts();
     write_png();
     write_jpeg();
+    seed_textures();
     kiln_context_destroy(context);
     return 0;
 }
