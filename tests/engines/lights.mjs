@@ -6,7 +6,7 @@
 // The ground: patches below a ball. Whether a patch lies in the ball's shadow follows from lights.json alone;
 // there the rest shows, and elsewhere the light is added.
 import path from 'node:path';
-import { babylon, playcanvas, three } from './models.mjs';
+import { babylon, filament, playcanvas, three } from './models.mjs';
 import { CELL, COLUMNS, add, bakePlain, check, dot, kiln, makeViews, panorama, readFile, readLevel }
     from './rig.mjs';
 
@@ -58,6 +58,23 @@ async function checkBall({ name, model, loads }, { whole, lights }, draw, say) {
     check(alone.rms < ALONE && alone.most < ALONE, `the light is off by ${alone.rms} rms, ${alone.most} at most`);
 }
 
+// Filament's dielectrics reflect, which a black one shows alone: what white adds to black, and the light to the rest,
+// is the light's diffuse light. Four pictures of 8 bits decide the bound.
+async function checkDifference({ name, model, loads }, { lights }, draw, say) {
+    const { toKiln } = model(6, 64), [{ direction, irradiance }] = lights.lights;
+    const show = (albedo, more) => draw(`lights-${name}-rest${loads}`, BALL_VIEWS, [1], CELL, { albedo, ...more });
+    const pictures = [];
+    for (const [albedo, more] of [[1, { lights }], [1, {}], [0, { lights }], [0, {}]])
+        pictures.push((await show(albedo, more)).flat(3));
+    const [lit, rest, litBlack, black] = pictures;
+    const shown = lit.map((x, i) => x - rest[i] - litBlack[i] + black[i]);
+    const wanted = BALL_VIEWS.flatMap(({ normals }) => normals.flatMap((n) =>
+        irradiance.map((e) => e * Math.max(0, dot(toKiln(n), direction)) / Math.PI)));
+    const { rms, most } = compare([[[shown]]], [[[wanted]]]);
+    say(`the light alone: ${percent(rms)} rms and ${percent(most)} at most`);
+    check(rms < 0.01 && most < 0.01, `the light is off by ${rms} rms, ${most} at most`);
+}
+
 // The distance of the ball's centre from the ray towards the light, as far as it lies in front.
 function missOf(place, toLight, centre) {
     const way = add(centre, -1, place), along = Math.max(0, dot(way, toLight));
@@ -93,7 +110,7 @@ async function checkGround({ name, model, loads }, { lights }, draw, say) {
 const proofOf = (engine) => ({
     ...engine, title: `lights in ${engine.name}`, prepare: () => prepare(engine),
     check: async (files, draw, say) => {
-        await checkBall(engine, files, draw, say);
+        await (engine.reflects ? checkDifference : checkBall)(engine, files, draw, say);
         if (engine.ground)
             await checkGround(engine, files, draw, say);
     },
@@ -101,5 +118,6 @@ const proofOf = (engine) => ({
 export default [
     proofOf({ ...three, size: 64, ground: true }),
     proofOf({ ...babylon, size: 64, ground: true }),
+    proofOf({ ...filament, size: 64, reflects: true }),
     proofOf(playcanvas),
 ];
