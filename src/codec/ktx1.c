@@ -112,6 +112,7 @@ kiln_result ki_ktx1_encode(const kiln_map *map, const kiln_sh *sh, const char *e
 typedef struct header {
     ki_texels texels;
     uint32_t width, height, face_count, level_count, pair_bytes;
+    int align;     // rows of level 0 end at multiples of so many bytes
     bool by_cmgen; // true: the header has the unusual values that Filament's cmgen writes
 } header;
 
@@ -247,22 +248,26 @@ static bool read_pairs(kiln_context *context, const uint8_t *bytes, size_t size,
     return !r.failed;
 }
 
-// Returns the number of bytes of level k of a face, whose rows end at multiples of 4 bytes.
-static uint64_t level_bytes(const header *h, uint32_t k)
+// Returns the number of bytes of level k of a face, whose rows end at multiples of `align` bytes.
+static uint64_t level_bytes(const header *h, uint32_t k, int align)
 {
     int width = ki_max(1, (int)(h->width >> k)), height = ki_max(1, (int)(h->height >> k));
-    return ki_texels_size(&h->texels, width, height, 4);
+    return ki_texels_size(&h->texels, width, height, align);
 }
 
 // Checks that all levels are in the file, and sets *first to the texels of level 0. The stated size
-// is that of a face; some programs state the size of all six.
-static bool has_levels(ki_reader *r, const header *h, const uint8_t **first)
+// is that of a face; some programs state the size of all six. Rows end at multiples of 4 bytes by
+// the KTX specification; Filament's mipgen writes them without such an end, as the size shows.
+static bool has_levels(ki_reader *r, header *h, const uint8_t **first)
 {
     for (uint32_t k = 0; k < h->level_count; k++) {
-        uint64_t size = level_bytes(h, k), all = h->face_count * size, stated = ki_read_u32(r);
+        uint64_t stated = ki_read_u32(r), tight = level_bytes(h, k, 1);
+        int align = stated == tight || stated == h->face_count * tight ? 1 : 4;
+        uint64_t size = level_bytes(h, k, align), all = h->face_count * size;
         // Six faces may have more bytes than a size_t of 32 bits counts.
         if ((stated != size && stated != all) || all > ki_reader_left(r))
             return false;
+        h->align = k ? h->align : align;
         const uint8_t *at = ki_read_bytes(r, (size_t)all);
         *first = k ? *first : at;
     }
@@ -308,8 +313,8 @@ static kiln_result read_texels(kiln_context *context, const header *h, const uin
          left = strstr(info->orientation, "S=l") != NULL;
     for (size_t face = 0; face < h->face_count && result == KILN_OK; face++) {
         float *to = rgb + 3 * face * (size_t)w * (size_t)height;
-        if (!ki_texels_read(context, &h->texels, from + face * (size_t)level_bytes(h, 0), w, height,
-                            4, to))
+        if (!ki_texels_read(context, &h->texels, from + face * (size_t)level_bytes(h, 0, h->align),
+                            w, height, h->align, to))
             result = ki_fail_cancelled(error, "reading");
         else
             ki_texels_flip(to, w, height, left, up);
