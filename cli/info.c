@@ -195,7 +195,7 @@ static int describe(const cli_arguments *a, const info_values *values, cli_work 
         json_array(&j, NULL);
     for (int i = 0; i < a->rest_count && !cli_interrupted(); i++) {
         kiln_file_info info;
-        kiln_lights found, *lights = values->lights ? &found : NULL;
+        kiln_lights found = {0}, *lights = values->lights ? &found : NULL;
         if (kiln_file_describe(work->context, a->rest[i], &info, &work->error) ||
             (lights && find_lights(work, a->rest[i], &info, lights))) {
             if (!cli_interrupted())

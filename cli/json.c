@@ -25,7 +25,7 @@ static void begin(json *j, const char *key)
     if (j->filled[j->depth])
         fputs(array ? ", " : ",", stdout);
     j->filled[j->depth] = true;
-    if (!j->depth || array)
+    if (!key || !j->depth || array)
         return;
     putchar('\n');
     indent(j->depth);

@@ -119,7 +119,7 @@ kiln_result kiln_lights_sh(const kiln_lights *lights, int bands, kiln_sh *sh, ki
 kiln_result kiln_map_clamp(kiln_context *context, kiln_map *map, double limit, kiln_clamp *clamp,
                            kiln_error *error)
 {
-    kiln_clamp unused;
+    kiln_clamp unused = {0};
     double before[3], after[3], base;
     clamp = clamp ? clamp : &unused;
     *clamp = (kiln_clamp){0};

@@ -36,7 +36,7 @@ static void find_word(const char *text, const char *key, char *value, size_t roo
 
 static void read_levels(const char *list, kiln_file_info *info)
 {
-    float roughness[KILN_MAX_LEVELS];
+    float roughness[KILN_MAX_LEVELS] = {0};
     int count = 0;
     for (double value; *list; list += *list == ',') {
         list = ki_parse_number(list, &value);

@@ -322,7 +322,7 @@ kiln_result ki_decode_layer(kiln_context *context, const uint8_t *bytes, size_t 
                             const char *name, const char *layer, ki_decoded *decoded,
                             kiln_file_info *info, kiln_error *error)
 {
-    kiln_file_info unused;
+    kiln_file_info unused = {0};
     info = info ? info : &unused;
     if (decoded)
         *decoded = (ki_decoded){0};

@@ -220,7 +220,7 @@ static void read_specular(ki_json *j, light *l)
 static void read_light(ki_json *j, light *l)
 {
     char key[32];
-    double unused[3];
+    double unused[3] = {0};
     l->found = true;
     ki_json_enter_object(j);
     while (ki_json_member(j, key, sizeof key)) {

@@ -15,6 +15,8 @@ static int sort_symbols(const uint32_t *counts, int count, uint16_t *sorted)
         int place[257] = {0};
         int n = pass ? used : count;
         for (int i = 0; i < n; i++) {
+            // The first pass has set `by_low`, which cppcheck does not see.
+            // cppcheck-suppress legacyUninitvar
             int symbol = pass ? by_low[i] : i;
             if (counts[symbol])
                 place[(counts[symbol] >> 8 * pass & 255) + 1]++;

@@ -72,7 +72,7 @@ kiln_result kiln_map_from_pixels(kiln_context *context, const kiln_pixels *pixel
 {
     size_t row_bytes;
     kiln_image image = {.width = pixels->width, .height = pixels->height, .channels = 3};
-    kiln_load_report unused, *report = pixels->report ? pixels->report : &unused;
+    kiln_load_report unused = {0}, *report = pixels->report ? pixels->report : &unused;
     *map = (kiln_map){0};
     *report = (kiln_load_report){0};
     kiln_result result = check_pixels(pixels, &row_bytes, error);

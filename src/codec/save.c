@@ -247,7 +247,7 @@ kiln_result ki_map_write(ki_file_set *set, kiln_context *context, const kiln_map
                          kiln_error *error)
 {
     static const kiln_save_def defaults = {0};
-    kiln_save_report unused;
+    kiln_save_report unused = {0};
     def = def ? def : &defaults;
     kiln_result result = ki_map_check(map, error);
     if (result == KILN_OK)

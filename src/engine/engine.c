@@ -260,27 +260,22 @@ static kiln_result check_map(const ki_recipe *recipe, const kiln_map *map, const
     return check_levels(recipe, map->size, map->level_count, error);
 }
 
-// Turns a cube and harmonics from kiln's axes to the engine's and calls the function that writes
-// the engine's files.
-static kiln_result write_turned(ki_export *to, const ki_recipe *recipe, const kiln_map *map,
-                                const kiln_sh *sh, kiln_error *error)
+// Turns a cube and harmonics from kiln's axes to the engine's. Allocates the texels of `turned`.
+static kiln_result turn(kiln_context *context, const ki_recipe *recipe, const kiln_map *map,
+                        const kiln_sh *sh, kiln_map *turned, kiln_sh *turned_sh, kiln_error *error)
 {
-    kiln_map turned = {.shape = KILN_SHAPE_CUBE,
-                       .size = map->size,
-                       .level_count = map->level_count,
-                       .smallest = map->smallest};
-    kiln_sh few = *sh, turned_sh;
+    *turned = (kiln_map){.shape = KILN_SHAPE_CUBE,
+                         .size = map->size,
+                         .level_count = map->level_count,
+                         .smallest = map->smallest};
+    kiln_sh few = *sh;
     few.bands = 3;
-    kiln_result result = ki_map_allocate(to->context, &turned, error);
+    kiln_result result = ki_map_allocate(context, turned, error);
     if (result != KILN_OK)
         return result;
-    ki_turn_cube(map, &recipe->axes, &turned);
-    ki_turn_sh(&few, &recipe->axes, &turned_sh);
-    to->map = &turned;
-    to->sh = &turned_sh;
-    result = recipe->write(to, error);
-    kiln_map_free(&turned);
-    return result;
+    ki_turn_cube(map, &recipe->axes, turned);
+    ki_turn_sh(&few, &recipe->axes, turned_sh);
+    return KILN_OK;
 }
 
 kiln_result ki_engine_write(ki_file_set *set, kiln_context *context, const kiln_engine *engine,
@@ -299,11 +294,22 @@ kiln_result ki_engine_write(ki_file_set *set, kiln_context *context, const kiln_
     bool least = format == KILN_FORMAT_B10G11R11;
     if (report)
         ki_count_cut(map, least ? kiln_format_limit(format) : engine->limit, report);
-    ki_export to = {
-        .context = context, .lights = lights, .format = format, .path = path, .set = set};
-    result = write_turned(&to, recipe, map, sh, error);
+    kiln_map turned;
+    kiln_sh turned_sh;
+    result = turn(context, recipe, map, sh, &turned, &turned_sh, error);
+    if (result != KILN_OK)
+        return result;
+    ki_export to = {.context = context,
+                    .map = &turned,
+                    .sh = &turned_sh,
+                    .lights = lights,
+                    .format = format,
+                    .path = path,
+                    .set = set};
+    result = recipe->write(&to, error);
     if (report)
         report->file_count = to.file_count;
+    kiln_map_free(&turned);
     return result;
 }
 

@@ -104,7 +104,7 @@ static void a_file_of_rec709_keeps_its_bits(void **state)
     for (int i = 0; i < 3; i++) {
         plain_file file = constant_file(0.1F, 1e-30F, 54321.125F);
         file.chromaticities = stated[i];
-        kiln_load_report report;
+        kiln_load_report report = {0};
         kiln_map map;
         CHECK_OK(load(&file, &report, &map));
         for (int k = 0; k < 24; k++)
@@ -123,7 +123,7 @@ static void the_adopted_neutral_becomes_white(void **state)
     plain_file file = constant_file(1.175955F, 0.975726F, 0.722041F);
     file.neutral = d50;
     check_color(&file, 1, 1, 1, 5e-4);
-    kiln_load_report report;
+    kiln_load_report report = {0};
     kiln_map map;
     CHECK_OK(load(&file, &report, &map));
     check_note(
@@ -146,7 +146,7 @@ static void strange_colours_are_kept_or_refused(void **state)
     file.chromaticities = acescg;
     check_color(&file, -0.621792, 1.140805, -0.128969, 2e-6);
     // An infinite red becomes 65504; no colour can be computed for the texel, whose other channels stay.
-    kiln_load_report report;
+    kiln_load_report report = {0};
     kiln_map map;
     file = constant_file(0, 1, 1);
     file.chromaticities = acescg;
@@ -174,7 +174,7 @@ static void the_luminance_of_white_is_told_and_not_applied(void **state)
     plain_file file = constant_file(0.25F, 0.5F, 1);
     file.luminance = &luminance;
     check_color(&file, 0.25, 0.5, 1, 0);
-    kiln_load_report report;
+    kiln_load_report report = {0};
     kiln_map map;
     CHECK_OK(load(&file, &report, &map));
     check_note(&report, 0, KILN_NOTE_ASSUMPTION,
@@ -385,7 +385,7 @@ static void maps_of_exrenvmap_are_read_in_place(void **state)
     for (int i = 0; i < 2; i++) {
         kiln_map map;
         kiln_file_info info;
-        kiln_load_report report;
+        kiln_load_report report = {0};
         const kiln_load_def def = {.report = &report};
         CHECK_OK(kiln_map_load(context, files[i].path, &def, &map, &error));
         assert_int_equal(map.shape, files[i].shape);

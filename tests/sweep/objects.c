@@ -342,7 +342,7 @@ static void saves(void **state)
 {
     (void)state;
     kiln_files files;
-    kiln_save_report report;
+    kiln_save_report report = {0};
     uint8_t packed[16];
     kiln_sh sh = {.bands = 3};
     kiln_image image;
@@ -392,7 +392,7 @@ static void engines(void **state)
     float roughness[KILN_MAX_LEVELS];
     kiln_prefilter_def def;
     kiln_sh sh = {.bands = 3};
-    kiln_save_report report;
+    kiln_save_report report = {0};
     kiln_files files;
     for (int i = -1; i < 0 || kiln_engine_at(i); i++) {
         const kiln_engine *engine = kiln_engine_at(i); // NULL first
