@@ -20,7 +20,7 @@
 
 /// Names of the layer that holds the picture, in the order of preference; upper and lower case
 /// count as equal. A layer counts by the end of its name after a dot, a part without layers by its
-/// own name.
+/// own name. The comment after a name says which programs give the picture's layer this name.
 static const char *const picture_names[] = {
     "Composite.Combined", // written by Blender's compositor, from the layer below
     "Combined",           // written by Blender and Cycles: ViewLayer.Combined

@@ -260,7 +260,8 @@ static void complete_set(search *s, const ki_face_set *set, int face, const char
     }
 }
 
-// Returns false if the caller asks to stop.
+// Finds the sets of six face names that the folder's file names complete, and keeps the most complete
+// of the partial sets for the error message. Returns false if the caller asks to stop.
 static bool search_names(search *s)
 {
     for (size_t i = 0; i < s->listing->count; i++) {

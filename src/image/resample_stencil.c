@@ -13,7 +13,9 @@
 #include <string.h>
 
 enum {
-    FEWEST = 32, // a map with fewer texels along a face is computed finer and then averaged
+    // least number of texels along a side of a computed map; each texel of a smaller map is the mean
+    // of a block of texels of a computed map
+    FEWEST = 32,
     AHEAD = 192, // number of stencils by which the prefetch of their texels precedes their sum
     // number of blocks of 4 texels that are summed as floats before the sum is added to doubles
     FLUSH = 64
