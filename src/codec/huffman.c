@@ -57,6 +57,8 @@ static void count_lengths(const uint32_t *counts, const uint16_t *sorted, int us
     }
     depth[made - 1] = 0;
     for (int i = made - 2; i >= 0; i--) {
+        // Each node below the root was made a child above, so its parent is set.
+        // cppcheck-suppress uninitvar
         depth[i] = (uint8_t)(depth[parent[i]] + 1);
         if (i < used)
             with[depth[i]]++;
