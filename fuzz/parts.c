@@ -120,7 +120,7 @@ void fuzz_icc(const uint8_t *bytes, size_t size)
     for (int i = 0; i < SAMPLES; i++)
         for (int c = 0; c < 3; c++)
             image.pixels[3 * i + c] = table[(i * (c + 1)) % SAMPLES];
-    ki_file_color_finish(context, &color, &image);
+    fuzz_must(ki_file_color_finish(context, &color, &image, NULL) == KILN_OK);
     for (int i = 0; kiln_load_report_note(&report, i, &note); i++)
         fuzz_must_end(note.text, sizeof note.text);
     kiln_image_free(&image);
