@@ -157,7 +157,7 @@ static const char *const lines[][11] = {
     {"info", "IN", "--json"},
     {"info", "-"},
     {"lights", "IN"},
-    {"bake", "IN", "-o", "out.ktx2", "--size", "4", "--irradiance-size", "2"},
+    {"bake", "IN", "-o", "out.ktx2", "--size", "4", "--sh-bands", "2", "--sh", "sh.json"},
     {"bake", "-", "-o", "out.ktx2", "--size", "4", "--json"},
     {"bake", "IN", "-o", "out.exr", "--shape", "octahedron", "--size", "4", "--levels", "1"},
     {"bake", "IN", "-o", "out.dds", "--size", "4", "--layout", "probe", "--negative", "zero"},
@@ -262,6 +262,7 @@ static int run_once(const char *kiln, const char *finds, long run)
     unlink("out.ktx2");
     unlink("out.dds");
     unlink("out.exr");
+    unlink("sh.json");
     return fault ? -1 : code;
 }
 
