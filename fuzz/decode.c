@@ -103,64 +103,6 @@ void fuzz_decode(const uint8_t *bytes, size_t size)
     fuzz_end(context);
 }
 
-// Decodes a copy that begins with the bytes by which kiln recognises the format.
-static void decode_as(const char *first, size_t first_size, const uint8_t *bytes, size_t size)
-{
-    if (size < first_size)
-        return;
-    uint8_t *copy = malloc(size);
-    fuzz_must(copy != NULL);
-    memcpy(copy, bytes, size);
-    memcpy(copy, first, first_size);
-    fuzz_decode(copy, size);
-    free(copy);
-}
-
-void fuzz_exr(const uint8_t *bytes, size_t size)
-{
-    decode_as("\x76\x2f\x31\x01", 4, bytes, size);
-}
-
-void fuzz_hdr(const uint8_t *bytes, size_t size)
-{
-    decode_as("#?", 2, bytes, size);
-}
-
-void fuzz_png(const uint8_t *bytes, size_t size)
-{
-    decode_as("\x89PNG\r\n\x1a\n", 8, bytes, size);
-}
-
-void fuzz_jpeg(const uint8_t *bytes, size_t size)
-{
-    decode_as("\xff\xd8\xff", 3, bytes, size);
-}
-
-void fuzz_ktx1(const uint8_t *bytes, size_t size)
-{
-    decode_as("\xabKTX 11\xbb\r\n\x1a\n", 12, bytes, size);
-}
-
-void fuzz_ktx2(const uint8_t *bytes, size_t size)
-{
-    decode_as("\xabKTX 20\xbb\r\n\x1a\n", 12, bytes, size);
-}
-
-void fuzz_dds(const uint8_t *bytes, size_t size)
-{
-    decode_as("DDS ", 4, bytes, size);
-}
-
-void fuzz_env(const uint8_t *bytes, size_t size)
-{
-    decode_as("\x86\x16\x87\x96\xf6\xd6\x96\x36", 8, bytes, size);
-}
-
-void fuzz_glb(const uint8_t *bytes, size_t size)
-{
-    decode_as("glTF", 4, bytes, size);
-}
-
 void fuzz_harmonics(const uint8_t *bytes, size_t size)
 {
     static const struct {

@@ -6,18 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void must(bool good)
-{
-    if (!good)
-        abort();
-}
-
 // The input is laid out several times, so that there are matches and more than one block.
 static size_t repeat(const uint8_t *data, size_t size, uint8_t **plain)
 {
     size_t times = 1 + data[0] % 64, total = times * size;
     *plain = malloc(total);
-    must(*plain != NULL);
+    fuzz_must(*plain != NULL);
     for (size_t i = 0; i < total; i++)
         (*plain)[i] = (uint8_t)(data[i % size] + (data[0] & 64 ? i / size : 0));
     return total;
@@ -27,18 +21,18 @@ static void there_and_back(ki_deflater *deflater, const uint8_t *plain, size_t s
 {
     size_t room = ki_deflate_bound(part) * (size / part + 1), length = 0;
     uint8_t *packed = malloc(room), *back = malloc(size);
-    must(packed && back);
+    fuzz_must(packed && back);
     for (size_t at = 0; at < size; at += part) {
         size_t count = size - at < part ? size - at : part;
         int place = (at ? 0 : KI_DEFLATE_FIRST) | (at + count == size ? KI_DEFLATE_LAST : 0);
         length += ki_deflate_part(deflater, plain + at, at, count, place, packed + length,
                                   ki_deflate_bound(count));
     }
-    must(ki_inflate_own(packed, length, back, size));
-    must(!memcmp(back, plain, size));
+    fuzz_must(ki_inflate_own(packed, length, back, size));
+    fuzz_must(!memcmp(back, plain, size));
     if (part >= size) {
-        must(ki_deflate(deflater, plain, size, packed, length) == length);
-        must(ki_deflate(deflater, plain, size, packed, length - 1) == 0);
+        fuzz_must(ki_deflate(deflater, plain, size, packed, length) == length);
+        fuzz_must(ki_deflate(deflater, plain, size, packed, length - 1) == 0);
     }
     free(packed);
     free(back);
@@ -55,7 +49,7 @@ void fuzz_deflate(const uint8_t *data, size_t size)
     if (kiln_context_create(&(kiln_context_def){.thread_count = 1}, &context, NULL) != KILN_OK)
         return;
     ki_deflater *deflater = ki_deflater_create(context);
-    must(deflater != NULL);
+    fuzz_must(deflater != NULL);
     uint8_t *plain;
     size_t total = repeat(data, size, &plain);
     there_and_back(deflater, plain, total, total);

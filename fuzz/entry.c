@@ -7,6 +7,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static const fuzz_target *target;
     target = target ? target : fuzz_find(KILN_FUZZ_TARGET);
-    target->run(data, size);
+    fuzz_run(target, data, size);
     return 0;
 }

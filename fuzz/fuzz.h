@@ -1,6 +1,7 @@
-// Fuzz targets: functions that take any bytes and must return, within their memory, without a leak, with
-// results that keep the laws which the target states. libFuzzer calls them (entry.c) with bytes that it
-// changes to reach more code; the test `corpus` calls them (replay.c) with files that it found earlier.
+// Fuzz targets: functions that take any bytes. A target must return, must not use memory that is not its own, must
+// release what it allocates, and aborts if a result breaks a law that its comment states. libFuzzer calls a target
+// (entry.c) with bytes that libFuzzer changes to reach more code. The test `corpus` calls the targets (replay.c) with
+// the files that libFuzzer found earlier.
 #ifndef KILN_FUZZ_H
 #define KILN_FUZZ_H
 
@@ -9,26 +10,24 @@
 typedef struct fuzz_target {
     const char *name;
     void (*run)(const uint8_t *bytes, size_t size);
+    // For a target that reads files of one format: the bytes by which kiln recognises the format. NULL for others.
+    const char *first;
+    size_t first_size;
 } fuzz_target;
 
 /// All targets; the last has no name.
 extern const fuzz_target fuzz_targets[];
+/// Runs a target with a copy of the bytes that begins with the target's first bytes, so that every input is a file of
+/// the target's format. Inputs shorter than the first bytes are left out.
+void fuzz_run(const fuzz_target *target, const uint8_t *bytes, size_t size);
 /// Returns the target with this name, or ends the program.
 const fuzz_target *fuzz_find(const char *name);
 
 // The targets, each in the file that is named here.
 
-// decode.c: a file of one format, whose first bytes are put in place, so that every input is of the format.
-void fuzz_exr(const uint8_t *bytes, size_t size);
-void fuzz_hdr(const uint8_t *bytes, size_t size);
-void fuzz_png(const uint8_t *bytes, size_t size);
-void fuzz_jpeg(const uint8_t *bytes, size_t size);
-void fuzz_ktx1(const uint8_t *bytes, size_t size);
-void fuzz_ktx2(const uint8_t *bytes, size_t size);
-void fuzz_dds(const uint8_t *bytes, size_t size);
-void fuzz_env(const uint8_t *bytes, size_t size);
-void fuzz_glb(const uint8_t *bytes, size_t size);
-/// What the targets above do with a file's bytes, whatever its format.
+// decode.c: files.
+
+/// Describes and reads a file of any format.
 void fuzz_decode(const uint8_t *bytes, size_t size);
 /// Harmonics as JSON, lines of text, Filament's text and C arrays.
 void fuzz_harmonics(const uint8_t *bytes, size_t size);

@@ -53,8 +53,8 @@ static void add_channels(ki_writer *w, const channel *channels)
     ki_writer_free(&list);
 }
 
-// Byte 0 is the compression, byte 1 the channels and whether there are tiles, bytes 2 and 3 the size; the
-// other bytes are the packed texels of the only chunk.
+// An EXR file of one chunk. The input's byte 0 chooses the compression, byte 1 the channels and whether the file has
+// tiles, and bytes 2 and 3 the width and the height. The input's other bytes are the chunk's packed texels.
 void fuzz_exr_chunk(const uint8_t *bytes, size_t size)
 {
     static const int lines[10] = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};

@@ -69,7 +69,8 @@ void fuzz_table(const uint8_t *bytes, size_t size)
     fuzz_end(context);
 }
 
-// Takes the next line out of the text, or "".
+// Returns the line that begins at *text, ends the line by a NUL, and moves *text behind the line. Returns "" at the end
+// of the text.
 static char *next_line(char **text)
 {
     char *line = *text, *end = strchr(line, '\n');

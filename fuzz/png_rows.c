@@ -46,12 +46,10 @@ void fuzz_png_rows(const uint8_t *data, size_t size)
     size_t rows = 40 * 2 * (40 * 8 + 1), given = size - HEAD < rows ? size - HEAD : rows;
     uint8_t *raw = calloc(rows, 1), *packed = malloc(ki_deflate_bound(rows));
     ki_deflater *deflater = ki_deflater_create(context);
-    if (!raw || !packed || !deflater)
-        abort();
+    fuzz_must(raw && packed && deflater);
     memcpy(raw, data + HEAD, given);
     size_t length = ki_deflate(deflater, raw, rows, packed, ki_deflate_bound(rows));
-    if (!length)
-        abort();
+    fuzz_must(length > 0);
     ki_writer w = {.context = context};
     ki_write(&w, "\x89PNG\r\n\x1a\n", 8);
     add_chunk(&w, "IHDR", head, sizeof head);
@@ -63,8 +61,7 @@ void fuzz_png_rows(const uint8_t *data, size_t size)
     kiln_result result = ki_png_decode(context, w.bytes, w.size, "fuzz", &image, NULL, NULL, NULL);
     // The only thing that can be wrong is a filter.
     for (size_t i = 0; result == KILN_OK && i < 3 * (size_t)image.width * (size_t)image.height; i++)
-        if (!(image.pixels[i] >= 0 && image.pixels[i] <= 1))
-            abort();
+        fuzz_must(image.pixels[i] >= 0 && image.pixels[i] <= 1);
     kiln_image_free(&image);
     ki_writer_free(&w);
     ki_deflater_free(deflater);
