@@ -177,8 +177,8 @@ int ki_exr_list_runs(const ki_exr_box *box, ki_exr_run runs[KI_EXR_MAX_CHANNELS]
 /// the samples of a subsampled channel does not count for that channel.
 size_t ki_exr_count_lines(const ki_exr_box *box);
 /// Finds the bytes of a box at which the lines of every channel begin. `offset` has room for as many
-/// numbers as ki_exr_count_lines returns; lines[c] becomes the part of `offset` for
-/// channel c, or NULL if no column of channel c is in the box.
+/// numbers as ki_exr_count_lines returns; lines[c] becomes the part of `offset` for channel c, or
+/// NULL if no column of channel c is in the box.
 void ki_exr_find_lines(const ki_exr_box *box, size_t *offset,
                        const size_t *lines[KI_EXR_MAX_CHANNELS]);
 /// Returns the number of bytes of a box's samples, or 0 if the number exceeds size_t.

@@ -20,17 +20,17 @@
 
 /// Names of the layer that holds the picture, in the order of preference; upper and lower case
 /// count as equal. A layer counts by the end of its name after a dot, a part without layers by its
-/// own name. The comment after a name says which programs give the picture's layer this name.
+/// own name. The comment behind a name says which programs write a layer of this name.
 static const char *const picture_names[] = {
-    "Composite.Combined", // written by Blender's compositor, from the layer below
+    "Composite.Combined", // the result of Blender's compositor
     "Combined",           // written by Blender and Cycles: ViewLayer.Combined
     "rgba",               // written by Arnold, and by Nuke for its main layer
     "rgb",                // written by Nuke
     "beauty",             // written by Arnold, Redshift, Octane and Maya (masterLayer.beauty)
     "RGB_color",          // written by V-Ray
     "RGB color",          // written by V-Ray in 3ds Max
-    "Ci",                 // written by RenderMan
-    "C",                  // written by Mantra and Karma
+    "Ci",                 // the picture in files of RenderMan
+    "C",                  // the picture in files of Mantra and Karma
     "FinalImage",         // written by Unreal Engine
     "Image",              // written by Blender's file output node
     "color",

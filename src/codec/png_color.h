@@ -16,8 +16,8 @@ typedef struct ki_png_meaning {
     bool transparent; ///< true: the chunk tRNS names transparent colours
 } ki_png_meaning;
 
-/// Reads the chunks about colours and orientation, and notes what other chunks say. Fails if a chunk names colours that
-/// kiln cannot convert.
+/// Reads the chunks about colours and orientation, and notes which statements of other chunks kiln
+/// ignores. Fails if a chunk names colours that kiln cannot convert.
 kiln_result ki_png_read_meaning(kiln_context *context, const uint8_t *bytes, size_t size,
                                 const char *name, ki_png_meaning *meaning, kiln_load_report *report,
                                 kiln_error *error);

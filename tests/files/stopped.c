@@ -119,7 +119,7 @@ static void put_cube(ki_writer *w, int size, kiln_format format)
     kiln_map_free(&cube);
 }
 
-// Cubes of one and of four strips of 64 rows a face.
+// The texels of a face are unpacked in strips of 64 rows: one strip for a cube of 64, four for a cube of 256.
 static void put_small_cube(ki_writer *w)
 {
     put_cube(w, 64, KILN_FORMAT_B10G11R11);

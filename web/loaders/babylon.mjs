@@ -1,9 +1,9 @@
-// Puts the lights that `kiln bake --sun extract --lights-file sun.json` took out of the environment into a scene
-// of Babylon.js:
+// Adds directional lights to a scene of Babylon.js: those that `kiln bake --sun extract --lights-file sun.json` took
+// out of the environment and wrote to sun.json.
 //     addLights(scene, await (await fetch('sun.json')).json());
-// A directional light of Babylon.js has the intensity of the irradiance of a surface that faces the light. White
-// diffuse surfaces of PBRMaterial then reflect the radiance irradiance / pi. kiln's (x, y, z) is (x, y, -z) in
-// Babylon's left-handed scenes.
+// The intensity of a light is set to the irradiance of a surface that faces the light. A white diffuse surface of
+// PBRMaterial then reflects the radiance irradiance / pi. A direction (x, y, z) of kiln is (x, y, -z) in Babylon's
+// left-handed scenes.
 //
 // `shadows` is the radius of the sphere around the origin in which meshes cast and receive shadows. Each light then
 // has a shadow generator, which must be told the meshes: light.getShadowGenerator().addShadowCaster(mesh). Meshes

@@ -30,10 +30,11 @@ export async function loadEnvironment(url) {
     return parseEnvironment(new Uint8Array(await response.arrayBuffer()));
 }
 
-// Puts the lights that `kiln bake --sun extract --lights-file sun.json` took out of the environment into a scene:
+// Adds directional lights to a scene of three.js: those that `kiln bake --sun extract --lights-file sun.json` took out
+// of the environment and wrote to sun.json.
 //     addLights(scene, await (await fetch('sun.json')).json());
-// A directional light of three.js has the intensity of the irradiance of a surface that faces the light, so that
-// white diffuse surfaces reflect the radiance irradiance / pi. kiln's (x, y, z) is (-z, y, x) in three.js.
+// The intensity of a light is set to the irradiance of a surface that faces the light. A white diffuse surface then
+// reflects the radiance irradiance / pi. A direction (x, y, z) of kiln is (-z, y, x) in three.js.
 // `shadows` is the radius of the sphere around the origin in which objects cast and receive shadows. Returns the
 // lights, whose shadows may be changed.
 export function addLights(scene, { lights }, { shadows = 0 } = {}) {
