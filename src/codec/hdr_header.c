@@ -176,6 +176,43 @@ static kiln_result read_aspect(header_reader *h, const char *line, const char *t
     return KILN_OK;
 }
 
+// Notes a line GAMMA, which Radiance does not know, but the files of some programs have.
+static kiln_result read_gamma(header_reader *h, const char *line, const char *text,
+                              kiln_error *error)
+{
+    double value;
+    (void)error;
+    if (!read_numbers(text, &value, 1) || value != 1)
+        ki_note(h->report, KILN_NOTE_ASSUMPTION, true,
+                "the header's line \"%s\" was ignored: values were taken as linear light", line);
+    return KILN_OK;
+}
+
+// Notes the last view type, such as -vtv, of a line VIEW. None of Radiance's views (man rpict) is a
+// panorama of equal angles. A line without a type states the place of the camera only.
+static kiln_result read_view(header_reader *h, const char *line, const char *text,
+                             kiln_error *error)
+{
+    static const struct {
+        char letter;
+        const char *name;
+    } types[] = {{'v', "a perspective view"},     {'l', "a parallel view"},
+                 {'c', "a cylindrical panorama"}, {'h', "a hemispherical fisheye"},
+                 {'a', "an angular fisheye"},     {'s', "a planisphere"}};
+    const char *at = NULL;
+    (void)line;
+    (void)error;
+    while ((text = strstr(text, "-vt")) != NULL)
+        at = text += 3;
+    for (size_t i = 0; at && i < sizeof types / sizeof *types; i++)
+        if (*at == types[i].letter)
+            ki_note(h->report, KILN_NOTE_ASSUMPTION, false,
+                    "the header's VIEW says that the picture is %s (-vt%c), which was ignored: the "
+                    "layout does not follow from VIEW",
+                    types[i].name, *at);
+    return KILN_OK;
+}
+
 static kiln_result read_format(header_reader *h, const char *line, const char *text,
                                kiln_error *error)
 {
@@ -201,7 +238,9 @@ static kiln_result read_line(header_reader *h, const char *line, kiln_error *err
                 {"EXPOSURE=", read_exposure},
                 {"COLORCORR=", read_correction},
                 {"PRIMARIES=", read_primaries},
-                {"PIXASPECT=", read_aspect}};
+                {"PIXASPECT=", read_aspect},
+                {"GAMMA=", read_gamma},
+                {"VIEW=", read_view}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         size_t length = strlen(rows[i].keyword);
         if (!strncmp(line, rows[i].keyword, length))

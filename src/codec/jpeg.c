@@ -110,8 +110,10 @@ static kiln_result read_head(jpeg_file *f, kiln_load_report *report, kiln_error 
     }
     if (result == KILN_OK)
         read_color(f, report);
-    if (result == KILN_OK)
+    if (result == KILN_OK) {
+        ki_note_pixel_aspect(report, "the JFIF header", f->head.aspect);
         ki_note_upright(f->head.orientation, report);
+    }
     return result;
 }
 

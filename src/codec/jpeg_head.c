@@ -1,5 +1,5 @@
-// The segments of JPEG files. In: bytes. Out: size and kind of the picture, and the places of its
-// Exif orientation, XMP packet, ICC profile, gain-map numbers and further pictures. Method:
+// The segments of JPEG files. In: bytes. Out: size and kind of the picture, the shape of its
+// pixels, and the places of its Exif orientation, XMP packet, ICC profile, gain-map numbers and further pictures. Method:
 // segments are walked one after the other (ITU-T T.81, annex B); the data of a scan are passed by a
 // search for the next marker. Each byte is visited once.
 #include "codec/jpeg_head.h"
@@ -10,6 +10,7 @@ enum {
     SOI = 0xd8,
     EOI = 0xd9,
     SOS = 0xda,
+    APP0 = 0xe0,
     APP1 = 0xe1,
     APP2 = 0xe2,
     RST0 = 0xd0,
@@ -85,6 +86,18 @@ static bool is_named(ki_span segment, const char *name, size_t count, ki_span *r
 
 #define NAMED(segment, name, rest) is_named(segment, name, sizeof(name), rest)
 
+// Reads the segment JFIF (ITU-T T.871, 10.1), which states the pixels per unit of length along x and
+// y, whichever the unit is. The first such segment counts; numbers of 0 state nothing.
+static void read_app0(ki_jpeg_head *head, ki_span segment)
+{
+    enum { DENSITY = 3 }; // place of the two numbers, after the version and the unit
+    ki_span rest;
+    if (head->aspect != 0 || !NAMED(segment, "JFIF", &rest) || rest.size < DENSITY + 4)
+        return;
+    unsigned x = u16_at(rest.bytes + DENSITY), y = u16_at(rest.bytes + DENSITY + 2);
+    head->aspect = x && y ? (double)y / (double)x : 1;
+}
+
 static void read_app1(ki_jpeg_head *head, ki_span segment)
 {
     ki_span rest;
@@ -129,7 +142,9 @@ static bool is_frame(int marker)
 
 static void read_segment(ki_jpeg_head *head, int marker, ki_span segment)
 {
-    if (marker == APP1)
+    if (marker == APP0)
+        read_app0(head, segment);
+    else if (marker == APP1)
         read_app1(head, segment);
     else if (marker == APP2)
         read_app2(head, segment);
@@ -176,6 +191,7 @@ kiln_result ki_jpeg_read_head(kiln_context *context, const uint8_t *bytes, size_
     }
     head->end = at;
     head->orientation = head->orientation ? head->orientation : 1;
+    head->aspect = head->aspect != 0 ? head->aspect : 1;
     if (!head->components || !head->width || !head->height)
         return ki_fail(error, KILN_ERROR_FORMAT,
                        "%s: the JPEG is damaged: no segment of its %zu bytes gives the picture's "

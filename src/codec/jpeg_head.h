@@ -16,6 +16,7 @@ typedef struct ki_jpeg_head {
     int width, height, components, precision;
     bool progressive;
     int orientation;  ///< Exif's orientation, 1 to 8; 1 is upright
+    double aspect;    ///< width of a pixel divided by its height, as the JFIF segment says, or 1
     ki_span xmp;      ///< text of the XMP packet
     ki_span iso;      ///< gain-map numbers of ISO 21496-1: the content of their segment
     ki_span pictures; ///< the index of the file's pictures (CIPA DC-007), a TIFF file

@@ -66,8 +66,8 @@ static void exposure_and_correction_are_divided_out(void **state)
     static const double both[3] = {2.5 * 2 * 3, 2.5 * 4 * 3, 2.5 * 0.5 * 5};
     (void)state;
     check_divided("", one, 0, 0, false, NULL);
-    check_divided("EXPOSURE=1\nVIEW= -vtv -vh 90\n\tEXPOSURE=7\nGAMMA=2.2\nCOLORCORR=1 1 1\n", one,
-                  0, 0, false, NULL);
+    check_divided("EXPOSURE=1\nVIEW= -vp 0 0 1 -vh 90\n\tEXPOSURE=7\nGAMMA=1.0\nCOLORCORR=1 1 1\n",
+                  one, 0, 0, false, NULL);
     check_divided("EXPOSURE=2.5\nEXPOSURE= \t4e0 \n", ten, 1, KILN_NOTE_CONVERSION, false,
                   "values were divided by the header's exposure of 10");
     check_divided("COLORCORR= 2 4 0.5\n", corr, 1, KILN_NOTE_CONVERSION, false,
@@ -84,6 +84,25 @@ static void exposure_and_correction_are_divided_out(void **state)
                   "the header's EXPOSURE of 0 was taken as 1");
     check_divided("EXPOSURE=0\nEXPOSURE=10\n", ten, 2, KILN_NOTE_ASSUMPTION, true,
                   "the header's EXPOSURE of 0 was taken as 1");
+}
+
+// Lines that would change what the texels mean, but are not honoured, and how often they stand.
+static void what_is_ignored_is_said(void **state)
+{
+    static const double one[3] = {1, 1, 1};
+    (void)state;
+    check_divided("GAMMA=2.2\n", one, 1, KILN_NOTE_ASSUMPTION, true,
+                  "the header's line \"GAMMA=2.2\" was ignored: values were taken as linear light");
+    check_divided("GAMMA=1\nGAMMA=x\033[2J\n", one, 1, KILN_NOTE_ASSUMPTION, true,
+                  "the header's line \"GAMMA=x?[2J\" was ignored: values were taken as linear "
+                  "light");
+    check_divided("VIEW= -vtv -vp 0 0 1\nVIEW= -vtv\n", one, 1, KILN_NOTE_ASSUMPTION, false,
+                  "the header's VIEW says that the picture is a perspective view (-vtv), which was "
+                  "ignored: the layout does not follow from VIEW");
+    check_divided("VIEW= -vtl -vh 360 -vta -vv 360\n", one, 1, KILN_NOTE_ASSUMPTION, false,
+                  "the header's VIEW says that the picture is an angular fisheye (-vta), which was "
+                  "ignored: the layout does not follow from VIEW");
+    check_divided("VIEW= -vt\nVIEW= -vtx\nVIEW=\nXVIEW= -vtv\n", one, 0, 0, false, NULL);
 }
 
 static void check_colors(const char *header, const ki_matrix3 *a, const char *text)
@@ -244,6 +263,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(exposure_and_correction_are_divided_out),
+        cmocka_unit_test(what_is_ignored_is_said),
         cmocka_unit_test(colors_are_converted_to_rec709),
         cmocka_unit_test(blanks_may_surround_the_resolution),
         cmocka_unit_test(what_cannot_be_honoured_is_refused),

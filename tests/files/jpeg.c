@@ -431,6 +431,42 @@ static void icc_profiles_in_parts_are_honoured(void **state)
     }
 }
 
+// The first segment JFIF states the shape of pixels by pixels per unit along x and y.
+static void shapes_of_pixels_are_told_of(void **state)
+{
+    static const struct {
+        uint8_t unit, x[2], y[2];
+        const char *aspect; // NULL for pixels that are square or have no shape
+    } rows[] = {{0, {0, 1}, {0, 2}, "2"},
+                {0, {0, 4}, {0, 1}, "0.25"},
+                {1, {0, 72}, {1, 72}, "4.556"},
+                {2, {9, 9}, {9, 9}, NULL},
+                {0, {0, 0}, {0, 7}, NULL}};
+    (void)state;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        picture p = gradient(W, H, 3);
+        ki_writer w = make(&p, false);
+        kiln_file_info info;
+        uint8_t jfif[14] = {'J', 'F', 'I', 'F', 0, 1, 2};
+        char wanted[160];
+        add_segment(&w, 0xe1, jfif, sizeof jfif); // no such segment, by its marker
+        jfif[7] = rows[i].unit;
+        memcpy(jfif + 8, rows[i].x, 2);
+        memcpy(jfif + 10, rows[i].y, 2);
+        add_segment(&w, 0xe0, jfif, sizeof jfif);
+        CHECK_OK(ki_decode(context, w.bytes, w.size, "a.jpg", NULL, &info, &error));
+        assert_int_equal(info.report.note_count, rows[i].aspect ? 2 : 1);
+        if (rows[i].aspect) {
+            snprintf(wanted, sizeof wanted,
+                     "the JFIF header says that a pixel is %s times as wide as high, which was "
+                     "ignored: pixels cover equal steps of the sphere",
+                     rows[i].aspect);
+            check_note(&info.report, 1, KILN_NOTE_ASSUMPTION, false, wanted);
+        }
+        ki_writer_free(&w);
+    }
+}
+
 // Where the stored picture's first row and first column are in the upright picture, for the eight
 // orientations of Exif: 1 top left, 2 top right, 3 bottom right, 4 bottom left, 5 left top, 6 right
 // top, 7 right bottom, 8 left bottom.
@@ -605,6 +641,7 @@ int main(void)
         cmocka_unit_test(small_gain_maps_are_read_between_samples),
         cmocka_unit_test(what_is_not_applied_is_told_of),
         cmocka_unit_test(icc_profiles_in_parts_are_honoured),
+        cmocka_unit_test(shapes_of_pixels_are_told_of),
         cmocka_unit_test(exif_orientations_are_honoured),
         cmocka_unit_test(faces_may_be_jpeg),
         cmocka_unit_test(what_is_not_read_is_said),
