@@ -1,7 +1,8 @@
 // Decompression of zlib's format (RFC 1950, RFC 1951), for EXR and PNG files. In: zlib data that
 // are not trusted. Out: exactly as many bytes as the caller asks for. The code here lets kiln be
 // built with nothing but a C compiler. If kiln is built with libdeflate (KILN_DEFLATE), that
-// library decompresses whole buffers, which is faster and gives the same bytes.
+// library decompresses whole buffers, which is faster and gives the same bytes. It cannot be stopped,
+// so that long data are left to the code here.
 //
 // Method: the next bits of the input are the index of a table, whose entry gives the symbol. Codes
 // longer than that index continue in a second table. While input and output have room to spare,
@@ -49,7 +50,11 @@ typedef struct stream {
 typedef struct state {
     stream s;
     uint8_t *out, *begin, *end;
-    bool full; // set when the output has no room for the next symbol's bytes
+    bool full;             // set when the output has no room for the next symbol's bytes
+    kiln_context *context; // the context that is asked whether to go on; NULL: nobody is asked
+    uint8_t *pause;        // place in the output where the next question is due, or its end
+    bool stopped;          // set when the answer was to stop
+    bool fixed;            // the tables are those of the fixed codes
     uint32_t literals[LITERAL_ROOM], distances[DISTANCE_ROOM];
 } state;
 
@@ -232,6 +237,24 @@ static inline size_t value_of(stream *s, uint32_t entry)
     return (entry >> 16) + drop(s, entry >> 4 & 15);
 }
 
+// --------------------------------------------------------------------------------------- questions
+
+enum { PART = 1 << 24 }; // bytes of output between two questions whether to go on
+
+static void find_pause(state *st)
+{
+    bool last = !st->context || st->end - st->out <= PART;
+    st->pause = last ? st->end : st->out + PART;
+}
+
+// Asks whether to go on.
+static bool go_on(state *st)
+{
+    find_pause(st);
+    st->stopped = st->context && !ki_go_on(st->context);
+    return !st->stopped;
+}
+
 // ------------------------------------------------------------------------------------------ blocks
 
 static bool stored(state *st)
@@ -286,7 +309,7 @@ static step fast_symbols(state *st)
     stream s = st->s;
     uint8_t *out = st->out;
     step result = GO_ON;
-    while (s.in_end - s.in >= SPARE_IN && st->end - out >= SPARE_OUT) {
+    while (s.in_end - s.in >= SPARE_IN && st->pause - out >= SPARE_OUT) {
         fill_fast(&s);
         uint32_t entry = next_entry(&s, st->literals, LITERAL_BITS);
         if (kind_of(entry) == KIND_LITERAL) {
@@ -349,9 +372,11 @@ static bool compressed(state *st)
 {
     step result = fast_symbols(st);
     while (result == GO_ON) {
+        if (st->pause < st->end && st->pause - st->out < SPARE_OUT && !go_on(st))
+            return false;
         result = careful_symbol(st);
         // Symbols are read without checks whenever input and output have enough room.
-        if (result == GO_ON && st->end - st->out >= SPARE_OUT &&
+        if (result == GO_ON && st->pause - st->out >= SPARE_OUT &&
             st->s.in_end - st->s.in >= SPARE_IN)
             result = fast_symbols(st);
     }
@@ -368,6 +393,9 @@ static bool build_both(state *st, const uint8_t *lengths, int literals, int dist
 static bool fixed_codes(state *st)
 {
     uint8_t lengths[LITERALS + DISTANCES];
+    if (st->fixed)
+        return true;
+    st->fixed = true;
     for (int i = 0; i < LITERALS; i++)
         lengths[i] = i < 144 ? 8 : i < 256 ? 9 : i < 280 ? 7 : 8;
     memset(lengths + LITERALS, 5, DISTANCES);
@@ -410,6 +438,7 @@ static bool own_codes(state *st)
     int literals = (int)take(s, 5) + 257, distances = (int)take(s, 5) + 1;
     int count = (int)take(s, 4) + 4;
     uint8_t lengths[LITERALS + DISTANCES] = {0};
+    st->fixed = false;
     if (literals > 286 || distances > 30)
         return false;
     for (int i = 0; i < count; i++)
@@ -427,8 +456,12 @@ static bool own_codes(state *st)
 // output.
 static bool unpack(state *st)
 {
+    // number of blocks after which the caller is asked whether to go on, since blocks may be empty
+    enum { BLOCKS = 4096 };
     bool last = false, good = true;
-    while (good && !last) {
+    for (unsigned i = 1; good && !last; i++) {
+        if (i % BLOCKS == 0 && !go_on(st))
+            return false;
         last = take(&st->s, 1);
         uint32_t kind = take(&st->s, 2);
         good = kind == 0   ? stored(st)
@@ -440,32 +473,74 @@ static bool unpack(state *st)
 }
 
 // Prepares decompression. Returns false unless the data begin with zlib's header of two bytes.
-static bool begin(state *st, const uint8_t *packed, size_t packed_size, uint8_t *plain, size_t size)
+// `context` is NULL if nobody is to be asked whether to go on.
+static bool begin(state *st, kiln_context *context, const uint8_t *packed, size_t packed_size,
+                  uint8_t *plain, size_t size)
 {
+    st->context = context;
+    st->full = st->stopped = st->fixed = false;
     if (packed_size < 6 || (packed[0] & 15) != 8 || packed[1] & 0x20 ||
         !ki_checksum_agrees((uint32_t)(packed[0] << 8 | packed[1]) % 31, 0))
         return false;
     st->s = (stream){.in = packed + 2, .in_end = packed + packed_size};
     st->out = st->begin = plain;
     st->end = plain + size;
-    st->full = false;
+    find_pause(st);
     return true;
+}
+
+// Computes the checksum of the output. Returns false if the caller asks to stop.
+static bool add_up(state *st, uint32_t *sum)
+{
+    size_t size = (size_t)(st->end - st->begin), part = PART;
+    *sum = 1;
+    for (size_t at = 0; at < size; at += part) {
+        if (at && st->context && !go_on(st))
+            return false;
+        part = size - at < PART ? size - at : PART;
+        *sum = ki_adler32(*sum, st->begin + at, part);
+    }
+    return true;
+}
+
+// Returns whether the blocks, all of which are unpacked, fill the output and have its checksum.
+static bool is_whole(state *st)
+{
+    uint32_t stated = 0, sum;
+    if (st->out != st->end || !add_up(st, &sum))
+        return false;
+    drop(&st->s, (uint32_t)st->s.held & 7);
+    for (int i = 0; i < 4; i++)
+        stated = stated << 8 | take(&st->s, 8);
+    return !overdrawn(&st->s) && ki_checksum_agrees(sum, stated);
 }
 
 bool ki_inflate_own(const uint8_t *packed, size_t packed_size, uint8_t *plain, size_t size)
 {
     state st;
-    if (!begin(&st, packed, packed_size, plain, size) || !unpack(&st) || st.out != st.end)
-        return false;
-    drop(&st.s, (uint32_t)st.s.held & 7);
-    uint32_t sum = 0;
-    for (int i = 0; i < 4; i++)
-        sum = sum << 8 | take(&st.s, 8);
-    return !overdrawn(&st.s) && ki_checksum_agrees(ki_adler32(1, plain, size), sum);
+    return begin(&st, NULL, packed, packed_size, plain, size) && unpack(&st) && is_whole(&st);
 }
 
 bool ki_inflate_beginning(const uint8_t *packed, size_t packed_size, uint8_t *plain, size_t size)
 {
     state st;
-    return begin(&st, packed, packed_size, plain, size) && !unpack(&st) && st.full;
+    return begin(&st, NULL, packed, packed_size, plain, size) && !unpack(&st) && st.full;
+}
+
+kiln_result ki_inflate_long(kiln_context *context, const uint8_t *packed, size_t packed_size,
+                            uint8_t *plain, size_t size, bool may_go_on)
+{
+    // Up to so many bytes, packed and plain, take less than a tenth of a second.
+    enum { AT_ONCE = 1 << 26 };
+    state st;
+    if (packed_size <= AT_ONCE && size <= AT_ONCE - packed_size)
+        return ki_inflate(packed, packed_size, plain, size) ||
+                       (may_go_on && ki_inflate_beginning(packed, packed_size, plain, size))
+                   ? KILN_OK
+                   : KILN_ERROR_FORMAT;
+    bool good =
+        begin(&st, context, packed, packed_size, plain, size) && unpack(&st) && is_whole(&st);
+    return st.stopped                       ? KILN_ERROR_CANCELLED
+           : good || (may_go_on && st.full) ? KILN_OK
+                                            : KILN_ERROR_FORMAT;
 }

@@ -314,10 +314,9 @@ static kiln_result read_texels(kiln_context *context, const header *h, const uin
     for (size_t face = 0; face < h->face_count && result == KILN_OK; face++) {
         float *to = rgb + 3 * face * (size_t)w * (size_t)height;
         if (!ki_texels_read(context, &h->texels, from + face * (size_t)level_bytes(h, 0, h->align),
-                            w, height, h->align, to))
+                            w, height, h->align, to) ||
+            !ki_texels_flip(context, to, w, height, left, up))
             result = ki_fail_cancelled(error, "reading");
-        else
-            ki_texels_flip(to, w, height, left, up);
     }
     if (result == KILN_OK && (up || left))
         ki_note(&decoded->report, KILN_NOTE_CONVERSION, false,

@@ -97,9 +97,9 @@ kiln_result ki_ktx2_texels(const ki_ktx2_source *source, ki_texels *texels, kiln
 /// Returns the end of the description of the texels: ", zstd", ", zlib" or "".
 const char *ki_ktx2_scheme(const ki_ktx2_source *source);
 /// Turns a picture of RGB floats from the orientation that the metadata state to rows from the top
-/// and columns from the left, and notes that.
-void ki_ktx2_turn(const kiln_file_info *info, float *rgb, int width, int height,
-                  kiln_load_report *report);
+/// and columns from the left, and notes that. Fails if a progress report asks to stop.
+kiln_result ki_ktx2_turn(kiln_context *context, const kiln_file_info *info, float *rgb, int width,
+                         int height, kiln_load_report *report, kiln_error *error);
 
 /// Decode a source with six faces as a cube, and a source with one face as a flat picture of three
 /// channels or as a table.

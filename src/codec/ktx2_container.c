@@ -230,11 +230,18 @@ kiln_result ki_ktx2_unpack(kiln_context *context, const ki_ktx2_source *s, int k
     uint8_t *room = ki_alloc_raw(context, level->plain_size, 1);
     if (!room)
         return ki_fail_memory(context, error, s->name, level->plain_size);
-    const char *fault = s->zstd ? ki_zstd_unpack(level->bytes, level->size, room, level->plain_size)
-                        : ki_inflate(level->bytes, level->size, room, level->plain_size)
-                            ? NULL
-                            : "its zlib data";
-    if (fault) {
+    const char *fault = "its zlib data";
+    kiln_result result = KILN_ERROR_FORMAT;
+    if (s->zlib)
+        result =
+            ki_inflate_long(context, level->bytes, level->size, room, level->plain_size, false);
+    else
+        fault = ki_zstd_unpack(level->bytes, level->size, room, level->plain_size);
+    if (result == KILN_ERROR_CANCELLED) {
+        ki_free(room);
+        return ki_fail_cancelled(error, "reading");
+    }
+    if (fault && result != KILN_OK) {
         ki_free(room);
         return ki_fail(error, KILN_ERROR_FORMAT, "%s: level %d is damaged: %s", s->name, k, fault);
     }

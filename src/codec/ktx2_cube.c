@@ -166,13 +166,18 @@ static void describe(const ki_ktx2_source *s, const ki_texels *texels, kiln_file
 }
 
 // Turns the faces as the metadata say.
-static void turn_faces(const kiln_map *map, const kiln_file_info *info, kiln_load_report *report)
+static kiln_result turn_faces(kiln_context *context, const kiln_map *map,
+                              const kiln_file_info *info, kiln_load_report *report,
+                              kiln_error *error)
 {
+    kiln_result result = KILN_OK;
     for (int k = 0; k < map->level_count; k++)
-        for (size_t face = 0; face < 6; face++) {
+        for (size_t face = 0; face < 6 && result == KILN_OK; face++) {
             int n = kiln_map_level_size(map, k);
-            ki_ktx2_turn(info, map->level[k] + 3 * face * (size_t)n * (size_t)n, n, n, report);
+            result = ki_ktx2_turn(context, info, map->level[k] + 3 * face * (size_t)n * (size_t)n,
+                                  n, n, report, error);
         }
+    return result;
 }
 
 kiln_result ki_ktx2_decode_cube(kiln_context *context, ki_ktx2_source *s, kiln_map *map,
@@ -206,8 +211,8 @@ kiln_result ki_ktx2_decode_cube(kiln_context *context, ki_ktx2_source *s, kiln_m
         result = read_level(context, s, &texels, &levels[k], k, map, error);
     }
     if (result == KILN_OK)
-        turn_faces(map, info, report);
-    else
+        result = turn_faces(context, map, info, report, error);
+    if (result != KILN_OK)
         kiln_map_free(map);
     return result;
 }

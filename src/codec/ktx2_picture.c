@@ -43,17 +43,19 @@ kiln_result ki_ktx2_texels(const ki_ktx2_source *s, ki_texels *texels, kiln_erro
     return KILN_OK;
 }
 
-void ki_ktx2_turn(const kiln_file_info *info, float *rgb, int width, int height,
-                  kiln_load_report *report)
+kiln_result ki_ktx2_turn(kiln_context *context, const kiln_file_info *info, float *rgb, int width,
+                         int height, kiln_load_report *report, kiln_error *error)
 {
     const char *way = info->orientation;
     bool left = way[0] == 'l', up = way[0] && way[1] == 'u';
     if (!left && !up)
-        return;
-    ki_texels_flip(rgb, width, height, left, up);
+        return KILN_OK;
+    if (!ki_texels_flip(context, rgb, width, height, left, up))
+        return ki_fail_cancelled(error, "reading");
     ki_note(report, KILN_NOTE_CONVERSION, false,
             "the orientation \"%s\" was turned to rows from the top and columns from the left",
             way);
+    return KILN_OK;
 }
 
 // ----------------------------------------------------------------------------------- flat pictures
@@ -106,11 +108,10 @@ kiln_result ki_ktx2_decode_picture(kiln_context *context, ki_ktx2_source *s, kil
         result = ki_image_allocate(context, image, error);
     if (result == KILN_OK && !ki_texels_read(context, &texels, plain, w, h, 1, image->pixels))
         result = ki_fail_cancelled(error, "reading");
+    if (result == KILN_OK)
+        result = ki_ktx2_turn(context, info, image->pixels, w, h, report, error);
     ki_free(unpacked);
-    if (result != KILN_OK) {
+    if (result != KILN_OK)
         kiln_image_free(image);
-        return result;
-    }
-    ki_ktx2_turn(info, image->pixels, w, h, report);
-    return KILN_OK;
+    return result;
 }

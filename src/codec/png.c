@@ -394,6 +394,18 @@ static kiln_result put_all(png_file *f, kiln_error *error)
     return KILN_OK;
 }
 
+static kiln_result inflate(const png_file *f, kiln_error *error)
+{
+    kiln_result result =
+        ki_inflate_long(f->context, f->packed, f->packed_size, f->raw, (size_t)f->raw_size, true);
+    if (result == KILN_ERROR_CANCELLED)
+        return ki_fail_cancelled(error, "reading");
+    return result == KILN_OK ? result
+                             : damaged(f, error,
+                                       "its data does not inflate to the picture's size or has a "
+                                       "wrong Adler-32 sum");
+}
+
 static kiln_result unpack(png_file *f, kiln_error *error)
 {
     // Deflate makes at most 1032 bytes of one byte, so that a short file cannot ask for memory for
@@ -403,20 +415,12 @@ static kiln_result unpack(png_file *f, kiln_error *error)
     size_t size = (size_t)f->raw_size, step = (size_t)(f->channels * f->depth + 7) / 8;
     f->raw = size == f->raw_size ? ki_alloc_raw(f->context, size, 1) : NULL;
     uint8_t *zeros = ki_alloc(f->context, (size_t)f->width * step, 1);
-    kiln_result result = KILN_OK;
-    if (!f->raw || !zeros) {
-        result = ki_fail_memory(f->context, error, f->name, size);
-    } else if (!ki_inflate(f->packed, f->packed_size, f->raw, size) &&
-               !ki_inflate_beginning(f->packed, f->packed_size, f->raw, size)) {
-        result =
-            damaged(f, error,
-                    "its data does not inflate to the picture's size or has a wrong Adler-32 sum");
-    } else {
-        uint8_t *raw = f->raw;
-        for (int i = 0; result == KILN_OK && i < f->pass_count; i++) {
-            result = undo_filters(f, raw, &f->passes[i], step, zeros, error);
-            raw += f->passes[i].height * (f->passes[i].row + 1);
-        }
+    kiln_result result =
+        f->raw && zeros ? inflate(f, error) : ki_fail_memory(f->context, error, f->name, size);
+    uint8_t *raw = f->raw;
+    for (int i = 0; result == KILN_OK && i < f->pass_count; i++) {
+        result = undo_filters(f, raw, &f->passes[i], step, zeros, error);
+        raw += f->passes[i].height * (f->passes[i].row + 1);
     }
     ki_free(zeros);
     return result;

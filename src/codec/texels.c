@@ -173,15 +173,23 @@ static void swap_texels(float *a, float *b)
     }
 }
 
-void ki_texels_flip(float *rgb, int width, int height, bool left_right, bool top_bottom)
+bool ki_texels_flip(kiln_context *context, float *rgb, int width, int height, bool left_right,
+                    bool top_bottom)
 {
     size_t w = (size_t)width, h = (size_t)height;
-    for (size_t y = 0; y < h && left_right; y++)
+    for (size_t y = 0; y < h && left_right; y++) {
+        if (y % STRIP == STRIP - 1 && !ki_go_on(context))
+            return false;
         for (size_t x = 0; x < w / 2; x++)
             swap_texels(rgb + 3 * (y * w + x), rgb + 3 * (y * w + w - 1 - x));
-    for (size_t y = 0; y < h / 2 && top_bottom; y++)
+    }
+    for (size_t y = 0; y < h / 2 && top_bottom; y++) {
+        if (y % STRIP == STRIP - 1 && !ki_go_on(context))
+            return false;
         for (size_t x = 0; x < w; x++)
             swap_texels(rgb + 3 * (y * w + x), rgb + 3 * ((h - 1 - y) * w + x));
+    }
+    return true;
 }
 
 void ki_texels_note(const ki_texels *texels, bool stated, int level_count, kiln_load_report *report)

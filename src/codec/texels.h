@@ -34,8 +34,10 @@ uint64_t ki_texels_size(const ki_texels *texels, int width, int height, int alig
 /// Converts a picture to RGB floats on all threads. Returns false if a progress report asks to stop.
 bool ki_texels_read(kiln_context *context, const ki_texels *texels, const uint8_t *bytes, int width,
                     int height, int align, float *rgb);
-/// Swaps left and right, top and bottom, or both, of a picture of RGB floats.
-void ki_texels_flip(float *rgb, int width, int height, bool left_right, bool top_bottom);
+/// Swaps left and right, top and bottom, or both, of a picture of RGB floats. Returns false if a
+/// progress report asks to stop.
+bool ki_texels_flip(kiln_context *context, float *rgb, int width, int height, bool left_right,
+                    bool top_bottom);
 
 /// Adds notes about texels that were read: how values of 8 bits were taken, and that smaller levels
 /// were left aside. `stated` tells whether the file says that values of 8 bits are linear or sRGB.

@@ -92,6 +92,49 @@ static void a_stored_block_without_its_bytes_is_no_beginning(void **state)
         assert_int_equal(back[i], 0);
 }
 
+// Blocks of fixed codes and blocks with codes of their own, in turn.
+static void kinds_of_blocks_may_alternate(void **state)
+{
+    (void)state;
+    enum { PARTS = 8, SIZE = MOST / PARTS * PARTS };
+    static uint8_t plain[MOST], packed[2 * MOST], back[MOST];
+    z_stream z = {.next_in = plain, .next_out = packed, .avail_out = sizeof packed};
+    fill(plain, MOST, 2);
+    assert_int_equal(deflateInit(&z, 6), Z_OK);
+    for (int i = 0; i < PARTS; i++) {
+        assert_int_equal(deflateParams(&z, 6, i / 2 % 2 ? Z_DEFAULT_STRATEGY : Z_FIXED), Z_OK);
+        z.avail_in = MOST / PARTS;
+        int wanted = i == PARTS - 1 ? Z_STREAM_END : Z_OK;
+        assert_int_equal(deflate(&z, wanted == Z_OK ? Z_FULL_FLUSH : Z_FINISH), wanted);
+    }
+    assert_true(ki_inflate_own(packed, z.total_out, back, SIZE));
+    assert_memory_equal(back, plain, SIZE);
+    deflateEnd(&z);
+}
+
+// More than 2^26 bytes, which are inflated by kiln's own code, with questions whether to go on.
+static void long_data_are_inflated(void **state)
+{
+    (void)state;
+    enum { SIZE = (1 << 26) + 12345, ROOM = 1 << 20 };
+    uint8_t *plain = malloc(SIZE), *back = malloc(SIZE), *packed = malloc(ROOM);
+    uLongf length = ROOM;
+    assert_true(plain && back && packed);
+    for (size_t i = 0; i < SIZE; i++)
+        plain[i] = (uint8_t)(i >> 13);
+    assert_int_equal(compress2(packed, &length, plain, SIZE, 1), Z_OK);
+    assert_int_equal(ki_inflate_long(context, packed, length, back, SIZE, false), KILN_OK);
+    assert_memory_equal(back, plain, SIZE);
+    assert_int_equal(ki_inflate_long(context, packed, length, back, SIZE - 1, false),
+                     KILN_ERROR_FORMAT);
+    assert_int_equal(ki_inflate_long(context, packed, length, back, SIZE - 1, true), KILN_OK);
+    packed[length - 1] ^= 1; // a byte of the checksum
+    assert_int_equal(ki_inflate_long(context, packed, length, back, SIZE, true), KILN_ERROR_FORMAT);
+    free(plain);
+    free(back);
+    free(packed);
+}
+
 static void check_packed(const uint8_t *packed, size_t length, const uint8_t *plain, size_t size)
 {
     static uint8_t back[MOST + 1];
@@ -217,6 +260,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(inflates_what_zlib_deflates),
         cmocka_unit_test(a_beginning_is_inflated),
+        cmocka_unit_test(kinds_of_blocks_may_alternate),
+        cmocka_unit_test(long_data_are_inflated),
         cmocka_unit_test(zlib_inflates_what_is_deflated),
         cmocka_unit_test(parts_are_one_stream),
         cmocka_unit_test(a_stored_block_without_its_bytes_is_no_beginning),

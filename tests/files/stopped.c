@@ -1,5 +1,6 @@
-// The reading of a picture can be stopped while its colours are converted: each conversion of a picture of 64 rows asks
-// as often as it has rows, beside what the same picture without the conversion asks.
+// The reading of a picture can be stopped while its data are inflated, its colours converted and its faces turned. Each
+// conversion of a picture of 64 rows asks at least once a row more than the reading of the same picture without the
+// conversion; texels of cubes are converted and turned in strips of 64 rows.
 #include "codec/codec.h"
 #include "codec/deflate.h"
 #include "image/pack.h"
@@ -130,6 +131,52 @@ static void put_large_cube(ki_writer *w)
     put_cube(w, 256, KILN_FORMAT_B10G11R11);
 }
 
+static void put_cube_of_128(ki_writer *w)
+{
+    put_cube(w, 128, KILN_FORMAT_B10G11R11);
+}
+
+// Cubes whose faces must be turned: rows from the bottom and columns from the right.
+static void put_turned_cube(ki_writer *w)
+{
+    static const char key[] = "KTXorientation";
+    put_cube_of_128(w);
+    for (size_t i = 0; i + sizeof key + 2 < w->size; i++)
+        if (!memcmp(w->bytes + i, key, sizeof key)) {
+            memcpy(w->bytes + i + sizeof key, "lu", 2);
+            return;
+        }
+    fail_msg("no orientation");
+}
+
+// KTX 1 of 8 bits sRGB, as its specification gives the header.
+static void put_ktx1_with(ki_writer *w, const char *orientation)
+{
+    static const uint32_t head[] = {0x04030201, 0x1401, 1, 0x1908, 0x8c43, 0x1908, 128,
+                                    128,        0,      0, 6,      1,      32};
+    ki_write(w, "\xabKTX 11\xbb\r\n\x1a\n", 12);
+    for (size_t i = 0; i < sizeof head / sizeof *head; i++)
+        ki_write_u32(w, head[i]);
+    ki_write_u32(w, 27);
+    ki_write(w, "KTXorientation", 15);
+    ki_write(w, orientation, 12);
+    ki_write_u8(w, 0);
+    ki_write_u32(w, 128 * 128 * 4);
+    uint8_t *texels = ki_write_room(w, 6 * 128 * 128 * 4);
+    assert_non_null(texels);
+    memset(texels, 50, 6 * 128 * 128 * 4);
+}
+
+static void put_ktx1(ki_writer *w)
+{
+    put_ktx1_with(w, "S=r,T=d\0\0\0\0");
+}
+
+static void put_turned_ktx1(ki_writer *w)
+{
+    put_ktx1_with(w, "S=l,T=u\0\0\0\0");
+}
+
 static const struct {
     void (*plain)(ki_writer *w), (*converted)(ki_writer *w);
     int more; // least number of further questions
@@ -141,6 +188,8 @@ static const struct {
     {put_png, put_wide_png, HEIGHT},
     {put_png, put_hlg_png, 2 * HEIGHT}, // the system gamma, then the primaries
     {put_small_cube, put_large_cube, 6 * 3},
+    {put_cube_of_128, put_turned_cube, 6 * (2 + 1)}, // columns, then rows, in strips of 64 rows
+    {put_ktx1, put_turned_ktx1, 6 * (2 + 1)},
 };
 
 static countdown reports;
@@ -184,10 +233,60 @@ static void conversions_can_be_stopped(void **state)
     kiln_context_destroy(own);
 }
 
+// Writes a chunk of a PNG file.
+static void put_chunk(ki_writer *w, const char *type, const uint8_t *data, uint32_t size)
+{
+    ki_crc32_table table;
+    uint8_t number[4];
+    size_t start = w->size + 4;
+    put_u32(number, size);
+    ki_write(w, number, 4);
+    ki_write(w, type, 4);
+    ki_write(w, data, size);
+    ki_crc32_fill(&table);
+    put_u32(number, ki_crc32(&table, 0, w->bytes + start, size + 4));
+    ki_write(w, number, 4);
+}
+
+// A PNG of 82 million bytes, the last of which are missing: if inflating could not be stopped, each of these
+// readings would end with that damage. The block of deflate has fixed codes: a literal 0, then matches of 258 bytes
+// at distance 1, of 13 bits each. After the block's 3 bits and the literal's 8 the next 8 * 13 bits repeat.
+static void inflating_can_be_stopped(void **state)
+{
+    (void)state;
+    enum { COLUMNS = 32768, ROWS = 20000, PACKED = (COLUMNS / 8 + 1) / 258 * ROWS / 8 * 13 };
+    static const char match[] = "1100010100000", first[] = "11000110000";
+    static uint8_t packed[PACKED] = {0x78, 0x01};
+    for (size_t bit = 0; bit < 8 * (PACKED - 2); bit++) {
+        char c = bit < sizeof first - 1 ? first[bit] : match[(bit - (sizeof first - 1)) % 13];
+        packed[2 + bit / 8] |= (uint8_t)((c == '1') << bit % 8);
+    }
+    uint8_t head[13] = {0, 0, COLUMNS >> 8, 0, 0, 0, ROWS >> 8, ROWS & 255, 1};
+    kiln_context_def def = {.thread_count = 1, .progress = count_down, .progress_user = &reports};
+    ki_writer w = {.context = context};
+    kiln_map map;
+    ki_write(&w, "\x89PNG\r\n\x1a\n", 8);
+    put_chunk(&w, "IHDR", head, sizeof head);
+    put_chunk(&w, "IDAT", packed, sizeof packed);
+    put_chunk(&w, "IEND", NULL, 0);
+    CHECK_OK(kiln_context_create(&def, &own, &error));
+    assert_int_equal(decode(&w, 1 << 30, &map), KILN_ERROR_FORMAT);
+    CHECK_SAYS(error.message, "does not inflate to the picture's size");
+    int asked = reports.calls;
+    assert_true(asked >= 4); // a question after each 2^24 of the 82 million bytes
+    for (int stop = 0; stop < asked; stop++) {
+        assert_int_equal(decode(&w, stop, &map), KILN_ERROR_CANCELLED);
+        assert_int_equal(reports.calls, stop + 1);
+    }
+    kiln_context_destroy(own);
+    ki_writer_free(&w);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(conversions_can_be_stopped, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(inflating_can_be_stopped, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
