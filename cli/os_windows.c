@@ -32,8 +32,10 @@ static char *narrow(const wchar_t *wide)
 {
     int size = WideCharToMultiByte(CP_UTF8, 0, wide, -1, NULL, 0, NULL, NULL);
     char *text = size > 0 ? malloc((size_t)size) : NULL;
-    if (!text || !WideCharToMultiByte(CP_UTF8, 0, wide, -1, text, size, NULL, NULL))
+    if (!text || !WideCharToMultiByte(CP_UTF8, 0, wide, -1, text, size, NULL, NULL)) {
+        free(text);
         return NULL;
+    }
     bool verbatim = text[0] == '\\' && text[1] == '\\' && text[2] == '?';
     for (char *c = text; *c && !verbatim; c++)
         if (*c == '\\')
