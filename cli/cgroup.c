@@ -59,7 +59,7 @@ static bool find_group(const char *root, bool second, char group[ROOM])
         path[strcspn(path, "\n")] = 0;
         found = second ? !controllers[1] : lists(controllers + 1, "memory");
         if (found)
-            strcpy(group, path);
+            snprintf(group, ROOM, "%s", path);
     }
     if (file)
         fclose(file);

@@ -24,7 +24,7 @@ static void draw_sky(float *rgba)
 {
     for (int y = 0; y < HEIGHT; y++)
         for (int x = 0; x < WIDTH; x++) {
-            float up = (float)y / HEIGHT, *pixel = rgba + 4 * (y * WIDTH + x);
+            float up = (float)y / HEIGHT, *pixel = rgba + 4 * ((size_t)y * WIDTH + (size_t)x);
             pixel[0] = up * up;
             pixel[1] = up;
             pixel[2] = 0.5f + up;
@@ -56,9 +56,9 @@ static kiln_result work(kiln_context *context, kiln_error *error)
 {
     static float rgba[4 * WIDTH * HEIGHT];
     draw_sky(rgba);
-    const ptrdiff_t row = 4 * WIDTH * (ptrdiff_t)sizeof(float);
+    const ptrdiff_t row = (ptrdiff_t)sizeof(float) * 4 * WIDTH;
     // row 0 of kiln_pixels is the top row, which is the last row of rgba
-    kiln_pixels pixels = {.data = rgba + 4 * WIDTH * (HEIGHT - 1),
+    kiln_pixels pixels = {.data = rgba + (size_t)4 * WIDTH * (HEIGHT - 1),
                           .width = WIDTH,
                           .height = HEIGHT,
                           .channels = 4,

@@ -89,13 +89,14 @@ static double surroundings_of(const ki_search *search, const double d[3])
         b[k] = d[(k + 1) % 3] * a[(k + 2) % 3] - d[(k + 2) % 3] * a[(k + 1) % 3];
     for (int i = 0; i < CIRCLES * POINTS; i++) {
         double sine, cosine, s, c, at[3];
-        ki_sincos((8 + 2 * (i / POINTS)) * (KI_PI / 180), &sine, &cosine);
+        int circle = i / POINTS;
+        ki_sincos((8 + 2 * circle) * (KI_PI / 180), &sine, &cosine);
         ki_sincos(2 * KI_PI * i / POINTS, &s, &c);
         for (int k = 0; k < 3; k++)
             at[k] = cosine * d[k] + sine * (c * a[k] + s * b[k]);
         values[i] = search->brightness[ki_texel_of_direction(search->map, at)];
     }
-    qsort(values, CIRCLES * POINTS, sizeof *values, compare);
+    qsort(values, sizeof values / sizeof *values, sizeof *values, compare);
     return fmax(0, (double)values[CIRCLES * POINTS / 2]);
 }
 

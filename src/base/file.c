@@ -292,10 +292,7 @@ static void remove_folders(const ki_file_set *set)
 static void copy_folder(const char *path, char folder[KI_OS_PATH])
 {
     size_t length = ki_folder_length(path);
-    if (length)
-        snprintf(folder, KI_OS_PATH, "%.*s", (int)length, path);
-    else
-        strcpy(folder, ".");
+    snprintf(folder, KI_OS_PATH, "%.*s", length ? (int)length : 1, length ? path : ".");
 }
 
 // Locks the folder of a set's first file while the set is renamed: if two processes write files of

@@ -122,12 +122,12 @@ bool ki_os_close(int file)
 static bool follow_once(char path[KI_OS_PATH], const char *link)
 {
     char *slash = strrchr(path, '/');
-    size_t kept = slash && link[0] != '/' ? (size_t)(slash + 1 - path) : 0;
-    if (kept + strlen(link) >= KI_OS_PATH) {
+    size_t kept = slash && link[0] != '/' ? (size_t)(slash + 1 - path) : 0, size = strlen(link) + 1;
+    if (kept + size > KI_OS_PATH) {
         errno = ENAMETOOLONG;
         return false;
     }
-    strcpy(path + kept, link);
+    memcpy(path + kept, link, size);
     return true;
 }
 

@@ -549,7 +549,7 @@ size_t ki_deflate_bound(size_t size)
 {
     // No block is longer than its bytes stored uncompressed. Each block but the last has at least 4
     // * LOOK items, and each item stands for at least one byte.
-    size_t blocks = size / (4 * LOOK) + 1;
+    size_t blocks = size / ((size_t)4 * LOOK) + 1;
     return (size_t)(stored_bits(size) / 8) + 6 * blocks + 16;
 }
 

@@ -59,7 +59,7 @@ static size_t undo_block(const uint8_t *bytes, size_t left, uint16_t halfs[16])
             int six = (int)((i < 9 ? first >> (52 - 6 * i) : last >> (84 - 6 * i)) & 63);
             difference[i] = (uint16_t)((six - 32) * (1 << shift));
         }
-        for (int y = 1; y < 4; y++)
+        for (size_t y = 1; y < 4; y++)
             s[4 * y] = (uint16_t)(s[4 * y - 4] + difference[y - 1]);
         for (int x = 1; x < 4; x++)
             for (int y = 0; y < 4; y++)

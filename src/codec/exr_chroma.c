@@ -96,7 +96,7 @@ static void make_line(const job *j, int y, float *line)
             add_lines(line_at(j, y - 1 - 2 * k), line_at(j, y + 1 + 2 * k), taps[k], width, line);
     }
     for (int x = 0; x < width; x++)
-        to_rgb(j->weights, line + 3 * x);
+        to_rgb(j->weights, line + 3 * (size_t)x);
 }
 
 // ---------------------------------------------------------------------------------------- saturation
@@ -131,17 +131,18 @@ static void write_line(const job *j, float *const lines[3], float *out)
 {
     int width = j->picture->width;
     for (int x = 0; x < width; x++) {
-        int left = x > 0 ? x - 1 : 0, right = x < width - 1 ? x + 1 : x;
-        const float *in = lines[1] + 3 * x;
-        float mean = (saturation(lines[0] + 3 * left) + saturation(lines[0] + 3 * right) +
-                      saturation(lines[2] + 3 * left) + saturation(lines[2] + 3 * right)) /
+        size_t left = 3 * (size_t)(x > 0 ? x - 1 : 0), at = 3 * (size_t)x;
+        size_t right = 3 * (size_t)(x < width - 1 ? x + 1 : x);
+        const float *in = lines[1] + at;
+        float mean = (saturation(lines[0] + left) + saturation(lines[0] + right) +
+                      saturation(lines[2] + left) + saturation(lines[2] + right)) /
                      4;
         mean = fminf(mean, 1);
         float own = saturation(in), most = fminf(1 - (1 - mean) / 4, 1);
         if (own > mean && own > most)
-            desaturate(j->weights, in, most / own, out + 3 * x);
+            desaturate(j->weights, in, most / own, out + at);
         else
-            memcpy(out + 3 * x, in, 3 * sizeof *out);
+            memcpy(out + at, in, 3 * sizeof *out);
     }
 }
 

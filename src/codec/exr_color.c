@@ -16,7 +16,7 @@ static bool read_floats(const ki_exr_part *part, const char *name, const char *t
         return false;
     for (int i = 0; i < count; i++) {
         float value;
-        memcpy(&value, bytes + 4 * i, sizeof value);
+        memcpy(&value, bytes + 4 * (size_t)i, sizeof value);
         values[i] = (double)value;
     }
     return true;
@@ -25,7 +25,6 @@ static bool read_floats(const ki_exr_part *part, const char *name, const char *t
 kiln_result ki_exr_read_color(const ki_exr_part *part, const char *name, ki_exr_color *color,
                               kiln_error *error)
 {
-    static const ki_matrix3 identity = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     *color = (ki_exr_color){.primaries = ki_rec709};
     double *xy = color->primaries.xy, luminance;
     read_floats(part, "chromaticities", "chromaticities", 8, xy);
@@ -41,7 +40,7 @@ kiln_result ki_exr_read_color(const ki_exr_part *part, const char *name, ki_exr_
                        "%.4g), white (%.4g, %.4g), neutral (%.4g, %.4g), are no set of primaries",
                        name, xy[0], xy[1], xy[2], xy[3], xy[4], xy[5], xy[6], xy[7],
                        color->neutral[0], color->neutral[1]);
-    color->converts = memcmp(&color->matrix, &identity, sizeof identity) != 0;
+    color->converts = !ki_matrix_is_identity(&color->matrix);
     return KILN_OK;
 }
 

@@ -120,8 +120,10 @@ static void put_sources(const ki_exr_picture *p, const ki_exr_box *box, const so
     const ki_exr_channel *channel[3] = {NULL};
     float *rgb = p->pixels + 3 * (row * (size_t)p->width + (size_t)(left - p->left));
     for (int k = 0; k < 3; k++) {
-        channel[k] = p->source[k] < 0 ? NULL : &box->channels[p->source[k]];
-        if (found->start[k] && channel[k]->x_sampling == 1)
+        if (!found->start[k])
+            continue;
+        channel[k] = &box->channels[p->source[k]];
+        if (channel[k]->x_sampling == 1)
             samples[k] = found->start[k] + (size_t)(left - box->x) * (size_t)channel[k]->bytes;
     }
     put_line(samples, channel, right - left, rgb);

@@ -57,7 +57,7 @@ static void convert_row(void *data, int row)
         float values[4 * STRETCH];
         int n = ki_min(STRETCH, p->width - x);
         const uint8_t *here = from + (size_t)x * (size_t)channels * sample;
-        size_t count = (size_t)(n * channels);
+        size_t count = (size_t)n * (size_t)channels;
         if (p->type == KILN_PIXEL_HALF)
             ki_floats_from_half_bytes(here, count, values);
         else

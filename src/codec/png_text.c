@@ -59,7 +59,7 @@ void ki_png_read_texts(const uint8_t *bytes, size_t size, kiln_file_info *info)
         size_t data_size = head ? get_high_first(head) : 0;
         const uint8_t *data = ki_read_bytes(&r, data_size);
         ki_read_bytes(&r, 4);
-        if (r.failed || !memcmp(head + 4, "IDAT", 4))
+        if (!head || r.failed || !memcmp(head + 4, "IDAT", 4))
             return;
         if (memcmp(head + 4, "tEXt", 4) != 0)
             continue;

@@ -44,8 +44,9 @@ void ki_texel_nodes_find(const kiln_map *map, size_t index, int side, ki_texel_n
                                     0.32607257743127307131, 0.17392742256872692869};
     const double *at = side == 2 ? two : four, *part = side == 2 ? half : parts;
     size_t width = (size_t)map->size * (map->shape == KILN_SHAPE_PANORAMA ? 2 : 1);
-    double x = (double)(index % width), y = (double)(index / width);
-    int face = map->shape == KILN_SHAPE_CUBE ? (int)(index / width) / map->size : 0;
+    size_t row = index / width;
+    double x = (double)(index % width), y = (double)row;
+    int face = map->shape == KILN_SHAPE_CUBE ? (int)row / map->size : 0;
     nodes->count = side * side;
     for (int i = 0; i < nodes->count; i++)
         nodes->weight[i] =
@@ -56,8 +57,9 @@ void ki_texel_nodes_find(const kiln_map *map, size_t index, int side, ki_texel_n
 double ki_texel_solid_angle(const kiln_map *map, size_t index)
 {
     if (map->shape == KILN_SHAPE_PANORAMA) {
-        double step = KI_PI / map->size, row = (double)(index / (2 * (size_t)map->size));
-        return 2 * step * ki_sin((row + 0.5) * step) * ki_sin(step / 2);
+        size_t row = index / (2 * (size_t)map->size);
+        double step = KI_PI / map->size;
+        return 2 * step * ki_sin(((double)row + 0.5) * step) * ki_sin(step / 2);
     }
     ki_texel_nodes nodes;
     ki_texel_nodes_find(map, index, 2, &nodes);

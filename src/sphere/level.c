@@ -285,7 +285,7 @@ static void weigh_order(void *data, int m)
     // an odd number must be 0.
     int count = v->degree - m + 1;
     if (count % 2)
-        memset(to + 6 * count, 0, 6 * sizeof *to);
+        memset(to + 6 * (size_t)count, 0, 6 * sizeof *to);
 }
 
 // Copies one channel of the Fourier coefficients of a vector of latitude rings, for all orders m,

@@ -70,7 +70,7 @@ static void levels_are_those_of_brute_force(void **state)
             enum { COUNT = 8 };
             double directions[COUNT][3], wanted[COUNT][3];
             size_t texels[COUNT];
-            uint64_t random = (uint64_t)(t * 10 + k);
+            uint64_t random = (uint64_t)t * 10 + (uint64_t)k;
             for (int i = 0; i < COUNT; i++) {
                 double d[3];
                 texels[i] =

@@ -32,7 +32,7 @@ static void memory_that_runs_out_leaves_no_file(void **state)
         kiln_map map = smallest_cube(own, engine);
         char name[64], path[128];
         snprintf(name, sizeof name, "x%s%s", engine->ending[0] ? "." : "", engine->ending);
-        strcpy(path, in_folder(name));
+        snprintf(path, sizeof path, "%s", in_folder(name));
         long held = f.held, needed;
         kiln_result result;
         f.calls = 0;

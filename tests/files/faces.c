@@ -119,7 +119,8 @@ static void a_sky_of_quake_keeps_its_directions(void **state)
         float texels[3 * N * N];
         for (int i = 0; i < N * N; i++) {
             double d[3];
-            quake_direction(side, 2 * (i % N + 0.5) / N - 1, 1 - 2 * (i / N + 0.5) / N, d);
+            int x = i % N, y = i / N;
+            quake_direction(side, 2 * (x + 0.5) / N - 1, 1 - 2 * (y + 0.5) / N, d);
             double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
             texels[3 * i] = (float)(2 + d[0] / length);
             texels[3 * i + 1] = (float)(2 + d[2] / length);

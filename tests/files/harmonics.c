@@ -73,7 +73,7 @@ static void harmonics_in_text_are_described(void **state)
                     sh.c[i / 3][i % 3] = (i % 2 ? -1 : 1) * pow(10, i % 13 - 8) / 3;
                 kiln_file_info info;
                 snprintf(name, sizeof name, "sh.%s", endings[e][0]);
-                strcpy(path, in_folder(name));
+                snprintf(path, sizeof path, "%s", in_folder(name));
                 CHECK_OK(kiln_sh_save(context, &sh, path, &error));
                 CHECK_OK(kiln_file_describe(context, path, &info, &error));
                 assert_string_equal(info.format, endings[e][1]);

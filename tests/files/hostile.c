@@ -316,7 +316,7 @@ static void files_survive_missing_memory(void **state)
                  {"t-zstd.ktx2", load_table}};
     for (size_t i = 0; i < sizeof calls / sizeof *calls; i++) {
         char path[128];
-        strcpy(path, in_folder(calls[i].name));
+        snprintf(path, sizeof path, "%s", in_folder(calls[i].name));
         check_allocations(calls[i].name, calls[i].call, path);
     }
     folder_remove();

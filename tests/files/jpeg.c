@@ -345,8 +345,9 @@ static void small_gain_maps_are_read_between_samples(void **state)
     ki_write(&base, map.bytes, map.size);
     CHECK_OK(ki_decode(context, base.bytes, base.size, "a.jpg", &decoded, NULL, &error));
     for (int i = 0; i < W * H; i++) {
-        double x = fmin(fmax((i % W + 0.5) / 4 - 0.5, 0), W / 4 - 1);
-        double y = fmin(fmax((i / W + 0.5) / 4 - 0.5, 0), H / 4 - 1), sum = 0;
+        int column = i % W, line = i / W, last_column = W / 4 - 1, last_line = H / 4 - 1;
+        double x = fmin(fmax((column + 0.5) / 4 - 0.5, 0), last_column);
+        double y = fmin(fmax((line + 0.5) / 4 - 0.5, 0), last_line), sum = 0;
         for (int v = 0; v < H / 4; v++)
             for (int u = 0; u < W / 4; u++)
                 sum += fmax(0, 1 - fabs(x - u)) * fmax(0, 1 - fabs(y - v)) *

@@ -137,15 +137,15 @@ static void files_and_sentences_are_the_same_in_every_locale(void **state)
     char plain_folder[128], folder[128], text[16], message[512];
     kiln_sky_def wrong = {.turbidity = 1.25};
     kiln_map map;
-    strcpy(home, folder_path());
+    snprintf(home, sizeof home, "%s", folder_path());
     setenv("LOCPATH", home, 1);
-    strcpy(plain_folder, in_folder("plain"));
+    snprintf(plain_folder, sizeof plain_folder, "%s", in_folder("plain"));
     assert_int_equal(mkdir(plain_folder, 0777), 0);
     save_all(plain_folder);
     int count = read_folder(plain_folder, files, MOST);
     describe_all(plain_folder, files, count, plain);
     assert_int_equal(kiln_sky(context, &wrong, &map, &error), KILN_ERROR_ARGUMENT);
-    strcpy(message, error.message);
+    snprintf(message, sizeof message, "%s", error.message);
     CHECK_SAYS(message, "1.25");
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         make_locale(names[i], codes[i]);

@@ -47,7 +47,8 @@ static float *draw(kiln_layout layout, int n, float outside)
     float *pixels = calloc((size_t)n * (size_t)n, 3 * sizeof *pixels);
     for (int i = 0; i < n * n; i++) {
         double d[3], rgb[3];
-        bool inside = direction_of(layout, 2 * (i % n + 0.5) / n - 1, 1 - 2 * (i / n + 0.5) / n, d);
+        int x = i % n, y = i / n;
+        bool inside = direction_of(layout, 2 * (x + 0.5) / n - 1, 1 - 2 * (y + 0.5) / n, d);
         smooth(d, rgb);
         for (int c = 0; c < 3; c++)
             pixels[3 * i + c] = inside ? (float)rgb[c] : outside;

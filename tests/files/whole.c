@@ -51,8 +51,8 @@ static void an_environments_files_appear_together(void **state)
     (void)state;
     kiln_environment made = make_sky_bake(context);
     char irradiance[128], sh[128];
-    strcpy(irradiance, in_folder("i.dds"));
-    strcpy(sh, in_folder("s.json"));
+    snprintf(irradiance, sizeof irradiance, "%s", in_folder("i.dds"));
+    snprintf(sh, sizeof sh, "%s", in_folder("s.json"));
     kiln_environment_save_def def = {.irradiance_path = irradiance, .sh_path = sh};
     kiln_environment_report report;
     kiln_files files;

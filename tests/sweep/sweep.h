@@ -22,13 +22,16 @@ static const double reals[] = {-HUGE_VAL, -DBL_MAX, -1e9,   -1,      -DBL_MIN, -
                                1,         1.5,      1e9,    DBL_MAX, HUGE_VAL, (double)NAN};
 enum { INTS = sizeof ints / sizeof *ints, REALS = sizeof reals / sizeof *reals };
 
-/// Runs the statement after the macro once for each integer or real number.
+/// Runs the statement after the macro once for each integer or real number. The arguments name the
+/// variables that the loops declare, and a declared name cannot stand in parentheses.
+// NOLINTBEGIN(bugprone-macro-parentheses)
 #define EACH_INT(n)                                                                                \
     for (int n##_at = 0; n##_at < INTS; n##_at++)                                                  \
         for (int n = ints[n##_at], n##_once = 1; n##_once; n##_once = 0)
 #define EACH_REAL(x)                                                                               \
     for (int x##_at = 0; x##_at < REALS; x##_at++)                                                 \
         for (double x = reals[x##_at], x##_once = 1; x##_once > 0; x##_once = 0)
+// NOLINTEND(bugprone-macro-parentheses)
 
 /// A context whose work is stopped after a fiftieth of a second and that holds little memory, so
 /// that valid but large arguments take no time.

@@ -56,7 +56,7 @@ static float value_at(int i, int c, int channels)
     if (channels % 2 == 0 && c == channels - 1)
         return 1;
     int x = i % WIDTH, y = i / WIDTH;
-    uint64_t noise = random_hash((uint64_t)(i * 4 + c)) >> 48;
+    uint64_t noise = random_hash((uint64_t)i * 4 + (uint64_t)c) >> 48;
     float slope = (float)(x + 2 * y + 40 * c) / (WIDTH + 2 * HEIGHT + 160);
     return x < 60 ? 0.25f * (float)c : y % 40 < 20 ? slope : (float)noise / 65535;
 }
