@@ -1,7 +1,7 @@
 # Puts a shader into a C file as an array of bytes that ends in NUL, with its #include "FILE" lines
 # replaced by the files, once each.
 #   cmake -DINPUT=scene.frag -DOUTPUT=scene_frag.c -DNAME=view_shader_scene_frag -P embed.cmake
-cmake_minimum_required(VERSION 3.25)
+cmake_minimum_required(VERSION 3.22)
 set(seen "")
 set(text "")
 

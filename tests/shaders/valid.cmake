@@ -1,6 +1,6 @@
 # Khronos's own compiler accepts the shader as it is given to WebGL 2 and ES 3.0.
 #   cmake -DINPUT=scene.frag -DSTAGE=frag -DWORK=FOLDER -DGLSLANG=glslangValidator -P valid.cmake
-cmake_minimum_required(VERSION 3.25)
+cmake_minimum_required(VERSION 3.22)
 set(OUTPUT ${WORK}/${STAGE}.c)
 set(NAME unused)
 include(${CMAKE_CURRENT_LIST_DIR}/../../scripts/embed.cmake)
