@@ -55,7 +55,7 @@ kiln_result ki_resample_plan_create(kiln_context *context, kiln_shape source_sha
     bool cubes = source_shape == KILN_SHAPE_CUBE && shape == KILN_SHAPE_CUBE;
     if (p->tilt.any && !(cubes && quarter)) {
         p->method = KI_RESAMPLE_SUBSAMPLE;
-        p->sub = ki_max(16, ki_min(64, (int)ceil(4.0 * source_size / size)));
+        result = ki_resample_plan_subsample(context, p, error);
     } else if (source_shape == KILN_SHAPE_PANORAMA && shape == KILN_SHAPE_PANORAMA) {
         p->method = KI_RESAMPLE_SEPARABLE;
         result = ki_resample_plan_separable(context, p, error);
@@ -74,7 +74,7 @@ kiln_result ki_resample_plan_create(kiln_context *context, kiln_shape source_sha
         p->method = KI_RESAMPLE_FACES;
     } else {
         p->method = KI_RESAMPLE_SUBSAMPLE;
-        p->sub = ki_max(16, ki_min(64, (int)ceil(4.0 * source_size / size)));
+        result = ki_resample_plan_subsample(context, p, error);
         if (source_shape == shape && source_size == size && quarter)
             p->sub = 1;
     }
@@ -166,6 +166,8 @@ void ki_resample_plan_destroy(ki_resample_plan *plan)
     } else if (plan->method == KI_RESAMPLE_SEPARABLE) {
         ki_free(plan->columns);
         ki_free(plan->weights);
+    } else if (plan->method == KI_RESAMPLE_SUBSAMPLE) {
+        ki_free(plan->sine);
     }
     ki_free(plan);
 }

@@ -58,7 +58,13 @@ struct ki_resample_plan {
             ki_resample_span *columns, *rows;
             float *weights;
         };
-        int sub; // subsample: number of samples along a side of each target texel
+        struct {
+            int sub; // subsample: number of samples along a side of each target texel
+            // If the source is a panorama: sine and cosine of the longitudes at which its columns
+            // begin, and cosine of the angle from the north pole at which its rows begin. The last
+            // of each is where the last column or row ends. `sine` owns the memory of the three.
+            double *sine, *cosine, *edge;
+        };
     };
 };
 
@@ -96,6 +102,10 @@ kiln_result ki_resample_plan_stencils(kiln_context *context, ki_resample_plan *p
                                       kiln_error *error);
 /// Sets `fine_area`, the solid angles by which the method gather averages a finer map.
 kiln_result ki_resample_plan_fine(kiln_context *context, ki_resample_plan *plan, kiln_error *error);
+/// Sets the number of samples of the method subsample and, if the source is a panorama, the
+/// directions of the edges of its texels.
+kiln_result ki_resample_plan_subsample(kiln_context *context, ki_resample_plan *plan,
+                                       kiln_error *error);
 /// Sets the columns, rows and weights of a separable resampling.
 kiln_result ki_resample_plan_separable(kiln_context *context, ki_resample_plan *plan,
                                        kiln_error *error);

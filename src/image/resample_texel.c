@@ -167,6 +167,119 @@ static size_t texel_towards(kiln_shape shape, int n, const double direction[3])
     return ((size_t)face * (size_t)n + (size_t)y) * (size_t)n + (size_t)x;
 }
 
+// ---------------------------------------------------------------------------------------- subsample
+
+kiln_result ki_resample_plan_subsample(kiln_context *context, ki_resample_plan *plan,
+                                       kiln_error *error)
+{
+    int n = plan->source_size;
+    size_t columns = 2 * (size_t)n + 1, count = 2 * columns + (size_t)n + 1;
+    plan->sub = ki_max(16, ki_min(64, (int)ceil(4.0 * n / plan->size)));
+    if (plan->source_shape != KILN_SHAPE_PANORAMA)
+        return KILN_OK;
+    plan->sine = ki_alloc_raw(context, count, sizeof *plan->sine);
+    if (!plan->sine)
+        return ki_fail_memory(context, error, "resampling", count * sizeof *plan->sine);
+    plan->cosine = plan->sine + columns;
+    plan->edge = plan->cosine + columns;
+    for (size_t i = 0; i < columns; i++)
+        ki_sincos(2 * KI_PI * ((double)i / (2.0 * n) - 0.5), &plan->sine[i], &plan->cosine[i]);
+    for (int j = 0; j <= n; j++)
+        plan->edge[j] = ki_cos(KI_PI * j / n);
+    return KILN_OK;
+}
+
+// A texel of a panorama, and how to find the texel of the next sample, which is the same texel or a
+// neighbour of it unless the sample is near a pole.
+typedef struct place {
+    int column, row;
+} place;
+
+enum { MOST_STEPS = 4 }; // number of steps from texel to texel, after which the angles are computed
+
+// Moves the place to the texel in direction d, whose length is `length`. A direction of longitude
+// phi has x = r sin phi and z = -r cos phi. It is east of the longitude p if sin(phi - p) >= 0, that
+// is if x cos p + z sin p >= 0, which holds for all p less than half a turn away.
+static void follow(const ki_resample_plan *plan, const double d[3], double length, place *at)
+{
+    int n = plan->source_size, steps = 0;
+    for (; steps < MOST_STEPS; steps++) {
+        int c = at->column, r = at->row;
+        if (d[0] * plan->cosine[c] + d[2] * plan->sine[c] < 0)
+            at->column = c ? c - 1 : 2 * n - 1;
+        else if (d[0] * plan->cosine[c + 1] + d[2] * plan->sine[c + 1] >= 0)
+            at->column = c + 1 < 2 * n ? c + 1 : 0;
+        if (r > 0 && d[1] > plan->edge[r] * length)
+            at->row = r - 1;
+        else if (r + 1 < n && d[1] <= plan->edge[r + 1] * length)
+            at->row = r + 1;
+        if (at->column == c && at->row == r)
+            return;
+    }
+    size_t texel = texel_towards(KILN_SHAPE_PANORAMA, n, d);
+    at->column = (int)(texel % (2 * (size_t)n));
+    at->row = (int)(texel / (2 * (size_t)n));
+}
+
+// Sets d to the direction of the point (u, v) of a face of the target, and *length to its length.
+// Returns a number in proportion to the solid angle of a small area around the point.
+static double sample_direction(kiln_shape shape, int face, double u, double v, double d[3],
+                               double *length)
+{
+    *length = 1;
+    if (shape == KILN_SHAPE_PANORAMA) {
+        ki_panorama_direction(u, v, d);
+        return ki_sin(KI_PI * v);
+    }
+    if (shape == KILN_SHAPE_CUBE) {
+        ki_face_direction(face, 2 * u - 1, 2 * v - 1, d);
+        double r2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+        *length = sqrt(r2);
+        return 1 / (r2 * *length);
+    }
+    // The unit direction d meets the octahedron |x| + |y| + |z| = 1 at the distance 1 / sum from its
+    // centre. The solid angle of a sample of fixed area on a face is proportional to 1 / distance^3.
+    ki_octahedron_direction(u, v, d);
+    double sum = fabs(d[0]) + fabs(d[1]) + fabs(d[2]);
+    return sum * sum * sum;
+}
+
+// Computes texel (x, y) of a face of the target. `turned` is the axis +X turned by the rotation.
+static void subsample_texel(const ki_resample_run *run, int face, int x, int y,
+                            const double turned[3], place *at, float *out)
+{
+    const ki_resample_plan *plan = run->plan;
+    int n = plan->size, sub = plan->sub, width = plan->shape == KILN_SHAPE_PANORAMA ? 2 * n : n;
+    double rgb[3] = {0, 0, 0}, total = 0;
+    for (int j = 0; j < sub; j++) {
+        for (int i = 0; i < sub; i++) {
+            double u = (x + (i + 0.5) / sub) / width, v = (y + (j + 0.5) / sub) / n, d[3], length;
+            double area = sample_direction(plan->shape, face, u, v, d, &length);
+            ki_tilt_apply(&plan->tilt, d);
+            double right = d[0] * turned[0] - d[2] * turned[2];
+            d[2] = d[2] * turned[0] + d[0] * turned[2];
+            d[0] = right;
+            size_t index;
+            if (plan->sine) {
+                follow(plan, d, length, at);
+                index = (size_t)at->row * 2 * (size_t)plan->source_size + (size_t)at->column;
+            } else {
+                index = texel_towards(plan->source_shape, plan->source_size, d);
+            }
+            const float *texel = run->source + 3 * index;
+            if (sub == 1) {
+                memcpy(out, texel, 3 * sizeof *out);
+                return;
+            }
+            for (int c = 0; c < 3; c++)
+                rgb[c] += area * (double)texel[c];
+            total += area;
+        }
+    }
+    for (int c = 0; c < 3; c++)
+        out[c] = (float)(rgb[c] / total);
+}
+
 // Task of one thread: computes one row of the map as a weighted mean of sub x sub samples in each
 // texel. With 16 x 16 samples of independent random texels, some of which are ten times brighter
 // than the others, the root mean square error is 3 % of the mean. The error is smaller where
@@ -175,50 +288,12 @@ void ki_resample_subsample(void *data, int index)
 {
     const ki_resample_run *run = data;
     const ki_resample_plan *plan = run->plan;
-    int n = plan->size, sub = plan->sub, face = index / n, y = index % n;
-    bool cube = plan->shape == KILN_SHAPE_CUBE, panorama = plan->shape == KILN_SHAPE_PANORAMA;
-    int width = panorama ? 2 * n : n;
-    // the axis +X turned by the rotation: its x and z are the rotation's cosine and sine
+    int n = plan->size, width = plan->shape == KILN_SHAPE_PANORAMA ? 2 * n : n;
+    // x and z of this axis are the rotation's cosine and sine
     double turned[3];
+    place at = {0};
     ki_turn((const double[3]){1, 0, 0}, plan->rotation, turned);
-    for (int x = 0; x < width; x++) {
-        double rgb[3] = {0, 0, 0}, total = 0;
-        float *out = run->target + 3 * ((size_t)index * (size_t)width + (size_t)x);
-        for (int j = 0; j < sub; j++) {
-            for (int i = 0; i < sub; i++) {
-                double u = (x + (i + 0.5) / sub) / width, v = (y + (j + 0.5) / sub) / n, d[3], area;
-                if (panorama) {
-                    ki_panorama_direction(u, v, d);
-                    area = ki_sin(KI_PI * v);
-                } else if (cube) {
-                    ki_face_direction(face, 2 * u - 1, 2 * v - 1, d);
-                    double r2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-                    area = 1 / (r2 * sqrt(r2));
-                } else {
-                    // The unit direction d meets the octahedron |x| + |y| + |z| = 1 at the distance
-                    // 1 / sum from its centre. The solid angle of a sample of fixed area on a face
-                    // is proportional to 1 / distance^3.
-                    ki_octahedron_direction(u, v, d);
-                    double sum = fabs(d[0]) + fabs(d[1]) + fabs(d[2]);
-                    area = sum * sum * sum;
-                }
-                ki_tilt_apply(&plan->tilt, d);
-                double right = d[0] * turned[0] - d[2] * turned[2];
-                d[2] = d[2] * turned[0] + d[0] * turned[2];
-                d[0] = right;
-                const float *texel =
-                    run->source + 3 * texel_towards(plan->source_shape, plan->source_size, d);
-                if (sub == 1) {
-                    memcpy(out, texel, 3 * sizeof *out);
-                    continue;
-                }
-                for (int c = 0; c < 3; c++)
-                    rgb[c] += area * (double)texel[c];
-                total += area;
-            }
-        }
-        if (sub > 1)
-            for (int c = 0; c < 3; c++)
-                out[c] = (float)(rgb[c] / total);
-    }
+    for (int x = 0; x < width; x++)
+        subsample_texel(run, index / n, x, index % n, turned, &at,
+                        run->target + 3 * ((size_t)index * (size_t)width + (size_t)x));
 }
