@@ -183,14 +183,8 @@ const cli_option bake_options[OPTIONS + 1] = {
                  "panorama."},
     [CLAMP] = {"clamp", CLI_TEXT, AT(clamp_text), .value = "RADIANCE",
                .help = "the same as --sun clamp=RADIANCE; the word auto chooses the radiance"},
-    [LIGHTS] = {"lights", CLI_INTEGER, AT(lights.count), 1, KILN_MAX_LIGHTS, 0, "N",
-                .help = "with --sun extract: take N lights out at most, those with the largest "
-                        "shares",
-                .unset = "1, or all with --lights-share"},
-    [LIGHTS_SHARE] = {"lights-share", CLI_NUMBER, AT(lights.share), 0, 1, 0, "S",
-                      .help = "with --sun extract: take lights out that hold at least this part "
-                              "of all light",
-                      .unset = "0.01"},
+    [LIGHTS] = CLI_LIGHTS_ROW(bake),
+    [LIGHTS_SHARE] = CLI_LIGHTS_SHARE_ROW(bake),
     [LIGHTS_FILE] = {"lights-file", CLI_FILE, AT(lights_path), .value = "FILE",
                      .help = "with --sun extract: write the lights to a .json file"},
     [THREADS] = {"threads", CLI_INTEGER, AT(threads), 1, 256, 0, "N",

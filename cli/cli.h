@@ -176,6 +176,20 @@ int cli_check_source_name(const cli_arguments *arguments, int option);
                     "outside the gamut of Rec. 709 have negative channels. Filtered values below " \
                     "zero are written as 0 in either case."                                        \
     }
+#define CLI_LIGHTS_ROW(type)                                                                       \
+    {                                                                                              \
+        "lights", CLI_INTEGER, offsetof(type, lights.count), 1, KILN_MAX_LIGHTS, 0, "N",           \
+            .help = "with --sun extract: take N lights out at most, those with the largest "       \
+                    "shares",                                                                      \
+            .unset = "1, or all with --lights-share"                                               \
+    }
+#define CLI_LIGHTS_SHARE_ROW(type)                                                                 \
+    {                                                                                              \
+        "lights-share", CLI_NUMBER, offsetof(type, lights.share), 0, 1, 0, "S",                    \
+            .help = "with --sun extract: take lights out that hold at least this part of all "     \
+                    "light",                                                                       \
+            .unset = "0.01"                                                                        \
+    }
 #define CLI_LAYER_ROW(type)                                                                        \
     {                                                                                              \
         "layer", CLI_TEXT, offsetof(type, layer),                                                  \

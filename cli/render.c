@@ -139,6 +139,7 @@ static int integrate(cli_work *work, const render *r, const kiln_map *source, bo
     view_reference_def def = {.noise = r->noise,
                               .walk = r->walk,
                               .alone = r->alone,
+                              .lights = &r->setup.taken,
                               .bounces = r->bounces,
                               .thread_count = r->threads,
                               .progress = cli_progress,
@@ -159,7 +160,7 @@ static int integrate(cli_work *work, const render *r, const kiln_map *source, bo
 }
 
 // Renders or integrates the picture; `words` receives a description of the result.
-static int make(cli_work *work, const render *r, bool linear, kiln_image *image, char words[256],
+static int make(cli_work *work, render *r, bool linear, kiln_image *image, char words[256],
                 view_error *errors)
 {
     kiln_map source = {0};
@@ -222,6 +223,7 @@ static int run(const cli_call *call)
         printf("%s: %s, %d x %d, %s, %.2f s\n", cli_show(r.output).text,
                view_scene_name((int)r.setup.options.scene), r.setup.width, r.setup.height, words,
                cli_elapsed(&work));
+        cli_print_lights(&r.setup.taken);
         print_errors(&r.setup.options, &errors);
     }
     kiln_image_free(&image);
@@ -236,6 +238,8 @@ static const cli_example examples[] = {
      "the exact bake at the left, the textbook's bake at the right"},
     {"kiln render city.exr -o error.png --error --size 640x360",
      "the error of prefiltered levels and tables at each pixel"},
+    {"kiln render city.exr -o sun.png --sun extract --ground",
+     "the sun as a disc of its true size, and the shadows of the balls"},
     {"kiln render -o furnace.exr --scene furnace",
      "white balls in white light, which a correct method makes invisible"},
     {NULL, NULL}};

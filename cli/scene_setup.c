@@ -1,11 +1,19 @@
 // Converts the options of a view into numbers, and loads or computes the environment.
 #include "scene_setup.h"
 
+#include <stdio.h>
 #include <string.h>
 
 const char *scene_diffuse_word(int index)
 {
     static const char *const words[] = {"sh", "cube", NULL};
+    return words[index];
+}
+
+const char *scene_sun_word(int index)
+{
+    static const char *const words[] = {
+        [KILN_SUN_KEEP] = "keep", [KILN_SUN_EXTRACT] = "extract", NULL};
     return words[index];
 }
 
@@ -64,6 +72,22 @@ static int check(const cli_arguments *a, bool may_change, const scene_setup *s)
     return CLI_GO;
 }
 
+// Checks the options of the sun, lamps and the ground.
+static int check_sun(const cli_arguments *a, bool may_change, const scene_setup *s)
+{
+    const char *scene = view_scene_name((int)s->options.scene);
+    const char *option = a->text[SCENE_LIGHTS]         ? "--lights"
+                         : a->text[SCENE_LIGHTS_SHARE] ? "--lights-share"
+                                                       : NULL;
+    if (option && s->sun != KILN_SUN_EXTRACT)
+        return cli_wrong(a->command, "%s needs --sun extract", option);
+    option = s->options.ground ? "--ground" : s->sun == KILN_SUN_EXTRACT ? "--sun extract" : NULL;
+    if (option && !may_change && !scene_has_environment(s))
+        return cli_wrong(a->command, "%s: the scene %s has no environment, choose --scene ibl",
+                         option, scene);
+    return CLI_GO;
+}
+
 int scene_read(const cli_arguments *a, bool may_change, scene_setup *s)
 {
     if (a->rest_count > 1)
@@ -79,7 +103,11 @@ int scene_read(const cli_arguments *a, bool may_change, scene_setup *s)
         code = read_size(a, s);
     s->options.cube_diffuse = s->cube_diffuse;
     s->options.bent = !s->straight;
-    return code == CLI_GO ? check(a, may_change, s) : code;
+    if (a->text[SCENE_LIGHTS_SHARE] && s->lights.share == 0)
+        s->lights.share = KILN_ZERO; // the library reads 0 as its default, and KILN_ZERO as zero
+    if (code == CLI_GO)
+        code = check(a, may_change, s);
+    return code == CLI_GO ? check_sun(a, may_change, s) : code;
 }
 
 bool scene_has_environment(const scene_setup *s)
@@ -87,7 +115,7 @@ bool scene_has_environment(const scene_setup *s)
     return s->options.scene != VIEW_SCENE_ASSIGNMENT && s->options.scene != VIEW_SCENE_FURNACE;
 }
 
-int scene_load(cli_work *work, const scene_setup *s, kiln_map *source)
+static int load(cli_work *work, const scene_setup *s, kiln_map *source)
 {
     if (s->input) {
         const char *names[] = {s->input};
@@ -102,6 +130,26 @@ int scene_load(cli_work *work, const scene_setup *s, kiln_map *source)
     return CLI_GO;
 }
 
+int scene_load(cli_work *work, scene_setup *s, kiln_map *source)
+{
+    const char *name = s->input ? s->input : "sky";
+    int code = load(work, s, source);
+    if (code != CLI_GO || s->sun != KILN_SUN_EXTRACT)
+        return code;
+    if (source->level_count > 1) {
+        work->error.result = KILN_ERROR_ARGUMENT;
+        snprintf(work->error.message, sizeof work->error.message,
+                 "%s: is baked, and its %d levels hold the lights; name the panorama", name,
+                 source->level_count);
+        return CLI_FAILED;
+    }
+    if (kiln_lights_extract(work->context, source, &s->lights, &s->taken, &work->error))
+        return CLI_FAILED;
+    if (!s->taken.count)
+        cli_note(work, false, "%s: no compact light was found, and nothing was taken out", name);
+    return CLI_GO;
+}
+
 int scene_bake_slot(cli_work *work, const scene_setup *s, const kiln_map *source, view_slot slot,
                     int samples, view_renderer *renderer)
 {
@@ -110,6 +158,7 @@ int scene_bake_slot(cli_work *work, const scene_setup *s, const kiln_map *source
         return CLI_FAILED;
     kiln_result result =
         view_set_environment(renderer, slot, &e.levels, &e.sh, &e.irradiance, &work->error);
+    view_set_lights(renderer, &s->taken);
     kiln_environment_free(&e);
     return result == KILN_OK ? CLI_GO : CLI_FAILED;
 }

@@ -31,6 +31,10 @@ enum {
     SCENE_BAKE_SIZE,
     SCENE_LAYER,
     SCENE_NEGATIVE,
+    SCENE_SUN,
+    SCENE_LIGHTS,
+    SCENE_LIGHTS_SHARE,
+    SCENE_GROUND,
     SCENE_OPTIONS
 };
 
@@ -47,6 +51,9 @@ typedef struct scene_setup {
     int negative;      ///< a kiln_negative, which decides what becomes of negative texels
     const char *layer; ///< layer of the environment's file; NULL for the default
     const char *input; ///< name of the environment's file; NULL for a sky
+    int sun;           ///< KILN_SUN_KEEP or KILN_SUN_EXTRACT
+    kiln_lights_def lights;
+    kiln_lights taken; ///< lights that scene_load took out of the environment
 } scene_setup;
 
 /// The option rows that kiln render and kiln view share. Each command's table of options begins
@@ -211,9 +218,23 @@ typedef struct scene_setup {
                          256,                                                                      \
                          "N",                                                                      \
                          .help = "texels along the edge of a face of the baked environment"},      \
-    [SCENE_LAYER] = CLI_LAYER_ROW(scene_setup), [SCENE_NEGATIVE] = CLI_NEGATIVE_ROW(scene_setup)
-/// Returns the word of --diffuse with this index, or NULL after the last word.
+    [SCENE_LAYER] = CLI_LAYER_ROW(scene_setup), [SCENE_NEGATIVE] = CLI_NEGATIVE_ROW(scene_setup),  \
+    [SCENE_SUN] = {"sun",                                                                          \
+                   CLI_CHOICE,                                                                     \
+                   offsetof(scene_setup, sun),                                                     \
+                   .value = "WHICH",                                                               \
+                   .word = scene_sun_word,                                                         \
+                   .help = "what becomes of the sun and other compact lights: keep leaves them "   \
+                           "in the environment, extract takes the light with the largest share "   \
+                           "out and draws a disc of light of its true size instead",               \
+                   .group = "Sun and lamps"},                                                      \
+    [SCENE_LIGHTS] = CLI_LIGHTS_ROW(scene_setup),                                                  \
+    [SCENE_LIGHTS_SHARE] = CLI_LIGHTS_SHARE_ROW(scene_setup),                                      \
+    [SCENE_GROUND] = {"ground", CLI_FLAG, offsetof(scene_setup, options.ground),                   \
+                      .help = "draw a grey, matte ground under the balls, with their shadows"}
+/// Return the word of --diffuse or --sun with this index, or NULL after the last word.
 const char *scene_diffuse_word(int index);
+const char *scene_sun_word(int index);
 
 /// Converts and checks the shared options after cli_read_arguments. `may_change`: the user can
 /// change the scene later, so an environment is accepted for a scene that uses none. Returns CLI_GO
@@ -221,11 +242,12 @@ const char *scene_diffuse_word(int index);
 int scene_read(const cli_arguments *a, bool may_change, scene_setup *s);
 /// Returns whether the scene needs an environment.
 bool scene_has_environment(const scene_setup *s);
-/// Loads the environment or computes a sky. Returns CLI_GO or CLI_FAILED.
-int scene_load(cli_work *work, const scene_setup *s, kiln_map *source);
+/// Loads the environment or computes a sky, and moves the lights that --sun extract asks for from
+/// `source` to s->taken. Returns CLI_GO or CLI_FAILED.
+int scene_load(cli_work *work, scene_setup *s, kiln_map *source);
 /// Number of samples for each texel of the importance-sampled bake in VIEW_SLOT_TEXTBOOK.
 enum { SCENE_TEXTBOOK_SAMPLES = 1024 };
-/// Bakes the environment and sets it in the renderer. scene_bake_slot sets one slot, exactly if
+/// Bakes the environment and sets it and the lights in the renderer. scene_bake_slot sets one slot, exactly if
 /// `samples` is 0; scene_bake sets every slot that the scene needs. Both return CLI_GO or
 /// CLI_FAILED.
 int scene_bake_slot(cli_work *work, const scene_setup *s, const kiln_map *source, view_slot slot,

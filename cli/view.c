@@ -145,9 +145,9 @@ static bool go_on(void *user)
     return !cli_interrupted();
 }
 
-static int open_window(cli_work *work, const view *v)
+static int open_window(cli_work *work, view *v)
 {
-    const scene_setup *setup = &v->setup;
+    scene_setup *setup = &v->setup;
     kiln_map source = {0};
     kiln_image image = {0};
     show s = {.work = work, .setup = setup, .source = &source, .threads = v->threads};

@@ -6,6 +6,7 @@
 #include "brdf.glsl"
 #include "kulla_conty.glsl"
 #include "ibl.glsl"
+#include "disc.glsl"
 #include "tone.glsl"
 
 // Names of scenes, methods of compensation, debug views and tone curves. The values are those of
@@ -15,7 +16,7 @@ const int METHOD_KULLA_CONTY = 1, METHOD_HANDOUT = 2, METHOD_FDEZ_AGUERA = 3, ME
 const int DEBUG_LEVEL = 1, DEBUG_TABLE_E = 2, DEBUG_TABLE_E_AVERAGE = 3, DEBUG_TABLE_SPLIT = 4,
           DEBUG_E = 5, DEBUG_F = 6;
 const int TONE_LINEAR = 0, TONE_ASSIGNMENT = 2;
-const int MAX_BALLS = 64, CANDIDATES = 8;
+const int MAX_BALLS = 64, MAX_DISCS = 64, CANDIDATES = 8;
 
 layout(std140) uniform View
 {
@@ -40,6 +41,9 @@ layout(std140) uniform View
     vec4 harmonics[18];       // 9 coefficients of each of the two environments
     vec4 balls[5 * MAX_BALLS]; // of each ball: centre, radius; f0, roughness; F_avg, method;
                                // albedo, metallic; f82
+    vec4 discs[2 * MAX_DISCS]; // of each disc of light: direction, sine of the angular radius;
+                               // radiance
+    vec4 ground;               // height and albedo of the ground; 1 with a ground; number of discs
 };
 
 uniform highp samplerCube environment, environment_textbook, irradiance;
@@ -112,6 +116,31 @@ float occlusion_at(int self, vec3 p, vec3 n)
     return open;
 }
 
+// Radiance of the discs of light that are seen in direction d.
+vec3 discs_seen(vec3 d)
+{
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < int(ground.w); i++) {
+        vec4 disc = discs[2 * i];
+        float chord2 = 2.0 * disc.w * disc.w / (1.0 + sqrt((1.0 - disc.w) * (1.0 + disc.w)));
+        vec3 from = d - disc.xyz;
+        if (dot(from, from) < chord2)
+            sum += discs[2 * i + 1].rgb;
+    }
+    return sum;
+}
+
+// The part of a disc of light that point p of ball `self` sees past the other balls. The parts that
+// several balls hide are added, which is exact unless the balls hide one another.
+float disc_open(vec4 disc, int self, vec3 p)
+{
+    float hidden = 0.0;
+    for (int i = 0; i < mode.w; i++)
+        if (i != self)
+            hidden += disc_hidden(disc.xyz, disc.w, balls[5 * i].xyz - p, balls[5 * i].w);
+    return max(1.0 - hidden, 0.0);
+}
+
 // --------------------------------------------------------------------------------------- reflection
 
 // Radiance towards v from one directional light: by the microfacet lobe and, with two of the
@@ -142,35 +171,126 @@ vec3 lit_by_light(Ball ball, vec3 n, vec3 v, float nov)
     return lobe * nol * light.w;
 }
 
+// The parts of uniform light that a ball reflects towards a direction.
+struct Albedo
+{
+    vec3 single;   // by one bounce between microfacets: f0 A + B - edge C, C being for metals
+    vec3 gain;     // the factor on one bounce that `single` contains, from Turquin's method
+    vec3 multiple; // by further bounces
+    vec3 base;     // by the diffuse base, which light reaches that is not reflected before
+    vec3 lobe;     // of Kulla and Conty's methods: F of the further bounces
+};
+
+Albedo albedo_at(Ball ball, float nov)
+{
+    vec2 ab = table_read(split_sum, table_layout[5], nov, ball.roughness).rg;
+    float missing = table_missing(e, table_layout[3], nov, ball.roughness);
+    float edge = table_read(edge_sum, table_layout[6], nov, ball.roughness).r;
+    Albedo to;
+    to.single = ball.f0 * ab.x + ab.y - f82_edge(ball.f0, ball.f82) * edge;
+    to.multiple = to.lobe = vec3(0.0);
+    to.gain = vec3(1.0);
+    if (ball.method == METHOD_KULLA_CONTY || ball.method == METHOD_HANDOUT) {
+        float a = table_missing(e_average, table_layout[4], 0.0, ball.roughness);
+        int form = ball.method == METHOD_HANDOUT ? F_ADD_ASSIGNMENT : F_ADD_BOUNCES;
+        to.lobe = kulla_conty_fresnel(form, ball.f_average, vec3(1.0 - a));
+        to.multiple = to.lobe * missing;
+    } else if (ball.method == METHOD_FDEZ_AGUERA) {
+        // The formula of fdez_aguera() with this metal's F_avg in place of Schlick's average.
+        vec3 bounces = kulla_conty_fresnel(F_ADD_ASSIGNMENT, ball.f_average, vec3(ab.x + ab.y));
+        to.multiple = to.single * bounces * ((1.0 - ab.x - ab.y) / (ab.x + ab.y));
+    } else if (ball.method == METHOD_TURQUIN) {
+        to.gain = turquin(ball.f0, 1.0 - missing);
+        to.single *= to.gain;
+    }
+    to.base = ball.albedo * (1.0 - to.single - to.multiple);
+    return to;
+}
+
 // Radiance towards v from the environment. The specular part is the split sum: prefiltered radiance
-// times the lobe's albedo f0 A + B - edge C, whose last term is for metals. Light of further
-// bounces is added as diffuse light. Light that the specular part does not reflect reaches the
-// diffuse base. `open` is the share of diffuse light that other balls leave.
-vec3 lit_by_environment(int slot, Ball ball, vec3 n, vec3 v, float nov, float open)
+// times the lobe's albedo. Light of further bounces is added as diffuse light. `open` is the share
+// of diffuse light that other balls leave.
+vec3 lit_by_environment(int slot, Ball ball, Albedo to, vec3 n, vec3 v, float nov, float open)
 {
     vec3 r = 2.0 * nov * n - v;
     if (screen.z > 0.0)
         r = bent_reflection(n, r, ball.roughness);
     vec3 mirrored = environment_seen(slot, r, ball.roughness);
     vec3 around = irradiance_at(slot, n) * open;
-    vec2 ab = table_read(split_sum, table_layout[5], nov, ball.roughness).rg;
-    float missing = table_missing(e, table_layout[3], nov, ball.roughness);
-    float edge = table_read(edge_sum, table_layout[6], nov, ball.roughness).r;
-    vec3 single = ball.f0 * ab.x + ab.y - f82_edge(ball.f0, ball.f82) * edge, multiple = vec3(0.0);
-    if (ball.method == METHOD_KULLA_CONTY || ball.method == METHOD_HANDOUT) {
-        float a = table_missing(e_average, table_layout[4], 0.0, ball.roughness);
-        int form = ball.method == METHOD_HANDOUT ? F_ADD_ASSIGNMENT : F_ADD_BOUNCES;
-        multiple = kulla_conty_fresnel(form, ball.f_average, vec3(1.0 - a)) * missing;
-    } else if (ball.method == METHOD_FDEZ_AGUERA) {
-        // The formula of fdez_aguera() with this metal's F_avg in place of Schlick's average.
-        vec3 bounces = kulla_conty_fresnel(F_ADD_ASSIGNMENT, ball.f_average, vec3(ab.x + ab.y));
-        multiple = single * bounces * ((1.0 - ab.x - ab.y) / (ab.x + ab.y));
-    } else if (ball.method == METHOD_TURQUIN) {
-        single *= turquin(ball.f0, 1.0 - missing);
-    }
-    vec3 base = ball.albedo * (1.0 - single - multiple);
     float specular_open = open < 1.0 ? specular_occlusion(nov, open, ball.roughness) : 1.0;
-    return mirrored * single * specular_open + around * (multiple + base);
+    return mirrored * to.single * specular_open + around * (to.multiple + to.base);
+}
+
+// The single-scattering lobe times n.l, integrated over a disc around l, which is cut by the
+// horizon. v and l are given in a frame whose z axis is the normal. GGX is integrated over the disc;
+// the other factors are taken at one direction, which is the mirror direction or the disc's point
+// nearest to it where the lobe is narrower than the disc, and the disc's centre where the lobe is
+// wider. A disc that the horizon cuts is replaced by one that touches the horizon, has the height of
+// the part above the horizon, and shines as much as that part.
+vec3 disc_specular(Ball ball, vec3 v, vec3 l, float sine)
+{
+    float size = 0.5 * (min(l.z, sine) + sine), share = 1.0;
+    if (l.z < sine) {
+        share = disc_part(l.z / sine) * (sine * sine) / (size * size);
+        float low = 1.0 - l.z * l.z;
+        l = vec3(l.xy * sqrt((1.0 - size * size) / low), size);
+    }
+    // a lobe much narrower than the disc is widened to what ggx_disc can resolve
+    float alpha = max(ball.roughness * ball.roughness, 0.06 * size);
+    vec3 mirror = vec3(-v.xy, v.z), to = mirror - dot(mirror, l) * l, point = mirror;
+    float off = length(to);
+    if (off > size || dot(mirror, l) < 0.0)
+        point = l * sqrt(1.0 - size * size) + to * (size / max(off, 1e-6));
+    point = normalize(mix(l, point, size * size / (size * size + 4.0 * alpha * alpha)));
+    vec3 h = normalize(v + point);
+    float voh = dot(v, h), nol = max(point.z, 1e-5);
+    vec3 f = fresnel_f82(ball.f0, ball.f82, clamp(voh, 0.0, 1.0));
+    return f * (share * ggx_disc(alpha, v, l, size) * visibility(SMITH, ball.roughness, v.z, nol) *
+                nol * voh / h.z);
+}
+
+// Radiance towards v from the discs of light. `self` is the index of the ball, which other balls
+// shade with occlusion.
+vec3 lit_by_discs(Ball ball, Albedo to, int self, vec3 n, vec3 p, vec3 v, float nov)
+{
+    vec3 sum = vec3(0.0), t = normalize(abs(n.y) < 0.9 ? vec3(n.z, 0.0, -n.x) : vec3(0.0, n.z, -n.y));
+    vec3 b = cross(n, t), diffuse = to.base;
+    bool lobe = ball.method == METHOD_KULLA_CONTY || ball.method == METHOD_HANDOUT;
+    if (ball.method == METHOD_FDEZ_AGUERA)
+        diffuse += to.multiple;
+    for (int i = 0; i < int(ground.w); i++) {
+        vec4 disc = discs[2 * i];
+        vec3 l = vec3(dot(t, disc.xyz), dot(b, disc.xyz), dot(n, disc.xyz));
+        if (l.z <= -disc.w)
+            continue;
+        float cosine = disc_cosine(l.z, disc.w);
+        vec3 f = diffuse;
+        if (lobe) {
+            float o = table_missing(e, table_layout[3], nov, ball.roughness);
+            float i = table_missing(e, table_layout[3], cosine, ball.roughness);
+            float a = table_missing(e_average, table_layout[4], 0.0, ball.roughness);
+            f += PI * kulla_conty_missing(o, i, a) * to.lobe;
+        }
+        f *= cosine * disc.w * disc.w;
+        vec3 w = vec3(dot(t, v), dot(b, v), nov);
+        f += to.gain * disc_specular(ball, w, l, disc.w);
+        sum += f * discs[2 * i + 1].rgb * (flags.z != 0 ? disc_open(disc, self, p) : 1.0);
+    }
+    return sum;
+}
+
+// Radiance of point p of the matte ground, which the balls shade.
+vec3 ground_at(int slot, vec3 p)
+{
+    const vec3 up = vec3(0.0, 1.0, 0.0);
+    vec3 sum = irradiance_at(slot, up) * occlusion_at(-1, p, up);
+    for (int i = 0; i < int(ground.w); i++) {
+        vec4 disc = discs[2 * i];
+        if (disc.y > -disc.w)
+            sum += discs[2 * i + 1].rgb *
+                   (disc.w * disc.w * disc_cosine(disc.y, disc.w) * disc_open(disc, -1, p));
+    }
+    return ground.y * sum;
 }
 
 // ------------------------------------------------------------------------------------------ picture
@@ -218,7 +338,9 @@ vec3 shaded(int slot, int index, vec3 d, vec3 n, vec3 p, float nov)
     if (mode.x == SCENE_ASSIGNMENT)
         return lit_by_light(ball, n, -d, nov);
     float open = flags.z != 0 ? occlusion_at(index, p, n) : 1.0;
-    return lit_by_environment(slot, ball, n, -d, nov, open);
+    Albedo to = albedo_at(ball, nov);
+    vec3 c = lit_by_environment(slot, ball, to, n, -d, nov, open);
+    return ground.w > 0.0 ? c + lit_by_discs(ball, to, index, n, p, -d, nov) : c;
 }
 
 // The direction from the eye through the point `at` of the screen, in pixels.
@@ -226,6 +348,15 @@ vec3 direction_at(vec2 at)
 {
     vec2 s = 2.0 * at / screen.xy - 1.0;
     return normalize(s.x * right.w * right.xyz + s.y * up.w * up.xyz - back.xyz);
+}
+
+// Radiance of what a ray from the eye along d sees past the balls.
+vec3 behind(int slot, vec3 d)
+{
+    float above = eye.y - ground.x;
+    if (ground.z > 0.0 && above > 0.0 && d.y < 0.0)
+        return ground_at(slot, eye.xyz - d * (above / d.y));
+    return environment_seen(slot, d, turn.w) + discs_seen(d);
 }
 
 // The mean over the rays of the pixel whose lower left corner is `corner`.
@@ -254,7 +385,7 @@ vec3 balls_at(vec2 corner, int slot)
         if (hit >= 0)
             sum += shaded(slot, hit, d, n, p, nov);
         else if (mode.x != SCENE_ASSIGNMENT && mode.y == 0)
-            sum += environment_seen(slot, d, turn.w);
+            sum += behind(slot, d);
     }
     return sum / float(side * side);
 }

@@ -15,6 +15,7 @@ const char *const view_keys[] = {
     "e r            darker or brighter by half a stop",
     "b              blur the environment behind the balls more, or not at all again",
     "o              let balls shade one another, or not",
+    "g              matte ground with the shadows of the balls, or none",
     "v              bend reflections of rough balls towards the normal, or not",
     "i              diffuse light from spherical harmonics or from the irradiance cube",
     "p              scene assignment with the mistake of the handout's figure 6, or without",
@@ -62,6 +63,9 @@ static bool key_of_light(view_options *o, char key)
         return true;
     case 'b':
         o->background = o->background >= 0.99 ? 0 : o->background + 0.25;
+        return true;
+    case 'g':
+        o->ground = !o->ground;
         return true;
     case 'i':
         o->cube_diffuse = !o->cube_diffuse;

@@ -103,6 +103,31 @@ void view_light_free(view_light *light)
     *light = (view_light){0};
 }
 
+void view_light_add(view_light *light, const view_disc *discs, int count)
+{
+    for (int i = 0; i < count && light->disc_count < KILN_MAX_LIGHTS; i++) {
+        int at = light->disc_count++;
+        const double *c = discs[i].radiance;
+        double solid = 2 * pi * discs[i].sine * discs[i].sine / (1 + discs[i].cosine);
+        light->disc[at] = discs[i];
+        light->disc_power[at] = (fabs(c[0]) + fabs(c[1]) + fabs(c[2])) * solid;
+        light->total += light->disc_power[at];
+    }
+    light->mean = light->total / (3 * 4 * pi);
+}
+
+// Adds the radiance of the discs around d.
+static void add_discs(const view_light *light, const double d[3], double radiance[3])
+{
+    for (int i = 0; i < light->disc_count; i++) {
+        const view_disc *disc = &light->disc[i];
+        const double *l = disc->direction;
+        if (d[0] * l[0] + d[1] * l[1] + d[2] * l[2] >= disc->cosine)
+            for (int c = 0; c < 3; c++)
+                radiance[c] += disc->radiance[c];
+    }
+}
+
 static const float *texel_at(const view_light *light, const double d[3])
 {
     int size = light->panorama.size, width = 2 * size;
@@ -120,11 +145,16 @@ void view_light_radiance(const view_light *light, const double d[3], double radi
     const float *texel = texel_at(light, d);
     for (int c = 0; c < 3; c++)
         radiance[c] = (double)texel[c];
+    add_discs(light, d, radiance);
 }
 
 double view_light_pdf(const view_light *light, const double d[3])
 {
-    return light->total > 0 ? power(texel_at(light, d)) / light->total : 0;
+    double discs[3] = {0};
+    if (!(light->total > 0))
+        return 0;
+    add_discs(light, d, discs); // no radiance of a disc is negative
+    return (power(texel_at(light, d)) + discs[0] + discs[1] + discs[2]) / light->total;
 }
 
 // Binary search in sums that never fall: returns the last i < count with sums[i] <= value. `rest`
@@ -144,11 +174,32 @@ static int find(const double *sums, int count, double value, double *rest)
     return low;
 }
 
+// Draws a direction in a disc, uniformly.
+static void sample_disc(const view_disc *disc, const double xi[2], double d[3])
+{
+    const double *n = disc->direction;
+    double sign = copysign(1, n[2]), a = -1 / (sign + n[2]), phi = 2 * pi * xi[0];
+    const double t[3] = {1 + sign * n[0] * n[0] * a, sign * n[0] * n[1] * a, -sign * n[0]};
+    const double b[3] = {n[0] * n[1] * a, sign + n[1] * n[1] * a, -n[1]};
+    double less = xi[1] * disc->sine * disc->sine / (1 + disc->cosine); // 1 - cosine
+    double sine = sqrt(less * (2 - less));
+    for (int c = 0; c < 3; c++)
+        d[c] = (1 - less) * n[c] + sine * (cos(phi) * t[c] + sin(phi) * b[c]);
+}
+
 void view_light_sample(const view_light *light, const double xi[2], double d[3])
 {
     int size = light->panorama.size, width = 2 * size;
-    double down, across;
-    int y = find(light->row, size, xi[1] * light->total, &down);
+    double down, across, value = xi[1] * light->total;
+    // the discs come first in the cumulated power, then the rows of the panorama
+    for (int i = 0; i < light->disc_count; i++) {
+        if (value < light->disc_power[i]) {
+            sample_disc(&light->disc[i], (double[2]){xi[0], value / light->disc_power[i]}, d);
+            return;
+        }
+        value -= light->disc_power[i];
+    }
+    int y = find(light->row, size, value, &down);
     const double *sums = light->texel + (size_t)y * ((size_t)width + 1);
     int x = find(sums, width, xi[0] * sums[width], &across);
     double phi = 2 * pi * ((x + across) / width - 0.5);

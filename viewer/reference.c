@@ -33,10 +33,13 @@ typedef struct job {
     bool alone;
     // true for a ball whose bounces after the first between microfacets are computed by
     // view_walk_add
-    bool walks[VIEW_MAX_BALLS];
+    bool walks[VIEW_MAX_BALLS + 1];
     double eye[3], right[3], up[3], back[3], slope;
-    view_ball balls[VIEW_MAX_BALLS];
+    // the balls, then the ground, whose lobes find_ground sets
+    view_ball balls[VIEW_MAX_BALLS + 1];
     int ball_count;
+    bool has_ground;
+    view_plane ground;
     view_light light;
     view_energy energy;
     kiln_image *image;
@@ -93,7 +96,7 @@ static void tangents(const double n[3], double t[3], double b[3])
 }
 
 // Finds the nearest ball that a ray from `from` along d meets, except ball `leaves`, on which the
-// ray starts (VIEW_MAX_BALLS: the ray starts on no ball). p->ball is -1 if the ray meets no ball.
+// ray starts (-1: the ray starts on no ball). p->ball is -1 if the ray meets no ball.
 static void find_point(const job *j, const double from[3], const double d[3], int leaves,
                        view_point *p)
 {
@@ -123,6 +126,25 @@ static void find_point(const job *j, const double from[3], const double d[3], in
     view_point_prepare(ball, &j->energy, p);
 }
 
+// Makes p the point where a ray from the eye meets the ground, if the ray met no ball. Only rays from
+// the eye meet the ground.
+static void find_ground(const job *j, const double d[3], view_point *p)
+{
+    double above = j->eye[1] - j->ground.height;
+    if (p->ball >= 0 || !j->has_ground || above <= 0 || d[1] >= 0)
+        return;
+    *p = (view_point){.ball = j->ball_count, .n = {0, 1, 0}};
+    tangents(p->n, p->t, p->b);
+    memcpy(p->ray, d, sizeof p->ray);
+    for (int c = 0; c < 3; c++) {
+        p->position[c] = j->eye[c] - d[c] * above / d[1];
+        p->diffuse[c] = j->ground.albedo;
+    }
+    p->v[0] = -dot(p->t, d);
+    p->v[1] = -dot(p->b, d);
+    p->v[2] = -d[1];
+}
+
 // ------------------------------------------------------------------------------------------- light
 
 static bool is_shaded(const job *j, const view_point *p, const double d[3])
@@ -143,7 +165,8 @@ static void incoming(const job *j, const view_point *p, int depth, const double 
 {
     view_point from = {.ball = -1};
     radiance[0] = radiance[1] = radiance[2] = 0;
-    if (j->alone && j->options->occlusion && is_shaded(j, p, d))
+    bool shade = j->options->occlusion || p->ball == j->ball_count; // balls always shade the ground
+    if (j->alone && shade && is_shaded(j, p, d))
         return;
     if (!j->alone)
         find_point(j, p->position, d, p->ball, &from);
@@ -348,7 +371,8 @@ static void pixel(job *j, int x, int y, view_reference_report *report, float *ou
         double d[3];
         int across = i % j->side, down = i / j->side;
         ray_at(j, x + (across + 0.5) / j->side, y + (down + 0.5) / j->side, d);
-        find_point(j, j->eye, d, VIEW_MAX_BALLS, &points[waiting]);
+        find_point(j, j->eye, d, -1, &points[waiting]);
+        find_ground(j, d, &points[waiting]);
         if (!shines(j, &points[waiting], radiance))
             waiting++;
         for (int c = 0; c < 3; c++)
@@ -466,6 +490,8 @@ kiln_result view_reference(kiln_context *context, const view_options *options,
     };
     view_camera_axes(&options->camera, j.eye, j.right, j.up, j.back);
     j.ball_count = view_balls(options, j.balls);
+    j.has_ground = view_ground(options, &j.ground);
+    j.balls[j.ball_count] = (view_ball){.roughness = 1, .method = VIEW_METHOD_SINGLE};
     for (int i = 0; i < j.ball_count && def->walk; i++) {
         j.walks[i] = j.balls[i].method != VIEW_METHOD_SINGLE;
         j.balls[i].method = VIEW_METHOD_SINGLE;
@@ -477,8 +503,11 @@ kiln_result view_reference(kiln_context *context, const view_options *options,
     if (result == KILN_OK)
         result =
             view_light_create(context, white ? NULL : source, options->rotation, &j.light, error);
-    if (result == KILN_OK)
+    if (result == KILN_OK) {
+        view_disc discs[KILN_MAX_LIGHTS];
+        view_light_add(&j.light, discs, view_discs(options, def->lights, discs));
         result = view_energy_create(context, options, &j.energy, error);
+    }
     if (result == KILN_OK && !run(&j, def))
         result = view_fail(error, KILN_ERROR_CANCELLED, "cancelled during reference");
     if (result == KILN_OK && report)

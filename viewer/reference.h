@@ -13,6 +13,9 @@ typedef struct view_reference_def {
     /// a random walk between microfacets computes the bounces from the second one on, in place of
     /// each ball's compensation method
     bool walk;
+    /// lights that shine beside the environment, in the environment's frame (view_set_lights); NULL
+    /// for none
+    const kiln_lights *lights;
     int bounces; ///< a light path may meet this many balls; 0 for no limit
     /// balls do not reflect one another, as in the real-time picture; with view_options.occlusion
     /// they look black to one another. The furnace scene always does this
@@ -26,11 +29,11 @@ typedef struct view_reference_def {
     void *progress_user;
 } view_reference_def;
 
-/// Noise and effort of a picture, over the pixels that show a ball.
+/// Noise and effort of a picture, over the pixels that show a ball or the ground.
 typedef struct view_reference_report {
     double noise;       ///< RMS of the pixels' relative standard errors
     double batches;     ///< mean number of samples of each ray
-    size_t pixel_count; ///< number of pixels that show a ball
+    size_t pixel_count; ///< number of pixels that show a ball or the ground
     size_t noisy_count; ///< number of pixels that reached batch_limit before the wanted noise
 } view_reference_report;
 

@@ -16,11 +16,14 @@ typedef struct block {
     float level_roughness[VIEW_SLOT_COUNT][KILN_MAX_LEVELS];
     float harmonics[VIEW_SLOT_COUNT][9][4];
     float balls[VIEW_MAX_BALLS][5][4];
+    float discs[KILN_MAX_LIGHTS][2][4];
+    float ground[4];
 } block;
 
 _Static_assert(offsetof(block, mode) == 128, "std140");
 _Static_assert(offsetof(block, table_layout) == 176, "std140");
 _Static_assert(offsetof(block, balls) == 704, "std140");
+_Static_assert(offsetof(block, discs) == 5824, "std140");
 
 enum { TONE_LINEAR, TONE_NEUTRAL, TONE_ASSIGNMENT };
 
@@ -43,6 +46,7 @@ struct view_renderer {
     view_gl gl;
     GLuint program, vertices, buffer, texture[TEXTURES];
     bool has_float;
+    kiln_lights lights;
     block block;
     char name[128];
 };
@@ -107,6 +111,11 @@ kiln_result view_set_environment(view_renderer *r, view_slot slot, const kiln_ma
         for (int c = 0; c < 3; c++)
             b->harmonics[slot][i][c] = (float)sh->c[i][c];
     return KILN_OK;
+}
+
+void view_set_lights(view_renderer *r, const kiln_lights *lights)
+{
+    r->lights = lights ? *lights : (kiln_lights){.count = 0};
 }
 
 // ------------------------------------------------------------------------------------------- tables
@@ -248,6 +257,22 @@ static void fill_balls(block *b, const view_options *o)
     }
 }
 
+static void fill_discs(block *b, const view_options *o, const kiln_lights *lights)
+{
+    view_disc discs[KILN_MAX_LIGHTS];
+    view_plane ground;
+    int count = view_discs(o, lights, discs);
+    for (int i = 0; i < count; i++) {
+        copy3(b->discs[i][0], discs[i].direction);
+        copy3(b->discs[i][1], discs[i].radiance);
+        b->discs[i][0][3] = (float)discs[i].sine;
+    }
+    b->ground[2] = view_ground(o, &ground);
+    b->ground[0] = (float)ground.height;
+    b->ground[1] = (float)ground.albedo;
+    b->ground[3] = (float)count;
+}
+
 static void fill_block(block *b, const view_options *o, int width, int height, bool linear)
 {
     static const double degree = 0.017453292519943295;
@@ -288,6 +313,7 @@ static void draw(view_renderer *r, const view_options *o, int width, int height,
 {
     const view_gl *gl = &r->gl;
     fill_block(&r->block, o, width, height, linear);
+    fill_discs(&r->block, o, &r->lights);
     gl->Viewport(0, 0, width, height);
     gl->Disable(GL_BLEND);
     gl->Disable(GL_DEPTH_TEST);

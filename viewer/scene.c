@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static const double degree = 0.017453292519943295;
+static const double degree = 0.017453292519943295, pi = 3.14159265358979323846;
 
 // ------------------------------------------------------------------------------------------- names
 
@@ -212,6 +212,41 @@ int view_balls(const view_options *o, view_ball balls[VIEW_MAX_BALLS])
         break;
     }
     return make_rows(o, o->material, balls);
+}
+
+// ---------------------------------------------------------------------------------- ground, lights
+
+static bool has_environment(const view_options *o)
+{
+    return o->scene != VIEW_SCENE_ASSIGNMENT && o->scene != VIEW_SCENE_FURNACE;
+}
+
+bool view_ground(const view_options *o, view_plane *ground)
+{
+    view_ball balls[VIEW_MAX_BALLS];
+    int count = view_balls(o, balls);
+    *ground = (view_plane){.albedo = 0.5};
+    for (int i = 0; i < count; i++)
+        ground->height = fmin(ground->height, balls[i].centre[1] - balls[i].radius);
+    return o->ground && has_environment(o);
+}
+
+int view_discs(const view_options *o, const kiln_lights *lights, view_disc discs[KILN_MAX_LIGHTS])
+{
+    double c = cos(o->rotation * degree), s = sin(o->rotation * degree);
+    int count = lights && has_environment(o) ? lights->count : 0;
+    for (int i = 0; i < count; i++) {
+        const kiln_light *light = &lights->light[i];
+        double radius = fmax(0.01, fmin(light->angular_radius, 60)) * degree;
+        view_disc *disc = &discs[i];
+        *disc = (view_disc){.sine = sin(radius), .cosine = cos(radius)};
+        disc->direction[0] = light->direction[0] * c + light->direction[2] * s;
+        disc->direction[1] = light->direction[1];
+        disc->direction[2] = light->direction[2] * c - light->direction[0] * s;
+        for (int k = 0; k < 3; k++)
+            disc->radiance[k] = light->irradiance[k] / (pi * disc->sine * disc->sine);
+    }
+    return count;
 }
 
 // -------------------------------------------------------------------------------------------- tone

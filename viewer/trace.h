@@ -26,9 +26,13 @@ typedef struct view_light {
     /// cumulated |r| + |g| + |b|. row: of all rows above each row, times the solid angle of a
     /// texel; texel: of all texels to the left of each texel in its row
     double *row, *texel;
-    double total; ///< integral of |r| + |g| + |b| over the sphere
+    double total; ///< integral of |r| + |g| + |b| over the sphere, discs included
     double mean;  ///< mean of |r|, |g| and |b| over the sphere
     double cos_turn, sin_turn;
+    int disc_count;
+    view_disc disc[KILN_MAX_LIGHTS]; ///< lights that shine beside the panorama
+    /// integral of each disc's |r| + |g| + |b| over the sphere
+    double disc_power[KILN_MAX_LIGHTS];
 } view_light;
 
 /// Makes an environment a light source that can be sampled. `rotation` is view_options.rotation. A
@@ -36,6 +40,8 @@ typedef struct view_light {
 KILN_CHECKED kiln_result view_light_create(kiln_context *context, const kiln_map *source,
                                            double rotation, view_light *light, kiln_error *error);
 void view_light_free(view_light *light);
+/// Adds discs to the light.
+void view_light_add(view_light *light, const view_disc *discs, int count);
 void view_light_radiance(const view_light *light, const double d[3], double radiance[3]);
 /// Draws a direction with a density per steradian proportional to |r| + |g| + |b|.
 void view_light_sample(const view_light *light, const double xi[2], double d[3]);

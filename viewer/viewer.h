@@ -103,6 +103,8 @@ typedef struct view_options {
     bool bent;      ///< looks a rough ball's reflection up nearer to its normal
     /// diffuse light comes from the irradiance cube instead of the spherical harmonics
     bool cube_diffuse;
+    /// true: a matte ground lies under the balls of scenes with an environment (view_ground)
+    bool ground;
 } view_options;
 
 /// Returns the camera, method, material and settings that suit the scene.
@@ -134,6 +136,30 @@ typedef struct view_ball {
 
 /// Fills `balls` with the balls of the view, and returns their number.
 int view_balls(const view_options *options, view_ball balls[VIEW_MAX_BALLS]);
+
+/// A horizontal, matte, infinite plane. Balls shade the plane; the plane neither lights the balls
+/// nor hides light from them.
+typedef struct view_plane {
+    double height; ///< y of the plane, at which the lowest balls touch the plane
+    double albedo;
+} view_plane;
+
+/// Sets the ground of the view. Returns whether the view shows the ground.
+bool view_ground(const view_options *options, view_plane *ground);
+
+/// A light as a disc: a spherical cap of uniform radiance.
+typedef struct view_disc {
+    double direction[3]; ///< unit vector to the centre, in the scene
+    double sine, cosine; ///< of the angular radius
+    double radiance[3];
+} view_disc;
+
+/// Turns lights by the view's rotation, and returns the number of discs, which is 0 for scenes
+/// without an environment and where `lights` is NULL. Angular radii below 0.01 degrees and above 60
+/// degrees are set to these values; the irradiance stays.
+int view_discs(const view_options *options, const kiln_lights *lights,
+               view_disc discs[KILN_MAX_LIGHTS]);
+
 /// Sets the world position of the camera, `eye`, and the camera's axes right, up and backwards. The
 /// axes are orthogonal unit vectors.
 void view_camera_axes(const view_camera *camera, double eye[3], double right[3], double up[3],
@@ -184,6 +210,10 @@ typedef enum view_slot {
 KILN_CHECKED kiln_result view_set_environment(view_renderer *renderer, view_slot slot,
                                               const kiln_map *levels, const kiln_sh *sh,
                                               const kiln_map *irradiance, kiln_error *error);
+
+/// Sets the lights that scenes with an environment show as discs, beside the environment in both
+/// slots. The lights are in the environment's frame, as from kiln_lights_extract. NULL for none.
+void view_set_lights(view_renderer *renderer, const kiln_lights *lights);
 
 /// Replaces the renderer's own tables of one model. A model whose G is one of Schlick's replaces
 /// the tables of VIEW_SCENE_ASSIGNMENT, any other model those of the environment scenes. E and

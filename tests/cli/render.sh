@@ -46,6 +46,19 @@ expect 0 "" render sky.exr -o a.png --error --size 32x18 --samples 1 --noise 0.3
 grep -q 'error RMS' log/out || die "no error is told"
 expect 0 "" render -o a.png --reference --size 32x18
 
+# The sun as a disc, and the ground: the lights are told, and what does not fit together is refused.
+expect 0 "" sky -o clear.exr --size 256
+expect 0 "" render clear.exr -o a.png --sun extract --ground --size 64x36 --samples 1 --bake-size 16
+grep -q 'light 1 .*radius 0' log/out || die "the sun's disc is not told"
+expect 0 "" render clear.exr -o b.png --ground --size 64x36 --samples 1 --bake-size 16
+cmp -s a.png b.png && die "the disc changes nothing"
+expect 0 "" render clear.exr -o a.png --sun extract --ground --reference --size 32x18 --samples 1 --noise 0.3
+expect 2 "lights needs --sun extract" render clear.exr -o a.png --lights 2
+expect 2 "lights-share needs --sun extract" render clear.exr -o a.png --lights-share 0.1
+expect 2 "the scene assignment has no environment" render -o a.png --ground
+expect 2 "the scene furnace has no environment" render -o a.png --scene furnace --sun extract
+expect 1 "levels hold the lights" render sky.ktx2 -o a.png --sun extract
+
 # No screen, with a folder for Wayland's socket and without.
 unset DISPLAY WAYLAND_DISPLAY
 XDG_RUNTIME_DIR=$PWD

@@ -2,3 +2,4 @@
 #include "../../shaders/kulla_conty.glsl"
 #include "../../shaders/ibl.glsl"
 #include "../../shaders/tone.glsl"
+#include "../../shaders/disc.glsl"

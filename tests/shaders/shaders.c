@@ -266,6 +266,86 @@ static void c_tone_neutral(const double x[ARGUMENTS], double r[3])
     view_tone(VIEW_SCENE_IBL, x, r);
 }
 
+static void c_arc_cosine(const double x[ARGUMENTS], double r[3])
+{
+    r[0] = acos(x[0]);
+    r[1] = acos(x[1]) - x[1] * sqrt(1 - x[1] * x[1]);
+    r[2] = (acos(-x[2]) + x[2] * sqrt(1 - x[2] * x[2])) / pi;
+}
+
+static void c_disc_cosine(const double x[ARGUMENTS], double r[3])
+{
+    double u = fmin(x[0], 1), root = sqrt(1 - u * u);
+    r[0] = x[0] >= 1 ? x[0] * x[1] : x[1] * (u * acos(-u) + root * (2 + u * u) / 3) / pi;
+}
+
+// (sin, cos) of an angle from the tangent of its half, which GLSL and C compute alike.
+#define AT(k) "vec2(2.0 * " k ", (1.0 - " k ") * (1.0 + " k ")) / (1.0 + " k " * " k ")"
+
+static void at_half(double k, double to[2])
+{
+    to[0] = 2 * k / (1 + k * k);
+    to[1] = (1 - k) * (1 + k) / (1 + k * k);
+}
+
+// The integral along the border of the disc, from the slopes as they are.
+static double border_integral(double alpha, const double v[3], const double l[3], double sine)
+{
+    enum { NODES = 48 };
+    double side = l[2] < 0 ? -1 : 1, a = -1 / (side + l[2]), sum = 0;
+    const double t[3] = {1 + side * l[0] * l[0] * a, side * l[0] * l[1] * a, -side * l[0]};
+    const double b[3] = {l[0] * l[1] * a, side + l[1] * l[1] * a, -l[1]};
+    for (int i = 0; i < NODES; i++) {
+        double phi = 2 * pi * i / NODES, h[3], d[3];
+        for (int c = 0; c < 3; c++) {
+            h[c] = v[c] + sqrt(1 - sine * sine) * l[c] + sine * (cos(phi) * t[c] + sin(phi) * b[c]);
+            d[c] = sine * (cos(phi) * b[c] - sin(phi) * t[c]);
+        }
+        double x = h[0] / h[2], y = h[1] / h[2];
+        double dx = (d[0] - x * d[2]) / h[2], dy = (d[1] - y * d[2]) / h[2];
+        sum += (x * dy - y * dx) / (alpha * alpha + x * x + y * y);
+    }
+    return fabs(sum) / NODES;
+}
+
+// alpha; the half angles of v, l and the azimuth between the two; the disc's sine.
+static void vectors(const double x[ARGUMENTS], double v[3], double l[3])
+{
+    double to_v[2], to_l[2], around[2];
+    at_half(x[1], to_v);
+    at_half(x[2], to_l);
+    at_half(x[3], around);
+    v[0] = to_v[0], v[1] = 0, v[2] = to_v[1];
+    l[0] = to_l[0] * around[1], l[1] = to_l[0] * around[0], l[2] = to_l[1];
+}
+#define VECTORS                                                                                    \
+    "vec2 p = " AT("x[1]") ", q = " AT("x[2]") ", s = " AT(                                        \
+        "x[3]") ";\n"                                                                              \
+                "vec3 v = vec3(p.x, 0.0, p.y), l = vec3(q.x * s.y, q.x * s.x, q.y);\n"
+
+static void c_ggx_disc(const double x[ARGUMENTS], double r[3])
+{
+    double v[3], l[3];
+    vectors(x, v, l);
+    r[0] = border_integral(x[0], v, l, x[4]);
+}
+
+// The area that two circles share, by the angles that the chord has at both centres.
+static void c_disc_hidden(const double x[ARGUMENTS], double r[3])
+{
+    double angle = 2 * atan(x[0]), ball = asin(x[2]), a = tan(asin(x[1]) / 2);
+    double near = tan((angle - ball) / 2), far = tan((angle + ball) / 2);
+    double middle = (near + far) / 2, b = (far - near) / 2, c = fabs(middle), area = 0;
+    if (c <= fabs(a - b)) {
+        area = pi * fmin(a, b) * fmin(a, b);
+    } else if (c < a + b) {
+        double p = acos((c * c + a * a - b * b) / (2 * c * a));
+        double q = acos((c * c + b * b - a * a) / (2 * c * b));
+        area = a * a * (p - sin(2 * p) / 2) + b * b * (q - sin(2 * q) / 2);
+    }
+    r[0] = 1 + area / (pi * a * a);
+}
+
 #define TO_1 1, 1, 1, 1, 1, 1, 1, 1
 static const function functions[] = {
     {"ggx_d", "r = vec3(ggx_d(x[0], x[1]), 0.0, 0.0);", c_ggx_d, {1e-4}, {TO_1}},
@@ -362,6 +442,29 @@ static const function functions[] = {
      c_bent_reflection,
      {0.1, 0.1, 0.1, 0.1, 0.1, 0.1},
      {1, 1, 1, 1, 1, 1, 0.99}},
+    {"arc_cosine, circle_segment, disc_part",
+     "r = vec3(arc_cosine(x[0]), circle_segment(x[1], sqrt((1.0 - x[1]) * (1.0 + x[1]))), "
+     "disc_part(x[2]));",
+     c_arc_cosine,
+     {0, 0, -0.999},
+     {1, 0.999, 1}},
+    {"disc_cosine",
+     "r = vec3(disc_cosine(x[0] * x[1], x[1]), 0.0, 0.0);",
+     c_disc_cosine,
+     {-0.5, 0.001},
+     {3, 0.5}},
+    {"ggx_disc", // near the peak, since floats cancel in the lobe's tail, as (slope / alpha)^2
+     VECTORS "r = vec3(ggx_disc(x[0], v, l, x[4]), 0.0, 0.0);",
+     c_ggx_disc,
+     {0.25, 0, 0, -1, 0.002},
+     {1, 0.5, 0.5, 1, 0.15}},
+    {"disc_hidden", // of a ball at the distance 3
+     "vec2 p = 3.0 * " AT("x[0]") ";\n"
+                                  "r = vec3(1.0 + disc_hidden(vec3(0, 0, 1), x[1], vec3(p.x, 0.0, "
+                                  "p.y), 3.0 * x[2]), 0.0, 0.0);",
+     c_disc_hidden,
+     {0, 0.05, 0.01},
+     {0.6, 0.3, 0.9}},
     {"tone_assignment",
      "r = tone_assignment(vec3(x[0], x[1], x[2]));",
      c_tone_assignment,
@@ -498,9 +601,62 @@ static void no_function_is_left_out(void **unused)
     assert_true(found > 20);
 }
 
+// D (n.h) / (4 v.h), summed over the points of a disc.
+static double disc_sum(double alpha, const double v[3], const double l[3], double sine)
+{
+    enum { ACROSS = 400, AROUND = 256 };
+    double side = l[2] < 0 ? -1 : 1, a = -1 / (side + l[2]), sum = 0,
+           whole = 1 - sqrt(1 - sine * sine);
+    const double t[3] = {1 + side * l[0] * l[0] * a, side * l[0] * l[1] * a, -side * l[0]};
+    const double b[3] = {l[0] * l[1] * a, side + l[1] * l[1] * a, -l[1]};
+    for (int i = 0; i < ACROSS * AROUND; i++) {
+        double less = whole * (i / AROUND + 0.5) / ACROSS, out = sqrt(less * (2 - less));
+        double phi = 2 * pi * (i % AROUND + 0.5) / AROUND, h[3], size = 0, voh = 0;
+        for (int c = 0; c < 3; c++) {
+            h[c] = v[c] + (1 - less) * l[c] + out * (cos(phi) * t[c] + sin(phi) * b[c]);
+            size += h[c] * h[c];
+            voh += h[c] * v[c];
+        }
+        double noh = h[2] / sqrt(size);
+        sum += ki_ggx_d(alpha, noh) * noh / (4 * voh / sqrt(size));
+    }
+    return sum * 2 * pi * whole / (ACROSS * AROUND);
+}
+
+// The integral along the border is that over the points of the disc, wherever the lobe is.
+static void a_disc_mirrors_what_its_points_mirror(void **unused)
+{
+    (void)unused;
+    static float x[COUNT][ARGUMENTS], result[COUNT][4];
+    static const double alphas[] = {0.01, 0.05, 0.3, 1}, sines[] = {0.005, 0.03, 0.1};
+    enum { SOME = 96 };
+    double worst = 0;
+    for (int i = 0; i < SOME; i++) {
+        x[i][0] = (float)alphas[i % 4];
+        x[i][4] = (float)sines[i / 4 % 3];
+        x[i][1] = (float)(0.7 * random_number(&seed));
+        // in the mirror direction, and a few degrees from there
+        x[i][2] = x[i][1] + (float)(i % 2 ? 0.1 * random_number(&seed) : 0);
+        x[i][3] = 1e6F;
+    }
+    render(VECTORS "r = vec3(ggx_disc(x[0], v, l, x[4]), 0.0, 0.0);", (const float(*)[ARGUMENTS])x,
+           result);
+    for (int i = 0; i < SOME; i++) {
+        double at[ARGUMENTS], v[3], l[3];
+        for (int k = 0; k < ARGUMENTS; k++)
+            at[k] = (double)x[i][k];
+        vectors(at, v, l);
+        double wanted = disc_sum(at[0], v, l, at[4]);
+        worst = fmax(worst, fabs((double)result[i][0] - wanted) / wanted);
+        CHECK_NEAR((double)result[i][0], wanted, 5e-3 * wanted);
+    }
+    print_message("ggx_disc against the sum over the disc: %.1e\n", worst);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_disc_mirrors_what_its_points_mirror),
         cmocka_unit_test(glsl_agrees_with_c),
         cmocka_unit_test(no_function_is_left_out),
         cmocka_unit_test(harmonics_agree_with_c),
