@@ -27,6 +27,7 @@ kiln_result view_energy_create(kiln_context *context, const view_options *option
                           .complement = true};
     kiln_result result = kiln_table_create(context, &def, &energy->e, error);
     def.kind = KILN_TABLE_DFG;
+    def.axis = KILN_AXIS_SQRT; // the grazing axis does not resolve B where n.v is large
     def.complement = false;
     if (result == KILN_OK && !light)
         result = kiln_table_create(context, &def, &energy->split, error);

@@ -133,8 +133,14 @@ static kiln_result make_model_tables(view_renderer *r, kiln_g g, kiln_error *err
     kiln_result result = kiln_table_create(r->context, &def, &e, error);
     if (result == KILN_OK)
         result = kiln_table_average(r->context, &e, 0, &average, error);
-    def.kind = KILN_TABLE_DFG;
-    def.complement = false;
+    // A and B change at every n.v, and at low roughness KILN_AXIS_GRAZING has all but its last texels
+    // where n.v is small: at roughness 0.1 a table of this axis has errors of B up to 0.02.
+    def = (kiln_table_def){.kind = KILN_TABLE_DFG,
+                           .model = {.g = g},
+                           .width = 256,
+                           .height = 256,
+                           .axis = KILN_AXIS_SQRT,
+                           .corners = true};
     if (result == KILN_OK)
         result = kiln_table_create(r->context, &def, &split, error);
     if (result == KILN_OK)
