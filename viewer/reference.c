@@ -9,8 +9,8 @@
 //     L(v) = int f(v, l) L(l) (n.l) dl  ~  sum over the three l of  f L (n.l) / (p1 + p2 + p3)
 //
 // Where l meets another ball, L is the light that the other ball reflects, estimated by one of the
-// three kinds of draw chosen at random, until the path leaves the scene. Batches are repeated until
-// the pixel's standard error is small enough.
+// three kinds of draw chosen at random, until the path leaves the scene. A pixel is the mean of as many
+// batches as its wanted standard error needs.
 #include "reference.h"
 
 #include "internal.h"
@@ -23,7 +23,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { MAX_RAYS = 64, FIRST_CHECK = 32, MAX_THREADS = 256, SURE = 8 };
+enum { MAX_RAYS = 64, FIRST_TRIAL = 32, MAX_THREADS = 256, SURE = 8 };
 
 typedef struct job {
     const view_options *options;
@@ -361,49 +361,85 @@ static double noise_of(const tally *t, double floor)
     return worst;
 }
 
+// The rays of a pixel that meet a ball or the ground, and what the other rays see.
+typedef struct rays {
+    view_point points[MAX_RAYS];
+    int waiting, count; // rays that meet something, and all rays
+    double fixed[3];    // part of the pixel's radiance that needs no integration
+} rays;
+
+static void cast_rays(const job *j, int x, int y, rays *r)
+{
+    r->waiting = 0;
+    r->count = j->side * j->side;
+    r->fixed[0] = r->fixed[1] = r->fixed[2] = 0;
+    for (int i = 0; i < r->count; i++) {
+        double d[3], radiance[3];
+        int across = i % j->side, down = i / j->side;
+        view_point *p = &r->points[r->waiting];
+        ray_at(j, x + (across + 0.5) / j->side, y + (down + 0.5) / j->side, d);
+        find_point(j, j->eye, d, -1, p);
+        find_ground(j, d, p);
+        if (!shines(j, p, radiance))
+            r->waiting++;
+        for (int c = 0; c < 3; c++)
+            r->fixed[c] += radiance[c] / r->count;
+    }
+}
+
+// Draws `count` batches, and starts the tally with them.
+static void draw_batches(const job *j, const rays *r, int count, view_random *random, tally *t)
+{
+    *t = (tally){0};
+    while (t->count < count) {
+        double sum[3] = {0};
+        for (int i = 0; i < r->waiting; i++)
+            estimate(j, &r->points[i], random, sum);
+        for (int c = 0; c < 3; c++)
+            sum[c] = sum[c] / r->count + r->fixed[c];
+        note(t, sum);
+    }
+}
+
+// Draws as many batches as the wanted noise needs. Trials of 32, 128, 512 ... batches tell how many
+// these are, and the pixel's mean contains the last batches only: a mean of the batches that also
+// decided the number of batches would be biased, since few batches suffice where the estimated
+// variance happens to be small, and this variance depends on the estimated mean.
+static void integrate(const job *j, const rays *r, view_random *random, tally *t,
+                      view_reference_report *report)
+{
+    // The standard error is itself estimated, with an error of 10 % or so: aim below the wanted noise.
+    const double small = 0.02 * j->light.mean, aim = 0.9 * j->noise;
+    double needed;
+    int trial = FIRST_TRIAL < j->batch_limit ? FIRST_TRIAL : j->batch_limit;
+    for (;; trial *= 4) {
+        draw_batches(j, r, trial, random, t);
+        report->batches += trial;
+        double noise = noise_of(t, small);
+        needed = ceil(trial * (noise / aim) * (noise / aim));
+        if (needed <= 4.0 * trial || 4.0 * trial >= j->batch_limit)
+            break;
+    }
+    int count = (int)fmin(fmax(needed, FIRST_TRIAL), j->batch_limit);
+    draw_batches(j, r, count, random, t);
+    double noise = noise_of(t, small);
+    report->noise += noise * noise;
+    report->batches += count;
+    report->pixel_count++;
+    report->noisy_count += needed > j->batch_limit;
+}
+
 static void pixel(job *j, int x, int y, view_reference_report *report, float *out)
 {
-    static const double small = 0.02;
-    view_point points[MAX_RAYS];
-    int rays = j->side * j->side, waiting = 0;
-    double fixed[3] = {0}, radiance[3];
-    for (int i = 0; i < rays; i++) {
-        double d[3];
-        int across = i % j->side, down = i / j->side;
-        ray_at(j, x + (across + 0.5) / j->side, y + (down + 0.5) / j->side, d);
-        find_point(j, j->eye, d, -1, &points[waiting]);
-        find_ground(j, d, &points[waiting]);
-        if (!shines(j, &points[waiting], radiance))
-            waiting++;
-        for (int c = 0; c < 3; c++)
-            fixed[c] += radiance[c] / rays;
-    }
+    rays r;
     tally t = {0};
     view_random random;
     view_random_start(&random, (uint64_t)y * (uint64_t)j->width + (uint64_t)x);
-    // The error is checked after 32, 64, 128 ... batches only: stopping at the first batch with a
-    // small estimated error would favour low estimates.
-    for (int until = FIRST_CHECK; waiting; until *= 2) {
-        until = until < j->batch_limit ? until : j->batch_limit;
-        while (t.count < until) {
-            double sum[3] = {0};
-            for (int i = 0; i < waiting; i++)
-                estimate(j, &points[i], &random, sum);
-            for (int c = 0; c < 3; c++)
-                sum[c] = sum[c] / rays + fixed[c];
-            note(&t, sum);
-        }
-        double noise = noise_of(&t, small * j->light.mean);
-        if (noise <= j->noise || until == j->batch_limit) {
-            report->noise += noise * noise;
-            report->batches += t.count;
-            report->pixel_count++;
-            report->noisy_count += noise > j->noise;
-            break;
-        }
-    }
+    cast_rays(j, x, y, &r);
+    if (r.waiting)
+        integrate(j, &r, &random, &t, report);
     for (int c = 0; c < 3; c++)
-        out[c] = (float)(waiting ? t.mean[c] : fixed[c]);
+        out[c] = (float)(r.waiting ? t.mean[c] : r.fixed[c]);
 }
 
 // ----------------------------------------------------------------------------------------- threads

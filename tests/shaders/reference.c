@@ -291,7 +291,7 @@ static void trace(const view_ball *balls, int count, const view_energy *energy, 
 static void balls_light_one_another(void **unused)
 {
     (void)unused;
-    enum { WIDTH = 48, HEIGHT = 28, PATHS = 1500 };
+    enum { WIDTH = 48, HEIGHT = 28, PATHS = 6000 };
     view_options o = view_defaults(VIEW_SCENE_IBL);
     view_ball balls[VIEW_MAX_BALLS];
     view_energy energy;
@@ -337,7 +337,8 @@ static void balls_light_one_another(void **unused)
                   got[0] / seen, got[1] / seen, got[2] / seen);
     assert_true(seen > 300);
     CHECK_NEAR(got[2], sum[0] / PATHS, 0.003 * got[2]);
-    assert_true(got[0] > 1.02 * got[2] && got[1] < 0.9 * got[2]); // the test can tell
+    // the other settings differ by three times the tolerance at least
+    assert_true(got[0] > 1.009 * got[2] && got[1] < 0.991 * got[2]);
     for (int i = 0; i < 3; i++)
         kiln_image_free(&image[i]);
     view_energy_free(&energy);
