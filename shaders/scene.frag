@@ -130,15 +130,16 @@ vec3 discs_seen(vec3 d)
     return sum;
 }
 
-// The part of a disc of light that point p of ball `self` sees past the other balls. The parts that
-// several balls hide are added, which is exact unless the balls hide one another.
+// The part of a disc of light that point p of ball `self` sees past the other balls. Where several
+// balls hide parts, the parts are taken as independent, as in occlusion_at: docs/lights.md has the
+// error.
 float disc_open(vec4 disc, int self, vec3 p)
 {
-    float hidden = 0.0;
+    float open = 1.0;
     for (int i = 0; i < mode.w; i++)
         if (i != self)
-            hidden += disc_hidden(disc.xyz, disc.w, balls[5 * i].xyz - p, balls[5 * i].w);
-    return max(1.0 - hidden, 0.0);
+            open *= 1.0 - disc_hidden(disc.xyz, disc.w, balls[5 * i].xyz - p, balls[5 * i].w);
+    return open;
 }
 
 // --------------------------------------------------------------------------------------- reflection
