@@ -12,7 +12,7 @@
 extern "C" {
 #endif
 
-// ------------------------------------------------------------------------------ the textbook methods
+// ---------------------------------------------------------------------------- the textbook methods
 
 /// Parameters of a textbook method. {0} selects the textbook's own sizes. See
 /// docs/theory/textbook.md.

@@ -6,18 +6,20 @@
 // the files. <kiln/brdf.h> has what surfaces do to light: reflection models, and tables and closed
 // forms of their integrals. <kiln/course.h> has the methods that courses teach.
 //
-// These conventions hold in every function and in every file that kiln writes (docs/conventions.md):
+// These conventions hold in every function and in every file that kiln writes
+// (docs/conventions.md):
 //   - Texels are linear radiance with Rec. 709 primaries in the input's own unit: three channels of
 //     32-bit floats.
-//   - Directions are right-handed with +Y up. The centre column of a panorama looks along -Z and has
-//     +X to its right. Row 0 is at +Y.
+//   - Directions are right-handed with +Y up. The centre column of a panorama looks along -Z and
+//     has +X to its right. Row 0 is at +Y.
 //   - Cube faces come in the order +X -X +Y -Y +Z -Z, oriented as in OpenGL and KTX: a texel is the
 //     radiance that arrives from the direction in which texture(cube, direction) reads the texel.
 //   - Texel i of n has its centre at (i + 0.5) / n. Roughness is perceptual: alpha = roughness^2.
 //
 // Functions that can fail return a kiln_result, and write an error message to `error` if `error` is
-// not NULL. On failure outputs are zeroed. No function keeps a pointer to its arguments after it has
-// returned, except kiln_context_create (callbacks) and kiln_lobe_custom (function and user data).
+// not NULL. On failure outputs are zeroed. No function keeps a pointer to its arguments after it
+// has returned, except kiln_context_create (callbacks) and kiln_lobe_custom (function and user
+// data).
 //
 // Only one thread at a time may use a context. Different contexts are independent of each other.
 // SPDX-License-Identifier: MIT
@@ -81,8 +83,9 @@ KILN_API const char *kiln_version(void);
 /// *shown becomes false for such a byte and for characters that a terminal obeys instead of showing
 /// them: controls, separators of lines, and marks that change the direction of text.
 KILN_API int kiln_text_step(const char *text, unsigned *code, bool *shown);
-/// Replaces every character that is not shown (see kiln_text_step) by '?', in place. Error messages,
-/// notes and the strings of kiln_file_info are clean in this sense, whatever the file holds.
+/// Replaces every character that is not shown (see kiln_text_step) by '?', in place. Error
+/// messages, notes and the strings of kiln_file_info are clean in this sense, whatever the file
+/// holds.
 KILN_API void kiln_text_clean(char *text);
 
 // ---------------------------------------------------------------------------------------- context
@@ -146,7 +149,7 @@ KILN_API void kiln_context_threads(const kiln_context *context, int *running, in
 /// largest number held at once so far.
 KILN_API void kiln_context_memory(const kiln_context *context, size_t *current, size_t *peak);
 
-// ------------------------------------------------------------------------- pictures of all directions
+// ---------------------------------------------------------------------- pictures of all directions
 
 enum { KILN_MAX_LEVELS = 16, KILN_MAX_SIZE = 32768, KILN_MAX_BANDS = 5 };
 
@@ -590,7 +593,7 @@ KILN_API KILN_CHECKED kiln_result kiln_prefilter(kiln_context *context, const ki
                                                  const kiln_prefilter_def *def, kiln_map *map,
                                                  kiln_error *error);
 
-// ------------------------------------------------------------------------------ spherical harmonics
+// ----------------------------------------------------------------------------- spherical harmonics
 
 /// Coefficients of real, orthonormal spherical harmonics without the Condon-Shortley sign.
 /// Coefficient l (l + 1) + m belongs to degree l and order m. As functions of the world's
@@ -624,22 +627,22 @@ KILN_API KILN_CHECKED kiln_result kiln_sh_filter(const kiln_sh *radiance, int ba
 /// may be negative.
 KILN_API void kiln_sh_evaluate(const kiln_sh *sh, const double direction[3], double value[3]);
 
-// ------------------------------------------------------------------------------------------- lights
+// ------------------------------------------------------------------------------------------ lights
 
 enum { KILN_MAX_LIGHTS = 64 };
 
 /// A compact source of light in an environment, such as the sun, a lamp or a window, as a disc of
 /// uniform radiance irradiance / (pi sin^2 angular_radius).
 typedef struct kiln_light {
-    /// Unit vector to the radiometric centroid: the mean of the directions of the light, weighted by
-    /// its radiance.
+    /// Unit vector to the radiometric centroid: the mean of the directions of the light, weighted
+    /// by its radiance.
     double direction[3];
     /// Irradiance of a surface that faces the light: the sum over texels of the radiance above the
     /// surroundings, times solid angle, times the cosine of the angle to `direction`. The unit is
     /// that of the map's radiance times steradian.
     double irradiance[3];
-    /// Angular radius in degrees of the disc with the same mean distance of light from the centre. A
-    /// map widens a sun that is smaller than its texels.
+    /// Angular radius in degrees of the disc with the same mean distance of light from the centre.
+    /// A map widens a sun that is smaller than its texels.
     double angular_radius;
     double share;       ///< the part of the map's light that the light holds, 0 to 1
     size_t texel_count; ///< number of texels from which the light is taken
@@ -651,11 +654,11 @@ typedef struct kiln_lights {
     kiln_light light[KILN_MAX_LIGHTS];
 } kiln_lights;
 
-/// Which lights are wanted. {0} selects the light with the largest share, if it holds a hundredth of
-/// the map's light.
+/// Which lights are wanted. {0} selects the light with the largest share, if it holds a hundredth
+/// of the map's light.
 typedef struct kiln_lights_def {
-    /// Largest number of lights, 1 to KILN_MAX_LIGHTS; 0 for 1, or for KILN_MAX_LIGHTS if `share` is
-    /// not 0.
+    /// Largest number of lights, 1 to KILN_MAX_LIGHTS; 0 for 1, or for KILN_MAX_LIGHTS if `share`
+    /// is not 0.
     int count;
     double share; ///< smallest share of a light, 0 to 1; 0 for 0.01, KILN_ZERO for 0
 } kiln_lights_def;
@@ -673,8 +676,8 @@ KILN_API KILN_CHECKED kiln_result kiln_lights_find(kiln_context *context, const 
 KILN_API KILN_CHECKED kiln_result kiln_lights_extract(kiln_context *context, kiln_map *map,
                                                       const kiln_lights_def *def,
                                                       kiln_lights *lights, kiln_error *error);
-/// Sets `sh` to the spherical harmonics of the lights' discs, as kiln_map_sh does for a map. `bands`
-/// is 1 to KILN_MAX_BANDS.
+/// Sets `sh` to the spherical harmonics of the lights' discs, as kiln_map_sh does for a map.
+/// `bands` is 1 to KILN_MAX_BANDS.
 KILN_API KILN_CHECKED kiln_result kiln_lights_sh(const kiln_lights *lights, int bands, kiln_sh *sh,
                                                  kiln_error *error);
 /// Saves lights as a .json file: {"lights": [{"direction": [x, y, z], "irradiance": [r, g, b],
@@ -741,8 +744,8 @@ typedef enum kiln_tune {
 /// What kiln_bake computes. {0} selects the defaults of kiln_prefilter_def, an irradiance map of
 /// size 64 and three bands of harmonics.
 typedef struct kiln_bake_def {
-    /// The definition of the levels. `levels.rotation`, `pitch`, `roll` and `up` turn irradiance and
-    /// harmonics too, after `mirror` is applied.
+    /// The definition of the levels. `levels.rotation`, `pitch`, `roll` and `up` turn irradiance
+    /// and harmonics too, after `mirror` is applied.
     kiln_prefilter_def levels;
     /// Engine that the levels are for, or NULL. The engine decides lobe, roughness, smallest and
     /// tuning of `levels`, whose own fields of these names must be 0; also size and level_count if
@@ -787,9 +790,9 @@ KILN_API KILN_CHECKED kiln_result kiln_plan_environment(const kiln_plan *plan,
                                                         kiln_error *error);
 /// Bakes into an environment made by kiln_plan_environment, or into maps of the same shape, size
 /// and levels. The result is bit-identical to that of kiln_bake. On failure the content of the maps
-/// is undefined. An execution allocates nothing, unless lights are taken out, or the source has more
-/// than 64 suns and more suns than any source before. A sun is a single texel with a thousandth of
-/// all light.
+/// is undefined. An execution allocates nothing, unless lights are taken out, or the source has
+/// more than 64 suns and more suns than any source before. A sun is a single texel with a
+/// thousandth of all light.
 KILN_API KILN_CHECKED kiln_result kiln_plan_execute(kiln_plan *plan, const kiln_map *source,
                                                     kiln_environment *environment,
                                                     kiln_error *error);
@@ -972,8 +975,8 @@ KILN_API KILN_CHECKED kiln_result kiln_engine_format(const kiln_engine *engine, 
 /// level_count out of range.
 KILN_API double kiln_engine_level(const kiln_engine *engine, double roughness, int size,
                                   int level_count);
-/// Computes what an engine shows of a cube in finite directions other than 0: two neighbouring levels,
-/// each read bilinearly across cube faces, are mixed by the fraction of the level. `values`
+/// Computes what an engine shows of a cube in finite directions other than 0: two neighbouring
+/// levels, each read bilinearly across cube faces, are mixed by the fraction of the level. `values`
 /// receives count * 3 numbers; `count` is not negative.
 KILN_API KILN_CHECKED kiln_result kiln_engine_show(kiln_context *context, const kiln_engine *engine,
                                                    const kiln_map *map, double roughness,
@@ -995,7 +998,7 @@ KILN_API KILN_CHECKED kiln_result kiln_engine_encode(kiln_context *context,
                                                      const char *name, kiln_files *files,
                                                      kiln_save_report *report, kiln_error *error);
 
-// ------------------------------------------------------------------------------ environments, writing
+// --------------------------------------------------------------------------- environments, writing
 
 /// Options for saving an environment. {0} saves only the levels, with the harmonics and the name of
 /// the lobe in the metadata of formats that have metadata.
