@@ -34,7 +34,7 @@ static const bench_case cases[] = {
 };
 enum { CASE_COUNT = sizeof cases / sizeof *cases };
 
-// ------------------------------------------------------------------------------------------- clocks
+// ------------------------------------------------------------------------------------------ clocks
 
 static double seconds(clockid_t clock)
 {
@@ -65,7 +65,7 @@ bench_times bench_sum_up(double *times, int count)
     return (bench_times){(times[(count - 1) / 2] + times[count / 2]) / 2, times[0]};
 }
 
-// ------------------------------------------------------------------------------------------ results
+// ----------------------------------------------------------------------------------------- results
 
 void bench_row(bench *b, const char *name, const char *unit, bench_times times)
 {
@@ -143,7 +143,7 @@ static FILE *open_csv(bench *b, const char *machine, const char *name)
     return f;
 }
 
-// ------------------------------------------------------------------------------------------- inputs
+// ------------------------------------------------------------------------------------------ inputs
 
 bool bench_city(bench *b, kiln_context *context, int size, kiln_map *map)
 {
@@ -180,7 +180,7 @@ unsigned long long bench_hash(const kiln_map *map)
     return hash;
 }
 
-// --------------------------------------------------------------------------------------------- main
+// -------------------------------------------------------------------------------------------- main
 
 static int list(void)
 {

@@ -23,7 +23,7 @@ static bool bake_once(bench *b, kiln_context *context, const kiln_map *source,
     return done;
 }
 
-// -------------------------------------------------------------------------------------------- probe
+// ------------------------------------------------------------------------------------------- probe
 
 static bool probe_at(bench *b, kiln_context *context, const kiln_map *source, double tolerance)
 {
@@ -90,7 +90,7 @@ bool bench_probe(bench *b)
     return done;
 }
 
-// ------------------------------------------------------------------------- threads, instruction sets
+// ----------------------------------------------------------------------- threads, instruction sets
 
 static bool measure_context(bench *b, const kiln_context_def *def, const char *name,
                             unsigned long long *hash, bool *same)
@@ -161,7 +161,7 @@ bool bench_instructions(bench *b)
     return done;
 }
 
-// -------------------------------------------------------------------------------------------- files
+// ------------------------------------------------------------------------------------------- files
 
 // Returns the seconds that reading every texel from memory once takes. No function that uses every
 // texel can be faster.
@@ -238,7 +238,7 @@ bool bench_files(bench *b)
     return done;
 }
 
-// ------------------------------------------------------------------------------------------ scaling
+// ----------------------------------------------------------------------------------------- scaling
 
 // The terms of the model of a bake's time: number of texels read, number of texels written, and the
 // third power of the spectrum's degree.
@@ -346,7 +346,7 @@ bool bench_scaling(bench *b)
     return done;
 }
 
-// --------------------------------------------------------------------------------------------- fixed
+// ------------------------------------------------------------------------------------------- fixed
 
 // A bake that does the same work on every machine: no file, one thread, AVX2. bench/run.sh counts
 // its instructions.

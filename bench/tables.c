@@ -12,7 +12,7 @@ enum { SAMPLES = 1024, SIZE = 128, LANES = 32 };
 
 static const char *const names[] = {"smith", "smith-uncorrelated", "schlick-k2", "schlick-text"};
 
-// -------------------------------------------------------------------------------------- the sampler
+// ------------------------------------------------------------------------------------- the sampler
 
 // The samples of importance sampling at one roughness: the components x and z of the half vectors,
 // which are all that the integrand uses, and 1 / z.
@@ -149,7 +149,7 @@ static fill_function *fill_for(kiln_context *context)
     return best;
 }
 
-// ------------------------------------------------------------------------------------------- the case
+// ---------------------------------------------------------------------------------------- the case
 
 static double largest_error(kiln_g g, const float *e)
 {

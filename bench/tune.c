@@ -1,6 +1,7 @@
 // The cases tune and lights. In: eight panoramas, in the case lights without their suns and lamps.
-// Out: the errors of what engines show of exact and of tuned levels. An engine maps the roughness to a fractional level, mixes two levels linearly, and reads
-// each bilinearly. The result is compared with the exact environment at the same roughness.
+// Out: the errors of what engines show of exact and of tuned levels. An engine maps the roughness
+// to a fractional level, mixes two levels linearly, and reads each bilinearly. The result is
+// compared with the exact environment at the same roughness.
 #include "bench.h"
 
 #include <math.h>

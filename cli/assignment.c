@@ -41,7 +41,7 @@ int assignment_check_folder(const cli_command *command, const char *folder)
     return cli_check_folder(path);
 }
 
-// ---------------------------------------------------------------------------------------- computing
+// --------------------------------------------------------------------------------------- computing
 
 static kiln_result compute_energies(assignment *a)
 {
@@ -124,7 +124,7 @@ static kiln_result compute(assignment *a)
     return result;
 }
 
-// ------------------------------------------------------------------------------------------ writing
+// ----------------------------------------------------------------------------------------- writing
 
 kiln_result assignment_save(assignment *a, const kiln_image *image, const char *before,
                             const char *name)

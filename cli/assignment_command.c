@@ -147,7 +147,7 @@ static kiln_result draw(assignment *a)
     return result;
 }
 
-// ------------------------------------------------------------------------------------------- report
+// ------------------------------------------------------------------------------------------ report
 
 static void describe(const assignment *a, FILE *f)
 {

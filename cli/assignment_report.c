@@ -48,7 +48,7 @@ static double mirror_average(kiln_g g)
     return kiln_energy_average(&(kiln_model){.g = g}, 0);
 }
 
-// ----------------------------------------------------------------------------------------- sections
+// ---------------------------------------------------------------------------------------- sections
 
 static void write_files(const assignment *a, FILE *f)
 {

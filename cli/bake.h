@@ -56,8 +56,8 @@ extern const char *const bake_lobes[], *const bake_shapes[], *const bake_methods
 /// Parses the command line and checks all that can be checked before the work. Returns CLI_GO or an
 /// exit code.
 int bake_read_options(bake *b, const cli_command *command, const cli_call *call);
-/// Sets sun and clamp from --sun and --clamp, and checks the options of lights. Returns CLI_GO or an
-/// exit code.
+/// Sets sun and clamp from --sun and --clamp, and checks the options of lights. Returns CLI_GO or
+/// an exit code.
 int bake_read_sun(bake *b, bool has_lights, bool has_share);
 /// Takes lights out of the source, or clamps it, for methods other than kiln_bake.
 int bake_sun_of_source(bake *b);

@@ -294,8 +294,8 @@ static int check_output(const bake *b, const char *option, const char *path)
     return cli_wrong(b->arguments.command, "%s %s", option, error.message);
 }
 
-// Takes "-" as standard output, and the letters after "-." as the ending of the format: KTX2, or the
-// engine's format, if none is named.
+// Takes "-" as standard output, and the letters after "-." as the ending of the format: KTX2, or
+// the engine's format, if none is named.
 static void take_stdout(bake *b)
 {
     bool bare = !strcmp(b->output, "-");
@@ -373,7 +373,7 @@ static const char *add_slash(const char *path, char folder[4096])
     return folder;
 }
 
-// ------------------------------------------------------------------------------ options of an engine
+// ---------------------------------------------------------------------------- options of an engine
 
 // Checks that no option is given whose value the engine decides.
 static int check_engine(const bake *b)

@@ -1,5 +1,5 @@
-// Several environments by one command. In: inputs, and outputs whose paths hold {name}. Out: for each
-// input one bake, whose output paths have the input's name in place of {name}.
+// Several environments by one command. In: inputs, and outputs whose paths hold {name}. Out: for
+// each input one bake, whose output paths have the input's name in place of {name}.
 #include "bake.h"
 #include "os.h"
 
@@ -15,8 +15,8 @@ typedef struct job {
     char *path[PATHS];
 } job;
 
-// Finds the name of an input: the last part of its path without ending. A pattern loses the place of
-// the face and the characters _ - and . next to it. Sets *length.
+// Finds the name of an input: the last part of its path without ending. A pattern loses the place
+// of the face and the characters _ - and . next to it. Sets *length.
 static const char *name_of(const char *input, size_t *length)
 {
     if (!strcmp(input, "-")) {

@@ -1,7 +1,8 @@
-// In: /proc/self/cgroup, which names the process's group, /proc/self/mountinfo, which tells where the tree of groups
-// is mounted, and the limits of the group and of all groups above. Out: the smallest limit. Method: version 2
-// has one tree with files memory.max, version 1 a tree for memory with files memory.limit_in_bytes. In a container
-// only a part of the tree is mounted, and the group's path begins with the root of this part.
+// In: /proc/self/cgroup, which names the process's group, /proc/self/mountinfo, which tells where
+// the tree of groups is mounted, and the limits of the group and of all groups above. Out: the
+// smallest limit. Method: version 2 has one tree with files memory.max, version 1 a tree for memory
+// with files memory.limit_in_bytes. In a container only a part of the tree is mounted, and the
+// group's path begins with the root of this part.
 #include "cgroup.h"
 
 #include <stdbool.h>

@@ -126,7 +126,8 @@ static void print_escaped(unsigned code)
         printf("\\u%04x", code);
 }
 
-// Characters that a terminal would obey are escaped too; the longest of their codes has four digits.
+// Characters that a terminal would obey are escaped too; the longest of their codes has four
+// digits.
 static void print_text(const char *text)
 {
     putchar('"');

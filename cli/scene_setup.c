@@ -17,8 +17,8 @@ const char *scene_sun_word(int index)
     return words[index];
 }
 
-// Reads a number of digits only; a number with more than six digits becomes 999999. Returns the text
-// after the number, or NULL if there is no digit.
+// Reads a number of digits only; a number with more than six digits becomes 999999. Returns the
+// text after the number, or NULL if there is no digit.
 static const char *read_side(const char *text, int *side)
 {
     const char *at = text;

@@ -31,7 +31,7 @@ static int digits(double number)
     return number < 100 ? 2 : 3;
 }
 
-// ---------------------------------------------------------------------------------------- computing
+// --------------------------------------------------------------------------------------- computing
 
 static void release(assignment *a)
 {
@@ -66,7 +66,7 @@ static double row_mean(const kiln_image *table, int row)
     return sum;
 }
 
-// ----------------------------------------------------------------------------------------- pictures
+// ---------------------------------------------------------------------------------------- pictures
 
 // Shows a table with the bytes that the GAMES202 assignment's supplied code writes. With `figure3`
 // the picture shows 1 - E with roughness 0 in the top row.
@@ -105,7 +105,7 @@ static kiln_result show_error(assignment *a, int t)
     return result;
 }
 
-// ------------------------------------------------------------------------------------------- charts
+// ------------------------------------------------------------------------------------------ charts
 
 // Draws a curve over roughness, in SVG. `values` has one number from 0 to 1.2 for each table row,
 // from the top row down.
@@ -212,7 +212,7 @@ static void show_averages(const assignment *a)
         600 * (1 - 0.5 / SIZE), 300 - 250 * 0.2235, worst, values[0][0], values[3][0]);
 }
 
-// --------------------------------------------------------------------------------------------- page
+// -------------------------------------------------------------------------------------------- page
 
 static kiln_result show_tables(assignment *a, const char *title)
 {

@@ -364,7 +364,7 @@ static kiln_result show_textbook(demo *d)
     return result;
 }
 
-// ------------------------------------------------------------------------------ spherical harmonics
+// ----------------------------------------------------------------------------- spherical harmonics
 
 static double sh_error(const kiln_sh *sh, const kiln_map *exact)
 {

@@ -19,7 +19,7 @@ typedef struct tables {
 static const char *const model_names[4] = {"smith", "smith-uncorrelated", "schlick-k2",
                                            "schlick-text"};
 
-// ------------------------------------------------------------------------------------------- pictures
+// ---------------------------------------------------------------------------------------- pictures
 
 // Draws a table as a picture: one channel as grey, two channels as red and green.
 static kiln_result show_table(tables *t, const kiln_table_def *def, const char *caption)
@@ -75,7 +75,7 @@ static kiln_result show_kinds(tables *t)
     return result;
 }
 
-// ------------------------------------------------------------------------------------------- furnace
+// ----------------------------------------------------------------------------------------- furnace
 
 // Rounds a number to the nearest half float: 11 significant bits, but never finer than multiples of
 // 2^-24.
@@ -185,7 +185,7 @@ static kiln_result show_furnace(tables *t)
     return result;
 }
 
-// ---------------------------------------------------------------------------------------------- cost
+// -------------------------------------------------------------------------------------------- cost
 
 static double seconds(void)
 {
@@ -223,7 +223,7 @@ static kiln_result show_cost(tables *t)
     return result;
 }
 
-// ---------------------------------------------------------------------------------------------- page
+// -------------------------------------------------------------------------------------------- page
 
 static kiln_result show(tables *t)
 {

@@ -118,7 +118,7 @@ void view_set_lights(view_renderer *r, const kiln_lights *lights)
     r->lights = lights ? *lights : (kiln_lights){.count = 0};
 }
 
-// ------------------------------------------------------------------------------------------- tables
+// ------------------------------------------------------------------------------------------ tables
 
 // Computes the exact tables E, E_avg and (A, B) of the model with shadowing `g`. E_avg is the mean
 // of E as the shader interpolates it, which keeps the furnace white.
@@ -133,8 +133,8 @@ static kiln_result make_model_tables(view_renderer *r, kiln_g g, kiln_error *err
     kiln_result result = kiln_table_create(r->context, &def, &e, error);
     if (result == KILN_OK)
         result = kiln_table_average(r->context, &e, 0, &average, error);
-    // A and B change at every n.v, and at low roughness KILN_AXIS_GRAZING has all but its last texels
-    // where n.v is small: at roughness 0.1 a table of this axis has errors of B up to 0.02.
+    // A and B change at every n.v, and at low roughness KILN_AXIS_GRAZING has all but its last
+    // texels where n.v is small: at roughness 0.1 a table of this axis has errors of B up to 0.02.
     def = (kiln_table_def){.kind = KILN_TABLE_DFG,
                            .model = {.g = g},
                            .width = 256,
@@ -177,7 +177,7 @@ static kiln_result make_darkness(view_renderer *r, kiln_error *error)
     return result;
 }
 
-// ------------------------------------------------------------------------------------------- making
+// ------------------------------------------------------------------------------------------ making
 
 static kiln_result start(view_renderer *r, view_lookup *lookup, kiln_error *error)
 {
@@ -236,7 +236,7 @@ const char *view_gl_name(const view_renderer *r)
     return r->name;
 }
 
-// ------------------------------------------------------------------------------------------ drawing
+// ----------------------------------------------------------------------------------------- drawing
 
 static void copy3(float to[4], const double from[3])
 {

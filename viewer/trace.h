@@ -7,7 +7,7 @@
 
 #include <kiln/brdf.h>
 
-// ----------------------------------------------------------------------------------- random numbers
+// ---------------------------------------------------------------------------------- random numbers
 
 /// The generator PCG-XSH-RR of O'Neill 2014. Each pixel has a stream of its own: the picture does
 /// not depend on which thread draws which pixel.
@@ -19,7 +19,7 @@ void view_random_start(view_random *random, uint64_t stream);
 /// Returns a random number, uniformly distributed in (0, 1).
 double view_random_next(view_random *random);
 
-// ----------------------------------------------------------------------------------------- the light
+// --------------------------------------------------------------------------------------- the light
 
 typedef struct view_light {
     kiln_map panorama; ///< the environment as a panorama of one level
@@ -47,7 +47,7 @@ void view_light_radiance(const view_light *light, const double d[3], double radi
 void view_light_sample(const view_light *light, const double xi[2], double d[3]);
 double view_light_pdf(const view_light *light, const double d[3]);
 
-// --------------------------------------------------------------------------------------- reflectors
+// -------------------------------------------------------------------------------------- reflectors
 
 /// The point where a ray meets a ball.
 typedef struct view_point {

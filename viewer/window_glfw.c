@@ -193,7 +193,7 @@ static void on_refresh(GLFWwindow *handle)
     of(handle)->stale = true;
 }
 
-// ------------------------------------------------------------------------------------------ opening
+// ----------------------------------------------------------------------------------------- opening
 
 static kiln_result say(const window *w, const char *what, kiln_error *error)
 {

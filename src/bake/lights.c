@@ -114,7 +114,7 @@ kiln_result kiln_lights_sh(const kiln_lights *lights, int bands, kiln_sh *sh, ki
     return KILN_OK;
 }
 
-// -------------------------------------------------------------------------------------------- clamp
+// ------------------------------------------------------------------------------------------- clamp
 
 kiln_result kiln_map_clamp(kiln_context *context, kiln_map *map, double limit, kiln_clamp *clamp,
                            kiln_error *error)

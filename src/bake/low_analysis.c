@@ -1,5 +1,6 @@
 // Analyses of a panorama to a low degree. In: a map of any shape. Out: the first bands of its
-// spherical harmonics, or the plan of an analysis that a bake executes for irradiance and harmonics.
+// spherical harmonics, or the plan of an analysis that a bake executes for irradiance and
+// harmonics.
 #include "bake/low_analysis.h"
 
 #include "image/image.h"

@@ -22,8 +22,8 @@ bool ki_is_mirror(const kiln_lobe *lobe);
 /// size. An execution changes nothing in the plan.
 typedef struct ki_prefilter {
     kiln_prefilter_def def; // definition of the levels, with each default replaced by its value
-    // The turn by rotation, pitch, roll and up of the definition. If the turn is not about +Y alone,
-    // def.rotation is 0 afterwards.
+    // The turn by rotation, pitch, roll and up of the definition. If the turn is not about +Y
+    // alone, def.rotation is 0 afterwards.
     ki_tilt tilt;
     int source_size; // number of rows of the panorama that is analysed
     float roughness[KILN_MAX_LEVELS];

@@ -28,8 +28,9 @@ static double length_of_change(const ki_reference *r, double distance)
     return r->lobe_width;
 }
 
-// Replaces 1 - cos theta of `count` directions by the lobe's weights there (ki_lobe_weight). Vectors
-// compute a power for every direction, also below the horizon, where scalar code leaves the power out.
+// Replaces 1 - cos theta of `count` directions by the lobe's weights there (ki_lobe_weight).
+// Vectors compute a power for every direction, also below the horizon, where scalar code leaves the
+// power out.
 static void weigh(const kiln_lobe *lobe, double *restrict values, int count)
 {
     if (KI_WIDTH > 1 && lobe->kind == KILN_LOBE_CHARLIE) {
@@ -59,7 +60,8 @@ static void weigh_ggx(double a2, double values[4][4])
 
 // Sets far[k][i] to 1 - cos of the angle between the direction d and node (i, k) of a cell, where i
 // counts the nodes in theta and k the nodes in phi. 1 - cos of the angle between the directions d
-// and l is |d - l|^2 / 2, which is precise for small angles. Sets sines[i] to sin theta of the nodes.
+// and l is |d - l|^2 / 2, which is precise for small angles. Sets sines[i] to sin theta of the
+// nodes.
 static void node_distances(const double d[3], const ki_cell_geometry *cell, double sin_theta,
                            double cos_theta, double sin_phi, double cos_phi, double far[4][4],
                            double sines[4])

@@ -1,8 +1,8 @@
-// The sums of reference.c over the rows of a panorama, compiled once for each instruction set. In: up
-// to KI_REFERENCE_GROUP directions. Out: the filtered radiance in these directions. Method: for each
-// row and direction, the lobe's means over the texels are computed with 1 or 2 x 2 nodes a texel, or
-// by reference_cell.inl near the lobe's peak and horizon, and are then multiplied by the radiance and
-// summed.
+// The sums of reference.c over the rows of a panorama, compiled once for each instruction set. In:
+// up to KI_REFERENCE_GROUP directions. Out: the filtered radiance in these directions. Method: for
+// each row and direction, the lobe's means over the texels are computed with 1 or 2 x 2 nodes a
+// texel, or by reference_cell.inl near the lobe's peak and horizon, and are then multiplied by the
+// radiance and summed.
 //
 // The including file defines KI_WIDTH, the number of doubles in a native vector (1, 2 or 4), and
 // KI_RUN_GROUP, the name of the function ki_reference_group of its instruction set. Each sum has

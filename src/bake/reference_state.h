@@ -1,6 +1,6 @@
 // The data of an integration by brute force, shared by reference.c, which prepares the
-// tables, reference_rows.inl, which sums over rows, and reference_cell.inl, which integrates the lobe
-// over single texels.
+// tables, reference_rows.inl, which sums over rows, and reference_cell.inl, which integrates the
+// lobe over single texels.
 #ifndef KI_REFERENCE_STATE_H
 #define KI_REFERENCE_STATE_H
 
@@ -63,8 +63,8 @@ typedef struct ki_reference {
 } ki_reference;
 
 /// Computes values[first ..] for the directions of group `index`, which starts at first = index *
-/// KI_REFERENCE_GROUP and has at most KI_REFERENCE_GROUP directions. `data` is a ki_reference. There
-/// is one function for each instruction set, and all of them give the same bits.
+/// KI_REFERENCE_GROUP and has at most KI_REFERENCE_GROUP directions. `data` is a ki_reference.
+/// There is one function for each instruction set, and all of them give the same bits.
 ki_task ki_reference_group_scalar, ki_reference_group_simd128, ki_reference_group_avx2,
     ki_reference_group_avx512;
 

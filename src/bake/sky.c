@@ -302,7 +302,7 @@ void ki_sky_prepare(ki_sky *sky, double elevation, double azimuth, double turbid
         sky->ground[c] = albedo / KI_PI * (irradiance[c] + sun * sky->sun_radiance[c]);
 }
 
-// ------------------------------------------------------------------------------------------ picture
+// ----------------------------------------------------------------------------------------- picture
 
 typedef struct painter {
     const ki_sky *sky;

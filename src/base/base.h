@@ -41,7 +41,8 @@ int ki_print(char *text, size_t room, const char *format, ...) KI_PRINTF(3, 4);
 /// Prints as vsnprintf does, with a decimal point in every locale, and replaces what a terminal
 /// would obey (see kiln_text_clean). All sentences of the library pass through this function.
 void ki_print_clean(char *text, size_t room, const char *format, va_list list) KI_PRINTF(3, 0);
-/// Does what kiln_text_step does for text of `left` bytes, at least 1, that needs no NUL at its end.
+/// Does what kiln_text_step does for text of `left` bytes, at least 1, that needs no NUL at its
+/// end.
 int ki_text_step(const char *text, size_t left, unsigned *code, bool *shown);
 
 // ------------------------------------------------------------------------------------------ memory

@@ -1,5 +1,5 @@
-// Vectors of KI_WIDTH doubles, KI_WIDTH being 1, 2, 4 or 8: the native vectors of the instruction set
-// for which the including file is compiled.
+// Vectors of KI_WIDTH doubles, KI_WIDTH being 1, 2, 4 or 8: the native vectors of the instruction
+// set for which the including file is compiled.
 #include <stdint.h>
 #include <string.h>
 

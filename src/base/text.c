@@ -1,6 +1,6 @@
-// Text. In: printf formats, and bytes that may come out of files. Out: text whose numbers have a decimal
-// point in every locale, and text that a terminal shows without obeying it. Method: printf runs in the locale
-// "C"; characters are decoded as UTF-8 (RFC 3629).
+// Text. In: printf formats, and bytes that may come out of files. Out: text whose numbers have a
+// decimal point in every locale, and text that a terminal shows without obeying it. Method: printf
+// runs in the locale "C"; characters are decoded as UTF-8 (RFC 3629).
 #include "base/base.h"
 #include "base/os.h"
 

@@ -294,8 +294,8 @@ static void elliptic_integrals(const double kc2[NODES], const double p0[NODES], 
         qc[j] = ee[j] = sqrt(kc2[j]);
         sum[j] = 0.5 * (1 - kc2[j]);
     }
-    // The integral e is k * (1 - sum). Step n, from 0 on, adds to sum 2^n times the square of half the
-    // difference of the two means. As em and qc are 2^n times the means, the summand is
+    // The integral e is k * (1 - sum). Step n, from 0 on, adds to sum 2^n times the square of half
+    // the difference of the two means. As em and qc are 2^n times the means, the summand is
     // scale * (em - qc)^2 with scale = 2^n / (2^(n + 1))^2, which is 1 / 4 in step 0.
     double scale = 0.25;
     for (int step = 0; step < steps; step++, scale /= 2)

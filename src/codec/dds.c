@@ -1,7 +1,7 @@
 // DDS files. In: a cube with its levels, or an engine's atlas. Out: bytes of a file; or of a file
-// that is read, the cube or the flat picture. Cubes are written with the DX10 header. Files are read
-// with that header, with the older codes of float formats, or with the masks of RGB and RGBA. DDS
-// has no place for metadata. Each face is followed by its smaller levels.
+// that is read, the cube or the flat picture. Cubes are written with the DX10 header. Files are
+// read with that header, with the older codes of float formats, or with the masks of RGB and RGBA.
+// DDS has no place for metadata. Each face is followed by its smaller levels.
 #include "codec/codec.h"
 #include "codec/file_info.h"
 #include "codec/texels.h"
@@ -137,7 +137,7 @@ kiln_result ki_dds_encode_atlas(const kiln_image *image, const char *engine, ki_
     return KILN_OK;
 }
 
-// ------------------------------------------------------------------------------------------ reading
+// ----------------------------------------------------------------------------------------- reading
 
 typedef struct dds_header {
     uint32_t width, height, levels;
@@ -177,7 +177,8 @@ static kiln_result check_header(dds_header *h, const char *name, kiln_error *err
     return KILN_OK;
 }
 
-// Finds the texels of the older header: a code, or the number of bits and the masks of the channels.
+// Finds the texels of the older header: a code, or the number of bits and the masks of the
+// channels.
 static void find_legacy(dds_header *h, uint32_t flags, uint32_t code, uint32_t bits,
                         const uint32_t masks[3])
 {

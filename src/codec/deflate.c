@@ -355,7 +355,7 @@ static void write_block(ki_deflater *d, int count, int32_t end, bool last)
     memset(d->before, 0, sizeof d->before);
 }
 
-// ----------------------------------------------------------------------------------------- splitting
+// --------------------------------------------------------------------------------------- splitting
 
 // Returns whether the latest items differ in kind from the earlier items of the block. Both are
 // counted by class (`recent` and `before`), and the two distributions differ in kind if the sum of
@@ -382,7 +382,7 @@ static void compare_statistics(ki_deflater *d, int32_t before_recent)
     d->looked = d->count;
 }
 
-// ------------------------------------------------------------------------------------------ matches
+// ----------------------------------------------------------------------------------------- matches
 
 static uint32_t load32(const uint8_t *bytes)
 {

@@ -51,8 +51,9 @@ typedef struct ki_crc32_table {
 } ki_crc32_table;
 void ki_crc32_fill(ki_crc32_table *table);
 uint32_t ki_crc32(const ki_crc32_table *table, uint32_t sum, const uint8_t *bytes, size_t size);
-/// Returns whether a checksum that was computed from a file's bytes is the one that the file states.
-/// Fuzz targets replace this function, since random changes of a file never give right checksums.
+/// Returns whether a checksum that was computed from a file's bytes is the one that the file
+/// states. Fuzz targets replace this function, since random changes of a file never give right
+/// checksums.
 bool ki_checksum_agrees(uint32_t computed, uint32_t stored);
 
 #endif

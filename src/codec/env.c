@@ -123,7 +123,7 @@ kiln_result ki_env_encode(const kiln_map *map, double lod_scale, const kiln_sh *
     return result;
 }
 
-// ------------------------------------------------------------------------------------------ reading
+// ----------------------------------------------------------------------------------------- reading
 
 // The values of an .env file's JSON manifest. The images follow the manifest in the file and take
 // at least `image_bytes` bytes.

@@ -1,8 +1,8 @@
 // Reading of EXR files. In: the bytes of a file. Out: a picture of three floats a pixel, and notes.
-// exr_header.c parses the header, exr_layers.c chooses the part and the layer, exr_chunk.c finds and
-// decompresses the chunks, and exr_pixels.c converts the samples. exr_chroma.c computes colours from
-// luminance and chroma, and exr_color.c and image/color.h convert other primaries to Rec. 709. Chunks are independent
-// and are decompressed in parallel.
+// exr_header.c parses the header, exr_layers.c chooses the part and the layer, exr_chunk.c finds
+// and decompresses the chunks, and exr_pixels.c converts the samples. exr_chroma.c computes colours
+// from luminance and chroma, and exr_color.c and image/color.h convert other primaries to Rec. 709.
+// Chunks are independent and are decompressed in parallel.
 //
 // The picture is the display window; pixels outside the data window are 0. Of a part with several
 // levels, level 0 is read.

@@ -11,8 +11,8 @@
 /// Greatest number of channels of a part that is read, and of parts of a file; and the greatest
 /// length of the name of an attribute or a channel, which is OpenEXR's limit.
 enum { KI_EXR_MAX_CHANNELS = 1024, KI_EXR_MAX_PARTS = 1024, KI_EXR_MAX_NAME = 255 };
-/// Greatest distance of the samples of a channel, in pixels. Lines without samples of a channel take
-/// time too, which this limit keeps proportional to the number of samples.
+/// Greatest distance of the samples of a channel, in pixels. Lines without samples of a channel
+/// take time too, which this limit keeps proportional to the number of samples.
 enum { KI_EXR_MAX_SAMPLING = 16 };
 
 /// Compression methods, with the numbers that files use.
@@ -176,9 +176,9 @@ int ki_exr_list_runs(const ki_exr_box *box, ki_exr_run runs[KI_EXR_MAX_CHANNELS]
 /// Returns how many lines of samples a box has, summed over its channels. A line that lies between
 /// the samples of a subsampled channel does not count for that channel.
 size_t ki_exr_count_lines(const ki_exr_box *box);
-/// Finds the bytes of a box at which the lines of every channel begin. `offset` has room for as many
-/// numbers as ki_exr_count_lines returns; lines[c] becomes the part of `offset` for channel c, or
-/// NULL if no column of channel c is in the box.
+/// Finds the bytes of a box at which the lines of every channel begin. `offset` has room for as
+/// many numbers as ki_exr_count_lines returns; lines[c] becomes the part of `offset` for channel c,
+/// or NULL if no column of channel c is in the box.
 void ki_exr_find_lines(const ki_exr_box *box, size_t *offset,
                        const size_t *lines[KI_EXR_MAX_CHANNELS]);
 /// Returns the number of bytes of a box's samples, or 0 if the number exceeds size_t.

@@ -29,7 +29,7 @@ typedef struct job {
     bool starved[STRIPS];
 } job;
 
-// ------------------------------------------------------------------------------------- interpolation
+// ----------------------------------------------------------------------------------- interpolation
 
 // Returns the nearest line (or column) of the picture that a filter may read. After the last line
 // the one before it stands, since chroma lies in even lines and the number of lines is even.
@@ -99,7 +99,7 @@ static void make_line(const job *j, int y, float *line)
         to_rgb(j->weights, line + 3 * (size_t)x);
 }
 
-// ---------------------------------------------------------------------------------------- saturation
+// -------------------------------------------------------------------------------------- saturation
 
 static float saturation(const float rgb[3])
 {

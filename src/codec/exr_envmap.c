@@ -2,12 +2,13 @@
 // where OpenEXR has them. Out: a panorama, or a strip of six cube faces, with texels where kiln has
 // them.
 //
-// OpenEXR (ImfEnvmap.h) puts the outer texels of a picture onto its border: with n texels across, texel
-// i lies at i / (n - 1), where kiln has (i + 0.5) / n. The first and last columns of a panorama show
-// the same direction, and the texels along the edge of a cube face belong to the neighbouring face
-// as well. The texels are therefore interpolated bilinearly at kiln's texel centres. OpenEXR's centre
-// of a panorama looks along +Z with -X to its right; kiln's looks along -Z with +X to its right. A
-// direction (x, y, z) of kiln is (-x, y, -z) in OpenEXR, which shows both panoramas alike.
+// OpenEXR (ImfEnvmap.h) puts the outer texels of a picture onto its border: with n texels across,
+// texel i lies at i / (n - 1), where kiln has (i + 0.5) / n. The first and last columns of a
+// panorama show the same direction, and the texels along the edge of a cube face belong to the
+// neighbouring face as well. The texels are therefore interpolated bilinearly at kiln's texel
+// centres. OpenEXR's centre of a panorama looks along +Z with -X to its right; kiln's looks along
+// -Z with +X to its right. A direction (x, y, z) of kiln is (-x, y, -z) in OpenEXR, which shows
+// both panoramas alike.
 #include "codec/exr.h"
 #include "image/image.h"
 

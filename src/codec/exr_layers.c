@@ -1,5 +1,5 @@
-// The layers of an EXR file. In: the parsed headers of its parts. Out: the layers, the layer that is
-// the picture, a note about the choice, and a description of all layers.
+// The layers of an EXR file. In: the parsed headers of its parts. Out: the layers, the layer that
+// is the picture, a note about the choice, and a description of all layers.
 //
 // A renderer stores the picture together with other data: ambient occlusion, normals, depth. The
 // picture is the first of these that the file has, and a file with two that are equally good is

@@ -69,8 +69,8 @@ static void put_line(const uint8_t *const samples[3], const ki_exr_channel *cons
     }
 }
 
-// Converts one line of a channel that has a sample for each `sampling` columns, the first of them at
-// column `first`, to one channel of RGB.
+// Converts one line of a channel that has a sample for each `sampling` columns, the first of them
+// at column `first`, to one channel of RGB.
 static void put_samples(const uint8_t *samples, const ki_exr_channel *channel, int first, int count,
                         float *rgb)
 {

@@ -45,7 +45,7 @@ static const ki_face_set sets[] = {
 
 enum { SETS = sizeof sets / sizeof *sets };
 
-// ----------------------------------------------------------------------------------- names of files
+// ---------------------------------------------------------------------------------- names of files
 
 static char lower(char c)
 {
@@ -151,7 +151,7 @@ bool kiln_faces_order(const char *const paths[6], int order[6])
     return true;
 }
 
-// ------------------------------------------------------------------------------------------ folders
+// ----------------------------------------------------------------------------------------- folders
 
 // The names of the pictures in a folder: `text` one after the other, each with its NUL, and
 // pointers to them in alphabetical order.
@@ -260,8 +260,8 @@ static void complete_set(search *s, const ki_face_set *set, int face, const char
     }
 }
 
-// Finds the sets of six face names that the folder's file names complete, and keeps the most complete
-// of the partial sets for the error message. Returns false if the caller asks to stop.
+// Finds the sets of six face names that the folder's file names complete, and keeps the most
+// complete of the partial sets for the error message. Returns false if the caller asks to stop.
 static bool search_names(search *s)
 {
     for (size_t i = 0; i < s->listing->count; i++) {
@@ -347,7 +347,7 @@ kiln_result ki_faces_in_folder(kiln_context *context, const char *folder, ki_fac
     return result;
 }
 
-// ----------------------------------------------------------------------------------------- patterns
+// ---------------------------------------------------------------------------------------- patterns
 
 // The cases of letters that are tried for the name of a face: "posx", "Posx", "PosX" and "POSX".
 enum { SMALL, FIRST, FIRST_AND_LAST, ALL, CASES };
@@ -422,7 +422,7 @@ void ki_face_files_free(ki_face_files *files)
     *files = (ki_face_files){0};
 }
 
-// -------------------------------------------------------------------------------------- orientation
+// ------------------------------------------------------------------------------------- orientation
 
 void ki_faces_note(const ki_face_set *set, kiln_load_report *report)
 {

@@ -21,8 +21,8 @@ void ki_copy_printable(char *to, size_t room, const char *text)
     to[i] = 0;
 }
 
-// Returns the number of bytes of the character at `at`, or 0 if the bytes are no UTF-8 or a terminal
-// would obey the character.
+// Returns the number of bytes of the character at `at`, or 0 if the bytes are no UTF-8 or a
+// terminal would obey the character.
 static size_t printable_sequence(const char *at, size_t left)
 {
     unsigned code;

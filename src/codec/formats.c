@@ -21,7 +21,7 @@
 #include <stdio.h>
 #include <string.h>
 
-// ----------------------------------------------------------------------------------------- pictures
+// ---------------------------------------------------------------------------------------- pictures
 
 static kiln_result write_exr(const kiln_image *image, const ki_picture_about *about, ki_writer *w,
                              kiln_error *error)
@@ -67,7 +67,7 @@ static kiln_result write_png(const kiln_image *image, const ki_picture_about *ab
                          about->radiance ? KI_PNG_SRGB8 : KI_PNG_PLAIN8, w, error);
 }
 
-// -------------------------------------------------------------------------------------------- table
+// ------------------------------------------------------------------------------------------- table
 
 #define PIXELS(name) (1U << KILN_FORMAT_##name)
 #define TABLES(name) (1U << KILN_TABLE_FORMAT_##name)
@@ -188,7 +188,7 @@ static const ki_file_format formats[] = {
 
 enum { FORMATS = sizeof formats / sizeof *formats };
 
-// ------------------------------------------------------------------------------------------ endings
+// ----------------------------------------------------------------------------------------- endings
 
 static const ki_file_format *find(const char *path, const char **ending)
 {
@@ -262,7 +262,7 @@ const char *ki_list_endings_of_format(kiln_format format, char text[KI_ENDINGS_T
     return join(list, count, " and ", text);
 }
 
-// ------------------------------------------------------------------------------------------ reading
+// ----------------------------------------------------------------------------------------- reading
 
 static bool begins(const ki_file_format *format, const uint8_t *bytes, size_t size)
 {

@@ -1,8 +1,8 @@
 // Decompression of zlib's format (RFC 1950, RFC 1951), for EXR and PNG files. In: zlib data that
 // are not trusted. Out: exactly as many bytes as the caller asks for. The code here lets kiln be
 // built with nothing but a C compiler. If kiln is built with libdeflate (KILN_DEFLATE), that
-// library decompresses whole buffers, which is faster and gives the same bytes. It cannot be stopped,
-// so that long data are left to the code here.
+// library decompresses whole buffers, which is faster and gives the same bytes. It cannot be
+// stopped, so that long data are left to the code here.
 //
 // Method: the next bits of the input are the index of a table, whose entry gives the symbol. Codes
 // longer than that index continue in a second table. While input and output have room to spare,

@@ -1,7 +1,7 @@
 // The segments of JPEG files. In: bytes. Out: size and kind of the picture, the shape of its
-// pixels, and the places of its Exif orientation, XMP packet, ICC profile, gain-map numbers and further pictures. Method:
-// segments are walked one after the other (ITU-T T.81, annex B); the data of a scan are passed by a
-// search for the next marker. Each byte is visited once.
+// pixels, and the places of its Exif orientation, XMP packet, ICC profile, gain-map numbers and
+// further pictures. Method: segments are walked one after the other (ITU-T T.81, annex B); the data
+// of a scan are passed by a search for the next marker. Each byte is visited once.
 #include "codec/jpeg_head.h"
 
 #include <string.h>
@@ -86,8 +86,8 @@ static bool is_named(ki_span segment, const char *name, size_t count, ki_span *r
 
 #define NAMED(segment, name, rest) is_named(segment, name, sizeof(name), rest)
 
-// Reads the segment JFIF (ITU-T T.871, 10.1), which states the pixels per unit of length along x and
-// y, whichever the unit is. The first such segment counts; numbers of 0 state nothing.
+// Reads the segment JFIF (ITU-T T.871, 10.1), which states the pixels per unit of length along x
+// and y, whichever the unit is. The first such segment counts; numbers of 0 state nothing.
 static void read_app0(ki_jpeg_head *head, ki_span segment)
 {
     enum { DENSITY = 3 }; // place of the two numbers, after the version and the unit

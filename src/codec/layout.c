@@ -1,7 +1,7 @@
 // Makes maps from flat pictures: panoramas, crosses, strips and octahedra, by the ratio of the
 // sides or by the caller's choice. A cross or strip is cut into the six faces of a cube. Light
-// probes, mirror balls and panoramas that are not two to one, which only the caller can name, become
-// panoramas.
+// probes, mirror balls and panoramas that are not two to one, which only the caller can name,
+// become panoramas.
 #include "codec/layout.h"
 
 #include "codec/report.h"

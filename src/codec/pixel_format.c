@@ -166,7 +166,7 @@ void ki_pixels_unpack(const ki_pixel_format *pixel, const uint8_t *bytes, int wi
         unpack(pixel, bytes, (size_t)width * (size_t)height, rgb);
 }
 
-// ------------------------------------------------------------------------------------- packed levels
+// ----------------------------------------------------------------------------------- packed levels
 
 // Finds how a level of a map is packed, its faces one below the other: the number of rows of texels
 // or blocks, and the bytes of a row. Returns false for a format or level that cannot be packed.

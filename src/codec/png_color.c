@@ -1,8 +1,8 @@
-// What the samples of a PNG mean. In: the chunks beside the picture's data. Out: curves and a matrix
-// to linear Rec. 709, or the coding by which kiln stored radiance in four bytes; the orientation. By
-// the third edition of the specification (W3C, "Portable Network Graphics", section 11.3.2), the
-// first of these chunks decides: cICP, iCCP, sRGB, then gAMA and cHRM. A file without any of them
-// counts as sRGB. kiln's own text chunk "kiln:texels" comes before all.
+// What the samples of a PNG mean. In: the chunks beside the picture's data. Out: curves and a
+// matrix to linear Rec. 709, or the coding by which kiln stored radiance in four bytes; the
+// orientation. By the third edition of the specification (W3C, "Portable Network Graphics", section
+// 11.3.2), the first of these chunks decides: cICP, iCCP, sRGB, then gAMA and cHRM. A file without
+// any of them counts as sRGB. kiln's own text chunk "kiln:texels" comes before all.
 #include "codec/png_color.h"
 
 #include "base/bytes.h"
@@ -58,8 +58,8 @@ static content *place_of(found *f, const uint8_t *type, const uint8_t *data, siz
     return NULL;
 }
 
-// Finds the chunks that say something about the picture. Only eXIf may stand after the data, and the
-// others are not looked for there.
+// Finds the chunks that say something about the picture. Only eXIf may stand after the data, and
+// the others are not looked for there.
 static kiln_result find_chunks(kiln_context *context, ki_reader *r, found *f,
                                kiln_load_report *report, kiln_error *error)
 {
@@ -196,8 +196,8 @@ static void read_chromaticities(const found *f, ki_png_meaning *meaning, kiln_lo
                 p.xy[0], p.xy[1], p.xy[2], p.xy[3], p.xy[4], p.xy[5], p.xy[6], p.xy[7]);
 }
 
-// Reads the orientation (eXIf) and whether colours are transparent (tRNS). Notes that kiln ignores the
-// other frames of an animation (acTL) and the shape of pixels (pHYs).
+// Reads the orientation (eXIf) and whether colours are transparent (tRNS). Notes that kiln ignores
+// the other frames of an animation (acTL) and the shape of pixels (pHYs).
 static void read_picture(const found *f, ki_png_meaning *meaning, kiln_load_report *report)
 {
     meaning->orientation =

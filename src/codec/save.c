@@ -12,7 +12,7 @@
 #include <stdio.h>
 #include <string.h>
 
-// ------------------------------------------------------------------------------------------- checks
+// ------------------------------------------------------------------------------------------ checks
 
 static const char *const shape_names[] = {[KILN_SHAPE_PANORAMA] = "a panorama",
                                           [KILN_SHAPE_CUBE] = "a cube",

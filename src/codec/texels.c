@@ -1,6 +1,7 @@
 // Texels of textures that other programs write. In: the number by which KTX2, DDS or KTX 1 name a
-// format, and the bytes of a picture. Out: RGB floats of linear light. Channels of 8 and 16 bits are
-// fractions of 255 and 65535, or stand for sRGB values if the format says so; alpha is left out.
+// format, and the bytes of a picture. Out: RGB floats of linear light. Channels of 8 and 16 bits
+// are fractions of 255 and 65535, or stand for sRGB values if the format says so; alpha is left
+// out.
 #include "codec/texels.h"
 
 #include "codec/report.h"

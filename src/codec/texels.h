@@ -1,5 +1,5 @@
-// Texels of textures that other programs write: the formats that KTX and DDS files hold beyond those
-// that kiln writes, and their conversion to radiance.
+// Texels of textures that other programs write: the formats that KTX and DDS files hold beyond
+// those that kiln writes, and their conversion to radiance.
 #ifndef KI_TEXELS_H
 #define KI_TEXELS_H
 
@@ -22,16 +22,19 @@ typedef struct ki_texels {
     const ki_pixel_format *pixel; ///< the format if `kind` is KI_TEXEL_PIXEL, else NULL
 } ki_texels;
 
-/// Describe the texels of a Vulkan or DXGI number. Return false for formats that kiln does not read.
+/// Describe the texels of a Vulkan or DXGI number. Return false for formats that kiln does not
+/// read.
 bool ki_texels_of_vk(uint32_t vk, ki_texels *texels);
 bool ki_texels_of_dxgi(uint32_t dxgi, ki_texels *texels);
 enum { KI_TEXELS_NAME = 24 };
-/// Writes the name of the format to `name`, for example "rgba16f" or "bgr8 srgb", and returns `name`.
+/// Writes the name of the format to `name`, for example "rgba16f" or "bgr8 srgb", and returns
+/// `name`.
 const char *ki_texels_name(const ki_texels *texels, char name[KI_TEXELS_NAME]);
 /// Returns the number of bytes of a picture whose rows end at a multiple of `align` bytes; rows of
 /// blocks have no gaps.
 uint64_t ki_texels_size(const ki_texels *texels, int width, int height, int align);
-/// Converts a picture to RGB floats on all threads. Returns false if a progress report asks to stop.
+/// Converts a picture to RGB floats on all threads. Returns false if a progress report asks to
+/// stop.
 bool ki_texels_read(kiln_context *context, const ki_texels *texels, const uint8_t *bytes, int width,
                     int height, int align, float *rgb);
 /// Swaps left and right, top and bottom, or both, of a picture of RGB floats. Returns false if a

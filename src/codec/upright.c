@@ -17,8 +17,9 @@ typedef struct turn_job {
     bool exchanged, from_right, from_bottom;
 } turn_job;
 
-// Task of one thread: fills row y of the upright picture. Each pixel is copied from the stored picture,
-// whose rows and columns may be exchanged and may be counted from the right and from the bottom.
+// Task of one thread: fills row y of the upright picture. Each pixel is copied from the stored
+// picture, whose rows and columns may be exchanged and may be counted from the right and from the
+// bottom.
 static void turn_row(void *data, int y)
 {
     const turn_job *j = data;

@@ -85,8 +85,8 @@ kiln_result ki_export_add(ki_export *to, const char *path, const ki_writer *byte
 /// Writes the cube of an export as a single .dds file in the texel format of the export.
 kiln_result ki_export_dds(ki_export *to, kiln_error *error);
 
-/// Adds the files that kiln_engine_save writes to a set, and the lights, which may be NULL, to files
-/// of formats that hold lights. `report` may be NULL.
+/// Adds the files that kiln_engine_save writes to a set, and the lights, which may be NULL, to
+/// files of formats that hold lights. `report` may be NULL.
 kiln_result ki_engine_write(ki_file_set *set, kiln_context *context, const kiln_engine *engine,
                             const kiln_map *map, const kiln_sh *sh, const kiln_lights *lights,
                             kiln_format format, const char *path, kiln_save_report *report,

@@ -1,7 +1,7 @@
 // Binary glTF with the extension EXT_lights_image_based. Level k of n has roughness k / (n - 1),
 // with sizes from 256 texels down to 16. The faces have the order and orientation of the
-// extension's figure, which are those of OpenGL and kiln. The axes of glTF are kiln's axes. Lights that
-// were taken out of the environment become directional lights of KHR_lights_punctual.
+// extension's figure, which are those of OpenGL and kiln. The axes of glTF are kiln's axes. Lights
+// that were taken out of the environment become directional lights of KHR_lights_punctual.
 #include "engine/engine.h"
 
 #include "codec/gltf.h"

@@ -26,7 +26,7 @@ static int rows_for(int most)
     return ki_max(1, ki_min(most, KILN_MAX_SIZE / 2));
 }
 
-// ------------------------------------------------------------------------------------------- probes
+// ------------------------------------------------------------------------------------------ probes
 
 typedef struct probe_job {
     const kiln_image *image;
@@ -101,7 +101,7 @@ kiln_result ki_panorama_from_probe(kiln_context *context, const kiln_image *imag
     return result;
 }
 
-// ---------------------------------------------------------------------------------------- stretching
+// -------------------------------------------------------------------------------------- stretching
 
 typedef struct stretch_job {
     const kiln_image *image;

@@ -12,7 +12,8 @@
 kiln_result ki_map_mend(kiln_context *context, const char *name, kiln_negative negative,
                         kiln_map *map, kiln_load_report *report, kiln_error *error);
 /// Mends a flat picture of three channels as ki_map_mend mends a map, and keeps its values below
-/// zero. Adds the numbers of texels that are infinite or not a number to *report, which may be NULL.
+/// zero. Adds the numbers of texels that are infinite or not a number to *report, which may be
+/// NULL.
 kiln_result ki_image_mend(kiln_context *context, const char *name, kiln_image *image,
                           kiln_load_report *report, kiln_error *error);
 

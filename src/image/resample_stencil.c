@@ -13,8 +13,8 @@
 #include <string.h>
 
 enum {
-    // least number of texels along a side of a computed map; each texel of a smaller map is the mean
-    // of a block of texels of a computed map
+    // least number of texels along a side of a computed map; each texel of a smaller map is the
+    // mean of a block of texels of a computed map
     FEWEST = 32,
     AHEAD = 192, // number of stencils by which the prefetch of their texels precedes their sum
     // number of blocks of 4 texels that are summed as floats before the sum is added to doubles
@@ -26,7 +26,7 @@ enum {
 // calls to a function that does nothing but prefetch.
 #define ALWAYS_INLINE __attribute__((always_inline)) static inline
 
-// -------------------------------------------------------------------------------------------- grids
+// ------------------------------------------------------------------------------------------- grids
 
 // Returns the coordinate of the texel `k` steps from the middle of a side of 2 * half texels,
 // towards larger coordinates if `sign` is positive, else towards smaller ones.
@@ -209,7 +209,7 @@ static inline int first_column(const ki_stencil *stencil, const ki_stencil_place
     return wrap(column, width);
 }
 
-// -------------------------------------------------------------------------------------------- gather
+// ------------------------------------------------------------------------------------------ gather
 
 // Four floats. Four RGB texels are three such vectors, with the channels rgbr, gbrg and brgb.
 typedef ki_float4 lanes;
@@ -393,7 +393,7 @@ void ki_resample_coarsen(void *data, int index)
     }
 }
 
-// ------------------------------------------------------------------------------------------- scatter
+// ----------------------------------------------------------------------------------------- scatter
 
 // Task of one thread: computes a band of rows of a panorama. Every stencil adds the light of its
 // texel to the panorama texels that it covers.

@@ -10,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-// ----------------------------------------------------------------------------------------- separable
+// --------------------------------------------------------------------------------------- separable
 
 void ki_resample_separable(void *data, int y)
 {
@@ -97,7 +97,7 @@ kiln_result ki_resample_plan_separable(kiln_context *context, ki_resample_plan *
     return KILN_OK;
 }
 
-// ------------------------------------------------------------------------------- faces, sub-samples
+// ------------------------------------------------------------------------------ faces, sub-samples
 
 // Returns the solid angle of the rectangle [0, s] x [0, t] on a cube's face. The function is odd in
 // s and in t.

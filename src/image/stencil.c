@@ -117,7 +117,7 @@ void ki_stencil_grid_range(const ki_stencil_grid *grid, int j, int *first, int *
     }
 }
 
-// --------------------------------------------------------------------------------------------- arcs
+// -------------------------------------------------------------------------------------------- arcs
 
 // Returns the angle in [-pi, pi] with this sine and cosine. `small` says that all angles are at
 // most 45 degrees, as in a panorama of eight columns or more. Angles near 0 are then computed by
@@ -295,7 +295,7 @@ static void trace_arc(const builder *b, const corner *from, const corner *to, tr
     arc->end_column = column + 1;
 }
 
-// -------------------------------------------------------------------------------------------- texels
+// ------------------------------------------------------------------------------------------ texels
 
 // Reserves room for `more` weights in a chunk. Returns false when memory runs out.
 static bool grow(kiln_context *context, ki_stencil_chunk *chunk, size_t more)

@@ -1,8 +1,8 @@
-// The exponential, the logarithm and the power as inline functions, so that compilers can turn a loop
-// over an array of arguments into vector instructions. In and out: doubles. Method: the argument is
-// reduced to a short interval, where a power series is summed. There is no branch and no call, and
-// only + - * / are used, so that vectors and single numbers give the same bits. math.h states ranges
-// and errors.
+// The exponential, the logarithm and the power as inline functions, so that compilers can turn a
+// loop over an array of arguments into vector instructions. In and out: doubles. Method: the
+// argument is reduced to a short interval, where a power series is summed. There is no branch and
+// no call, and only + - * / are used, so that vectors and single numbers give the same bits. math.h
+// states ranges and errors.
 #include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
@@ -21,8 +21,8 @@ static inline uint64_t bits_of_double(double x)
     return bits;
 }
 
-// Returns floor x for |x| < 2^51. The sum of x and 1.5 * 2^52 has no bits for a fraction, so that x is
-// rounded to an integer.
+// Returns floor x for |x| < 2^51. The sum of x and 1.5 * 2^52 has no bits for a fraction, so that x
+// is rounded to an integer.
 static inline double floor_of_small(double x)
 {
     double rounded = (x + 6755399441055744.0) - 6755399441055744.0;

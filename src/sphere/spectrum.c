@@ -189,7 +189,7 @@ int kiln_spectrum_degree(const kiln_spectrum *spectrum)
     return spectrum->degree;
 }
 
-// ------------------------------------------------------------------------------------- the workspace
+// ----------------------------------------------------------------------------------- the workspace
 
 struct ki_analysis_workspace {
     kiln_context *context;
@@ -275,7 +275,7 @@ void ki_analysis_workspace_destroy(ki_analysis_workspace *workspace)
     ki_free(workspace);
 }
 
-// ------------------------------------------------------------------------------------------ the rows
+// ---------------------------------------------------------------------------------------- the rows
 
 // Adds the weighted panorama rows r->rows to one piece of a latitude ring. The two halves of a row
 // (`half` 0 and 1) are cut at the same places, so that a ring beyond a pole, half a turn away,
