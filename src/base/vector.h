@@ -37,4 +37,26 @@ typedef int32_t ki_index4 __attribute__((vector_size(16)));
 #define KI_SHUFFLE16(a, b, ...) __builtin_shuffle(a, b, (ki_bytes16){__VA_ARGS__})
 #endif
 
+/// Converts four RGB texels of three floats each to vectors of red, green and blue.
+static inline void ki_split_rgb4(const ki_float4 texels[3], ki_float4 rgb[3])
+{
+    ki_float4 red = KI_SHUFFLE4(texels[0], texels[1], 0, 3, 6, -1);
+    ki_float4 green = KI_SHUFFLE4(texels[0], texels[1], 1, 4, 7, -1);
+    ki_float4 blue = KI_SHUFFLE4(texels[0], texels[1], 2, 5, -1, -1);
+    rgb[0] = KI_SHUFFLE4(red, texels[2], 0, 1, 2, 5);
+    rgb[1] = KI_SHUFFLE4(green, texels[2], 0, 1, 2, 6);
+    rgb[2] = KI_SHUFFLE4(blue, texels[2], 0, 1, 4, 7);
+}
+
+/// Converts vectors of red, green and blue to four RGB texels of three floats each.
+static inline void ki_join_rgb4(const ki_float4 rgb[3], ki_float4 texels[3])
+{
+    ki_float4 low = KI_SHUFFLE4(rgb[0], rgb[1], 0, 4, 1, 5);
+    ki_float4 high = KI_SHUFFLE4(rgb[0], rgb[1], 2, 6, 3, 7);
+    ki_float4 one = KI_SHUFFLE4(low, rgb[2], 2, 3, 5, -1);
+    texels[0] = KI_SHUFFLE4(low, rgb[2], 0, 1, 4, 2);
+    texels[1] = KI_SHUFFLE4(one, high, 1, 2, 4, 5);
+    texels[2] = KI_SHUFFLE4(rgb[2], high, 2, 6, 7, 3);
+}
+
 #endif

@@ -30,17 +30,12 @@ static void interleave(const float *restrict r, const float *restrict g, const f
 {
     int i = 0;
     for (; i + 4 <= count; i += 4) {
-        ki_float4 red, green, blue, out[3];
-        memcpy(&red, r + i, sizeof red);
-        memcpy(&green, g + i, sizeof green);
-        memcpy(&blue, b + i, sizeof blue);
-        ki_float4 low = KI_SHUFFLE4(red, green, 0, 4, 1, 5);
-        ki_float4 high = KI_SHUFFLE4(red, green, 2, 6, 3, 7);
-        ki_float4 one = KI_SHUFFLE4(low, blue, 2, 3, 5, -1);
-        out[0] = KI_SHUFFLE4(low, blue, 0, 1, 4, 2);
-        out[1] = KI_SHUFFLE4(one, high, 1, 2, 4, 5);
-        out[2] = KI_SHUFFLE4(blue, high, 2, 6, 7, 3);
-        memcpy(rgb + 3 * (size_t)i, out, sizeof out);
+        ki_float4 colors[3], texels[3];
+        memcpy(&colors[0], r + i, sizeof colors[0]);
+        memcpy(&colors[1], g + i, sizeof colors[1]);
+        memcpy(&colors[2], b + i, sizeof colors[2]);
+        ki_join_rgb4(colors, texels);
+        memcpy(rgb + 3 * (size_t)i, texels, sizeof texels);
     }
     for (; i < count; i++) {
         float *texel = rgb + 3 * (size_t)i;

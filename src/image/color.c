@@ -5,6 +5,8 @@
 // ratio of both whites' responses (ICC.1:2022, annex E).
 #include "image/color.h"
 
+#include "base/vector.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -167,10 +169,69 @@ bool ki_rec709_from_rgb(const ki_primaries *primaries, const double *neutral, ki
 
 // --------------------------------------------------------------------------------------- pictures
 
+// Number of texels that are multiplied by a matrix at once.
+enum { STRETCH = 64 };
+
 typedef struct transform_job {
     const ki_matrix3 *matrix;
     kiln_image *image;
 } transform_job;
+
+// Multiplies a texel by the matrix. Products beyond the largest float become this float. A texel
+// with a channel that is not finite stays as it is.
+static void transform_texel(const ki_matrix3 *matrix, float rgb[3])
+{
+    double color[3] = {(double)rgb[0], (double)rgb[1], (double)rgb[2]};
+    if (!isfinite(rgb[0]) || !isfinite(rgb[1]) || !isfinite(rgb[2]))
+        return;
+    apply(matrix, color, color);
+    for (int c = 0; c < 3; c++)
+        rgb[c] = (float)ki_clamp(color[c], -(double)FLT_MAX, (double)FLT_MAX);
+}
+
+// Splits STRETCH texels into red, green and blue.
+static void split(const float *rgb, ki_float4 colors[3][STRETCH / 4])
+{
+    for (int i = 0; i < STRETCH / 4; i++) {
+        ki_float4 texels[3], four[3];
+        memcpy(texels, rgb + 12 * (size_t)i, sizeof texels);
+        ki_split_rgb4(texels, four);
+        for (int c = 0; c < 3; c++)
+            colors[c][i] = four[c];
+    }
+}
+
+static void join(ki_float4 colors[3][STRETCH / 4], float *rgb)
+{
+    for (int i = 0; i < STRETCH / 4; i++) {
+        ki_float4 texels[3], four[3] = {colors[0][i], colors[1][i], colors[2][i]};
+        ki_join_rgb4(four, texels);
+        memcpy(rgb + 12 * (size_t)i, texels, sizeof texels);
+    }
+}
+
+// Multiplies STRETCH texels by the matrix with the arithmetic of transform_texel, in loops that
+// compilers turn into vector instructions, and returns true. Returns false and changes nothing if a
+// channel is not finite or a product is beyond the largest float. In both cases a product becomes a
+// float that is not finite, since 0 times infinity is not a number.
+static bool transform_stretch(const ki_matrix3 *matrix, float *rgb)
+{
+    ki_float4 in[3][STRETCH / 4], out[3][STRETCH / 4];
+    float(*from)[STRETCH] = (float(*)[STRETCH])in, (*to)[STRETCH] = (float(*)[STRETCH])out;
+    const ki_matrix3 a = *matrix;
+    int rare = 0;
+    split(rgb, in);
+    for (int i = 0; i < STRETCH; i++) {
+        double r = (double)from[0][i], g = (double)from[1][i], b = (double)from[2][i];
+        for (int c = 0; c < 3; c++) {
+            to[c][i] = (float)(a.m[c][0] * r + a.m[c][1] * g + a.m[c][2] * b);
+            rare |= !(fabsf(to[c][i]) <= FLT_MAX);
+        }
+    }
+    if (!rare)
+        join(out, rgb);
+    return !rare;
+}
 
 // Task of one thread: multiplies the colours of one row by the matrix.
 static void transform_row(void *data, int row)
@@ -178,13 +239,12 @@ static void transform_row(void *data, int row)
     const transform_job *job = data;
     int width = job->image->width;
     float *rgb = job->image->pixels + 3 * (size_t)width * (size_t)row;
-    for (int x = 0; x < width; x++, rgb += 3) {
-        double color[3] = {(double)rgb[0], (double)rgb[1], (double)rgb[2]};
-        if (!isfinite(rgb[0]) || !isfinite(rgb[1]) || !isfinite(rgb[2]))
+    for (int x = 0, end; x < width; x = end) {
+        end = ki_min(x + STRETCH, width);
+        if (end - x == STRETCH && transform_stretch(job->matrix, rgb + 3 * (size_t)x))
             continue;
-        apply(job->matrix, color, color);
-        for (int c = 0; c < 3; c++)
-            rgb[c] = (float)ki_clamp(color[c], -(double)FLT_MAX, (double)FLT_MAX);
+        for (int i = x; i < end; i++)
+            transform_texel(job->matrix, rgb + 3 * (size_t)i);
     }
 }
 

@@ -1,7 +1,10 @@
 // Conversion of colours to Rec. 709: published matrices, whites, and primaries that are none.
 #include "kit/kit.h"
+#include "kit/random.h"
 
 #include "image/color.h"
+
+#include <float.h>
 
 static const ki_primaries acescg = {{0.713, 0.293, 0.165, 0.830, 0.128, 0.044, 0.32168, 0.33767}};
 
@@ -133,6 +136,49 @@ static void pictures_are_converted(void **unused)
     kiln_context_destroy(context);
 }
 
+// Rows of 150 texels have two stretches that the library multiplies at once, and a rest. Every texel
+// has the bits of the three sums in double precision, also next to texels with a channel that is
+// infinite or not a number, which stay, and to products beyond the largest float, which become it.
+static void every_texel_has_the_bits_of_its_sums(void **unused)
+{
+    enum { WIDTH = 150, HEIGHT = 4, COUNT = WIDTH * HEIGHT };
+    static float pixels[3 * COUNT], before[3 * COUNT];
+    kiln_image image = {WIDTH, HEIGHT, 3, pixels, NULL};
+    uint64_t random = 5;
+    ki_matrix3 a;
+    kiln_context *context;
+    kiln_error error;
+    int clamped = 0;
+    (void)unused;
+    for (int i = 0; i < 3 * COUNT; i++)
+        pixels[i] = (float)random_between(&random, -1, 9);
+    pixels[3 * (WIDTH + 5) + 2] = INFINITY;
+    pixels[3 * (2 * WIDTH - 1)] = -INFINITY;
+    pixels[3 * (2 * WIDTH + 127) + 1] = NAN;
+    pixels[3 * (3 * WIDTH + 64)] = FLT_MAX;
+    pixels[3 * (3 * WIDTH + 149)] = -FLT_MAX;
+    memcpy(before, pixels, sizeof before);
+    CHECK_OK(kiln_context_create(NULL, &context, &error));
+    assert_true(ki_rec709_from_rgb(&acescg, NULL, &a));
+    assert_true(ki_image_transform(context, &a, &image));
+    for (int i = 0; i < COUNT; i++) {
+        const float *in = before + 3 * i, *out = pixels + 3 * i;
+        if (!isfinite(in[0]) || !isfinite(in[1]) || !isfinite(in[2])) {
+            assert_memory_equal(out, in, 3 * sizeof *out);
+            continue;
+        }
+        for (int c = 0; c < 3; c++) {
+            double sum =
+                a.m[c][0] * (double)in[0] + a.m[c][1] * (double)in[1] + a.m[c][2] * (double)in[2];
+            double most = (double)FLT_MAX, wanted = sum > most ? most : sum < -most ? -most : sum;
+            clamped += wanted != sum;
+            assert_true(out[c] == (float)wanted);
+        }
+    }
+    assert_int_equal(clamped, 2);
+    kiln_context_destroy(context);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -141,6 +187,7 @@ int main(void)
         cmocka_unit_test(whites_are_adapted),
         cmocka_unit_test(what_is_no_set_of_primaries_is_refused),
         cmocka_unit_test(pictures_are_converted),
+        cmocka_unit_test(every_texel_has_the_bits_of_its_sums),
     };
     return cmocka_run_group_tests_name("color", tests, NULL, NULL);
 }
