@@ -45,10 +45,13 @@ void fuzz_table_text(const uint8_t *bytes, size_t size);
 void fuzz_number(const uint8_t *bytes, size_t size);
 void fuzz_json(const uint8_t *bytes, size_t size);
 void fuzz_shown_text(const uint8_t *bytes, size_t size);
-// paths.c: what is read from a path: a table, standard input, and the names of six faces.
+// paths.c: what is read from a path: a table, standard input, the names of six faces, and a folder of faces.
 void fuzz_table(const uint8_t *bytes, size_t size);
 void fuzz_input(const uint8_t *bytes, size_t size);
 void fuzz_faces(const uint8_t *bytes, size_t size);
+void fuzz_folder(const uint8_t *bytes, size_t size);
+// eval.c: the command `kiln eval`.
+void fuzz_eval(const uint8_t *bytes, size_t size);
 
 // check.c: what the targets share.
 

@@ -1,5 +1,5 @@
-// What is read from a path: a table, standard input, and six faces, whose names alone matter here. The bytes
-// of files lie in a file without a name.
+// What is read from a path: a table, standard input, six faces, whose names alone matter here, and a folder of six
+// faces. The bytes of files lie in a file without a name, or for the folder in a folder under /tmp.
 #include "fuzz.h"
 
 #include "codec/faces.h"
@@ -106,5 +106,73 @@ void fuzz_faces(const uint8_t *bytes, size_t size)
             fuzz_must(strlen(files.path[i]) + length > strlen(paths[0]));
     ki_face_files_free(&files);
     fuzz_end(context);
+    free(text);
+}
+
+// A folder for the files of one run, removed with them.
+typedef struct workplace {
+    char *folder, path[12][300];
+    int count;
+} workplace;
+
+// Makes a file of these bytes, unless the name is none or the system does not take it.
+static void add_file(workplace *w, const char *name, const char *bytes, size_t size)
+{
+    char *path = w->path[w->count];
+    if (!*name || strchr(name, '/') || strlen(name) > 255)
+        return;
+    snprintf(path, sizeof w->path[0], "%s/%s", w->folder, name);
+    FILE *file = fopen(path, "wbx");
+    if (!file)
+        return;
+    fuzz_must(fwrite(bytes, 1, size, file) == size);
+    fclose(file);
+    w->count++;
+}
+
+static void remove_all(const workplace *w)
+{
+    for (int i = 0; i < w->count; i++)
+        remove(w->path[i]);
+    fuzz_must(rmdir(w->folder) == 0);
+}
+
+// Lines with the names of at most twelve files, an empty line, and the bytes that each of these files has. The six
+// faces that are found are six of these files, and the folder is the same cube, or fails with the same result, as the
+// six paths one by one.
+void fuzz_folder(const uint8_t *bytes, size_t size)
+{
+    char *text = fuzz_text(bytes, size), *rest = text, *name;
+    char *names[12];
+    int count = 0;
+    while (*(name = next_line(&rest)) && count < 12)
+        names[count++] = name;
+    char folder[] = "/tmp/kiln-fuzz-XXXXXX";
+    workplace w = {.folder = folder};
+    fuzz_must(mkdtemp(w.folder) != NULL);
+    for (int i = 0; i < count; i++)
+        add_file(&w, names[i], rest, (size_t)(text + size - rest));
+    kiln_context *context = fuzz_context(MEMORY);
+    kiln_error error = {0}, other = {0};
+    ki_face_files files;
+    kiln_map map, same;
+    kiln_result found = ki_faces_in_folder(context, w.folder, &files, &error);
+    kiln_result result = kiln_map_load(context, w.folder, NULL, &map, &error);
+    fuzz_must(found == KILN_OK || found == result || result == KILN_ERROR_MEMORY);
+    if (found == KILN_OK) {
+        for (int i = 0; i < 6; i++)
+            for (int k = 0; k <= i; k++)
+                fuzz_must(access(files.path[i], R_OK) == 0 &&
+                          (k == i || strcmp(files.path[i], files.path[k]) != 0));
+        fuzz_must(kiln_map_load_faces(context, files.path, NULL, &same, &other) == result);
+        for (size_t i = 0; result == KILN_OK && i < 3 * kiln_map_texels(&map, 0); i++)
+            fuzz_must(map.level[0][i] == same.level[0][i]);
+        kiln_map_free(&same);
+    }
+    fuzz_must(result == KILN_OK || error.message[0]);
+    kiln_map_free(&map);
+    ki_face_files_free(&files);
+    fuzz_end(context);
+    remove_all(&w);
     free(text);
 }

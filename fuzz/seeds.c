@@ -345,6 +345,18 @@ static void write_texts(void)
     save_text("faces", "quake", "skyrt.png\nskylf.png\nskyup.png\nskydn.png\nskyft.png\nskybk.png");
     save_text("faces", "sides",
               "right1.jpg\nleft2.jpg\ntop3.jpg\nbottom4.jpg\nfront5.jpg\nback6.jpg");
+    static const char folder[] = "px.hdr\nnx.hdr\npy.hdr\nny.hdr\npz.hdr\nnz.hdr\nground.hdr\n\n#?"
+                                 "RGBE\n\n-Y 1 +X 1\n\1\2\3\200";
+    save("folder", "px", folder, sizeof folder - 1);
+    save_text("folder", "sides",
+              "a_Right.png\na_Left.png\na_Up.png\na_Down.png\na_Front.png\na_Back.png\n\n");
+    save_text("folder", "two",
+              "px.hdr\nnx.hdr\npy.hdr\nny.hdr\npz.hdr\nnz.hdr\nrt.hdr\nlf.hdr\nup.hdr\ndn.hdr\nft."
+              "hdr\nbk.hdr\n\n");
+    save_text("eval", "columns", "e --roughness 0.5\n0.25\n 1e-1 \r\n.75");
+    save_text("eval", "alone", "specular --roughness 0.5 --mu 0.5 --nol 0.5 --noh 0.5 --voh 0.5");
+    save_text("eval", "json", "schlick --json\n0.04 0.5\n1 1\n");
+    save_text("eval", "metal", "conductor --n 0.2\n0.5 3\n0.1 2");
     save_text("gain_map", "xmp",
               "\1.<rdf:Description hdrgm:Version=\"1.0\" hdrgm:GainMapMin=\"-0.5\" "
               "hdrgm:GainMapMax=\"3\" hdrgm:Gamma=\"1.5\" hdrgm:OffsetSDR=\"0.015625\" "

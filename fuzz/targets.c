@@ -27,7 +27,9 @@ const fuzz_target fuzz_targets[] = {{"exr", fuzz_decode, "\x76\x2f\x31\x01", 4},
                                     {"number", fuzz_number, NULL, 0},
                                     {"shown_text", fuzz_shown_text, NULL, 0},
                                     {"faces", fuzz_faces, NULL, 0},
+                                    {"folder", fuzz_folder, NULL, 0},
                                     {"input", fuzz_input, NULL, 0},
+                                    {"eval", fuzz_eval, NULL, 0},
                                     {NULL, NULL, NULL, 0}};
 
 void fuzz_run(const fuzz_target *target, const uint8_t *bytes, size_t size)
