@@ -222,9 +222,10 @@ lint)
     build strict
     sources=$(find src cli viewer bench examples tests -name '*.c' -not -path '*/node_modules/*')
     say "cppcheck"
+    # ctuuninitvar follows a load report into another file and does not see that loading fills the report.
     # shellcheck disable=SC2086 # a list is split on purpose
     cppcheck --quiet --error-exitcode=1 --inline-suppr --std=c11 -I include -I src \
-        --enable=warning,performance,portability --suppress=missingInclude $sources
+        --enable=warning,performance,portability --suppress=missingInclude --suppress=ctuuninitvar $sources
     say "clang-tidy"
     printf '%s\n' "$sources" | grep -v '/os_windows\.c$' |
         xargs -n 1 -P 2 clang-tidy --quiet -p build/strict 2>build/tidy.log

@@ -247,9 +247,9 @@ bool scene_has_environment(const scene_setup *s);
 int scene_load(cli_work *work, scene_setup *s, kiln_map *source);
 /// Number of samples for each texel of the importance-sampled bake in VIEW_SLOT_TEXTBOOK.
 enum { SCENE_TEXTBOOK_SAMPLES = 1024 };
-/// Bakes the environment and sets it and the lights in the renderer. scene_bake_slot sets one slot, exactly if
-/// `samples` is 0; scene_bake sets every slot that the scene needs. Both return CLI_GO or
-/// CLI_FAILED.
+/// Bakes the environment and sets it and the lights in the renderer. scene_bake_slot sets one slot,
+/// exactly if `samples` is 0; scene_bake sets every slot that the scene needs. Both return CLI_GO
+/// or CLI_FAILED.
 int scene_bake_slot(cli_work *work, const scene_setup *s, const kiln_map *source, view_slot slot,
                     int samples, view_renderer *renderer);
 int scene_bake(cli_work *work, const scene_setup *s, const kiln_map *source,

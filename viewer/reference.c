@@ -9,8 +9,8 @@
 //     L(v) = int f(v, l) L(l) (n.l) dl  ~  sum over the three l of  f L (n.l) / (p1 + p2 + p3)
 //
 // Where l meets another ball, L is the light that the other ball reflects, estimated by one of the
-// three kinds of draw chosen at random, until the path leaves the scene. A pixel is the mean of as many
-// batches as its wanted standard error needs.
+// three kinds of draw chosen at random, until the path leaves the scene. A pixel is the mean of as
+// many batches as its wanted standard error needs.
 #include "reference.h"
 
 #include "internal.h"
@@ -104,8 +104,10 @@ static void find_point(const job *j, const double from[3], const double d[3], in
     p->ball = -1;
     memcpy(p->ray, d, sizeof p->ray);
     for (int i = 0; i < j->ball_count; i++) {
+        if (i == leaves)
+            continue;
         double t = meet(&j->balls[i], from, d, closest);
-        if (i != leaves && t > 0 && t < reach) {
+        if (t > 0 && t < reach) {
             reach = t;
             p->ball = i;
             memcpy(found, closest, sizeof found);
@@ -126,8 +128,8 @@ static void find_point(const job *j, const double from[3], const double d[3], in
     view_point_prepare(ball, &j->energy, p);
 }
 
-// Makes p the point where a ray from the eye meets the ground, if the ray met no ball. Only rays from
-// the eye meet the ground.
+// Makes p the point where a ray from the eye meets the ground, if the ray met no ball. Only rays
+// from the eye meet the ground.
 static void find_ground(const job *j, const double d[3], view_point *p)
 {
     double above = j->eye[1] - j->ground.height;
@@ -408,7 +410,8 @@ static void draw_batches(const job *j, const rays *r, int count, view_random *ra
 static void integrate(const job *j, const rays *r, view_random *random, tally *t,
                       view_reference_report *report)
 {
-    // The standard error is itself estimated, with an error of 10 % or so: aim below the wanted noise.
+    // The standard error is itself estimated, with an error of 10 % or so: aim below the wanted
+    // noise.
     const double small = 0.02 * j->light.mean, aim = 0.9 * j->noise;
     double needed;
     int trial = FIRST_TRIAL < j->batch_limit ? FIRST_TRIAL : j->batch_limit;

@@ -167,7 +167,7 @@ static size_t texel_towards(kiln_shape shape, int n, const double direction[3])
     return ((size_t)face * (size_t)n + (size_t)y) * (size_t)n + (size_t)x;
 }
 
-// ---------------------------------------------------------------------------------------- subsample
+// --------------------------------------------------------------------------------------- subsample
 
 kiln_result ki_resample_plan_subsample(kiln_context *context, ki_resample_plan *plan,
                                        kiln_error *error)
@@ -198,8 +198,8 @@ typedef struct place {
 enum { MOST_STEPS = 4 }; // number of steps from texel to texel, after which the angles are computed
 
 // Moves the place to the texel in direction d, whose length is `length`. A direction of longitude
-// phi has x = r sin phi and z = -r cos phi. It is east of the longitude p if sin(phi - p) >= 0, that
-// is if x cos p + z sin p >= 0, which holds for all p less than half a turn away.
+// phi has x = r sin phi and z = -r cos phi. It is east of the longitude p if sin(phi - p) >= 0,
+// that is if x cos p + z sin p >= 0, which holds for all p less than half a turn away.
 static void follow(const ki_resample_plan *plan, const double d[3], double length, place *at)
 {
     int n = plan->source_size, steps = 0;
@@ -237,8 +237,9 @@ static double sample_direction(kiln_shape shape, int face, double u, double v, d
         *length = sqrt(r2);
         return 1 / (r2 * *length);
     }
-    // The unit direction d meets the octahedron |x| + |y| + |z| = 1 at the distance 1 / sum from its
-    // centre. The solid angle of a sample of fixed area on a face is proportional to 1 / distance^3.
+    // The unit direction d meets the octahedron |x| + |y| + |z| = 1 at the distance 1 / sum from
+    // its centre. The solid angle of a sample of fixed area on a face is proportional to
+    // 1 / distance^3.
     ki_octahedron_direction(u, v, d);
     double sum = fabs(d[0]) + fabs(d[1]) + fabs(d[2]);
     return sum * sum * sum;

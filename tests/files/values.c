@@ -290,7 +290,7 @@ static void six_faces_have_one_report(void **state)
     static float rgb[3 * FACE];
     char names[6][8];
     const char *paths[6];
-    kiln_load_report report = {0};
+    kiln_load_report report;
     kiln_map map;
     folder_make();
     for (int face = 0; face < 6; face++) {

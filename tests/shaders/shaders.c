@@ -610,7 +610,8 @@ static double disc_sum(double alpha, const double v[3], const double l[3], doubl
     const double t[3] = {1 + side * l[0] * l[0] * a, side * l[0] * l[1] * a, -side * l[0]};
     const double b[3] = {l[0] * l[1] * a, side + l[1] * l[1] * a, -l[1]};
     for (int i = 0; i < ACROSS * AROUND; i++) {
-        double less = whole * (i / AROUND + 0.5) / ACROSS, out = sqrt(less * (2 - less));
+        int ring = i / AROUND;
+        double less = whole * (ring + 0.5) / ACROSS, out = sqrt(less * (2 - less));
         double phi = 2 * pi * (i % AROUND + 0.5) / AROUND, h[3], size = 0, voh = 0;
         for (int c = 0; c < 3; c++) {
             h[c] = v[c] + (1 - less) * l[c] + out * (cos(phi) * t[c] + sin(phi) * b[c]);
