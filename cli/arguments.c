@@ -211,6 +211,11 @@ static int store(const cli_command *command, const cli_option *option, const cha
         code = read_number(command, option, text, &x);
         memcpy(to, &x, sizeof x);
         break;
+    case CLI_FILE:
+        if (!*text)
+            return cli_wrong(command, "--%s is empty, it must name a file or folder", option->name);
+        memcpy(to, &text, sizeof text);
+        break;
     default:
         memcpy(to, &text, sizeof text);
     }
@@ -265,7 +270,9 @@ int cli_read_arguments(cli_arguments *a, const cli_command *command, const cli_c
     for (int i = 1; i < call->count; i++) {
         const char *word = call->words[i];
         int code = CLI_GO;
-        if (options && !strcmp(word, "--"))
+        if (!*word)
+            code = cli_wrong(command, "word %d after '%s' is empty", i, command->name);
+        else if (options && !strcmp(word, "--"))
             options = false;
         else if (!options || word[0] != '-' || !word[1])
             // rest[] shares memory with words[]: the writes never overtake the reads

@@ -55,7 +55,7 @@ void *ki_alloc_raw(kiln_context *context, size_t count, size_t size);
 /// Frees memory from ki_alloc or ki_alloc_raw; the memory itself records its context. `memory` may
 /// be NULL.
 void ki_free(void *memory);
-/// Writes the error message "out of memory: WHAT needs N bytes", with the context's memory limit if
+/// Writes the error message "out of memory: WHAT: N more bytes are needed", with the context's memory limit if
 /// it has one.
 void ki_describe_memory(kiln_context *context, kiln_error *error, const char *what,
                         size_t byte_count);

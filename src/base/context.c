@@ -219,10 +219,10 @@ void ki_describe_memory(kiln_context *context, kiln_error *error, const char *wh
     if (context->heap->limit)
         ki_describe(
             error, KILN_ERROR_MEMORY,
-            "out of memory: %s needs %zu bytes, the context holds %zu bytes, its limit is %zu",
+            "out of memory: %s: %zu more bytes are needed, the context holds %zu of at most %zu",
             what, byte_count, atomic_load(&context->heap->held), context->heap->limit);
     else
-        ki_describe(error, KILN_ERROR_MEMORY, "out of memory: %s needs %zu bytes", what,
+        ki_describe(error, KILN_ERROR_MEMORY, "out of memory: %s: %zu more bytes are needed", what,
                     byte_count);
 }
 

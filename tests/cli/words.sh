@@ -42,6 +42,13 @@ expect 2 "quiet takes no value" sky -o sky.exr --quiet=yes
 expect 2 "^kiln: -o needs a value" sky -o
 expect 2 "^kiln: --size needs a value" sky -o sky.exr --size
 expect 2 "size is '', it must be a whole number" sky -o sky.exr --size=
+# Words that are empty, as "$FILE" is where FILE was never set.
+expect 2 "^kiln: --output is empty, it must name a file or folder$" sky -o ""
+expect 2 "^kiln: --output is empty, it must name a file or folder$" bake sky.exr --output=
+expect 2 "^kiln: --sh is empty, it must name a file or folder$" bake sky.exr -o a.ktx2 --sh ""
+expect 2 "^kiln: word 1 after 'bake' is empty$" bake "" -o a.ktx2
+expect 2 "^kiln: word 2 after 'info' is empty$" info sky.exr ""
+expect 2 "^kiln: word 2 after 'eval' is empty$" eval e "" --mu 1 --roughness 1
 expect 2 "^kiln: -x: no such option" sky -o sky.exr -qx
 expect 2 "^kiln: -x: no such option" sky -o sky.exr -x
 expect 2 "^kiln: -5: no such option" sky -o sky.exr -5

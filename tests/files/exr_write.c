@@ -103,7 +103,7 @@ static void threads_ask_for_no_more_memory_than_there_is(void **state)
     }
     def.memory_limit = peak - 1;
     assert_int_equal(encode_by(&def, true, &none, NULL), KILN_ERROR_MEMORY);
-    CHECK_SAYS(error.message, "out of memory: an EXR file needs ");
+    CHECK_SAYS(error.message, "out of memory: an EXR file: ");
     ki_writer_free(&none);
     ki_writer_free(&one);
 }
