@@ -201,7 +201,9 @@ static kiln_result decode(const ki_writer *w, int left, kiln_map *map)
     return kiln_map_decode(own, w->bytes, w->size, "a", NULL, map, &error);
 }
 
-// Returns the number of questions while a file is read, at each of which the reading can be stopped.
+// Returns the number of questions while a file is read, at each of which the reading can be stopped. Work in steps asks
+// once more after each twentieth of a second, so that on a busy machine one reading may ask more often than the next: the
+// least number counts.
 static int count_questions(void (*put)(ki_writer *w))
 {
     ki_writer w = {.context = context};
@@ -212,9 +214,16 @@ static int count_questions(void (*put)(ki_writer *w))
     kiln_map_free(&map);
     int asked = reports.calls;
     for (int stop = 0; stop < asked; stop++) {
-        assert_int_equal(decode(&w, stop, &map), KILN_ERROR_CANCELLED);
-        assert_int_equal(reports.calls, stop + 1);
-        assert_null(map.level[0]);
+        kiln_result result = decode(&w, stop, &map);
+        if (result == KILN_OK) {
+            assert_true(reports.calls <= stop);
+            asked = reports.calls;
+        } else {
+            assert_int_equal(result, KILN_ERROR_CANCELLED);
+            assert_int_equal(reports.calls, stop + 1);
+            assert_null(map.level[0]);
+        }
+        kiln_map_free(&map);
     }
     ki_writer_free(&w);
     return asked;
