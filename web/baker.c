@@ -17,8 +17,10 @@ struct baker {
     kiln_error error;
     kiln_map source;
     kiln_load_report report; // what was found in the source picture
-    kiln_note note;          // the sentence that baker_note returned last
+    kiln_note note;          // the sentence that was returned last
     kiln_environment baked, scenery;
+    kiln_lights taken; // lights that were taken out of the source
+    double light[7];   // the light that baker_light returned last
     kiln_image truth;
     double truth_noise;
 };
@@ -67,6 +69,7 @@ static bool take_source(baker *b, kiln_result result, kiln_map *map, const kiln_
     kiln_map_free(&b->source);
     b->source = *map;
     b->report = *report;
+    b->taken = (kiln_lights){.count = 0};
     return true;
 }
 
@@ -105,16 +108,50 @@ const float *baker_source_texels(const baker *b)
     return b->source.level[0];
 }
 
-bool baker_bake(baker *b, int size, int levels, double rotation, double exposure)
+bool baker_bake(baker *b, int size, int levels, double rotation, double exposure, bool extract)
 {
     kiln_bake_def def = {.levels = {.size = size, .level_count = levels, .rotation = rotation},
-                         .exposure = exposure};
+                         .exposure = exposure,
+                         .sun = extract ? KILN_SUN_EXTRACT : KILN_SUN_KEEP};
     kiln_environment made;
     if (!b->source.size || kiln_bake(b->context, &b->source, &def, &made, &b->error))
         return false;
     kiln_environment_free(&b->baked);
     b->baked = made;
     return true;
+}
+
+bool baker_extract(baker *b)
+{
+    return !kiln_lights_extract(b->context, &b->source, NULL, &b->taken, &b->error);
+}
+
+int baker_light_count(const baker *b)
+{
+    return b->taken.count;
+}
+
+const double *baker_light(baker *b, int index)
+{
+    const kiln_light *light = &b->taken.light[index];
+    memcpy(b->light, light->direction, sizeof light->direction);
+    memcpy(b->light + 3, light->irradiance, sizeof light->irradiance);
+    b->light[6] = light->angular_radius;
+    return b->light;
+}
+
+const char *baker_light_words(baker *b)
+{
+    const kiln_light *light = &b->taken.light[0];
+    if (b->taken.count)
+        snprintf(b->note.text, sizeof b->note.text,
+                 "a light of radius %.3g degrees with %.3g %% of the light shines in place of its "
+                 "texels",
+                 light->angular_radius, 100 * light->share);
+    else
+        snprintf(b->note.text, sizeof b->note.text,
+                 "no compact light was found, and nothing was taken out");
+    return b->note.text;
 }
 
 const char *baker_note(baker *b, int index)
@@ -200,8 +237,11 @@ bool baker_table(baker *b, const char *path, int kind)
 bool baker_truth(baker *b, const double *numbers, int width, int height, double noise, bool alone)
 {
     view_options options = view_from_numbers(numbers);
-    view_reference_def def = {
-        .noise = noise, .alone = alone, .thread_count = 1, .progress = progress};
+    view_reference_def def = {.noise = noise,
+                              .alone = alone,
+                              .lights = &b->taken,
+                              .thread_count = 1,
+                              .progress = progress};
     view_reference_report report = {0};
     kiln_image_free(&b->truth);
     bool good = !view_reference(b->context, &options, &b->source, width, height, &def, &b->truth,
@@ -224,6 +264,11 @@ bool baker_save_irradiance(baker *b, const char *path, int format)
 {
     kiln_save_def def = {.format = (kiln_format)format, .lobe = "lambert"};
     return !kiln_map_save(b->context, &b->baked.irradiance, path, &def, NULL, &b->error);
+}
+
+bool baker_save_lights(baker *b, const char *path)
+{
+    return !kiln_lights_save(b->context, &b->baked.lights, path, &b->error);
 }
 
 bool baker_save(baker *b, const char *path, int format)

@@ -24,9 +24,21 @@ BAKER bool baker_sky(baker *b, int size, double elevation, double azimuth, doubl
 BAKER int baker_source_shape(const baker *b);
 BAKER int baker_source_size(const baker *b);
 BAKER const float *baker_source_texels(const baker *b);
-/// Bakes as `kiln bake --size --levels --rotate --exposure` does, where 0 levels means all levels.
-/// On failure the previous bake stays.
-BAKER bool baker_bake(baker *b, int size, int levels, double rotation, double exposure);
+/// Bakes as `kiln bake --size --levels --rotate --exposure` does, where 0 levels means all levels,
+/// with `extract` as with --sun extract. On failure the previous bake stays.
+BAKER bool baker_bake(baker *b, int size, int levels, double rotation, double exposure,
+                      bool extract);
+/// Takes the light with the largest share out of the source, as --sun extract does.
+/// baker_scenery and baker_truth then have the rest in the source, and baker_truth has the light
+/// as a disc. Until another source is opened, baker_bake would bake the rest.
+BAKER bool baker_extract(baker *b);
+/// Returns the number of lights that baker_extract took out of the source, and light `index` as
+/// seven numbers: the direction to the light in the source, the irradiance of red, green and blue,
+/// and the angular radius in degrees.
+BAKER int baker_light_count(const baker *b);
+BAKER const double *baker_light(baker *b, int index);
+/// Returns a sentence, without a full stop, about the light that the last baker_extract took out.
+BAKER const char *baker_light_words(baker *b);
 BAKER int baker_level_count(const baker *b);
 BAKER int baker_level_size(const baker *b, int level);
 BAKER double baker_roughness(const baker *b, int level);
@@ -60,6 +72,9 @@ BAKER bool baker_table(baker *b, const char *path, int kind);
 
 /// Writes the irradiance cube of the last bake, as `kiln bake --irradiance` does.
 BAKER bool baker_save_irradiance(baker *b, const char *path, int format);
+
+/// Writes the lights that the last bake took out, as `kiln bake --lights-file` does.
+BAKER bool baker_save_lights(baker *b, const char *path);
 
 /// Writes the last bake; the ending of the name selects what: .ktx2 and .dds hold the levels, with
 /// `format` a kiln_format; .json, .txt and .h hold the harmonics.

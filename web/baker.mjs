@@ -64,11 +64,11 @@ export class Baker {
         return [...(this.told ?? []), ...notes];
     }
 
-    // Bakes the source. Returns each level's size, roughness and texels, the harmonics, the notes
-    // and the time.
-    bake({ size = 256, levels = 0, rotation = 0, exposure = 0 } = {}) {
+    // Bakes the source, with `extract` without its strongest light. Returns each level's size,
+    // roughness and texels, the harmonics, the notes and the time.
+    bake({ size = 256, levels = 0, rotation = 0, exposure = 0, extract = false } = {}) {
         const { module, self } = this, began = performance.now();
-        this.call('baker_bake', size, levels, rotation, exposure);
+        this.call('baker_bake', size, levels, rotation, exposure, Number(extract));
         const seconds = (performance.now() - began) / 1000;
         const sh = module._baker_harmonics(self) >>> 3;
         return {
@@ -82,6 +82,18 @@ export class Baker {
                          texels: this.texels(module._baker_texels(self, k), side) };
             }),
         };
+    }
+
+    // Takes the strongest light out of the source. Returns an array of the lights that were taken
+    // out, each as the seven numbers of baker_light, and a sentence about the light.
+    extract() {
+        const { module, self } = this;
+        this.call('baker_extract');
+        const lights = Array.from({ length: module._baker_light_count(self) }, (_, i) => {
+            const at = module._baker_light(self, i) >>> 3;
+            return [...module.HEAPF64.slice(at, at + 7)];
+        });
+        return { lights, words: module.UTF8ToString(module._baker_light_words(self)) };
     }
 
     // Returns the textures that light the view, in the form that Stage.light takes. With `samples`
@@ -129,6 +141,12 @@ export class Baker {
     // .ktx2, .dds, .json, .txt or .h.
     file(name, format = 'rgba16f') {
         this.call('baker_save', `/${name}`, FORMATS[format]);
+        return this.written(`/${name}`);
+    }
+
+    // Bytes of the .json file of the lights that the last bake took out.
+    lights(name) {
+        this.call('baker_save_lights', `/${name}`);
         return this.written(`/${name}`);
     }
 

@@ -16,6 +16,7 @@ export function makeControls(container, state, words, changed) {
     add('bake', 'size', 'face size, texels', SIZES);
     add('bake', 'turn', 'rotation, degrees', -180, 180, 1);
     add('bake', 'stops', 'exposure, stops', -16, 16, 0.5);
+    add('bake', 'light', 'take the sun out as a light');
     if (words) {
         add('see', 'scene', 'scene', words.scene);
         add('see', 'material', 'material', words.material);
@@ -23,6 +24,7 @@ export function makeControls(container, state, words, changed) {
         add('see', 'background', 'background blur', 0, 1, 0.01);
         add('see', 'split', 'dividing line', 0, 1, 0.01);
         add('see', 'occlusion', 'balls shade each other');
+        add('see', 'ground', 'ground with shadows');
         add('see', 'cubeDiffuse', 'diffuse light from a cube');
         add('see', 'bent', 'bend towards the normal');
         add('see', 'asPrinted', 'mistake of figure 6');

@@ -1,7 +1,8 @@
 // Runs the baker in a worker: engine.bake({...}) and the other methods return promises. A worker
 // that fails is replaced by a new worker without an open source, and the waiting promises are
 // rejected.
-const WORK = ['open', 'sky', 'bake', 'scenery', 'truth', 'file', 'irradiance', 'table'];
+const WORK = ['open', 'sky', 'bake', 'extract', 'scenery', 'truth', 'file', 'irradiance', 'lights',
+              'table'];
 
 export class Engine {
     constructor({ onProgress = () => {} } = {}) {

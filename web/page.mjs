@@ -44,6 +44,7 @@ function kindsOf(scene) {
         size: number(256, 16, 1024, 0),
         turn: number(0, -180, 180),
         stops: number(0, -16, 16),
+        light: flag(false), // the strongest light is taken out of the bake and drawn as a disc
         // index of the level shown in place of the balls; -1 shows the balls
         shown: number(-1, -1, 15, 0),
         scene: word('ibl', ...words.scene),
@@ -61,6 +62,7 @@ function kindsOf(scene) {
         occlusion: flag(Boolean(own.occlusion)),
         cubeDiffuse: flag(Boolean(own.cubeDiffuse)),
         bent: flag(Boolean(own.bent)),
+        ground: flag(Boolean(own.ground)),
         asPrinted: flag(Boolean(own.asPrinted)),
         auto: flag(true),
         samples: number(own.samples, 1, 8, 0),
@@ -75,6 +77,7 @@ function readAddress() {
 const state = readAddress();
 let opened = null; // bytes and name of the opened file; null for the sky
 let baked = null, lit = '';
+let lights = []; // taken out of the source, in the form of Baker.extract()
 
 function remember() {
     history.replaceState(null, '', toHash(kindsOf(state.scene), state) || location.pathname);
@@ -95,7 +98,7 @@ function setBusy(busy) {
     document.body.setAttribute('aria-busy', String(busy));
     bar.hidden = true;
     for (const button of get('downloads').children)
-        button.disabled = busy || !baked;
+        button.disabled = busy || !baked || (button.dataset.needs === 'light' && !state.light);
 }
 
 // Runs requested work one after the other. Of requests that wait only the newest is run.
@@ -127,13 +130,19 @@ const bake = (file) => request(async () => {
     const { size, sun, bearing, haze } = state;
     const source = file ? await engine.open(file.bytes, file.name)
                         : await engine.sky({ elevation: sun, azimuth: bearing, turbidity: haze });
-    const made = await engine.bake({ size, rotation: state.turn, exposure: state.stops });
-    const key = [file ? file.stamp : [sun, bearing, haze], size].join();
+    const extract = state.light;
+    const made = await engine.bake({ size, rotation: state.turn, exposure: state.stops, extract });
+    const key = [file ? file.stamp : [sun, bearing, haze], size, extract].join();
+    const taken = extract ? await engine.extract() : { lights: [], words: '' };
     if (stage.ready && key !== lit) {
         stage.light(await engine.scenery({ size }));
+        stage.discs(taken.lights);
         lit = key;
     }
+    if (taken.words)
+        made.notes.push(taken.words);
     baked = made;
+    lights = taken.lights;
     opened = file;
     state.source = file ? file.name : 'sky';
     say(describe(source));
@@ -151,9 +160,14 @@ const speak = (who) => (sentence) => {
     get('stop').hidden = !get('background').textContent;
 };
 
-const sourceKey = () => (opened ? opened.stamp : [state.sun, state.bearing, state.haze].join());
-const openIn = (worker) => (opened ? worker.open(opened.bytes, opened.name)
-    : worker.sky({ elevation: state.sun, azimuth: state.bearing, turbidity: state.haze }));
+const sourceKey = () =>
+    [opened ? opened.stamp : [state.sun, state.bearing, state.haze], state.light].join();
+const openIn = async (worker) => {
+    await (opened ? worker.open(opened.bytes, opened.name)
+        : worker.sky({ elevation: state.sun, azimuth: state.bearing, turbidity: state.haze }));
+    if (state.light)
+        await worker.extract();
+};
 
 // The importance-sampled environment that scene compare shows, with few samples first.
 const textbook = new BackgroundWork({
@@ -282,10 +296,18 @@ function showLevels() {
     }));
 }
 
+// The harmonic of degree 0 of the bake and of the lights that were taken out, for each channel. The
+// bake's exposure scales its harmonics, but not the numbers of the lights.
+function wholeLight() {
+    const Y00 = 0.28209479177387814;
+    return [0, 1, 2].map((c) => baked.harmonics[c] +
+        lights.reduce((sum, light) => sum + Y00 * light[3 + c] * 2 ** state.stops, 0));
+}
+
 // The view to draw: the scene's defaults, the state, and an exposure that fits the environment.
 function viewOf() {
     const fit = state.auto && baked && state.scene !== 'furnace' && state.scene !== 'assignment';
-    const exposure = fit ? Math.log2(middleGrey(baked.harmonics)) + FIT : state.stops;
+    const exposure = fit ? Math.log2(middleGrey(wholeLight())) + FIT : state.stops;
     const debug = state.debug === 'error' ? 'none' : state.debug;
     return { ...stage.defaults(state.scene), ...state, debug, level: 0, rotation: state.turn, exposure };
 }
@@ -340,7 +362,7 @@ function refresh() {
 
 // ----------------------------------------------------------------------------------------- changing
 
-const BAKES = ['sun', 'bearing', 'haze', 'size', 'turn', 'stops'];
+const BAKES = ['sun', 'bearing', 'haze', 'size', 'turn', 'stops', 'light'];
 
 // Called after state[name] has changed: bakes again if the bake depends on that value, and
 // refreshes.
@@ -392,8 +414,10 @@ get('keys').append(...KEYS.map(([keys, words]) => {
 // ---------------------------------------------------------------------------------------- downloads
 
 // Adds a button that downloads a file; nameOf() gives the file's name and bytesOf(name) its bytes.
-function addDownload(label, nameOf, bytesOf) {
+// `needs` names a flag of the state without which there is no such file.
+function addDownload(label, nameOf, bytesOf, needs = '') {
     const button = document.createElement('button');
+    button.dataset.needs = needs;
     button.type = 'button';
     button.disabled = true;
     button.textContent = label;
@@ -421,6 +445,7 @@ addFile('Cube, KTX2', '.ktx2', 'rgba16f');
 addFile('Cube, KTX2 of 32 bits', '-32.ktx2', 'rgba32f');
 addFile('Cube, DDS', '.dds', 'rgba16f');
 addDownload('Irradiance, KTX2', () => `${stem()}-diffuse.ktx2`, (name) => engine.irradiance(name));
+addDownload('Lights, JSON', () => `${stem()}-lights.json`, (name) => engine.lights(name), 'light');
 addFile('Harmonics, JSON', '.json');
 addFile('Harmonics, C', '.h');
 addTable('Table of E', 'e');

@@ -130,6 +130,18 @@ bool stage_light(stage *s, int slot)
     return good;
 }
 
+void stage_discs(stage *s, const double *numbers, int count)
+{
+    kiln_lights lights = {.count = count < KILN_MAX_LIGHTS ? count : KILN_MAX_LIGHTS};
+    for (int i = 0; i < lights.count; i++) {
+        const double *n = numbers + 7 * (size_t)i;
+        lights.light[i] = (kiln_light){.direction = {n[0], n[1], n[2]},
+                                       .irradiance = {n[3], n[4], n[5]},
+                                       .angular_radius = n[6]};
+    }
+    view_set_lights(s->renderer, &lights);
+}
+
 // --------------------------------------------------------------------------------------- the error
 
 float *stage_truth(stage *s, int width, int height)

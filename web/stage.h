@@ -35,6 +35,9 @@ STAGE float *stage_texels(stage *s, int level);
 STAGE double *stage_harmonics(stage *s);
 STAGE void stage_roughness(stage *s, int level, double roughness);
 STAGE bool stage_light(stage *s, int slot);
+/// Shows lights as discs: `count` lights of seven numbers each, as baker_light gives them. Lights
+/// beyond KILN_MAX_LIGHTS are left out.
+STAGE void stage_discs(stage *s, const double *numbers, int count);
 
 STAGE void stage_draw(stage *s, int width, int height);
 /// Renders the furnace; off[0] receives the largest difference from 1 and off[1] the RMS, of the

@@ -2,7 +2,7 @@
 const NUMBERS = ['scene', 'method', 'material', 'targetX', 'targetY', 'targetZ', 'azimuth',
                  'elevation', 'distance', 'fov', 'rotation', 'exposure', 'debug', 'level', 'split',
                  'background', 'samples', 'asPrinted', 'occlusion', 'cubeDiffuse',
-                 'bent'];
+                 'bent', 'ground'];
 const WORDS = ['scene', 'method', 'material', 'debug'];
 
 export class Stage {
@@ -68,6 +68,14 @@ export class Stage {
         module.HEAPF64.set(harmonics, module._stage_harmonics(self) >>> 3);
         if (!module._stage_light(self, textbook ? 1 : 0))
             throw new Error(this.message());
+    }
+
+    // Shows lights, in the form that Baker.extract() returns, as discs.
+    discs(lights) {
+        const { module, self } = this, at = module._malloc(56 * lights.length + 8);
+        module.HEAPF64.set(lights.flat(), at >>> 3);
+        module._stage_discs(self, at, lights.length);
+        module._free(at);
     }
 
     // Compares the view with a reference picture. Returns colours (RGB floats, 0 to 1) and the

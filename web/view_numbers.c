@@ -23,6 +23,7 @@ void view_to_numbers(const view_options *o, double n[STAGE_NUMBERS])
     n[STAGE_OCCLUSION] = o->occlusion;
     n[STAGE_CUBE_DIFFUSE] = o->cube_diffuse;
     n[STAGE_BENT] = o->bent;
+    n[STAGE_GROUND] = o->ground;
 }
 
 view_options view_from_numbers(const double n[STAGE_NUMBERS])
@@ -47,5 +48,6 @@ view_options view_from_numbers(const double n[STAGE_NUMBERS])
         .occlusion = n[STAGE_OCCLUSION] != 0,
         .cube_diffuse = n[STAGE_CUBE_DIFFUSE] != 0,
         .bent = n[STAGE_BENT] != 0,
+        .ground = n[STAGE_GROUND] != 0,
     };
 }

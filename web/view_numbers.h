@@ -28,6 +28,7 @@ typedef enum stage_number {
     STAGE_OCCLUSION,
     STAGE_CUBE_DIFFUSE,
     STAGE_BENT,
+    STAGE_GROUND,
     STAGE_NUMBERS
 } stage_number;
 

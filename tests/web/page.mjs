@@ -171,10 +171,34 @@ async function theFilesAreTheCommands(page, address) {
         make(name);
         checkSame(bytes, read(name), name);
     }
+    check(await button(page, 'Lights, JSON').isDisabled(), 'lights can be downloaded that are in the bake');
     const labels = await page.locator('#downloads button').allTextContents();
     const untried = labels.filter((label) => !files[label] &&
-                                  !['Cube, KTX2', 'Harmonics, JSON'].includes(label));
+                                  !['Cube, KTX2', 'Harmonics, JSON', 'Lights, JSON'].includes(label));
     check(!untried.length, `nobody tries ${untried}`);
+}
+
+// The strongest light is taken out of the levels, told, and downloaded.
+async function theSunIsTakenOut(page, address) {
+    await page.goto('about:blank');
+    await page.goto(`${address}#size=64&samples=1&turn=20&stops=1&ground=1`);
+    await idle(page);
+    await drawn(page);
+    const before = await look(page), whole = (await cube(page)).bytes;
+    await page.getByLabel('take the sun out as a light').click();
+    await idle(page);
+    check(/light=1/.test(page.url()), `the address is ${page.url()}`);
+    check(/^sky: a light of radius 0\.\d+ degrees with [\d.]+ % of the light shines/.test(await text(page, 'report')),
+          `the report says "${await text(page, 'report')}"`);
+    const rest = (await cube(page)).bytes;
+    const lights = await downloaded(page, () => button(page, 'Lights, JSON').click());
+    check(lights.name === 'sky-lights.json', `the download is called ${lights.name}`);
+    checkSame(rest, bakeByCommand('sky.exr', '--size', '64', '--rotate', '20', '--exposure', '1', '--sun', 'extract',
+                                  '--lights-file', 'lights.json'), 'the rest');
+    checkSame(lights.bytes, read('lights.json'), 'the lights');
+    check(!rest.equals(whole), 'the sun is in the cube still');
+    await drawn(page);
+    check(await look(page) !== before, 'the disc is not seen');
 }
 
 const flatError = (page, wanted) => page.waitForFunction(
@@ -226,7 +250,7 @@ async function theTextbookTakesItsTime(page, address) {
 await withPage(site, async (page, address) => {
     for (const test of [theSkyIsBakedAtOnce, aFileIsDroppedAndBaked, aBrokenFileGivesASentence,
                         whatWasFoundIsTold, theKeyboardSuffices, theAddressHoldsTheState,
-                        theFilesAreTheCommands, theErrorIsIntegrated, theTextbookTakesItsTime]) {
+                        theFilesAreTheCommands, theSunIsTakenOut, theErrorIsIntegrated, theTextbookTakesItsTime]) {
         const began = Date.now();
         await test(page, address);
         console.log(`${test.name}: ${Date.now() - began} ms`);

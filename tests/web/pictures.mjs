@@ -13,6 +13,8 @@ const SCENES = [
     ['ibl', { material: 'plastic', method: 'turquin', occlusion: 1, background: 0.4, stops: -5 },
      ['--material', 'plastic', '--method', 'turquin', '--occlusion', '--background', '0.4',
       '--exposure', '-5']],
+    ['ibl', { light: 1, ground: 1, turn: -160, elevation: 14, stops: -5 },
+     ['--sun', 'extract', '--ground', '--rotate', '-160', '--elevation', '14', '--exposure', '-5']],
     ['furnace', {}, []],
     ['grid', { cubeDiffuse: 1, method: 'fdez-aguera', stops: -4 },
      ['--diffuse', 'cube', '--method', 'fdez-aguera', '--exposure', '-4']],
