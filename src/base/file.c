@@ -33,7 +33,7 @@ kiln_result ki_file_read(kiln_context *context, const char *path, uint8_t **byte
     *size = 0;
     bool from_stdin = !strcmp(path, "-");
     if (!from_stdin && ki_os_kind_of(path) == KI_OS_FOLDER)
-        return ki_fail(error, KILN_ERROR_IO, "%s: is a folder", path);
+        return ki_fail(error, KILN_ERROR_IO, "%s: is a folder, name one of its files", path);
     int fd = from_stdin ? ki_os_standard_input() : ki_os_open(path);
     if (fd < 0)
         return ki_fail(error, KILN_ERROR_IO, "%s: cannot be opened: %s", path, strerror(errno));

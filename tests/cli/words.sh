@@ -42,6 +42,9 @@ expect 2 "quiet takes no value" sky -o sky.exr --quiet=yes
 expect 2 "^kiln: -o needs a value" sky -o
 expect 2 "^kiln: --size needs a value" sky -o sky.exr --size
 expect 2 "size is '', it must be a whole number" sky -o sky.exr --size=
+mkdir faces
+expect 1 "^kiln: faces: is a folder, name one of its files$" info faces
+rmdir faces
 # Words that are empty, as "$FILE" is where FILE was never set.
 expect 2 "^kiln: --output is empty, it must name a file or folder$" sky -o ""
 expect 2 "^kiln: --output is empty, it must name a file or folder$" bake sky.exr --output=
