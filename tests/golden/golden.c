@@ -156,7 +156,7 @@ static kiln_map make_checks(kiln_context *context, int size)
 // Levels of `size` texels tuned for what an engine shows.
 static uint64_t tune(kiln_context *context, uint64_t hash, const char *name, int size, bool soft)
 {
-    kiln_map in = make_checks(context, size), out;
+    kiln_map in = make_checks(context, 4 * size), out;
     const kiln_engine *engine = kiln_engine_find(name);
     float roughness[KILN_MAX_LEVELS];
     kiln_prefilter_def def;
