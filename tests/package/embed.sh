@@ -1,6 +1,7 @@
 #!/bin/sh
 # Builds a project with kiln inside, by add_subdirectory and by FetchContent: only the library is built, nothing
-# of kiln's installed. The second way finds the objects of the first and compiles what it compiles otherwise.
+# of kiln's installed. Nothing is optimised, so that the build is short. The second way finds the objects of the
+# first and compiles what it compiles otherwise.
 #   embed.sh SOURCE
 set -eu
 source=$1
@@ -11,7 +12,7 @@ for fetch in OFF ON; do
     rm -f "$work/build/embed"
     {
         cmake -S "$source/tests/package/embed" -B "$work/build" -G Ninja -DFETCH=$fetch \
-            -DKILN_SOURCE="$source" -DCMAKE_BUILD_TYPE=Debug &&
+            -DKILN_SOURCE="$source" -DCMAKE_BUILD_TYPE=Debug -DKILN_KERNEL_FLAGS=-O0 &&
             cmake --build "$work/build" -j 1 && cmake --install "$work/build" --prefix "$work/installed"
     } >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
     "$work/build/embed"
