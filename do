@@ -167,8 +167,9 @@ test)
     panoramas
     npm_packages web tests/web tests/files/assets tests/files/ktx tests/brdf/witness tests/engines
     await
+    start build wasm
     build_release TESTS GOLDEN BENCH EXAMPLES
-    build wasm
+    await
     start build_asan
     run_tests release
     await
