@@ -3,6 +3,7 @@
 // on the canvas; the state is kept in the address.
 import { makeControls } from './controls.mjs';
 import { Engine } from './engine.mjs';
+import { ENGINES } from './engines.mjs';
 import { BackgroundWork } from './background.mjs';
 import { Stage } from './stage.mjs';
 import { bounded, flag, fromHash, number, text, toHash, word } from './state.mjs';
@@ -99,6 +100,7 @@ function setBusy(busy) {
     bar.hidden = true;
     for (const button of get('downloads').children)
         button.disabled = busy || !baked || (button.dataset.needs === 'light' && !state.light);
+    get('code').hidden = !state.light || !baked;
 }
 
 // Runs requested work one after the other. Of requests that wait only the newest is run.
@@ -451,6 +453,26 @@ addFile('Harmonics, C', '.h');
 addTable('Table of E', 'e');
 addTable('Table of E_avg', 'eavg');
 addTable('Table of A, B', 'dfg');
+
+// ------------------------------------------------------------------------------------------- code
+
+// Shows the lines of code for the chosen engine, which the build takes out of the engine's documentation.
+async function showLines() {
+    const name = get('engine').value, answer = await fetch(`lights/${name}.txt`);
+    if (name === get('engine').value)
+        get('lines').textContent = answer.ok ? await answer.text() : `lights/${name}.txt is not there.`;
+}
+
+get('engine').append(...ENGINES.map(([name, title]) => new Option(title, name)));
+get('engine').onchange = showLines;
+get('copy').onclick = async () => {
+    try {
+        await navigator.clipboard.writeText(get('lines').textContent);
+    } catch (problem) {
+        complain(`The lines could not be copied: ${problem.message}`);
+    }
+};
+showLines();
 
 // -------------------------------------------------------------------------------------------- input
 

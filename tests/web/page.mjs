@@ -199,6 +199,27 @@ async function theSunIsTakenOut(page, address) {
     check(!rest.equals(whole), 'the sun is in the cube still');
     await drawn(page);
     check(await look(page) !== before, 'the disc is not seen');
+    await theLinesAreTheDocumentations(page);
+}
+
+// For each engine whose page in docs/engines puts lights into a scene, the page shows that page's lines.
+async function theLinesAreTheDocumentations(page) {
+    const documented = {};
+    for (const name of fs.readdirSync(path.join(root, 'docs/engines'))) {
+        const written = fs.readFileSync(path.join(root, 'docs/engines', name), 'utf8');
+        const [, code] = written.match(/\n## Lights that were taken out\n.*?\n```[a-z]+\n(.*?)```/s) ?? [];
+        if (code)
+            documented[written.match(/^# (.*)/)[1]] = code;
+    }
+    const offered = await page.locator('#engine option').allTextContents();
+    check(offered.slice().sort().join() === Object.keys(documented).sort().join(),
+          `the page offers ${offered}, docs/engines has ${Object.keys(documented)}`);
+    check(offered.length >= 8, `lines for ${offered.length} engines only`);
+    for (const title of offered) {
+        await page.getByLabel(/^Lines that put the lights/).selectOption(title);
+        await page.waitForFunction((code) => document.getElementById('lines').textContent === code,
+                                   documented[title], { timeout: 10000 });
+    }
 }
 
 const flatError = (page, wanted) => page.waitForFunction(
