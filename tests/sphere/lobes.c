@@ -9,9 +9,9 @@ static void white_furnace_of_every_lobe_stays_white(void **state)
 {
     (void)state;
     static const int sizes[] = {1, 33}; // where the rows differ most in number from the faces
-    static const int faces[] = {1, 5, 64, 100};
+    static const int faces[] = {1, 5, 100};
     for (int s = 0; s < 2; s++)
-        for (int f = 0; f < 4; f++)
+        for (int f = 0; f < 3; f++)
             for (int lobe = 1; lobe < 4; lobe++)
                 CHECK_BELOW(
                     filtered_furnace_error(context, sizes[s], faces[f], (enum kiln_lobe_kind)lobe),
