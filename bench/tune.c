@@ -341,7 +341,7 @@ static bool run(bench *b, bool lights)
         tuning d = {.context = context,
                     .directions = directions,
                     .values = directions + MOST,
-                    .lit = directions + 2 * MOST,
+                    .lit = directions + (size_t)2 * MOST,
                     .lights = lights};
         done = check_environment(b, &d, names[i]);
         if (i == 0)
