@@ -9,6 +9,7 @@ usage() {
 ./do test      builds and runs every test
 ./do demo      bakes a sky and a real panorama into a page: build/demo/index.html
 ./do web [N]   builds the page that bakes in the browser, serves it on loopback (port N, else 8420)
+./do python    builds the Python package and its wheel in build/release/python
 ./do bench     measures speed and accuracy beside other bakers
 ./do lint      clang-tidy, cppcheck, shellcheck, formatting, layers
 ./do format    formats the sources
@@ -31,6 +32,7 @@ is_there() {
     lib:*) { ldconfig -p || /sbin/ldconfig -p; } 2>/dev/null | grep -qF "${1#lib:}" ;;
     @swrast) [ -n "$(find /usr/lib* -maxdepth 3 -name swrast_dri.so 2>/dev/null)" ] ;;
     @wine) [ -x /usr/lib/wine/wine64 ] || command -v wine64 wine >/dev/null 2>&1 ;;
+    @numpy) /usr/bin/python3 -c 'import numpy' 2>/dev/null || python3 -c 'import numpy' 2>/dev/null ;;
     @fuzzer) [ -n "$(find "$(clang -print-resource-dir 2>/dev/null || echo /none)" -name '*fuzzer*.a' 2>/dev/null)" ] ;;
     /*) [ -e "$1" ] ;;
     *) command -v "$1" >/dev/null 2>&1 ;;
@@ -82,12 +84,12 @@ build() {
     $low cmake --build --preset "$preset"
 }
 
-# build_release [PART...]: the command, and of TESTS, GOLDEN, BENCH and EXAMPLES the named parts only. All
+# build_release [PART...]: the command, and of TESTS, GOLDEN, BENCH, EXAMPLES and PYTHON the named parts only. All
 # commands of this script share build/release, so that each source is compiled once.
 build_release() {
     parts=$*
     set --
-    for part in TESTS GOLDEN BENCH EXAMPLES; do
+    for part in TESTS GOLDEN BENCH EXAMPLES PYTHON; do
         case " $parts " in
         *" $part "*) set -- "$@" "-DKILN_$part=ON" ;;
         *) set -- "$@" "-DKILN_$part=OFF" ;;
@@ -168,7 +170,7 @@ test)
     npm_packages web tests/web tests/files/assets tests/files/ktx tests/brdf/witness tests/engines
     await
     start build wasm
-    build_release TESTS GOLDEN BENCH EXAMPLES
+    build_release TESTS GOLDEN BENCH EXAMPLES PYTHON
     await
     start build_asan
     run_tests release
@@ -176,6 +178,11 @@ test)
     run_tests asan -L unit -LE slow
     printf '\n%d passed, %d failed\n' "$passed" "$failed"
     [ "$failed" = 0 ]
+    ;;
+python)
+    need build python
+    build_release PYTHON
+    say "the wheel is build/release/python/$(cat build/release/python/wheel.txt)"
     ;;
 web)
     need web
