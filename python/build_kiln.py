@@ -175,7 +175,7 @@ def build_wheel(wheel_directory: str, config_settings: object = None, metadata_d
     build = os.path.join(root, "build", "wheel")
     off = ["-DKILN_%s=OFF" % part for part in ("TESTS", "GOLDEN", "BENCH", "EXAMPLES", "CLI", "VIEWER")]
     subprocess.check_call(["cmake", "-S", root, "-B", build, "-DCMAKE_BUILD_TYPE=Release", "-DKILN_PYTHON=ON"] + off)
-    subprocess.check_call(["cmake", "--build", build, "--target", "kiln_wheel", "-j"])
+    subprocess.check_call(["cmake", "--build", build, "--target", "kiln_wheel", "--parallel", str(os.cpu_count() or 1)])
     with open(os.path.join(build, "python", "wheel.txt"), encoding="utf-8") as file:
         name = file.read().strip()
     shutil.copy(os.path.join(build, "python", name), wheel_directory)

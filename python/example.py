@@ -31,7 +31,8 @@ def show(name: str, radiance: np.ndarray, exposure: float = 0.18 / float(source.
     path = os.path.join(folder, name)
     with open(path, "wb") as file:
         size = struct.pack(">IIBBBBB", pixels.shape[1], pixels.shape[0], 8, 2, 0, 0, 0)
-        file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", size) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
+        file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", size) + chunk(b"IDAT", zlib.compress(rows)))
+        file.write(chunk(b"IEND", b""))
     print(path, "%d x %d" % pixels.shape[1::-1])
 
 

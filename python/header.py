@@ -217,8 +217,8 @@ def _ctype(header: Header, member: Member, parameter: bool) -> str:
 
 def _header_py(header: Header) -> str:
     out = ['"""Written by header.py from kiln\'s headers: constants, structs, functions and their comments."""',
-           "from ctypes import (POINTER, Structure, c_bool, c_char, c_ubyte, c_char_p, c_double, c_float, c_int, c_size_t,",
-           "                    c_ssize_t, c_uint, c_uint32, c_uint64, c_void_p)", ""]
+           "from ctypes import (POINTER, Structure, c_bool, c_char, c_char_p, c_double, c_float, c_int, c_size_t,",
+           "                    c_ssize_t, c_ubyte, c_uint, c_uint32, c_uint64, c_void_p)", ""]
     out += ["%s = %s" % pair for pair in header.constants.items()]
     out += ["", "# The word and the number of each enumerator.", "WORDS = {"]
     for name, rows in header.enums.items():
@@ -378,7 +378,8 @@ def _docstring(header: Header, loop: Loop) -> str:
 
 def _brdf_py(header: Header, all_loops: List[Loop]) -> str:
     out = ['"""How surfaces reflect and transmit light: the functions of numbers in <kiln/brdf.h>, on arrays.',
-           "", "Cosines nov (n.v), nol (n.l), noh (n.h) and voh (v.h) are in [0, 1], and so is the perceptual roughness,",
+           "",
+           "Cosines nov (n.v), nol (n.l), noh (n.h) and voh (v.h) are in [0, 1], and so is the perceptual roughness,",
            "of which alpha is the square. An argument outside its range is clamped to the range. The functions run",
            "without the interpreter's lock. Written by header.py from the header's comments.", '"""',
            "from typing import Tuple", "", "import numpy as np", "from numpy.typing import ArrayLike", "",

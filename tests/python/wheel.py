@@ -1,5 +1,5 @@
 """The wheel: made twice it is the same bytes, its list of files is true, it loads on systems as old as its name says
-and on musl, and the programs of README.md and docs/python.md run with what it installs.
+and on musl, and the programs of both README.md and docs/python.md run with what it installs.
 
 wheel.py ROOT BUILD: ROOT is the source folder, BUILD the folder of the wheel (BUILD/python of a build tree).
 """
@@ -127,7 +127,7 @@ def documents(work: str, installed: str) -> int:
     sky.save(os.path.join(here, "city.exr"))
     sky.save(os.path.join(here, "city.hdr"))
     count = 0
-    for name in ("python/README.md", "docs/python.md"):
+    for name in ("README.md", "python/README.md", "docs/python.md"):
         with open(os.path.join(ROOT, name), encoding="utf-8") as file:
             blocks = re.findall(r"^```python\n(.*?)^```", file.read(), re.M | re.S)
         assert blocks, name
@@ -136,7 +136,8 @@ def documents(work: str, installed: str) -> int:
     example = os.path.join(ROOT, "python", "example.py")
     subprocess.check_call([sys.executable, "-W", "error", example, "city.exr", "pictures"], cwd=here,
                           env=dict(os.environ, PYTHONPATH=installed), stdout=subprocess.DEVNULL)
-    for name, size in (("panorama", (256, 128)), ("levels", (256, 512)), ("ball", (256, 256)), ("split-sum", (256, 256))):
+    sizes = {"panorama": (256, 128), "levels": (256, 512), "ball": (256, 256), "split-sum": (256, 256)}
+    for name, size in sizes.items():
         picture = kiln.describe(os.path.join(here, "pictures", name + ".png"))
         assert (picture.width, picture.height) == size, name
     specular = kiln.describe(os.path.join(here, "pictures", "sky_specular.ktx2"))

@@ -326,8 +326,8 @@ def convert(source: Source, shape: str, size: int, rotation: float = 0.0, *,
     struct = c.kiln_map()
     with borrow(context) as used:
         read = read_source(source, used, "auto", "keep", None, None, 3)
-        used.run("kiln_map_convert", read.checked(), number("kiln_shape", shape, "shape"), integer(size, "size"), rotation,
-                 ctypes.byref(struct))
+        used.run("kiln_map_convert", read.checked(), number("kiln_shape", shape, "shape"),
+                 integer(size, "size"), rotation, ctypes.byref(struct))
     return own_map(struct, read.notes)
 
 

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from . import _header as c
 from ._each import broadcast, loop
-from ._library import Context, Memory, Progress, borrow, fill, library, path_bytes, word
+from ._library import Context, Memory, Progress, borrow, fill, integer, library, path_bytes, word
 
 
 class Table:
@@ -62,7 +62,8 @@ class Table:
         """The table of E_avg of what lookups in this table of E return; height texels, None for 1024."""
         made = c.kiln_table()
         with borrow(context) as used:
-            used.run("kiln_table_average", ctypes.byref(self._struct), height or 0, ctypes.byref(made))
+            used.run("kiln_table_average", ctypes.byref(self._struct), integer(height or 0, "height"),
+                     ctypes.byref(made))
         return Table(made)
 
     def save(self, path: Any, format: str = "auto", zstd: int = 0, name: Optional[str] = None, *,
