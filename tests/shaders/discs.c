@@ -1,32 +1,10 @@
 // Discs of light: the real-time picture against sums over the points of the disc and against the
 // reference, the values of the ground, and the discs among the directions that the reference draws.
-#include "headless.h"
 #include "reference.h"
-#include "trace.h"
 
-#include "kit/context.h"
+#include "drawing.h"
 
 enum { WIDTH = 96, HEIGHT = 54 };
-
-static view_headless *headless;
-static view_renderer *renderer;
-
-static int start(void **state)
-{
-    if (set_up(state) || view_headless_create(&headless, &error) ||
-        view_create(context, view_headless_lookup, &renderer, &error)) {
-        fprintf(stderr, "%s\n", error.message);
-        return -1;
-    }
-    return 0;
-}
-
-static int stop(void **state)
-{
-    view_destroy(renderer);
-    view_headless_destroy(headless);
-    return tear_down(state);
-}
 
 // A uniform grey environment, which the split sum and halves show exactly, and one light.
 static const float grey = 0.0625F;
@@ -102,7 +80,8 @@ static double meet(const view_ball *ball, const double from[3], const double d[3
     return rest > 0 ? -along - sqrt(rest) : -1;
 }
 
-// What the centre of a pixel shows: a ball's index, GROUND or SKY. Sets the point p.
+// Returns what the centre of pixel (x, y) shows: the index of a ball, GROUND or SKY. Sets *p to the point of the
+// ball or of the ground.
 static int seen_at(const view *w, int x, int y, view_point *p)
 {
     double d[3], slope = tan(w->options->camera.fov * pi / 360), reach = 1e30;
@@ -402,30 +381,19 @@ static void discs_are_drawn_as_bright_as_they_are(void **unused)
     kiln_lights lights = one_light(30, 200, 4);
     view_options o = view_defaults(VIEW_SCENE_IBL);
     view_disc discs[KILN_MAX_LIGHTS];
-    view_random random;
     view_light light;
     kiln_map map;
-    double sum[3] = {0}, sphere = 0;
     o.rotation = 25;
     make_grey(&map);
     CHECK_OK(view_light_create(context, &map, o.rotation, &light, &error));
     int count = view_discs(&o, &lights, discs);
     assert_int_equal(count, 1);
     view_light_add(&light, discs, count);
-    view_random_start(&random, 5);
-    for (int i = 0; i < COUNT; i++) {
-        double xi[2] = {view_random_next(&random), view_random_next(&random)}, d[3], c[3];
-        view_light_sample(&light, xi, d);
-        view_light_radiance(&light, d, c);
-        double pdf = view_light_pdf(&light, d);
-        sphere += 1 / pdf / COUNT;
-        for (int k = 0; k < 3; k++)
-            sum[k] += d[k] * c[0] / pdf / COUNT;
-    }
-    CHECK_NEAR(sphere, 4 * pi, 0.1);
+    light_means means = draw_light(&light, COUNT, 5);
+    CHECK_NEAR(means.sphere, 4 * pi, 0.1);
     // The grey environment's vector irradiance is 0, and the light's is its irradiance.
     for (int k = 0; k < 3; k++)
-        CHECK_NEAR(sum[k], 3 * discs[0].direction[k], 0.03);
+        CHECK_NEAR(means.moment[k][0], 3 * discs[0].direction[k], 0.03);
     // At azimuth 200 the source has what the scene has at azimuth 175.
     CHECK_NEAR(discs[0].direction[0], cos(pi / 6) * sin(175 * pi / 180), 1e-12);
     CHECK_NEAR(discs[0].direction[2], -cos(pi / 6) * cos(175 * pi / 180), 1e-12);
@@ -442,5 +410,5 @@ int main(void)
         cmocka_unit_test(the_reference_is_right_in_the_mean),
         cmocka_unit_test(discs_are_drawn_as_bright_as_they_are),
     };
-    return cmocka_run_group_tests_name("discs", tests, start, stop);
+    return cmocka_run_group_tests_name("discs", tests, start_drawing, stop_drawing);
 }

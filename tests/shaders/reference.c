@@ -1,9 +1,8 @@
 // The integrator against a sum over every texel, and its parts against their laws.
 #include "reference.h"
 #include "internal.h"
-#include "trace.h"
 
-#include "kit/context.h"
+#include "drawing.h"
 
 enum { ROWS = 16 };
 
@@ -27,21 +26,10 @@ static void light_is_drawn_where_it_is(void **unused)
     enum { COUNT = 400000 };
     kiln_map map;
     view_light light;
-    view_random random;
-    double sphere = 0, blue = 0, moment = 0, texels = 0, first = 0;
+    double texels = 0, first = 0;
     make_environment(&map);
     CHECK_OK(view_light_create(context, &map, 30, &light, &error));
-    view_random_start(&random, 1);
-    for (int i = 0; i < COUNT; i++) {
-        double xi[2] = {view_random_next(&random), view_random_next(&random)}, d[3], c[3];
-        view_light_sample(&light, xi, d);
-        view_light_radiance(&light, d, c);
-        double pdf = view_light_pdf(&light, d);
-        sphere += 1 / pdf / COUNT;
-        blue += c[2] / pdf / COUNT;
-        moment += d[0] * c[2] / pdf / COUNT;
-        CHECK_NEAR(d[0] * d[0] + d[1] * d[1] + d[2] * d[2], 1, 1e-12);
-    }
+    light_means means = draw_light(&light, COUNT, 1);
     // By a fine grid, turned as the light is: azimuth a is seen where the source has a + 30 degrees.
     enum { FINE = 512 };
     for (int y = 0; y < FINE; y++)
@@ -55,9 +43,9 @@ static void light_is_drawn_where_it_is(void **unused)
             texels += w * c;
             first += w * c * sin(theta) * sin(phi);
         }
-    CHECK_NEAR(sphere, 4 * pi, 0.03);
-    CHECK_NEAR(blue, texels, 0.003 * texels);
-    CHECK_NEAR(moment, first, 0.01 * texels);
+    CHECK_NEAR(means.sphere, 4 * pi, 0.03);
+    CHECK_NEAR(means.total[2], texels, 0.003 * texels);
+    CHECK_NEAR(means.moment[0][2], first, 0.01 * texels);
     view_light_free(&light);
     kiln_map_free(&map);
 }

@@ -1,30 +1,8 @@
 // The scenes' known values: the assignment's, the furnace's, and the real-time picture against the
 // reference where both can be exact.
-#include "headless.h"
 #include "reference.h"
-#include "viewer.h"
 
-#include "kit/context.h"
-
-static view_headless *headless;
-static view_renderer *renderer;
-
-static int start(void **state)
-{
-    if (set_up(state) || view_headless_create(&headless, &error) ||
-        view_create(context, view_headless_lookup, &renderer, &error)) {
-        fprintf(stderr, "%s\n", error.message);
-        return -1;
-    }
-    return 0;
-}
-
-static int stop(void **state)
-{
-    view_destroy(renderer);
-    view_headless_destroy(headless);
-    return tear_down(state);
-}
+#include "drawing.h"
 
 // ---------------------------------------------------------------------------------- the assignment
 
@@ -243,5 +221,5 @@ int main(void)
         cmocka_unit_test(the_same_view_has_the_same_bits),
         cmocka_unit_test(pictures_out_of_range_are_refused),
     };
-    return cmocka_run_group_tests_name("scenes", tests, start, stop);
+    return cmocka_run_group_tests_name("scenes", tests, start_drawing, stop_drawing);
 }
