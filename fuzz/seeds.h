@@ -10,7 +10,7 @@ ki_writer seed_writer(void);
 void seed_save(const char *target, int index, ki_writer *w);
 /// A cube with texels that differ; `level_count` 0 for all levels.
 kiln_map seed_cube(int size, int level_count);
-/// Writes the seeds of seeds_textures.c.
+/// Writes the seeds of the targets that read textures: ktx1, ktx2, dds, env and glb.
 void seed_textures(void);
 
 #endif

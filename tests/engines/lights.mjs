@@ -37,8 +37,8 @@ function compare(shown, wanted) {
 const percent = (x) => `${(100 * x).toFixed(2)} %`;
 
 // Both bounds are of parts of the ball's brightest number: near zero, on the side away from the sun, engines show
-// coarse levels and three bands of harmonics, with or without the light. What the light alone adds is
-// a cosine.
+// coarse levels and three bands of harmonics, with or without the light. What the light alone adds to the ball is
+// compared with irradiance * max(0, n . l) / pi.
 async function checkBall({ name, model, loads }, { whole, lights }, draw, say) {
     const { toKiln } = model(6, 64), [{ direction, irradiance }] = lights.lights;
     const overBall = (value) => BALL_VIEWS.map(({ normals }) => [normals.map((n) => value(toKiln(n)))]);

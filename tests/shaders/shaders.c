@@ -288,7 +288,9 @@ static void at_half(double k, double to[2])
     to[1] = (1 - k) * (1 + k) / (1 + k * k);
 }
 
-// The integral along the border of the disc, from the slopes as they are.
+// The integral of (x dy - y dx) / (alpha^2 + x^2 + y^2) along the border of a disc of light, divided by 2 pi, which
+// ggx_disc of shaders/disc.glsl computes. Here the slopes x, y of the half vectors are taken relative to 0, in double
+// precision; the shader takes them relative to the slope of the disc's centre, which floats need.
 static double border_integral(double alpha, const double v[3], const double l[3], double sine)
 {
     enum { NODES = 48 };

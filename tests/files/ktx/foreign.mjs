@@ -12,8 +12,9 @@ const channels = [ktx.KHR_DF_CHANNEL_RGBSDA_RED, ktx.KHR_DF_CHANNEL_RGBSDA_GREEN
 const one = 0x3f800000, minusOne = 0xbf800000;
 const n = (level, face, x, y, c) => (11 * level + 31 * face + 7 * y + 3 * x + 50 * c) % 256;
 
-// put(view, at, (c) => n) stores a texel. Halves are 0x3000 + 4 n, floats n / 1024, whole numbers n of 255 or 257 n
-// of 65535, and RGB9E5 is n 2^-9 2^level.
+// put(view, at, (c) => n) stores a texel at the byte `at`. A half has the bits 0x3000 + 4 n, a float the value
+// n / 1024. Whole numbers of 8 bits are n, those of 16 bits are 257 n, and both stand for n / 255. A channel of RGB9E5
+// has the mantissa n and the exponent 15 + level, which is the value n 2^(level - 9).
 const put16 = (value) => (view, at, of) => [0, 1, 2, 3].forEach((c) => view.setUint16(at + 2 * c, value(of(c)), true));
 const put8 = (count) => (view, at, of) => { for (let c = 0; c < count; c++) view.setUint8(at + c, of(c)); };
 const formats = {
