@@ -6,7 +6,8 @@ cd "$(dirname "$0")"
 usage() {
     cat <<'HELP'
 ./do build     builds the command: build/release/bin/kiln
-./do test      builds and runs every test
+./do test      builds and runs every test but those of ./do test-dist
+./do test-dist builds and runs the tests of what is handed out, which take long
 ./do demo      bakes a sky and a real panorama into a page: build/demo/index.html
 ./do web [N]   builds the page that bakes in the browser, serves it on loopback (port N, else 8420)
 ./do python    builds the Python package and its wheel in build/release/python
@@ -173,9 +174,18 @@ test)
     build_release TESTS GOLDEN BENCH EXAMPLES PYTHON
     await
     start build_asan
-    run_tests release
+    run_tests release -LE dist
     await
     run_tests asan -L unit -LE slow
+    printf '\n%d passed, %d failed\n' "$passed" "$failed"
+    [ "$failed" = 0 ]
+    ;;
+test-dist)
+    need build render web test
+    panoramas
+    npm_packages web tests/web tests/engines
+    build_release TESTS GOLDEN EXAMPLES PYTHON
+    run_tests release -L dist "$@"
     printf '\n%d passed, %d failed\n' "$passed" "$failed"
     [ "$failed" = 0 ]
     ;;
