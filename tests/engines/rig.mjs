@@ -275,7 +275,7 @@ export function makeSite(site) {
     fs.rmSync(site, { recursive: true, force: true });
     fs.mkdirSync(site, { recursive: true });
     fs.symlinkSync(path.join(here, 'node_modules'), path.join(site, 'npm'));
-    fs.symlinkSync(path.join(here, '../../web/loaders'), path.join(site, 'loaders'));
+    fs.symlinkSync(path.join(here, '../../npm'), path.join(site, 'loaders'));
     fs.symlinkSync(here, path.join(site, 'pages'));
 }
 

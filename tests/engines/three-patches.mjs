@@ -1,6 +1,5 @@
 // Patches of white metal in three.js, whichever version a page calls 'three'.
 import * as THREE from 'three';
-import { HDRLoader } from 'three/addons/loaders/HDRLoader.js';
 
 function patches(view, row, rows, material) {
     const positions = [], normals = [], columns = view.normals.length;
@@ -35,6 +34,7 @@ function makeBall({ centre, radius }) {
 
 // What three.js itself makes of a panorama.
 export async function filterPanorama(file) {
+    const { HDRLoader } = await import('three/addons/loaders/HDRLoader.js'); // RGBELoader up to r179
     const panorama = await new HDRLoader().setDataType(THREE.FloatType).loadAsync(file);
     panorama.mapping = THREE.EquirectangularReflectionMapping;
     return new THREE.PMREMGenerator(renderer).fromEquirectangular(panorama).texture;

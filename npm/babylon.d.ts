@@ -1,0 +1,50 @@
+import type { BakeOptions, Baked, Light } from 'kiln-ibl';
+
+/** An address, a File or Blob, or bytes. */
+export type Source = string | URL | Blob | ArrayBuffer | Uint8Array;
+
+/** A class of Babylon.js, from babylonjs or @babylonjs/core. */
+type Class<T> = new (...values: any[]) => T;
+type Made<C> = C extends { CubeTexture: Class<infer T> } ? T : any;
+type MadeLight<C> = C extends { DirectionalLight: Class<infer T> } ? T : any;
+
+/** Classes of Babylon.js that make environments; needed where Babylon.js is not the global BABYLON. */
+export interface EnvironmentClasses {
+    CubeTexture: Class<any>;
+}
+
+/** Classes of Babylon.js that make lights; ShadowGenerator is needed for shadows alone. */
+export interface LightClasses {
+    Color3: Class<any>;
+    DirectionalLight: Class<any>;
+    Vector3: Class<any>;
+    ShadowGenerator?: Class<any>;
+}
+
+/** Loads an environment that kiln baked with `--for babylon` (.env) or `--for babylon-dds` (.dds), for
+ * `scene.environmentTexture`. Resolves to a CubeTexture whose texels have arrived. */
+export function loadEnvironment<C extends EnvironmentClasses>(source: Source, scene: object,
+    options?: { babylon?: C; signal?: AbortSignal }): Promise<Made<C>>;
+
+/** Bakes a panorama (EXR, HDR, PNG, JPEG) in a worker, and loads the result like loadEnvironment(). Options are those
+ * of bake(), with `for: 'babylon'` or `'babylon-dds'`. `texture.metadata.kiln` holds lights and spherical harmonics
+ * as `Omit<Baked, 'files'>`. */
+export function bakeEnvironment<C extends EnvironmentClasses>(source: Source, scene: object,
+    options?: Omit<BakeOptions, 'output'> & { babylon?: C }): Promise<Made<C>>;
+
+/** What a bake found, in `texture.metadata.kiln`. */
+export type Found = Omit<Baked, 'files'>;
+
+export interface LightOptions<C> {
+    /** Radius of the sphere around the origin in which meshes cast and receive shadows. Each light then has a shadow
+     * generator, which must be told the meshes: `light.getShadowGenerator().addShadowCaster(mesh)`. Meshes with
+     * `receiveShadows` show the shadows. 0 is without shadows. */
+    shadows?: number;
+    babylon?: C;
+}
+
+/** Adds directional lights to a scene: those that kiln took out of the environment with `--sun extract`, as read from
+ * the file of `--lights-file` or as `lights` of a bake. Their intensity is the irradiance of a surface that faces the
+ * light. Returns the lights. */
+export function addLights<C extends LightClasses>(scene: object, lights: readonly Light[] | { lights: readonly Light[] },
+    options?: LightOptions<C>): MadeLight<C>[];

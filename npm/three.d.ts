@@ -1,0 +1,45 @@
+import type { DirectionalLight, Scene, Texture } from 'three';
+import type { BakeOptions, Baked, Light } from 'kiln-ibl';
+
+/** The engine of `kiln bake --for` whose files the running three.js shows. */
+export const engine: 'three' | 'three-cubeuv';
+
+/** An address, a File or Blob, or bytes. */
+export type Source = string | URL | Blob | ArrayBuffer | Uint8Array;
+
+/** One file, or the files of both engines by their names, of which the one that the running three.js shows is
+ * fetched: `{ three: 'city.ktx2', 'three-cubeuv': 'city.exr' }`. */
+export type Files = Source | { three?: Source; 'three-cubeuv'?: Source };
+
+/** Loads an environment that kiln baked with `--for three` (three.js from r187 on) or `--for three-cubeuv` (r150 to
+ * r186), for `scene.environment`, `scene.background` or a material's `envMap`. Is rejected with an error if the file
+ * cannot be shown by the running three.js. `renderer` is the WebGLRenderer or WebGPURenderer of the scene.
+ * WebGPURenderer works from r187 on. */
+export function loadEnvironment(files: Files, renderer?: object, options?: { signal?: AbortSignal }): Promise<Texture>;
+
+export interface BakeEnvironmentOptions extends Omit<BakeOptions, 'for' | 'output' | 'format'> {
+    /** Texels along the edge of a face of the finest level, by default 256. */
+    size?: number;
+}
+
+/** What a bake found, in `texture.userData.kiln`. */
+export type Found = Omit<Baked, 'files'>;
+
+/** Bakes a panorama (EXR, HDR, PNG, JPEG, or a texture that a loader of three.js made of a panorama) in a worker,
+ * and loads the result like loadEnvironment(). Replaces `PMREMGenerator.fromEquirectangular(texture).texture`.
+ * Options are those of bake(). `texture.userData.kiln` holds lights and spherical harmonics. */
+export function bakeEnvironment(panorama: Source | Texture, renderer?: object, options?: BakeEnvironmentOptions):
+    Promise<Texture & { userData: { kiln: Found } }>;
+
+export interface LightOptions {
+    /** Radius of the sphere around the origin in which objects cast and receive shadows; 0 is without shadows. */
+    shadows?: number;
+    /** The scene's renderer. Up to r164, its useLegacyLights decides what an intensity means. */
+    renderer?: object;
+}
+
+/** Adds directional lights to a scene: those that kiln took out of the environment with `--sun extract`, as read from
+ * the file of `--lights-file` or as `lights` of a bake. Their intensity is the irradiance of a surface that faces the
+ * light. Returns the lights, which may be changed. */
+export function addLights(scene: Scene, lights: readonly Light[] | { lights: readonly Light[] },
+                          options?: LightOptions): DirectionalLight[];

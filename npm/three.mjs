@@ -1,0 +1,169 @@
+// Prefiltered environments in three.js, r150 and later:
+//     scene.environment = await loadEnvironment('city.ktx2', renderer);   // a file that kiln baked
+//     scene.environment = await bakeEnvironment('city.hdr', renderer);    // any panorama, baked in a worker
+//     addLights(scene, lights);                                           // lights taken out of the environment
+// From r187 on, three.js keeps a prefiltered environment in a cube map, before in one flat picture called CubeUV.
+// kiln's engines "three" and "three-cubeuv" write these two. A file of the wrong one would be shown black or be
+// filtered again, so the functions check the file and the running version, and throw an error.
+import { Color, CompressedTexture, CubeReflectionMapping, DataTexture, DirectionalLight, HalfFloatType, LinearFilter,
+         LinearMipmapLinearFilter, REVISION, RGBAFormat } from 'three';
+import { kindOf, openFile } from './fetch.mjs';
+
+const OLDEST = 150, CUBES = 187; // the first versions that show CubeUV files, and cubes
+const CUBE_UV_MAPPING = 306;     // CubeUVReflectionMapping, which r187 no longer exports
+const revision = parseInt(REVISION, 10);
+
+// The engine of `kiln bake --for` whose files the running three.js shows.
+export const engine = revision >= CUBES ? 'three' : 'three-cubeuv';
+
+function checkVersion(renderer) {
+    if (revision < OLDEST)
+        throw new Error(`kiln-ibl/three: this is three.js r${REVISION}; environments can be loaded from r${OLDEST} on`);
+    if (renderer?.isWebGPURenderer && revision < CUBES)
+        throw new Error(`kiln-ibl/three: WebGPURenderer of three.js r${REVISION} cannot load environments; use ` +
+                        `WebGLRenderer, or three.js from r${CUBES} on`);
+}
+
+// ---------------------------------------------------------------------------------------------- cubes (KTX2)
+
+const RGBA16F = 97, ZSTD = 2; // VkFormat and supercompression scheme of KTX2
+
+// Header, levels and metadata of a KTX2 file. All numbers are little-endian, and those of 64 bits are below 2^53.
+function readKtx2({ name, bytes }) {
+    const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+    const u32 = (at) => view.getUint32(at, true), u64 = (at) => Number(view.getBigUint64(at, true));
+    try {
+        const levels = Array.from({ length: Math.max(1, u32(40)) }, (_, k) => {
+            const at = 80 + 24 * k, [offset, length] = [u64(at), u64(at + 8)];
+            if (offset + length > bytes.length)
+                throw new RangeError();
+            return { data: bytes.slice(offset, offset + length), size: u64(at + 16) };
+        });
+        const metadata = new TextDecoder('latin1').decode(bytes.subarray(u32(56), u32(56) + u32(60)));
+        return { format: u32(12), width: u32(20), faces: u32(36), scheme: u32(44), levels, metadata };
+    } catch (error) {
+        if (error instanceof RangeError)
+            throw new Error(`${name}: the KTX2 file ends after ${bytes.length} bytes, before its texels end`);
+        throw error;
+    }
+}
+
+// Levels for three.js have the roughness r = 1 - sqrt(1 - k / (n - 1)), as PMREMGenerator.lodToRoughness has.
+function checkRoughness(name, metadata, count) {
+    const text = metadata.match(/kiln:roughness\0([\d.e+ -]+)/)?.[1];
+    const fits = (r, k) => Math.abs(r - (1 - Math.sqrt(1 - k / (count - 1)))) < 1e-4;
+    if (text && !text.trim().split(' ').map(Number).every(fits))
+        throw new Error(`${name}: the levels have the roughnesses ${text.trim()}, which are not those of three.js; ` +
+                        'bake the file with --for three');
+}
+
+async function unzip(levels) {
+    const { ZSTDDecoder } = await import('three/addons/libs/zstddec.module.js');
+    const decoder = new ZSTDDecoder();
+    await decoder.init();
+    return levels.map(({ data, size }) => decoder.decode(data, size));
+}
+
+async function makeCube(file) {
+    const { name } = file, { format, width, faces, scheme, levels, metadata } = readKtx2(file);
+    if (faces !== 6)
+        throw new Error(`${name}: the KTX2 file holds a flat picture and not a cube; bake it with --for ${engine}`);
+    if (engine !== 'three')
+        throw new Error(`${name}: three.js shows cubes like this from r${CUBES} on, and this is r${REVISION}; ` +
+                        `bake the file with --for ${engine}`);
+    if (format !== RGBA16F || (scheme !== 0 && scheme !== ZSTD))
+        throw new Error(`${name}: its texels have the VkFormat ${format} and supercompression ${scheme}; ` +
+                        'bake it with --for three, which writes rgba16f (97)');
+    checkRoughness(name, metadata, levels.length);
+    const texels = scheme === ZSTD ? await unzip(levels) : levels.map(({ data }) => data);
+    const sides = Array.from({ length: 6 }, (_, face) => ({
+        width, height: width,
+        mipmaps: texels.map((all, k) => {
+            const length = all.length / 12, halves = new Uint16Array(all.buffer, all.byteOffset, 6 * length);
+            return { width: width >> k, height: width >> k, data: halves.slice(face * length, (face + 1) * length) };
+        }),
+    }));
+    // This is a CompressedCubeTexture, which r150 does not have. The formats of CompressedTexture may be uncompressed.
+    const texture = new CompressedTexture([], width, width, RGBAFormat, HalfFloatType, CubeReflectionMapping);
+    return Object.assign(texture, {
+        image: sides, isCubeTexture: true, isCompressedCubeTexture: true, minFilter: LinearMipmapLinearFilter,
+        isPMREMTexture: true,        // else three.js filters the cube again
+        isRenderTargetTexture: true, // else x is mirrored
+    });
+}
+
+// --------------------------------------------------------------------------------------------- CubeUV (EXR)
+
+async function makeCubeUv({ name, bytes }) {
+    if (engine !== 'three-cubeuv')
+        throw new Error(`${name}: three.js shows EXR environments up to r${CUBES - 1}, and this is r${REVISION}; ` +
+                        `bake the file with --for ${engine}`);
+    const { EXRLoader } = await import('three/addons/loaders/EXRLoader.js');
+    const exact = bytes.slice(); // a buffer of its own
+    const { data, width, height, format, type } = new EXRLoader().parse(exact.buffer);
+    if (3 * height !== 4 * width || height & (height - 1))
+        throw new Error(`${name}: a picture of ${width} x ${height} is not an environment in CubeUV layout, which ` +
+                        `has 3/4 as many columns as rows; bake it with --for ${engine}, or call bakeEnvironment()`);
+    const texture = new DataTexture(data, width, height, format, type, CUBE_UV_MAPPING);
+    return Object.assign(texture, { magFilter: LinearFilter, minFilter: LinearFilter });
+}
+
+// ------------------------------------------------------------------------------------------------ functions
+
+// Makes a texture from the bytes of a file that kiln baked.
+async function makeTexture(file) {
+    const kind = kindOf(file.bytes);
+    if (kind !== 'KTX2' && kind !== 'EXR')
+        throw new Error(`${file.name}: the file is of the kind "${kind}", and not an environment that kiln baked ` +
+                        `with --for ${engine}; bakeEnvironment() bakes panoramas`);
+    const texture = await (kind === 'KTX2' ? makeCube : makeCubeUv)(file);
+    texture.name = file.name;
+    texture.generateMipmaps = false;
+    texture.needsUpdate = true;
+    return texture;
+}
+
+export async function loadEnvironment(source, renderer, { signal } = {}) {
+    checkVersion(renderer);
+    const files = source?.three ?? source?.['three-cubeuv'] ? source : { [engine]: source };
+    if (!files[engine])
+        throw new Error(`kiln-ibl/three: three.js r${REVISION} needs the file that kiln bakes with --for ${engine}, ` +
+                        `and only ${Object.keys(files).join()} is given`);
+    return makeTexture(await openFile(files[engine], { signal }));
+}
+
+export async function bakeEnvironment(source, renderer, { size, ...options } = {}) {
+    checkVersion(renderer);
+    const { bake, readPanorama } = await import('./three-bake.mjs'); // which those who only load do not need
+    const input = source?.isTexture ? { name: source.name || 'panorama', bytes: readPanorama(source) }
+                                    : await openFile(source, options);
+    // The size of CubeUV files is that of the cube that they are made of, which is twice the size of a face.
+    const texels = size && { size: engine === 'three' ? size : 2 * size };
+    const { files, levels, sh, lights, report } = await bake(input.bytes, { name: input.name, ...options, ...texels,
+                                                                           for: engine });
+    const texture = await makeTexture(files[0]);
+    texture.userData.kiln = { levels, sh, lights, report };
+    return texture;
+}
+
+// Up to r154, renderers multiply the intensity of lights by pi unless useLegacyLights is false.
+const scaleOf = (renderer) => (renderer?.useLegacyLights ?? revision < 155 ? 1 / Math.PI : 1);
+
+// The intensity of a light is set to the irradiance of a surface that faces the light. A white diffuse surface then
+// reflects the radiance irradiance / pi. A direction (x, y, z) of kiln is (-z, y, x) in three.js.
+export function addLights(scene, lights, { shadows = 0, renderer } = {}) {
+    const scale = scaleOf(renderer);
+    return (lights.lights ?? lights).map(({ direction: [x, y, z], irradiance }) => {
+        const brightest = Math.max(...irradiance);
+        const light = new DirectionalLight(new Color(...irradiance.map((e) => e / brightest)), scale * brightest);
+        light.position.set(-z, y, x).multiplyScalar(2 * (shadows || 1)); // shines to the origin
+        if (shadows) {
+            light.castShadow = true;
+            light.shadow.mapSize.set(2048, 2048);
+            Object.assign(light.shadow.camera, { left: -shadows, right: shadows, bottom: -shadows, top: shadows,
+                                                 near: shadows, far: 3 * shadows });
+        }
+        scene.add(light);
+        return light;
+    });
+}
