@@ -55,13 +55,15 @@ typedef struct ki_fft {
 /// directions are farther than far_versine (1 - cos of the angle) from the sun, and as 4 points if
 /// they are farther than near_versine. It counts as near_count points if a direction is nearer, or
 /// if the plane perpendicular to a direction passes within `horizon` (in cos of the angle) of the
-/// sun, because the lobe has a kink there.
+/// sun, because the lobe has a kink there. It counts as close_count points if a direction is nearer
+/// than close_versine, where a narrow lobe changes within the sun's texel; for wide lobes close_versine
+/// is negative and close_count 0.
 typedef struct ki_sun_points {
-    int count, near_count;
-    double far_versine, near_versine, horizon;
+    int count, near_count, close_count;
+    double far_versine, near_versine, close_versine, horizon;
     // Points {x, y, z, r, g, b} of all suns: `centre` has 1 point for each sun, `pairs` 2 x 2
-    // points, `near` near_count points.
-    double (*centre)[6], (*pairs)[6], (*near)[6];
+    // points, `near` near_count points, `close` close_count points.
+    double (*centre)[6], (*pairs)[6], (*near)[6], (*close)[6];
 } ki_sun_points;
 
 typedef struct ki_kernels {

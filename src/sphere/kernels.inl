@@ -463,7 +463,11 @@ static void suns_ggx(const ki_sun_points *suns, double alpha, const double *dire
             nearest = distances[j] < nearest ? distances[j] : nearest;
             edge = above < edge ? above : edge;
         }
-        if (edge < suns->horizon || nearest < suns->near_versine)
+        if (nearest < suns->close_versine)
+            add_points(a2, directions,
+                       (const double(*)[6])suns->close + (size_t)suns->close_count * (size_t)i,
+                       suns->close_count, sum);
+        else if (edge < suns->horizon || nearest < suns->near_versine)
             add_points(a2, directions,
                        (const double(*)[6])suns->near + (size_t)suns->near_count * (size_t)i,
                        suns->near_count, sum);

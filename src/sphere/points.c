@@ -13,7 +13,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { MOST_CELLS = 24 };
+enum { MOST_CELLS = 24, CLOSE = 4 };
 
 // Nodes, then weights of the Gauss-Legendre rules on [-1/2, 1/2] with two and with four nodes.
 static const double gauss_two[2][2] = {{-0.28867513459481288225, 0.28867513459481288225},
@@ -62,7 +62,9 @@ static void divide(const ki_sun *sun, int size, int n, const double *nodes, cons
 // be the size of the texel, k the lobe, and s the distance from the sun or the width of the lobe,
 // over which k varies. The relative error of one point is about (h/s)^2 / 24 times s^2 k'' / k,
 // which is 20 in the tail of GGX. The error of two by two Gauss nodes is (h/s)^4 / 4320 times s^4
-// k'''' / k, which is 840; that of four by four nodes is about 1e-4 (h/s)^8.
+// k'''' / k, which is 840; that of four by four nodes is about 1e-4 (h/s)^8, which is below 1e-8 from
+// CLOSE texels on. Nearer, where a lobe may be narrower than the texel, cells of half the lobe's width
+// have four by four nodes each.
 static void choose_point_counts(const ki_zonal *zonal, int size, ki_sun_points *suns)
 {
     double texel = KI_PI / size, width = ki_lobe_width(&zonal->lobe);
@@ -70,7 +72,10 @@ static void choose_point_counts(const ki_zonal *zonal, int size, ki_sun_points *
     // divided into at least 4 cells along each side.
     int least = zonal->lobe.kind == KILN_LOBE_CHARLIE ? 4 : 1;
     int n = 4 * (int)ki_clamp(ceil(texel / width / 0.5), least, MOST_CELLS);
-    suns->near_count = n * n;
+    suns->near_count = 16 * least * least;
+    bool narrow = n > 4 * least;
+    suns->close_count = narrow ? n * n : 0;
+    suns->close_versine = narrow ? 1 - ki_cos(fmin(KI_PI, CLOSE * texel)) : -1;
     suns->near_versine = texel > 0.04 * width ? 1 - ki_cos(fmin(KI_PI, 24 * texel)) : -1;
     suns->far_versine = width > 128 * texel ? -1 : 1 - ki_cos(fmin(KI_PI, 128 * texel));
     suns->horizon = texel;
@@ -82,7 +87,26 @@ size_t ki_points_size(const ki_zonal *zonal, int size, size_t count)
     choose_point_counts(zonal, size, &suns);
     return ki_block_size(count, sizeof *suns.centre) +
            ki_block_size(count, 4 * sizeof *suns.pairs) +
-           ki_block_size(count, (size_t)suns.near_count * sizeof *suns.near);
+           ki_block_size(count, (size_t)suns.near_count * sizeof *suns.near) +
+           ki_block_size(count, (size_t)suns.close_count * sizeof *suns.close);
+}
+
+// Divides every sun into near_count or close_count points.
+static void divide_finely(const kiln_spectrum *spectrum, int point_count, double rotation,
+                          double integral, double (*points)[6])
+{
+    double nodes[4 * MOST_CELLS], weights[4 * MOST_CELLS];
+    int n = 4;
+    while (n * n < point_count)
+        n += 4;
+    for (int i = 0; i < n; i++) {
+        int cell = i / 4, k = i % 4, cells = n / 4;
+        nodes[i] = (cell + 0.5 + gauss_four[0][k]) / cells;
+        weights[i] = gauss_four[1][k] / cells;
+    }
+    for (int i = 0; i < spectrum->sun_count; i++)
+        divide(&spectrum->suns[i], spectrum->size, n, nodes, weights, rotation, integral,
+               points + (size_t)point_count * (size_t)i);
 }
 
 kiln_result ki_points_create(const kiln_spectrum *spectrum, const ki_zonal *zonal, double integral,
@@ -99,29 +123,25 @@ kiln_result ki_points_create(const kiln_spectrum *spectrum, const ki_zonal *zona
         return KILN_OK;
     choose_point_counts(zonal, spectrum->size, suns);
     size_t count = (size_t)suns->count, near_count = (size_t)suns->near_count;
+    size_t close_count = (size_t)suns->close_count;
     suns->centre = ki_alloc_raw(context, count, sizeof *suns->centre);
     suns->pairs = ki_alloc_raw(context, count * 4, sizeof *suns->pairs);
     suns->near = ki_alloc_raw(context, count * near_count, sizeof *suns->near);
-    if (!suns->centre || !suns->pairs || !suns->near) {
+    suns->close = ki_alloc_raw(context, count * close_count, sizeof *suns->close);
+    if (!suns->centre || !suns->pairs || !suns->near || !suns->close) {
         ki_points_destroy(points);
-        return ki_fail_memory(context, error, "the suns", count * near_count * sizeof *suns->near);
-    }
-    double nodes[4 * MOST_CELLS], weights[4 * MOST_CELLS];
-    int n = 4;
-    while (n * n < suns->near_count)
-        n += 4;
-    for (int i = 0; i < n; i++) {
-        int cell = i / 4, k = i % 4, cells = n / 4;
-        nodes[i] = (cell + 0.5 + gauss_four[0][k]) / cells;
-        weights[i] = gauss_four[1][k] / cells;
+        return ki_fail_memory(context, error, "the suns",
+                              count * (near_count + close_count) * sizeof *suns->near);
     }
     for (size_t i = 0; i < count; i++) {
         const ki_sun *sun = &spectrum->suns[i];
         int size = spectrum->size;
         divide(sun, size, 1, middle, whole, rotation, integral, suns->centre + i);
         divide(sun, size, 2, pair, half, rotation, integral, suns->pairs + 4 * i);
-        divide(sun, size, n, nodes, weights, rotation, integral, suns->near + near_count * i);
     }
+    divide_finely(spectrum, suns->near_count, rotation, integral, suns->near);
+    if (close_count)
+        divide_finely(spectrum, suns->close_count, rotation, integral, suns->close);
     return KILN_OK;
 }
 
@@ -130,11 +150,30 @@ void ki_points_destroy(ki_points *points)
     ki_free(points->suns.centre);
     ki_free(points->suns.pairs);
     ki_free(points->suns.near);
+    ki_free(points->suns.close);
     *points = (ki_points){0};
 }
 
-// Adds the suns through a mixture of lobes. Chooses the number of points as the kernel suns_ggx
-// does, but for each of the eight directions alone.
+// Sets *list to the points that represent sun i for one direction, and returns their number: as the
+// kernel suns_ggx chooses them, but at least `least` points, 1 or 4.
+static int choose_points(const ki_sun_points *suns, size_t i, const double *direction, int least,
+                         const double (**list)[6])
+{
+    double away = versine(direction, suns->centre[i]);
+    if (away < suns->close_versine) {
+        *list = (const double(*)[6])suns->close + (size_t)suns->close_count * i;
+        return suns->close_count;
+    }
+    if (away < suns->near_versine || fabs(1 - away) < suns->horizon) {
+        *list = (const double(*)[6])suns->near + (size_t)suns->near_count * i;
+        return suns->near_count;
+    }
+    bool pairs = least == 4 || away < suns->far_versine;
+    *list = pairs ? (const double(*)[6])suns->pairs + 4 * i : (const double(*)[6])suns->centre + i;
+    return pairs ? 4 : 1;
+}
+
+// Adds the suns through a mixture of lobes, one by one for each of the eight directions.
 static void add_mixture(const ki_points *points, const double *directions, double *sum)
 {
     const ki_sun_points *suns = &points->suns;
@@ -142,16 +181,8 @@ static void add_mixture(const ki_points *points, const double *directions, doubl
         const double at[3] = {directions[j], directions[8 + j], directions[16 + j]};
         double rgb[3] = {0};
         for (size_t i = 0; i < (size_t)suns->count; i++) {
-            const double(*list)[6] = (const double(*)[6])suns->centre + i;
-            double away = versine(at, *list);
-            int count = 1;
-            if (away < suns->near_versine || fabs(1 - away) < suns->horizon) {
-                count = suns->near_count;
-                list = (const double(*)[6])suns->near + (size_t)count * i;
-            } else if (away < suns->far_versine) {
-                count = 4;
-                list = (const double(*)[6])suns->pairs + 4 * i;
-            }
+            const double(*list)[6];
+            int count = choose_points(suns, i, at, 1, &list);
             for (int n = 0; n < count; n++) {
                 double weight = ki_mixture_weight(points->zonal.mixture, versine(at, list[n]));
                 for (int c = 0; c < 3; c++)
@@ -178,16 +209,11 @@ void ki_points_add(const ki_points *points, const double *directions, double *su
     }
     // Suns through lobes other than GGX and Lambert are rare, so the eight directions are summed
     // one by one, without vectors.
-    for (int i = 0; i < suns->count; i++)
+    for (size_t i = 0; i < (size_t)suns->count; i++)
         for (int j = 0; j < KI_LANES; j++) {
             const double direction[3] = {directions[j], directions[8 + j], directions[16 + j]};
-            const double(*list)[6] = (const double(*)[6])suns->pairs + 4 * (size_t)i;
-            int count = 4;
-            double away = versine(direction, suns->centre[i]);
-            if (away < suns->near_versine || fabs(1 - away) < suns->horizon) {
-                count = suns->near_count;
-                list = (const double(*)[6])suns->near + (size_t)count * (size_t)i;
-            }
+            const double(*list)[6];
+            int count = choose_points(suns, i, direction, 4, &list);
             for (int n = 0; n < count; n++) {
                 double weight = ki_zonal_weight(&points->zonal, versine(direction, list[n]));
                 for (int c = 0; c < 3; c++)
