@@ -5,27 +5,28 @@
 
 #include "headless.h"
 #include "reference.h"
+#include "scene_setup.h"
 #include "viewer.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { WIDTH = 1280, HEIGHT = 720 };
-
 typedef struct values {
-    const char *output;
+    const char *output, *size;
     bool quiet;
 } values;
 
 static const cli_option options[] = {
     {"output", CLI_FILE, offsetof(values, output), .value = "DIR", .letter = 'o',
      .help = "the folder for the files, which is created if missing"},
+    {"size", CLI_TEXT, offsetof(values, size), SCENE_SIZE_WORDS},
     CLI_QUIET_ROW(values),
     {.name = NULL},
 };
 
 typedef struct pictures {
+    int width, height;
     char by[128]; ///< name of what drew the balls: the OpenGL renderer or the CPU's integrator
     bool on_cpu;  ///< true: OpenGL is not available, and the CPU shaded the balls
     /// largest difference, in steps of 255, between balls drawn with the 8-bit tables and with
@@ -68,9 +69,10 @@ static kiln_result use_bytes(const assignment *a, view_renderer *renderer)
 // instead of a table.
 static kiln_result shade(assignment *a, const view_options *o, kiln_image *image)
 {
-    kiln_result result = view_reference(a->work->context, o, NULL, WIDTH, HEIGHT, NULL, image, NULL,
-                                        &a->work->error);
-    for (size_t i = 0; result == KILN_OK && i < (size_t)WIDTH * HEIGHT; i++) {
+    const pictures *p = a->def->user;
+    kiln_result result = view_reference(a->work->context, o, NULL, p->width, p->height, NULL, image,
+                                        NULL, &a->work->error);
+    for (size_t i = 0; result == KILN_OK && i < (size_t)p->width * (size_t)p->height; i++) {
         double c[3];
         for (size_t k = 0; k < 3; k++)
             c[k] = (double)image->pixels[3 * i + k];
@@ -84,14 +86,16 @@ static kiln_result shade(assignment *a, const view_options *o, kiln_image *image
 static kiln_result picture(assignment *a, view_renderer *renderer, const view_options *o,
                            kiln_image *image)
 {
-    return renderer ? view_picture(renderer, o, WIDTH, HEIGHT, false, image, &a->work->error)
-                    : shade(a, o, image);
+    const pictures *p = a->def->user;
+    if (!renderer)
+        return shade(a, o, image);
+    return view_picture(renderer, o, p->width, p->height, false, image, &a->work->error);
 }
 
 static void compare(const kiln_image *a, const kiln_image *b, pictures *p)
 {
     double squares = 0;
-    size_t count = (size_t)WIDTH * HEIGHT * 3;
+    size_t count = (size_t)p->width * (size_t)p->height * 3;
     for (size_t i = 0; i < count; i++) {
         double off = 255 * fabs((double)a->pixels[i] - (double)b->pixels[i]);
         squares += off * off;
@@ -212,6 +216,9 @@ static int run(const cli_call *call)
                          a.rest[0]);
     if (!def.folder)
         return cli_wrong(&cli_assignment, "no output: name a folder by -o DIR");
+    code = scene_read_size(&cli_assignment, v.size, &p.width, &p.height);
+    if (code != CLI_GO)
+        return code;
     code = assignment_check_folder(&cli_assignment, def.folder);
     if (code != CLI_GO)
         return code;
@@ -221,7 +228,10 @@ static int run(const cli_call *call)
     return cli_end_work(&work, code);
 }
 
-static const cli_example examples[] = {{"kiln assignment -o images/", NULL}, {NULL, NULL}};
+static const cli_example examples[] = {
+    {"kiln assignment -o images/", NULL},
+    {"kiln assignment -o images/ --size 1920x1080", "with larger pictures of the balls"},
+    {NULL, NULL}};
 
 const cli_command cli_assignment = {
     .name = "assignment",

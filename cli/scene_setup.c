@@ -28,21 +28,21 @@ static const char *read_side(const char *text, int *side)
 }
 
 // Reads "WIDTHxHEIGHT". Returns false for any other text.
-static bool read_sides(const char *text, scene_setup *s)
+static bool read_sides(const char *text, int *width, int *height)
 {
-    const char *at = read_side(text, &s->width);
-    at = at && *at == 'x' ? read_side(at + 1, &s->height) : NULL;
+    const char *at = read_side(text, width);
+    at = at && *at == 'x' ? read_side(at + 1, height) : NULL;
     return at && !*at;
 }
 
-static int read_size(const cli_arguments *a, scene_setup *s)
+int scene_read_size(const cli_command *command, const char *size, int *width, int *height)
 {
-    s->width = 1280;
-    s->height = 720;
-    if (s->size && !read_sides(s->size, s))
-        return cli_wrong(a->command, "--size is '%s', it must be WIDTHxHEIGHT", s->size);
-    if (s->width < 1 || s->width > 16384 || s->height < 1 || s->height > 16384)
-        return cli_wrong(a->command, "--size is %s, each side must be from 1 to 16384", s->size);
+    *width = 1280;
+    *height = 720;
+    if (size && !read_sides(size, width, height))
+        return cli_wrong(command, "--size is '%s', it must be WIDTHxHEIGHT", size);
+    if (*width < 1 || *width > 16384 || *height < 1 || *height > 16384)
+        return cli_wrong(command, "--size is %s, each side must be from 1 to 16384", size);
     return CLI_GO;
 }
 
@@ -100,7 +100,7 @@ int scene_read(const cli_arguments *a, bool may_change, scene_setup *s)
     s->options = view_defaults((view_scene)s->scene);
     int code = cli_store_values(a, s);
     if (code == CLI_GO)
-        code = read_size(a, s);
+        code = scene_read_size(a->command, s->size, &s->width, &s->height);
     s->options.cube_diffuse = s->cube_diffuse;
     s->options.bent = !s->straight;
     if (a->text[SCENE_LIGHTS_SHARE] && s->lights.share == 0)

@@ -56,6 +56,11 @@ typedef struct scene_setup {
     kiln_lights taken; ///< lights that scene_load took out of the environment
 } scene_setup;
 
+/// What every option --size of a picture says of its value. scene_read_size reads the value.
+#define SCENE_SIZE_WORDS                                                                           \
+    .value = "WxH", .help = "width and height of a picture in pixels, each 1 to 16384",            \
+    .unset = "1280x720"
+
 /// The option rows that kiln render and kiln view share. Each command's table of options begins
 /// with them.
 #define SCENE_ROWS                                                                                 \
@@ -95,12 +100,7 @@ typedef struct scene_setup {
                         .keep = true,                                                              \
                         .help = "what the balls are made of",                                      \
                         .unset = "gold"},                                                          \
-    [SCENE_SIZE] = {"size",                                                                        \
-                    CLI_TEXT,                                                                      \
-                    offsetof(scene_setup, size),                                                   \
-                    .value = "WxH",                                                                \
-                    .help = "width and height of the picture in pixels, each 1 to 16384",          \
-                    .unset = "1280x720"},                                                          \
+    [SCENE_SIZE] = {"size", CLI_TEXT, offsetof(scene_setup, size), SCENE_SIZE_WORDS},              \
     [SCENE_SAMPLES] =                                                                              \
         {"samples",                                                                                \
          CLI_INTEGER,                                                                              \
@@ -236,6 +236,9 @@ typedef struct scene_setup {
 const char *scene_diffuse_word(int index);
 const char *scene_sun_word(int index);
 
+/// Reads the value of --size, "WIDTHxHEIGHT" in pixels; 1280 and 720 if it is NULL. Returns CLI_GO or an
+/// exit code.
+int scene_read_size(const cli_command *command, const char *size, int *width, int *height);
 /// Converts and checks the shared options after cli_read_arguments. `may_change`: the user can
 /// change the scene later, so an environment is accepted for a scene that uses none. Returns CLI_GO
 /// or an exit code.

@@ -5,13 +5,17 @@
 . "$(dirname "$0")/lib.sh"
 
 # The assignment, all of it.
-expect 0 "" assignment -o images
+expect 0 "" assignment -o images --size 320x180
 for name in balls balls_microfacet balls_as_printed Emu_MC Emu_IS Eavg; do
     [ -s "images/$name.png" ] || die "no images/$name.png"
 done
 grep -q 'balls_as_printed.png' images/report.md || die "the report does not show the renders"
 expect 2 "no output: name a folder" assignment
 expect 2 "takes no input" assignment in.exr -o d
+expect 2 "it must be WIDTHxHEIGHT" assignment -o d --size 4x
+expect 2 "each side must be from 1 to 16384" assignment -o d --size 0x1
+[ ! -e d ] || die "a folder for a wrong command line"
+"$KILN" info images/balls.png | grep -q '320 x 180' || die "the size of the assignment's pictures"
 
 # Every scene; the same bits twice.
 expect 0 "" sky -o sky.exr --size 32
@@ -72,6 +76,6 @@ __EGL_VENDOR_LIBRARY_DIRS="$PWD/none"
 export __EGL_VENDOR_LIBRARY_DIRS
 expect 1 "EGL offers no display" render -o c.png
 [ ! -e c.png ] || die "a picture without a driver"
-"$KILN" assignment -o shaded -q 2>log/err || die "the assignment without a driver"
+"$KILN" assignment -o shaded -q --size 64x36 2>log/err || die "the assignment without a driver"
 grep -q 'shaded on the CPU' log/err && [ -s shaded/balls.png ] || die "no balls without a driver"
 passed
