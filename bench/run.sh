@@ -4,6 +4,7 @@
 #   count    counts the instructions of a fixed bake; --update makes the new count the reference
 #   web      compares kiln and three.js in a page of a browser
 #   engines  compares the pixels of engines with kiln's files and with the engines' own bakes
+#   engines-lights  measures the pixels with kiln's files after suns and lamps were taken out of the panoramas
 #   blocks   compares BC6H by kiln and by Basis Universal
 set -eu
 cd "$(dirname "$0")/.."
@@ -20,7 +21,7 @@ if [ "${1:-}" = --update ]; then
     update=yes
     shift
 fi
-[ $# -gt 0 ] || set -- accuracy probe threads instructions files scaling peer memory tables tune count web engines blocks
+[ $# -gt 0 ] || set -- accuracy probe threads instructions files scaling peer memory tables tune count web engines engines-lights blocks
 for part in bench bench_reference kiln; do
     [ -x $bin/$part ] || fail "$bin/$part is missing: run ./do bench"
 done
@@ -75,16 +76,21 @@ web() {
         "$results/$($bin/bench --machine)/web.csv"
 }
 
-# Measures the pixels of engines, with kiln's files and with the engines' own filters.
-engines() {
+# engine_pixels SCRIPT CASE: measures the pixels of engines by bench/engines/SCRIPT.mjs.
+engine_pixels() {
     have chromium || fail "chromium is missing: install Debian's chromium"
-    have cmgen || fail "cmgen is missing: install Debian's libfilament-tools"
     for folder in tests/web tests/engines; do
         [ -d $folder/node_modules ] || fail "packages are missing: run  npm ci --prefix $folder"
     done
-    printf '\nengines: errors of pixels, compared with brute force\n'
-    node bench/engines/displayed.mjs build/release/bin build/data/blender $inputs/engines \
-        "$results/$($bin/bench --machine)/engines.csv"
+    printf '\n%s: errors of pixels, compared with brute force\n' "$2"
+    node "bench/engines/$1.mjs" build/release/bin build/data/blender "$inputs/$2" \
+        "$results/$($bin/bench --machine)/$2.csv"
+}
+
+# With kiln's files and with the engines' own filters, of which Filament's is the program cmgen.
+engines() {
+    have cmgen || fail "cmgen is missing: install Debian's libfilament-tools"
+    engine_pixels displayed engines
 }
 
 # Compares BC6H by kiln and by Basis Universal, decoded by oiiotool.
@@ -109,6 +115,10 @@ for name; do
         ;;
     engines)
         engines || status=1
+        continue
+        ;;
+    engines-lights)
+        engine_pixels lights engines-lights || status=1
         continue
         ;;
     blocks)

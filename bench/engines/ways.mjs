@@ -35,7 +35,7 @@ export const engineOf = (bin, name) =>
     JSON.parse(execFileSync(path.join(bin, 'kiln'), ['engines', '--json'], { encoding: 'utf8' }))
         .find((row) => row.name === name);
 
-// Converts a panorama to .hdr, which every engine reads.
-export const makePanorama = (bin, folder, from, name) =>
+// Converts a panorama to .hdr, which every engine reads, with more options of `kiln bake` where these are given.
+export const makePanorama = (bin, folder, from, name, more = []) =>
     execFileSync(path.join(bin, 'kiln'), ['bake', from, '--shape', 'panorama', '--roughness', '0', '--size', '512',
-                                          '-q', '-o', name], { cwd: folder });
+                                          '-q', '-o', name, ...more], { cwd: folder });
