@@ -13,9 +13,9 @@ export type Files = Source | { three?: Source; 'three-cubeuv'?: Source };
 
 /** Loads an environment that kiln baked with `--for three` (three.js from r187 on) or `--for three-cubeuv` (r150 to
  * r186), for `scene.environment`, `scene.background` or a material's `envMap`. Is rejected with an error if the file
- * cannot be shown by the running three.js. `renderer` is the WebGLRenderer or WebGPURenderer of the scene.
- * WebGPURenderer works from r187 on. */
-export function loadEnvironment(files: Files, renderer?: object, options?: { signal?: AbortSignal }): Promise<Texture>;
+ * cannot be shown by the running three.js. `renderer` is the WebGLRenderer, or from r186 on the WebGPURenderer, that
+ * draws the scene: the two need different textures. */
+export function loadEnvironment(files: Files, renderer: object, options?: { signal?: AbortSignal }): Promise<Texture>;
 
 export interface BakeEnvironmentOptions extends Omit<BakeOptions, 'for' | 'output' | 'format'> {
     /** Texels along the edge of a face of the finest level, by default 256. */
@@ -28,7 +28,7 @@ export type Found = Omit<Baked, 'files'>;
 /** Bakes a panorama (EXR, HDR, PNG, JPEG, or a texture that a loader of three.js made of a panorama) in a worker,
  * and loads the result like loadEnvironment(). Replaces `PMREMGenerator.fromEquirectangular(texture).texture`.
  * Options are those of bake(). `texture.userData.kiln` holds lights and spherical harmonics. */
-export function bakeEnvironment(panorama: Source | Texture, renderer?: object, options?: BakeEnvironmentOptions):
+export function bakeEnvironment(panorama: Source | Texture, renderer: object, options?: BakeEnvironmentOptions):
     Promise<Texture & { userData: { kiln: Found } }>;
 
 export interface LightOptions {

@@ -9,7 +9,8 @@ import { Color, CompressedTexture, CubeReflectionMapping, DataTexture, Direction
          LinearMipmapLinearFilter, REVISION, RGBAFormat } from 'three';
 import { kindOf, openFile } from './fetch.mjs';
 
-const OLDEST = 150, CUBES = 187; // the first versions that show CubeUV files, and cubes
+// The first versions that show CubeUV files, CubeUV files in WebGPURenderer, and cubes.
+const OLDEST = 150, OLDEST_GPU = 186, CUBES = 187;
 const CUBE_UV_MAPPING = 306;     // CubeUVReflectionMapping, which r187 no longer exports
 const revision = parseInt(REVISION, 10);
 
@@ -19,9 +20,12 @@ export const engine = revision >= CUBES ? 'three' : 'three-cubeuv';
 function checkVersion(renderer) {
     if (revision < OLDEST)
         throw new Error(`kiln-ibl/three: this is three.js r${REVISION}; environments can be loaded from r${OLDEST} on`);
-    if (renderer?.isWebGPURenderer && revision < CUBES)
-        throw new Error(`kiln-ibl/three: WebGPURenderer of three.js r${REVISION} cannot load environments; use ` +
-                        `WebGLRenderer, or three.js from r${CUBES} on`);
+    if (!renderer?.isWebGLRenderer && !renderer?.isWebGPURenderer)
+        throw new Error('kiln-ibl/three: the second argument must be the renderer of the scene, a WebGLRenderer or ' +
+                        'a WebGPURenderer');
+    if (renderer.isWebGPURenderer && revision < OLDEST_GPU)
+        throw new Error(`kiln-ibl/three: WebGPURenderer of three.js r${REVISION} shows loaded environments upside ` +
+                        `down; use WebGLRenderer, or three.js from r${OLDEST_GPU} on`);
 }
 
 // ---------------------------------------------------------------------------------------------- cubes (KTX2)
@@ -51,10 +55,10 @@ function readKtx2({ name, bytes }) {
 // Levels for three.js have the roughness r = 1 - sqrt(1 - k / (n - 1)), as PMREMGenerator.lodToRoughness has.
 function checkRoughness(name, metadata, count) {
     const text = metadata.match(/kiln:roughness\0([\d.e+ -]+)/)?.[1];
-    const fits = (r, k) => Math.abs(r - (1 - Math.sqrt(1 - k / (count - 1)))) < 1e-4;
-    if (text && !text.trim().split(' ').map(Number).every(fits))
-        throw new Error(`${name}: the levels have the roughnesses ${text.trim()}, which are not those of three.js; ` +
-                        'bake the file with --for three');
+    const found = text?.trim().split(' ').map(Number) ?? [];
+    if (found.some((r, k) => Math.abs(r - (1 - Math.sqrt(1 - k / (count - 1)))) > 1e-4))
+        throw new Error(`${name}: the levels have the roughnesses ${found.map((r) => +r.toFixed(3)).join(' ')}, which ` +
+                        'are not those of three.js; bake the file with --for three');
 }
 
 async function unzip(levels) {
@@ -64,7 +68,24 @@ async function unzip(levels) {
     return levels.map(({ data, size }) => decoder.decode(data, size));
 }
 
-async function makeCube(file) {
+// The six faces of each level as halves: [level][face].
+const splitFaces = (levels) => levels.map((all) => Array.from({ length: 6 }, (_, face) => {
+    const length = all.length / 12, halves = new Uint16Array(all.buffer, all.byteOffset, 6 * length);
+    return halves.slice(face * length, (face + 1) * length);
+}));
+
+// The mirror image of a cube in x: +X and -X change places, and the rows of all faces are reversed.
+function mirror([right, left, ...others], width) {
+    const faces = [left, right, ...others];
+    for (const halves of faces) {
+        const texels = new BigUint64Array(halves.buffer); // of four halves
+        for (let at = 0; at < texels.length; at += width)
+            texels.subarray(at, at + width).reverse();
+    }
+    return faces;
+}
+
+async function makeCube(file, renderer) {
     const { name } = file, { format, width, faces, scheme, levels, metadata } = readKtx2(file);
     if (faces !== 6)
         throw new Error(`${name}: the KTX2 file holds a flat picture and not a cube; bake it with --for ${engine}`);
@@ -76,19 +97,20 @@ async function makeCube(file) {
                         'bake it with --for three, which writes rgba16f (97)');
     checkRoughness(name, metadata, levels.length);
     const texels = scheme === ZSTD ? await unzip(levels) : levels.map(({ data }) => data);
+    const gpu = Boolean(renderer.isWebGPURenderer);
+    const cubes = splitFaces(texels).map((cube, k) => (gpu ? mirror(cube, width >> k) : cube));
     const sides = Array.from({ length: 6 }, (_, face) => ({
         width, height: width,
-        mipmaps: texels.map((all, k) => {
-            const length = all.length / 12, halves = new Uint16Array(all.buffer, all.byteOffset, 6 * length);
-            return { width: width >> k, height: width >> k, data: halves.slice(face * length, (face + 1) * length) };
-        }),
+        mipmaps: cubes.map((cube, k) => ({ width: width >> k, height: width >> k, data: cube[face] })),
     }));
     // This is a CompressedCubeTexture, which r150 does not have. The formats of CompressedTexture may be uncompressed.
     const texture = new CompressedTexture([], width, width, RGBAFormat, HalfFloatType, CubeReflectionMapping);
     return Object.assign(texture, {
         image: sides, isCubeTexture: true, isCompressedCubeTexture: true, minFilter: LinearMipmapLinearFilter,
-        isPMREMTexture: true,        // else three.js filters the cube again
-        isRenderTargetTexture: true, // else x is mirrored
+        isPMREMTexture: true, // else three.js filters the cube again
+        // Cubes are mirrored in x when they are read, unless they are render targets. WebGPURenderer would not upload
+        // the texels of a render target, so that the texels themselves are mirrored for it.
+        isRenderTargetTexture: !gpu,
     });
 }
 
@@ -97,7 +119,7 @@ async function makeCube(file) {
 async function makeCubeUv({ name, bytes }) {
     if (engine !== 'three-cubeuv')
         throw new Error(`${name}: three.js shows EXR environments up to r${CUBES - 1}, and this is r${REVISION}; ` +
-                        `bake the file with --for ${engine}`);
+                        `bake the panorama with --for ${engine}, or call bakeEnvironment()`);
     const { EXRLoader } = await import('three/addons/loaders/EXRLoader.js');
     const exact = bytes.slice(); // a buffer of its own
     const { data, width, height, format, type } = new EXRLoader().parse(exact.buffer);
@@ -110,13 +132,13 @@ async function makeCubeUv({ name, bytes }) {
 
 // ------------------------------------------------------------------------------------------------ functions
 
-// Makes a texture from the bytes of a file that kiln baked.
-async function makeTexture(file) {
+// Makes a texture for a renderer from the bytes of a file that kiln baked.
+async function makeTexture(file, renderer) {
     const kind = kindOf(file.bytes);
     if (kind !== 'KTX2' && kind !== 'EXR')
         throw new Error(`${file.name}: the file is of the kind "${kind}", and not an environment that kiln baked ` +
                         `with --for ${engine}; bakeEnvironment() bakes panoramas`);
-    const texture = await (kind === 'KTX2' ? makeCube : makeCubeUv)(file);
+    const texture = await (kind === 'KTX2' ? makeCube : makeCubeUv)(file, renderer);
     texture.name = file.name;
     texture.generateMipmaps = false;
     texture.needsUpdate = true;
@@ -129,7 +151,7 @@ export async function loadEnvironment(source, renderer, { signal } = {}) {
     if (!files[engine])
         throw new Error(`kiln-ibl/three: three.js r${REVISION} needs the file that kiln bakes with --for ${engine}, ` +
                         `and only ${Object.keys(files).join()} is given`);
-    return makeTexture(await openFile(files[engine], { signal }));
+    return makeTexture(await openFile(files[engine], { signal }), renderer);
 }
 
 export async function bakeEnvironment(source, renderer, { size, ...options } = {}) {
@@ -141,7 +163,7 @@ export async function bakeEnvironment(source, renderer, { size, ...options } = {
     const texels = size && { size: engine === 'three' ? size : 2 * size };
     const { files, levels, sh, lights, report } = await bake(input.bytes, { name: input.name, ...options, ...texels,
                                                                            for: engine });
-    const texture = await makeTexture(files[0]);
+    const texture = await makeTexture(files[0], renderer);
     texture.userData.kiln = { levels, sh, lights, report };
     return texture;
 }

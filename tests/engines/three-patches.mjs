@@ -16,8 +16,24 @@ function patches(view, row, rows, material) {
     return new THREE.Mesh(geometry, material);
 }
 
-const renderer = new THREE.WebGLRenderer();
+// WebGPURenderer where 'three' is the build that has it, with its backend of WebGL.
+const gpu = 'WebGPURenderer' in THREE;
+export const renderer = gpu ? new THREE.WebGPURenderer({ forceWebGL: true }) : new THREE.WebGLRenderer();
 renderer.shadowMap.enabled = true;
+if (gpu)
+    await renderer.init();
+
+// The floats of what is drawn, the lowest row first.
+async function draw(scene, camera, width, height) {
+    const target = new (gpu ? THREE.RenderTarget : THREE.WebGLRenderTarget)(width, height, { type: THREE.FloatType });
+    renderer.setRenderTarget(target);
+    renderer.render(scene, camera);
+    if (gpu) // of which the upper row comes first
+        return renderer.readRenderTargetPixelsAsync(target, 0, 0, width, height);
+    const pixels = new Float32Array(4 * width * height);
+    renderer.readRenderTargetPixels(target, 0, 0, width, height, pixels);
+    return pixels;
+}
 
 // White metal, or, where a page is asked for it, white without any reflection: diffuse light alone.
 const white = (roughness, asked) => (asked.diffuse
@@ -42,7 +58,8 @@ export async function filterPanorama(file) {
 
 // asked: diffuse, of materials; ball, which casts a shadow. light(scene) adds what else lights the scene.
 export async function drawPatches(environment, views, roughness, cell, asked = {}, light = () => {}) {
-    return views.map((view) => {
+    const shown = [];
+    for (const view of views) {
         const columns = view.normals.length, rows = roughness.length;
         const scene = new THREE.Scene();
         scene.environment = environment;
@@ -55,14 +72,11 @@ export async function drawPatches(environment, views, roughness, cell, asked = {
         camera.position.fromArray(view.toEye).multiplyScalar(50);
         camera.up.fromArray(view.up);
         camera.lookAt(0, 0, 0);
-        const target = new THREE.WebGLRenderTarget(columns * cell, rows * cell, { type: THREE.FloatType });
-        renderer.setRenderTarget(target);
-        renderer.render(scene, camera);
-        const pixels = new Float32Array(4 * cell * cell * columns * rows);
-        renderer.readRenderTargetPixels(target, 0, 0, columns * cell, rows * cell, pixels);
-        return roughness.map((_, row) => view.normals.map((_, i) => {
+        const pixels = await draw(scene, camera, columns * cell, rows * cell);
+        shown.push(roughness.map((_, row) => view.normals.map((_, i) => {
             const at = 4 * ((row * cell + cell / 2) * columns * cell + i * cell + cell / 2);
             return [...pixels.slice(at, at + 3)];
-        }));
-    });
+        })));
+    }
+    return shown;
 }

@@ -1,0 +1,2 @@
+// kiln-ibl finds its worker and its WebAssembly beside its modules, which Vite's bundling of dependencies would separate.
+export default { optimizeDeps: { exclude: ['kiln-ibl'] } };

@@ -1,0 +1,3 @@
+import kiln from 'kiln-ibl/vite';
+
+export default { plugins: [kiln()], build: { target: 'esnext' } };
