@@ -11,6 +11,7 @@ usage() {
 ./do demo      bakes a sky and a real panorama into a page: build/demo/index.html
 ./do web [N]   builds the page that bakes in the browser, serves it on loopback (port N, else 8420)
 ./do python    builds the Python package and its wheel in build/release/python
+./do npm       builds the npm package: build/npm/kiln-ibl-VERSION.tgz
 ./do bench     measures speed and accuracy beside other bakers
 ./do lint      clang-tidy, cppcheck, shellcheck, formatting, layers
 ./do format    formats the sources
@@ -97,6 +98,18 @@ build_release() {
         esac
     done
     build release "$@"
+}
+
+# build_npm: the npm package of the command as WebAssembly, once with vectors and once without.
+build_npm() {
+    mkdir -p build/npm
+    for preset in wasm wasm-scalar; do
+        say "building $preset"
+        cmake --preset $preset >"build/$preset.log" 2>&1 || { cat "build/$preset.log"; exit 1; }
+        cmake --build --preset $preset --target kiln_npm
+    done
+    say "packing"
+    node npm/tools/pack.mjs build/npm build/wasm/npm/kiln.wasm build/wasm-scalar/npm/kiln.wasm
 }
 
 # build_asan: tests of the library; the command and the renderer are not run under the sanitizers. The low priority
@@ -193,6 +206,12 @@ python)
     need build python
     build_release PYTHON
     say "the wheel is build/release/python/$(cat build/release/python/wheel.txt)"
+    ;;
+npm)
+    need web
+    npm_packages web npm/codecs
+    build_npm
+    say "the package is build/npm/$(cat build/npm/name.txt)"
     ;;
 web)
     need web

@@ -1,6 +1,6 @@
 // What the command needs from the operating system: terminals, signals, memory, folders, a clock.
-// os_posix.c and os_windows.c implement these functions. The command's other files do not depend on
-// the system.
+// os_posix.c, os_windows.c, and os_host.c for WebAssembly implement these functions. The command's
+// other files do not depend on the system.
 #ifndef KILN_CLI_OS_H
 #define KILN_CLI_OS_H
 
@@ -32,9 +32,13 @@ int os_signal(void);
 /// Calls `work`. Threads that `work` creates block the signals that ask the process to stop: the
 /// signals then interrupt the calling thread.
 void os_without_signals(void (*work)(void *user), void *user);
-/// The exit code of a write that failed because the reader closed the pipe, if the errno value
-/// `error` means that; else 0.
+/// The exit code of a write to standard output that failed because the reader closed the pipe, if
+/// the errno value `error` means that, or if `error` is 0 and the system says so; else 0.
 int os_reader_gone(int error);
+
+/// Tells the program around a WebAssembly module how far the work is: the fraction 0 to 1 of a
+/// stage. Does nothing on other systems.
+void os_tell_progress(const char *stage, double fraction);
 
 /// Physical memory of the machine in bytes; 0 if unknown.
 size_t os_physical_memory(void);

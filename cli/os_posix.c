@@ -3,6 +3,7 @@
 #include "os.h"
 
 #include <errno.h>
+#include <poll.h>
 #include <signal.h>
 #include <stdio.h>
 #include <sys/ioctl.h>
@@ -35,6 +36,12 @@ double os_seconds(void)
     struct timespec now;
     clock_gettime(CLOCK_MONOTONIC, &now);
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+void os_tell_progress(const char *stage, double fraction)
+{
+    (void)stage;
+    (void)fraction;
 }
 
 // ----------------------------------------------------------------------------------------- signals
@@ -80,9 +87,13 @@ void os_without_signals(void (*work)(void *user), void *user)
     sigprocmask(SIG_SETMASK, &before, NULL);
 }
 
+// A C library such as musl drops what an earlier write could not write, and then the last write
+// succeeds. The pipe itself still says that its reader is gone.
 int os_reader_gone(int error)
 {
-    return error == EPIPE ? 128 + SIGPIPE : 0;
+    struct pollfd out = {.fd = STDOUT_FILENO, .events = POLLOUT};
+    bool gone = error == EPIPE || (!error && poll(&out, 1, 0) > 0 && (out.revents & POLLERR) != 0);
+    return gone ? 128 + SIGPIPE : 0;
 }
 
 // ------------------------------------------------------------------------------------------ memory

@@ -93,6 +93,12 @@ double os_seconds(void)
     return (double)now.QuadPart / (double)frequency.QuadPart;
 }
 
+void os_tell_progress(const char *stage, double fraction)
+{
+    (void)stage;
+    (void)fraction;
+}
+
 // ----------------------------------------------------------------------------------------- signals
 
 enum { INTERRUPT = 2, BROKEN_PIPE = 13 }; // numbers that these signals have in POSIX

@@ -34,6 +34,7 @@ bool cli_progress(void *user, const char *stage, double fraction)
     if (!work->stage || strcmp(stage, work->stage) != 0 || fraction > work->furthest)
         work->furthest = fraction;
     work->stage = stage;
+    os_tell_progress(stage, work->furthest);
     bool due = now - work->began > 0.5 && now - work->drawn > 0.1;
     if (work->on_terminal && due && !cli_interrupted()) {
         char line[PROGRESS_WIDTH + 1];

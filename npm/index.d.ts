@@ -74,7 +74,24 @@ export interface Light {
 /** What `kiln bake` writes with --sh to a .json file. */
 export interface Harmonics {
     bands: number;
-    [field: string]: unknown;
+    /** Whether the coefficients are those of irradiance, else of radiance. */
+    irradiance: boolean;
+    window: number;
+    /** The basis and its order, in words. */
+    basis: string;
+    /** Red, green and blue of each coefficient. */
+    coefficients: [number, number, number][];
+}
+
+/** What `bake` is rejected with if the command fails. */
+export interface KilnError extends Error {
+    name: 'KilnError';
+    /** The command's sentence, with the numbers and the way out. */
+    message: string;
+    /** 1 for bad input, 2 for options that are not there or contradict each other. */
+    exitCode: number;
+    /** All that the command printed on standard error. */
+    stderr: string;
 }
 
 export interface Baked {
@@ -82,16 +99,18 @@ export interface Baked {
     files: File[];
     /** Size in texels and roughness of each mip level. */
     levels: { size: number; roughness: number }[];
-    /** Spherical harmonics of the radiance, unless options ask for others. */
-    sh: Harmonics;
+    /** Spherical harmonics of the radiance, unless options ask for others; null if the option `sh` names a file
+     * that is no .json. */
+    sh: Harmonics | null;
     /** The lights that were taken out with `sun: 'extract'`. */
     lights: Light[];
     /** What `kiln bake --json` reports, with what was found in the input and cut off in the output. */
     report: any;
 }
 
-/** Bakes one environment. Is rejected with an error whose message is the command's own. */
-export function bake(input: Input, options?: BakeOptions): Promise<Baked>;
+/** Bakes one environment: a file, a picture, or the files of six faces, whose names say which face each is, such as
+ * px.png. Is rejected with a KilnError, whose message is the command's own. */
+export function bake(input: Input | readonly { name: string; bytes: Input }[], options?: BakeOptions): Promise<Baked>;
 
 export interface Run {
     /** 0, or 1 for bad input and 2 for a wrong command line. */
@@ -105,7 +124,11 @@ export interface Run {
 
 /** Runs the command `kiln` with the words of a command line on files in memory, for example
  * `kiln(['info', 'city.exr'], { files: [{ name: 'city.exr', bytes }] })`. */
-export function kiln(words: readonly string[], options?: Control & { files?: readonly File[] }): Promise<Run>;
+export function kiln(words: readonly string[], options?: Control & {
+    files?: readonly File[];
+    /** Standard input, which the name `-` reads. */
+    input?: Uint8Array;
+}): Promise<Run>;
 
 export interface Engine {
     name: string;

@@ -1,6 +1,7 @@
-// The functions of the operating system that the library uses, implemented in os_posix.c and
-// os_windows.c. No other file of src/ includes a system header. Paths and names are UTF-8 on every
-// system. Functions that can fail return false or -1 and set errno.
+// The functions of the operating system that the library uses, implemented in os_posix.c,
+// os_windows.c, and os_host.c for the command as WebAssembly. No other file of src/ includes a
+// system header. Paths and names are UTF-8 on every system. Functions that can fail return false or
+// -1 and set errno.
 #ifndef KI_OS_H
 #define KI_OS_H
 
