@@ -21,7 +21,7 @@ if [ "${1:-}" = --update ]; then
     update=yes
     shift
 fi
-[ $# -gt 0 ] || set -- accuracy probe threads instructions files scaling peer memory tables tune count web engines engines-lights blocks
+[ $# -gt 0 ] || set -- accuracy probe threads instructions files scaling peer memory tables tune count web engines blocks
 for part in bench bench_reference kiln; do
     [ -x $bin/$part ] || fail "$bin/$part is missing: run ./do bench"
 done
