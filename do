@@ -196,7 +196,7 @@ test)
 test-dist)
     need build render web test
     panoramas
-    npm_packages web tests/web tests/engines tests/engines/versions
+    npm_packages web tests/web tests/engines tests/engines/versions tests/engines/cesium
     build_release TESTS GOLDEN EXAMPLES PYTHON
     run_tests release -L dist "$@"
     printf '\n%d passed, %d failed\n' "$passed" "$failed"

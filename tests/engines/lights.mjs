@@ -10,8 +10,8 @@ import { babylon, filament, playcanvas, three } from './models.mjs';
 import { CELL, COLUMNS, add, bakePlain, check, dot, kiln, makeViews, panorama, readFile, readLevel }
     from './rig.mjs';
 
-const INPUT = path.join(path.dirname(panorama), 'sunrise.exr');
-const BALL_VIEWS = makeViews([[1, 0.1, 0], [-1, 0.1, 0], [0.1, 1, 0], [0.1, -1, 0], [0, 0.1, 1], [0, 0.1, -1]]);
+export const INPUT = path.join(path.dirname(panorama), 'sunrise.exr');
+export const BALL_VIEWS = makeViews([[1, 0.1, 0], [-1, 0.1, 0], [0.1, 1, 0], [0.1, -1, 0], [0, 0.1, 1], [0, 0.1, -1]]);
 const GROUND = { toEye: [0, 1, 0], right: [1, 0, 0], up: [0, 0, -1], normals: Array(COLUMNS).fill([0, 1, 0]) };
 const ROWS = Array(COLUMNS).fill(1);
 const ALONE = 1e-5; // relative error of what the light adds, which has the rounding of floats
@@ -21,13 +21,14 @@ const HALVES = 3 / 2048;
 const BALL = { centre: [0, 1.7, 0], radius: 1.5 };
 
 // The file is tuned, as by default.
-const exactly = bakePlain(64, [1], INPUT);
+let exactly;
 async function prepare({ name, ending, size, original }) {
     const bake = (kind, ...more) => kiln('bake', INPUT, '--for', name, '-o', `${kind}-${name}${ending}`,
                                          ...(size ? ['--size', size] : []), '-q', ...more);
     await bake('lights', '--sun', 'extract', '--lights-file', `lights-${name}.json`);
     if (original)
         await bake('original');
+    exactly ??= bakePlain(64, [1], INPUT);
     const [whole] = await exactly;
     return { whole, lights: JSON.parse(readFile(`lights-${name}.json`)) };
 }
@@ -42,28 +43,37 @@ function compare(shown, wanted) {
 }
 const percent = (x) => `${(100 * x).toFixed(2)} %`;
 
+// Reports what differs between numbers and those wanted, and checks that it is less than a bound.
+function prove(what, shown, wanted, bound, say) {
+    const { rms, most } = compare(shown, wanted);
+    say(`${what}: ${percent(rms)} rms and ${percent(most)} at most`);
+    check(rms < bound && most < bound, `${what}: ${rms} rms, ${most} at most, bound ${bound}`);
+}
+
+const overBall = (toKiln, value) => BALL_VIEWS.map(({ normals }) => [normals.map((n) => value(toKiln(n)))]);
+
+// Compares what the light adds to the ball with irradiance * max(least, n . l) / pi.
+export function compareLight(added, { lights: [{ direction, irradiance }] }, toKiln, bound, say, least = 0) {
+    const wanted = overBall(toKiln, (n) => irradiance.map((e) => e * Math.max(least, dot(n, direction)) / Math.PI));
+    prove('the light alone', added, wanted, bound, say);
+}
+
 // Errors are parts of the ball's brightest number: near zero, on the side away from the sun, engines show coarse levels
-// and three bands of harmonics, with or without the light. What the light alone adds to the ball is compared with
-// irradiance * max(0, n . l) / pi. Where `original` is set, the ball is also compared with the ball that the engine
-// shows of the environment with the sun. The other engines show that environment less exactly than 1 %.
+// and three bands of harmonics, with or without the light. Where `original` is set, the ball is also compared with the
+// ball that the engine shows of the environment with the sun. The other engines show that environment less exactly
+// than 1 %.
 async function checkBall({ name, model, loads, asked, original, alone = ALONE }, { whole, lights }, draw, say) {
-    const { toKiln } = model(6, 64), [{ direction, irradiance }] = lights.lights;
-    const overBall = (value) => BALL_VIEWS.map(({ normals }) => [normals.map((n) => value(toKiln(n)))]);
+    const { toKiln } = model(6, 64);
     const show = (more, kind = 'lights') =>
         draw(`${kind}-${name}${loads}`, BALL_VIEWS, [1], CELL, { diffuse: true, ...asked, ...more });
-    const exact = overBall((n) => readLevel(whole, n));
+    const exact = overBall(toKiln, (n) => readLevel(whole, n));
     const rest = await show({}), both = await show({ lights });
-    const prove = (what, shown, wanted, bound) => {
-        const { rms, most } = compare(shown, wanted);
-        say(`${what}: ${percent(rms)} rms and ${percent(most)} at most`);
-        check(rms < bound && most < bound, `${what}: ${rms} rms, ${most} at most, bound ${bound}`);
-    };
-    prove('ball, from the exact', both, exact, 0.01);
+    prove('ball, from the exact', both, exact, 0.01, say);
     if (original)
-        prove('ball, from the ball lit by the whole environment', both, await show({}, 'original'), 0.01);
+        prove('ball, from the ball lit by the whole environment', both, await show({}, 'original'), 0.01,
+              say);
     const added = both.map((view, v) => [view[0].map((value, x) => value.map((e, c) => e - rest[v][0][x][c]))]);
-    const wanted = overBall((n) => irradiance.map((e) => e * Math.max(0, dot(n, direction)) / Math.PI));
-    prove('the light alone', added, wanted, alone);
+    compareLight(added, lights, toKiln, alone, say);
 }
 
 // The distance of the ball's centre from the ray towards the light, as far as it lies in front.
