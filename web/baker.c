@@ -8,6 +8,7 @@
 #include "viewer.h"
 
 #include <emscripten.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,9 +19,13 @@ struct baker {
     kiln_map source;
     kiln_load_report report; // what was found in the source picture
     kiln_note note;          // the sentence that was returned last
+    kiln_bake_def def;       // the options of baker_options
     kiln_environment baked, scenery;
     kiln_lights taken; // lights that were taken out of the source
     double light[7];   // the light that baker_light returned last
+    kiln_files files;  // files of the last baker_engine_files
+    kiln_environment_report written;
+    double histogram[BAKER_STOPS];
     kiln_image truth;
     double truth_noise;
 };
@@ -73,6 +78,11 @@ static bool take_source(baker *b, kiln_result result, kiln_map *map, const kiln_
     return true;
 }
 
+const float *baker_source_texels(const baker *b)
+{
+    return b->source.level[0];
+}
+
 bool baker_open(baker *b, const void *bytes, size_t size, const char *name)
 {
     kiln_map map;
@@ -103,17 +113,24 @@ int baker_source_size(const baker *b)
     return b->source.size;
 }
 
-const float *baker_source_texels(const baker *b)
+void baker_options(baker *b, double yaw, double pitch, double roll, double exposure, int sun,
+                   int light_count, double clamp)
 {
-    return b->source.level[0];
+    b->def = (kiln_bake_def){
+        .levels = {.rotation = yaw, .pitch = pitch, .roll = roll},
+        .exposure = exposure,
+        .sun = (kiln_sun)sun,
+        .lights = {.count = light_count},
+        .clamp = clamp,
+    };
 }
 
-bool baker_bake(baker *b, int size, int levels, double rotation, double exposure, bool extract)
+bool baker_bake(baker *b, int size, int levels)
 {
-    kiln_bake_def def = {.levels = {.size = size, .level_count = levels, .rotation = rotation},
-                         .exposure = exposure,
-                         .sun = extract ? KILN_SUN_EXTRACT : KILN_SUN_KEEP};
+    kiln_bake_def def = b->def;
     kiln_environment made;
+    def.levels.size = size;
+    def.levels.level_count = levels;
     if (!b->source.size || kiln_bake(b->context, &b->source, &def, &made, &b->error))
         return false;
     kiln_environment_free(&b->baked);
@@ -121,9 +138,14 @@ bool baker_bake(baker *b, int size, int levels, double rotation, double exposure
     return true;
 }
 
-bool baker_extract(baker *b)
+bool baker_sun(baker *b)
 {
-    return !kiln_lights_extract(b->context, &b->source, NULL, &b->taken, &b->error);
+    const kiln_bake_def *def = &b->def;
+    if (def->sun == KILN_SUN_EXTRACT)
+        return !kiln_lights_extract(b->context, &b->source, &def->lights, &b->taken, &b->error);
+    return def->sun != KILN_SUN_CLAMP ||
+           !kiln_map_clamp(b->context, &b->source, def->clamp * exp2(-def->exposure), NULL,
+                           &b->error);
 }
 
 int baker_light_count(const baker *b)
@@ -140,18 +162,30 @@ const double *baker_light(baker *b, int index)
     return b->light;
 }
 
-const char *baker_light_words(baker *b)
+// Writes a sentence about what the options did with the lights of the last bake.
+static bool sun_note(baker *b, const kiln_environment *made)
 {
-    const kiln_light *light = &b->taken.light[0];
-    if (b->taken.count)
+    const kiln_lights *lights = &made->lights;
+    double share = 0;
+    for (int i = 0; i < lights->count; i++)
+        share += lights->light[i].share;
+    if (b->def.sun == KILN_SUN_CLAMP)
+        snprintf(b->note.text, sizeof b->note.text,
+                 "%zu texels above %.4g were made as dark as this, which lost %.3g %% of the light",
+                 made->clamped.texel_count, made->clamped.limit, 100 * made->clamped.light_share);
+    else if (b->def.sun == KILN_SUN_EXTRACT && !lights->count)
+        snprintf(b->note.text, sizeof b->note.text,
+                 "no compact light was found, and nothing was taken out");
+    else if (lights->count == 1)
         snprintf(b->note.text, sizeof b->note.text,
                  "a light of radius %.3g degrees with %.3g %% of the light shines in place of its "
                  "texels",
-                 light->angular_radius, 100 * light->share);
+                 lights->light[0].angular_radius, 100 * share);
     else
         snprintf(b->note.text, sizeof b->note.text,
-                 "no compact light was found, and nothing was taken out");
-    return b->note.text;
+                 "%d lights with %.3g %% of the light shine in place of their texels",
+                 lights->count, 100 * share);
+    return b->def.sun != KILN_SUN_KEEP;
 }
 
 const char *baker_note(baker *b, int index)
@@ -162,9 +196,9 @@ const char *baker_note(baker *b, int index)
             return b->note.text;
         count++;
     }
-    return index == count && kiln_cut_note(&b->report, &b->baked.levels_cut, &b->note)
-               ? b->note.text
-               : NULL;
+    if (kiln_cut_note(&b->report, &b->baked.levels_cut, &b->note) && count++ == index)
+        return b->note.text;
+    return sun_note(b, &b->baked) && count == index ? b->note.text : NULL;
 }
 
 int baker_level_count(const baker *b)
@@ -259,6 +293,118 @@ double baker_truth_noise(const baker *b)
 {
     return b->truth_noise;
 }
+
+// ----------------------------------------------------------------------------------------- engines
+
+const char *baker_engine_text(int index, int what)
+{
+    const kiln_engine *engine = kiln_engine_at(index);
+    return !engine     ? NULL
+           : what == 0 ? engine->name
+           : what == 1 ? engine->title
+           : what == 2 ? engine->files
+                       : engine->ending;
+}
+
+int baker_engine_number(int index, int what)
+{
+    const kiln_engine *engine = kiln_engine_at(index);
+    return !engine     ? 0
+           : what == 0 ? engine->size
+           : what == 1 ? engine->tune
+                       : (int)engine->formats[what < 6 ? what - 2 : 3];
+}
+
+bool baker_engine_files(baker *b, int index, int size, int tune, int format, const char *name,
+                        const char *lights_name)
+{
+    const kiln_engine *engine = kiln_engine_at(index);
+    kiln_bake_def def = b->def;
+    kiln_environment made;
+    def.engine = engine;
+    def.tune = (kiln_tune)tune;
+    def.levels.size = size;
+    def.irradiance_size = KILN_NO_IRRADIANCE;
+    kiln_environment_save_def save = {.engine = engine, .format = (kiln_format)format};
+    kiln_files_free(&b->files);
+    if (!engine || kiln_bake(b->context, &b->source, &def, &made, &b->error))
+        return false;
+    if (lights_name[0])
+        save.lights_path = lights_name;
+    bool good =
+        !kiln_environment_encode(b->context, &made, name, &save, &b->files, &b->written, &b->error);
+    kiln_environment_free(&made);
+    return good;
+}
+
+int baker_file_count(const baker *b)
+{
+    return b->files.count;
+}
+
+const char *baker_file_name(const baker *b, int index)
+{
+    return b->files.file[index].name;
+}
+
+const unsigned char *baker_file_bytes(const baker *b, int index)
+{
+    return b->files.file[index].bytes;
+}
+
+size_t baker_file_size(const baker *b, int index)
+{
+    return b->files.file[index].size;
+}
+
+const char *baker_files_note(baker *b)
+{
+    const kiln_save_report *r = &b->written.levels;
+    snprintf(b->note.text, sizeof b->note.text,
+             "%zu values above %g, up to %.4g, were cut off with %.3g %% of the light, because the "
+             "file holds no larger values",
+             r->cut_count, r->limit, r->largest, 100 * r->light_share);
+    return r->cut_count ? b->note.text : NULL;
+}
+
+// --------------------------------------------------------------------------------------- histogram
+
+const double *baker_histogram(baker *b)
+{
+    const kiln_map *map = &b->source;
+    size_t size = (size_t)map->size, width = size * (map->shape == KILN_SHAPE_PANORAMA ? 2 : 1);
+    size_t rows = map->shape == KILN_SHAPE_CUBE ? 6 * size : size;
+    const float *texel = map->level[0];
+    double sum = 0;
+    memset(b->histogram, 0, sizeof b->histogram);
+    for (size_t y = 0; y < rows; y++) {
+        double weight = map->shape == KILN_SHAPE_PANORAMA
+                            ? sin(3.14159265358979323846 * ((double)y + 0.5) / (double)rows)
+                            : 1;
+        for (size_t x = 0; x < width; x++, texel += 3) {
+            double peak = fmax((double)texel[0], fmax((double)texel[1], (double)texel[2]));
+            int stop = peak > 0 ? (int)floor(log2(peak)) - BAKER_FIRST_STOP : 0;
+            b->histogram[stop < 0 ? 0 : stop < BAKER_STOPS ? stop : BAKER_STOPS - 1] += weight;
+            sum += weight;
+        }
+    }
+    for (int i = 0; i < BAKER_STOPS; i++)
+        b->histogram[i] /= sum;
+    return b->histogram;
+}
+
+double baker_largest(const baker *b)
+{
+    const kiln_map *map = &b->source;
+    size_t size = (size_t)map->size, count = size * size * 3;
+    count *= map->shape == KILN_SHAPE_PANORAMA ? 2 : map->shape == KILN_SHAPE_CUBE ? 6 : 1;
+    float largest = 0;
+    for (size_t i = 0; i < count; i++)
+        largest = fmaxf(largest, map->level[0][i]);
+    return (double)largest;
+}
+
+// ------------------------------------------------------------------------------------------- files
 
 bool baker_save_irradiance(baker *b, const char *path, int format)
 {

@@ -23,27 +23,29 @@ BAKER bool baker_open(baker *b, const void *bytes, size_t size, const char *name
 BAKER bool baker_sky(baker *b, int size, double elevation, double azimuth, double turbidity);
 BAKER int baker_source_shape(const baker *b);
 BAKER int baker_source_size(const baker *b);
+/// Returns level 0 of the source: RGB floats, row after row, of a cube six faces.
 BAKER const float *baker_source_texels(const baker *b);
-/// Bakes as `kiln bake --size --levels --rotate --exposure` does, where 0 levels means all levels,
-/// with `extract` as with --sun extract. On failure the previous bake stays.
-BAKER bool baker_bake(baker *b, int size, int levels, double rotation, double exposure,
-                      bool extract);
-/// Takes the light with the largest share out of the source, as --sun extract does.
-/// baker_scenery and baker_truth then have the rest in the source, and baker_truth has the light
-/// as a disc. Until another source is opened, baker_bake would bake the rest.
-BAKER bool baker_extract(baker *b);
-/// Returns the number of lights that baker_extract took out of the source, and light `index` as
-/// seven numbers: the direction to the light in the source, the irradiance of red, green and blue,
-/// and the angular radius in degrees.
+/// Sets the options of all later bakes, as `kiln bake` has them: --rotate YAW,PITCH,ROLL,
+/// --exposure, --sun (a kiln_sun) with --lights (0 for 1) and the radiance of clamp=, 0 for auto.
+BAKER void baker_options(baker *b, double yaw, double pitch, double roll, double exposure, int sun,
+                         int light_count, double clamp);
+/// Bakes as `kiln bake --size --levels` does, where 0 levels means all levels. On failure the
+/// previous bake stays.
+BAKER bool baker_bake(baker *b, int size, int levels);
+/// Takes lights out of the source or clamps the source, as the options say. baker_scenery and
+/// baker_truth then have the rest in the source, and baker_truth has the lights as discs. Until
+/// another source is opened, baker_bake would bake the rest.
+BAKER bool baker_sun(baker *b);
+/// Returns the number of lights that baker_sun took out of the source, and light `index` as seven
+/// numbers: the direction to the light in the source, the irradiance of red, green and blue, and
+/// the angular radius in degrees.
 BAKER int baker_light_count(const baker *b);
 BAKER const double *baker_light(baker *b, int index);
-/// Returns a sentence, without a full stop, about the light that the last baker_extract took out.
-BAKER const char *baker_light_words(baker *b);
 BAKER int baker_level_count(const baker *b);
 BAKER int baker_level_size(const baker *b, int level);
 BAKER double baker_roughness(const baker *b, int level);
 /// Returns sentence number `index`, without a full stop, about what was found in the source and
-/// what the last bake cut off; NULL after the last sentence. The text stays until the next call.
+/// what the last bake cut off and took out; NULL after the last sentence. The text stays until the next call.
 BAKER const char *baker_note(baker *b, int index);
 /// Returns the six faces of a baked level, as RGB floats.
 BAKER const float *baker_texels(const baker *b, int level);
@@ -69,6 +71,33 @@ BAKER double baker_truth_noise(const baker *b);
 /// Writes a table of the reflection model, as `kiln tables --table` does by default. Kind 0 is E,
 /// kind 1 is E_avg, kind 2 is (A, B).
 BAKER bool baker_table(baker *b, const char *path, int kind);
+
+/// Returns a text of engine `index` of kiln's list: its name (0), title (1), files (2) or ending
+/// (3); NULL for an index beyond the last engine.
+BAKER const char *baker_engine_text(int index, int what);
+/// Returns a number of an engine: its default size (0), 1 if levels are tuned by default (1), and
+/// its formats as kiln_format (2 to 5), with 0 after the last.
+BAKER int baker_engine_number(int index, int what);
+/// Bakes the source for an engine as `kiln bake --for` does, and encodes the files. `size` 0 is the
+/// engine's own, `tune` a kiln_tune, `format` a kiln_format of the engine or 0. `name` is the path
+/// of the output; `lights_name` that of the lights' file, or empty. The functions below return the
+/// files, and a sentence about values that the files cannot hold, or NULL.
+BAKER bool baker_engine_files(baker *b, int index, int size, int tune, int format, const char *name,
+                              const char *lights_name);
+BAKER int baker_file_count(const baker *b);
+BAKER const char *baker_file_name(const baker *b, int index);
+BAKER const unsigned char *baker_file_bytes(const baker *b, int index);
+BAKER size_t baker_file_size(const baker *b, int index);
+BAKER const char *baker_files_note(baker *b);
+
+/// The histogram has a bin for each stop, the radiances from 2^(k + BAKER_FIRST_STOP) to twice
+/// that. The first bin has all smaller radiances too and the last bin all greater ones.
+enum { BAKER_STOPS = 40, BAKER_FIRST_STOP = -14 };
+/// Returns the part of the source's texels that falls into each bin by its largest channel. Texels
+/// of a panorama count by their solid angle.
+BAKER const double *baker_histogram(baker *b);
+/// Returns the largest value of the source.
+BAKER double baker_largest(const baker *b);
 
 /// Writes the irradiance cube of the last bake, as `kiln bake --irradiance` does.
 BAKER bool baker_save_irradiance(baker *b, const char *path, int format);

@@ -1,6 +1,8 @@
 // JavaScript class around baker.h; failures throw an Error with baker_message's text.
 //   const baker = await Baker.make(makeModule, { progress(stage, fraction) {} })
-export const FORMATS = { rgba16f: 1, rgba32f: 2, rgb9e5: 3, b10g11r11: 4 };
+const FORMAT_NAMES = ['auto', 'rgba16f', 'rgba32f', 'rgb9e5', 'b10g11r11', 'bc6h'];
+const TUNES = ['auto', 'none', 'sharp', 'soft'];
+const SUNS = ['keep', 'extract', 'clamp'];
 export const TABLES = ['e', 'eavg', 'dfg'];
 export const SHAPES = ['auto', 'panorama', 'cube', 'octahedron'];
 
@@ -64,11 +66,17 @@ export class Baker {
         return [...(this.told ?? []), ...notes];
     }
 
-    // Bakes the source, with `extract` without its strongest light. Returns each level's size,
-    // roughness and texels, the harmonics, the notes and the time.
-    bake({ size = 256, levels = 0, rotation = 0, exposure = 0, extract = false } = {}) {
+    // Sets the options of later bakes, as the command has them. `sun` is 'keep', 'extract' or
+    // 'clamp'; `clamp` is the largest radiance, 0 for the baker's choice.
+    options({ yaw = 0, pitch = 0, roll = 0, exposure = 0, sun = 'keep', lights = 1, clamp = 0 } = {}) {
+        this.module._baker_options(this.self, yaw, pitch, roll, exposure, SUNS.indexOf(sun), lights, clamp);
+    }
+
+    // Bakes the source with the options. Returns each level's size, roughness and texels, the
+    // harmonics, the notes and the time.
+    bake({ size = 256, levels = 0 } = {}) {
         const { module, self } = this, began = performance.now();
-        this.call('baker_bake', size, levels, rotation, exposure, Number(extract));
+        this.call('baker_bake', size, levels);
         const seconds = (performance.now() - began) / 1000;
         const sh = module._baker_harmonics(self) >>> 3;
         return {
@@ -84,16 +92,62 @@ export class Baker {
         };
     }
 
-    // Takes the strongest light out of the source. Returns an array of the lights that were taken
-    // out, each as the seven numbers of baker_light, and a sentence about the light.
-    extract() {
+    // Takes lights out of the source or clamps the source, as the options say. Returns an array of
+    // the lights that were taken out, each as the seven numbers of baker_light.
+    sun() {
         const { module, self } = this;
-        this.call('baker_extract');
-        const lights = Array.from({ length: module._baker_light_count(self) }, (_, i) => {
+        this.call('baker_sun');
+        return Array.from({ length: module._baker_light_count(self) }, (_, i) => {
             const at = module._baker_light(self, i) >>> 3;
             return [...module.HEAPF64.slice(at, at + 7)];
         });
-        return { lights, words: module.UTF8ToString(module._baker_light_words(self)) };
+    }
+
+    // The part of the source's texels of each stop, as baker_histogram, the exponent of the first
+    // stop, and the largest value.
+    histogram() {
+        const { module, self } = this, at = module._baker_histogram(self) >>> 3;
+        return { first: -14, parts: [...module.HEAPF64.slice(at, at + 40)],
+                 largest: module._baker_largest(self) };
+    }
+
+    // The source if it is a panorama: RGB floats, row 0 at the top.
+    panorama() {
+        const { module, self } = this, { shape, width, height } = this.source();
+        if (shape !== 'panorama')
+            throw new Error(`three.js filters panoramas, and this picture is a ${shape}`);
+        const at = module._baker_source_texels(self) >>> 2;
+        return { width, height, texels: module.HEAPF32.slice(at, at + 3 * width * height) };
+    }
+
+    // kiln's list of engines: `formats` are names, the default first.
+    engines() {
+        const { module } = this, list = [];
+        for (let i = 0; module._baker_engine_text(i, 0); i++) {
+            const [name, title, files, ending] =
+                [0, 1, 2, 3].map((what) => module.UTF8ToString(module._baker_engine_text(i, what)));
+            const [size, tuned, ...formats] =
+                [0, 1, 2, 3, 4, 5].map((what) => module._baker_engine_number(i, what));
+            list.push({ name, title, files, ending, size, tuned: Boolean(tuned),
+                        formats: formats.filter(Boolean).map((format) => FORMAT_NAMES[format]) });
+        }
+        return list;
+    }
+
+    // The files of an engine, baked with the options: { files: [{ name, bytes }], note }.
+    engineFiles({ index, size = 0, tune = 'auto', format = 'auto', name, lightsName = '' }) {
+        const { module, self } = this;
+        this.call('baker_engine_files', index, size, TUNES.indexOf(tune), FORMAT_NAMES.indexOf(format), name,
+                  lightsName);
+        const note = module._baker_files_note(self);
+        return {
+            note: note ? module.UTF8ToString(note) : '',
+            files: Array.from({ length: module._baker_file_count(self) }, (_, i) => {
+                const at = module._baker_file_bytes(self, i);
+                return { name: module.UTF8ToString(module._baker_file_name(self, i)),
+                         bytes: module.HEAPU8.slice(at, at + module._baker_file_size(self, i)) };
+            }),
+        };
     }
 
     // Returns the textures that light the view, in the form that Stage.light takes. With `samples`
@@ -133,14 +187,14 @@ export class Baker {
 
     // Bytes of the baked irradiance cube as a file: .ktx2 or .dds.
     irradiance(name, format = 'rgba16f') {
-        this.call('baker_save_irradiance', `/${name}`, FORMATS[format]);
+        this.call('baker_save_irradiance', `/${name}`, FORMAT_NAMES.indexOf(format));
         return this.written(`/${name}`);
     }
 
     // Bytes of the file that the command would write; the ending of the name selects the kind:
     // .ktx2, .dds, .json, .txt or .h.
     file(name, format = 'rgba16f') {
-        this.call('baker_save', `/${name}`, FORMATS[format]);
+        this.call('baker_save', `/${name}`, FORMAT_NAMES.indexOf(format));
         return this.written(`/${name}`);
     }
 

@@ -1,13 +1,16 @@
 // The web page's main module. In: the address, dropped files, controls, keys. Out: the rendered
-// view, the strip of baked levels, files to download. A worker (engine.mjs) bakes; stage.mjs draws
-// on the canvas; the state is kept in the address.
-import { makeControls } from './controls.mjs';
-import { Engine } from './engine.mjs';
-import { ENGINES } from './engines.mjs';
+// view, the strip of baked levels, files to download. A worker (engine.mjs) bakes and another
+// (stage_client.mjs) draws, so that nothing keeps the page waiting; the state is kept in the address.
 import { BackgroundWork } from './background.mjs';
-import { Stage } from './stage.mjs';
+import { makeControls, NAMES } from './controls.mjs';
+import { Engine } from './engine.mjs';
+import { Files, save } from './files.mjs';
+import { showHistogram } from './histogram.mjs';
+import { showLabels } from './labels.mjs';
+import { StageClient } from './stage_client.mjs';
 import { bounded, flag, fromHash, number, text, toHash, word } from './state.mjs';
-import makeStageModule from './stage.js';
+import { makeTheme } from './theme.mjs';
+import { ThreeView } from './three_view.mjs';
 import { middleGrey, unroll } from './unroll.mjs';
 import { KEYS, View } from './view.mjs';
 
@@ -29,14 +32,18 @@ const engine = new Engine({
         say(`${stage[0].toUpperCase()}${stage.slice(1)}, ${Math.round(100 * fraction)} %.`);
     },
 });
-const stage = await Stage.make(makeStageModule, '#view');
+let onDrawn = () => {}; // set once the view is there
+const stage = await StageClient.make(canvas, (drawn) => onDrawn(drawn));
+const engines = await engine.engines();
 
 // ------------------------------------------------------------------------------------------- state
 
 // Name, kind and default of each value that the address may hold. Each scene has defaults of its
 // own for camera, material and method.
+const SCENES = [...stage.words.scene, 'three'];
+const sceneOf = (scene) => (scene === 'three' ? 'ibl' : scene); // the scene whose balls are shown
 function kindsOf(scene) {
-    const own = stage.defaults(scene), { words } = stage;
+    const own = stage.view(sceneOf(scene)), { words } = stage;
     return {
         source: text('sky'),
         sun: number(30, -5, 90),
@@ -45,10 +52,16 @@ function kindsOf(scene) {
         size: number(256, 16, 1024, 0),
         turn: number(0, -180, 180),
         stops: number(0, -16, 16),
-        light: flag(false), // the strongest light is taken out of the bake and drawn as a disc
+        lamps: word('keep', 'keep', 'extract', 'clamp'),
+        count: number(1, 1, 16, 0), // largest number of lights that are taken out
+        clamp: number(0, 0, 65504), // 0: the baker chooses
+        engine: word('three', ...engines.map(({ name }) => name)),
+        engineSize: number(0, 0, 2048, 0), // 0: the engine's own
+        format: word('auto', 'auto', 'rgba16f', 'rgb9e5', 'b10g11r11', 'bc6h'),
+        tune: word('auto', 'auto', 'none', 'sharp', 'soft'),
         // index of the level shown in place of the balls; -1 shows the balls
         shown: number(-1, -1, 15, 0),
-        scene: word('ibl', ...words.scene),
+        scene: word('ibl', ...SCENES),
         method: word(own.method, ...words.method),
         material: word(own.material, ...words.material),
         debug: word('none', ...words.debug, 'error'),
@@ -57,7 +70,9 @@ function kindsOf(scene) {
         alone: flag(false), // the reference leaves out light between balls
         azimuth: number(own.azimuth, -3600, 3600),
         elevation: number(own.elevation, -89, 89),
-        distance: number(own.distance, 60, 3000, 1),
+        zoom: number(1, 0.2, 8, 3), // 1: all balls are whole
+        distance: number(0, 0, 3000, 1), // of the camera from its target; 0: by the zoom
+        fov: number(own.fov, 5, 90, 1),
         split: number(own.split, 0, 1),
         background: number(own.background, 0, 1),
         occlusion: flag(Boolean(own.occlusion)),
@@ -71,14 +86,14 @@ function kindsOf(scene) {
 }
 
 function readAddress() {
-    const { scene } = fromHash({ scene: word('ibl', ...stage.words.scene) }, location.hash);
+    const { scene } = fromHash({ scene: word('ibl', ...SCENES) }, location.hash);
     return fromHash(kindsOf(scene), location.hash);
 }
 
 const state = readAddress();
 let opened = null; // bytes and name of the opened file; null for the sky
-let baked = null, lit = '';
-let lights = []; // taken out of the source, in the form of Baker.extract()
+let baked = null, range = null, lit = '';
+let lights = []; // taken out of the source, in the form of Baker.sun()
 
 function remember() {
     history.replaceState(null, '', toHash(kindsOf(state.scene), state) || location.pathname);
@@ -86,21 +101,24 @@ function remember() {
 
 // ------------------------------------------------------------------------------------------ baking
 
-const stem = () => (opened ? opened.name.replace(/\.[^.]*$/, '') : 'sky');
+// The name of what is open without its ending, for the names of files and for lines of code.
+const stem = () => (opened ? opened.name.replace(/\.[^.]*$/, '').replace(/['"\\`]|\p{Cc}/gu, '_') : 'sky');
+
+const optionsOf = ({ turn, stops, lamps, count, clamp }) =>
+    ({ yaw: turn, exposure: stops, sun: lamps, lights: count, clamp });
 
 function describe(source) {
     const from = `a ${source.shape} of ${source.width} x ${source.height}`;
     const made = `a cube of ${baked.levels[0].size} with ${baked.levels.length} levels`;
     return `${opened ? opened.name : 'The sky'}: from ${from}, ${made} baked in ` +
-           `${baked.seconds.toFixed(2)} s here (${baked.cpu}). Nothing left this machine.`;
+           `${baked.seconds.toFixed(2)} s. Nothing left this machine.`;
 }
 
 function setBusy(busy) {
     document.body.setAttribute('aria-busy', String(busy));
     bar.hidden = true;
     for (const button of get('downloads').children)
-        button.disabled = busy || !baked || (button.dataset.needs === 'light' && !state.light);
-    get('code').hidden = !state.light || !baked;
+        button.disabled = busy || !baked || (button.dataset.needs === 'lights' && state.lamps !== 'extract');
 }
 
 // Runs requested work one after the other. Of requests that wait only the newest is run.
@@ -129,27 +147,30 @@ function request(work) {
 // Opens a file, or the sky if `file` is null, and bakes it. On failure the previous bake stays.
 const bake = (file) => request(async () => {
     say(`Reading ${file ? file.name : 'the sky'}.`);
-    const { size, sun, bearing, haze } = state;
+    const { size, sun, bearing, haze } = state, options = optionsOf(state);
     const source = file ? await engine.open(file.bytes, file.name)
                         : await engine.sky({ elevation: sun, azimuth: bearing, turbidity: haze });
-    const extract = state.light;
-    const made = await engine.bake({ size, rotation: state.turn, exposure: state.stops, extract });
-    const key = [file ? file.stamp : [sun, bearing, haze], size, extract].join();
-    const taken = extract ? await engine.extract() : { lights: [], words: '' };
-    if (stage.ready && key !== lit) {
-        stage.light(await engine.scenery({ size }));
-        stage.discs(taken.lights);
-        lit = key;
+    await engine.options(options);
+    const made = await engine.bake({ size });
+    const seen = [file ? file.stamp : [sun, bearing, haze], ...Object.values(options).slice(1)].join();
+    const key = `${seen},${size}`;
+    if (stage.problem === '' && key !== lit) {
+        const measured = await engine.histogram();
+        const taken = await engine.sun(), scenery = await engine.scenery({ size });
+        await stage.started;
+        if (stage.ready) {
+            await stage.upload(scenery);
+            await stage.discs(taken);
+        }
+        [lights, range, lit] = [taken, measured, key];
     }
-    if (taken.words)
-        made.notes.push(taken.words);
     baked = made;
-    lights = taken.lights;
     opened = file;
     state.source = file ? file.name : 'sky';
     say(describe(source));
     get('report').textContent = made.notes.map((note) => `${state.source}: ${note}.`).join(' ');
     showLevels();
+    showRange();
     remember();
 });
 
@@ -162,13 +183,17 @@ const speak = (who) => (sentence) => {
     get('stop').hidden = !get('background').textContent;
 };
 
-const sourceKey = () =>
-    [opened ? opened.stamp : [state.sun, state.bearing, state.haze], state.light].join();
-const openIn = async (worker) => {
+const sourceKey = () => [opened ? opened.stamp : [state.sun, state.bearing, state.haze],
+                         ...Object.values(optionsOf(state)).slice(1)].join();
+// Opens what is open here in another worker, with the page's options.
+const openWhole = async (worker) => {
     await (opened ? worker.open(opened.bytes, opened.name)
         : worker.sky({ elevation: state.sun, azimuth: state.bearing, turbidity: state.haze }));
-    if (state.light)
-        await worker.extract();
+    await worker.options(optionsOf(state));
+};
+const openIn = async (worker) => {
+    await openWhole(worker);
+    await worker.sun();
 };
 
 // The importance-sampled environment that scene compare shows, with few samples first.
@@ -176,7 +201,7 @@ const textbook = new BackgroundWork({
     onWords: speak('textbook'),
     onFailure: (problem) => complain(problem.message),
     onResult(scenery, _, last) {
-        stage.light(scenery, true);
+        stage.upload(scenery, true);
         canvas.dataset.textbook = last ? 'whole' : 'so far';
         view.change();
     },
@@ -192,7 +217,7 @@ function wantTextbook() {
     textbook.start({
         key: lit, source: sourceKey(), open: openIn,
         steps: [16, 64, 256, 1024].map((samples) => ({
-            words: `The textbook bakes the right side: ${samples} of its 1024 samples for each texel`,
+            words: `Sampling the right side: ${samples} of 1024 samples for each texel`,
             work: (worker) => worker.scenery({ size, samples }),
         })),
     });
@@ -204,8 +229,8 @@ let wrong = null;
 const truth = new BackgroundWork({
     onWords: speak('truth'),
     onFailure: (problem) => complain(problem.message),
-    onResult(integral, { key, seen }, last) {
-        wrong = { key, last, noise: integral.noise, ...stage.error(seen, integral) };
+    async onResult(integral, { key, seen }, last) {
+        wrong = { key, last, noise: integral.noise, ...await stage.error(seen, integral) };
         refresh();
     },
 });
@@ -215,7 +240,7 @@ const truth = new BackgroundWork({
 function wantedTruth() {
     const box = get('stage'), height = TRUTH_ROWS;
     const width = Math.max(1, Math.round(height * box.clientWidth / Math.max(1, box.clientHeight)));
-    const seen = { ...viewOf(), samples: 1 };
+    const seen = { ...viewOf(width / height), samples: 1 };
     const { noise, alone } = state;
     return { seen, width, height, noise, alone,
              key: [lit, stage.numbers(seen), width, height, noise, alone].join() };
@@ -223,7 +248,7 @@ function wantedTruth() {
 
 function wantTruth() {
     clearTimeout(wantTruth.timer);
-    const wanted = state.debug === 'error' && stage.ready && baked ? wantedTruth() : null;
+    const wanted = state.debug === 'error' && state.scene !== 'three' && stage.ready && baked ? wantedTruth() : null;
     if (!wanted || wanted.key === stopped.truth) {
         if (truth.busy)
             truth.stop();
@@ -287,7 +312,7 @@ function showLevels() {
         const item = document.createElement('li'), button = document.createElement('button');
         const picture = document.createElement('canvas'), words = document.createElement('span');
         const roughness = Number(level.roughness.toFixed(3));
-        unroll(level, exposure, picture, 112, 56);
+        setTimeout(() => unroll(level, exposure, picture, 112, 56)); // a task of its own
         words.textContent = `${level.size} · r ${roughness}`;
         button.type = 'button';
         button.append(picture, words);
@@ -298,6 +323,12 @@ function showLevels() {
     }));
 }
 
+function showRange() {
+    get('range').hidden = !range;
+    if (range)
+        get('brightest').textContent = showHistogram(get('histogram'), range);
+}
+
 // The harmonic of degree 0 of the bake and of the lights that were taken out, for each channel. The
 // bake's exposure scales its harmonics, but not the numbers of the lights.
 function wholeLight() {
@@ -306,14 +337,32 @@ function wholeLight() {
         lights.reduce((sum, light) => sum + Y00 * light[3 + c] * 2 ** state.stops, 0));
 }
 
-// The view to draw: the scene's defaults, the state, and an exposure that fits the environment.
-function viewOf() {
+// The view to draw in a picture whose width is `aspect` times its height: the scene's defaults, the
+// state, an exposure that fits the environment, and a distance at which all balls are seen.
+function viewOf(aspect = stageAspect()) {
     const fit = state.auto && baked && state.scene !== 'furnace' && state.scene !== 'assignment';
     const exposure = fit ? Math.log2(middleGrey(wholeLight())) + FIT : state.stops;
     const debug = state.debug === 'error' ? 'none' : state.debug;
-    return { ...stage.defaults(state.scene), ...state, debug, level: 0, rotation: state.turn, exposure };
+    const own = stage.view(sceneOf(state.scene));
+    const view = { ...own, ...state, scene: sceneOf(state.scene), debug, level: 0, rotation: state.turn, exposure };
+    const least = view.scene === 'assignment' && view.fov === own.fov ? own.distance : 0;
+    view.distance = state.distance || stage.distance(view, aspect, least) / state.zoom;
+    return view;
 }
 const FIT = 1.5; // stops between the exposure of the level strip and that of the tone-mapped view
+
+function stageAspect() {
+    const { clientWidth, clientHeight } = get('stage');
+    return Math.max(1, clientWidth) / Math.max(1, clientHeight);
+}
+
+// Measures how white the white furnace is, and writes so under the picture.
+async function tellFurnace() {
+    const { largest, rms } = await stage.furnace(viewOf(2), 512, 256);
+    if (state.scene === 'furnace')
+        get('note').textContent = `The balls differ from the white background by ${largest.toExponential(1)} at ` +
+                                  `most, ${rms.toExponential(1)} on average (RMS)`;
+}
 
 function noteOf(error) {
     if (!stage.ready)
@@ -322,12 +371,11 @@ function noteOf(error) {
         return `Error against the reference, red too bright, blue too dark: ${error.screen.toFixed(1)} of ` +
                `255 RMS, ${error.rms.toPrecision(2)} of the mean light, noise ` +
                `${error.noise.toPrecision(2)}${error.last ? '' : ' so far'}`;
-    if (state.scene === 'furnace') {
-        const { largest, rms } = stage.furnace(viewOf(), 512, 256);
-        return `Furnace: the balls differ from the background by ${largest.toExponential(1)} at most, ` +
-               `${rms.toExponential(1)} RMS`;
-    }
-    return state.scene === 'compare' ? 'Left of the line the exact bake, right of it the textbook\'s bake' : '';
+    if (state.scene === 'furnace' && state.debug === 'none')
+        tellFurnace().catch((problem) => complain(problem.message));
+    if (state.scene === 'three')
+        return three.note;
+    return state.scene === 'compare' ? 'Left of the line exact levels, right of it levels by random sampling' : '';
 }
 
 function refresh() {
@@ -338,6 +386,7 @@ function refresh() {
     const error = !showsLevel && state.debug === 'error' && baked && wrong?.key === wantedTruth().key
         ? wrong : null;
     flat.hidden = !showsLevel && !error;
+    three.show(flat.hidden && state.scene === 'three' && Boolean(baked));
     canvas.hidden = !flat.hidden;
     flat.dataset.error = !error ? '' : error.last ? 'whole' : 'so far';
     flat.setAttribute('aria-label', error ? 'The error of the picture against the reference'
@@ -349,22 +398,24 @@ function refresh() {
     });
     get('handle').hidden = !flat.hidden || state.scene !== 'compare';
     get('handle').setAttribute('aria-valuenow', String(Math.round(100 * state.split)));
-    try {
+    if (state.scene !== 'furnace' || showsLevel || error)
         get('note').textContent = showsLevel && stage.ready ? `Level ${k}, unrolled as a panorama` : noteOf(error);
-    } catch (problem) {
-        get('note').textContent = problem.message;
-    }
+    else
+        noteOf(null);
     if (showsLevel)
-        unroll(baked.levels[Math.max(k, 0)], middleGrey(baked.harmonics), flat, 1024, 512);
-    canvas.setAttribute('aria-label', `Scene ${state.scene}, ${state.material}, ${state.method}, ` +
-                                      `in ${stem()}`);
+        unroll(baked.levels[Math.max(k, 0)], middleGrey(baked.harmonics), flat, 640, 320);
+    canvas.setAttribute('aria-label', `${NAMES.scene[state.scene]}, ${NAMES.material[state.material]}, ` +
+                                      `lost light added by ${NAMES.method[state.method]}, in ${stem()}`);
+    canvas.hidden ||= three.shows;
+    get('labels').hidden = !flat.hidden || !stage.ready || state.debug.startsWith('table');
     controls.update();
+    files.show().catch((problem) => complain(problem.message));
     view.change();
 }
 
 // ----------------------------------------------------------------------------------------- changing
 
-const BAKES = ['sun', 'bearing', 'haze', 'size', 'turn', 'stops', 'light'];
+const BAKES = ['sun', 'bearing', 'haze', 'size', 'turn', 'stops', 'lamps', 'count', 'clamp'];
 
 // Called after state[name] has changed: bakes again if the bake depends on that value, and
 // refreshes.
@@ -383,8 +434,8 @@ function changed(name) {
 
 // The scene's defaults for the camera, the material and the method.
 function ownOf(scene) {
-    const { method, material, azimuth, elevation, distance, split } = stage.defaults(scene);
-    return { method, material, azimuth, elevation, distance, split, debug: 'none', shown: -1 };
+    const { method, material, azimuth, elevation, split, fov } = stage.view(sceneOf(scene));
+    return { method, material, azimuth, elevation, split, fov, zoom: 1, distance: 0, debug: 'none', shown: -1 };
 }
 
 function change(name, value) {
@@ -398,13 +449,45 @@ function next(name) {
     change(name, words[(words.indexOf(state[name]) + 1) % words.length]);
 }
 
-const controls = makeControls(get('controls'), state, stage.ready ? stage.words : null, changed);
-const view = new View({
-    canvas, stage, read: viewOf, onChange: change, onNext: next, handle: get('handle'),
-    onScene: (index) => change('scene', stage.words.scene[index]),
-    onReset: () => change('scene', state.scene),
-    onKeys: () => { get('keys').hidden = !get('keys').hidden; },
+const controls = makeControls(get('controls'), state, stage.words, changed);
+const files = new Files({
+    engines, read: () => state, onChange: change, onFailure: (problem) => complain(problem.message),
+    source: () => ({ key: baked ? `${sourceKey()},${state.turn}` : '', stem: stem(), open: openWhole }),
 });
+const three = new ThreeView({
+    box: get('stage'), open: openWhole, engines, key: sourceKey, onFailure: (problem) => complain(problem.message),
+    onNote: () => { if (state.scene === 'three') get('note').textContent = three.note; },
+});
+
+function draw(width, height) {
+    const seen = viewOf(width / height), scene = sceneOf(state.scene);
+    get('handle').style.left = `${100 * seen.split}%`;
+    showLabels(get('labels'), { ...seen, scene: state.scene }, width / height, stage.ballsOf[scene]);
+    if (three.shows)
+        stage.balls(seen).then((balls) => three.draw({ ...seen, balls, aspect: width / height }, width, height));
+    else if (stage.ready)
+        stage.show(seen, width, height);
+}
+const view = new View({
+    canvas, box: get('stage'), draw, read: () => ({ ...state, ...viewOf() }), onChange: change, onNext: next,
+    handle: get('handle'), onScene: (index) => change('scene', SCENES[index]),
+    onReset: () => change('scene', state.scene),
+});
+
+function showKeys() {
+    get('keys').hidden = !get('keys').hidden;
+    get('help').setAttribute('aria-expanded', String(!get('keys').hidden));
+}
+get('help').onclick = showKeys;
+document.addEventListener('keydown', (event) => {
+    if (event.target.closest?.('input, select, textarea') || event.ctrlKey || event.altKey || event.metaKey)
+        return;
+    if (event.key === '?' || event.key === 'h')
+        showKeys();
+    else if (event.key === 'Escape' && !get('keys').hidden)
+        showKeys();
+});
+makeTheme(get('theme'), showRange);
 
 get('keys').append(...KEYS.map(([keys, words]) => {
     const line = document.createElement('div'), key = document.createElement('kbd');
@@ -425,12 +508,8 @@ function addDownload(label, nameOf, bytesOf, needs = '') {
     button.textContent = label;
     button.onclick = async () => {
         try {
-            const name = nameOf(), bytes = await bytesOf(name);
-            const link = document.createElement('a');
-            link.href = URL.createObjectURL(new Blob([bytes]));
-            link.download = name;
-            link.click();
-            setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+            const name = nameOf();
+            save(name, await bytesOf(name));
         } catch (problem) {
             complain(problem.message);
         }
@@ -447,32 +526,12 @@ addFile('Cube, KTX2', '.ktx2', 'rgba16f');
 addFile('Cube, KTX2 of 32 bits', '-32.ktx2', 'rgba32f');
 addFile('Cube, DDS', '.dds', 'rgba16f');
 addDownload('Irradiance, KTX2', () => `${stem()}-diffuse.ktx2`, (name) => engine.irradiance(name));
-addDownload('Lights, JSON', () => `${stem()}-lights.json`, (name) => engine.lights(name), 'light');
+addDownload('Lights, JSON', () => `${stem()}-lights.json`, (name) => engine.lights(name), 'lights');
 addFile('Harmonics, JSON', '.json');
 addFile('Harmonics, C', '.h');
 addTable('Table of E', 'e');
 addTable('Table of E_avg', 'eavg');
 addTable('Table of A, B', 'dfg');
-
-// ------------------------------------------------------------------------------------------- code
-
-// Shows the lines of code for the chosen engine, which the build takes out of the engine's documentation.
-async function showLines() {
-    const name = get('engine').value, answer = await fetch(`lights/${name}.txt`);
-    if (name === get('engine').value)
-        get('lines').textContent = answer.ok ? await answer.text() : `lights/${name}.txt is not there.`;
-}
-
-get('engine').append(...ENGINES.map(([name, title]) => new Option(title, name)));
-get('engine').onchange = showLines;
-get('copy').onclick = async () => {
-    try {
-        await navigator.clipboard.writeText(get('lines').textContent);
-    } catch (problem) {
-        complain(`The lines could not be copied: ${problem.message}`);
-    }
-};
-showLines();
 
 // -------------------------------------------------------------------------------------------- input
 
@@ -481,7 +540,22 @@ get('file').onchange = async () => {
     await take(get('file').files[0]);
     get('file').value = '';
 };
-get('sky').onclick = () => bake(null);
+
+// Skies to start with, made by kiln's own model of the sky.
+const PRESETS = { Morning: { sun: 8, bearing: 120, haze: 3.5 }, Noon: { sun: 62, bearing: 20, haze: 2.5 },
+                  Dusk: { sun: -2, bearing: -150, haze: 4 } };
+for (const [name, sky] of Object.entries(PRESETS)) {
+    const button = document.createElement('button');
+    button.type = 'button';
+    button.className = name.toLowerCase();
+    button.textContent = name;
+    button.title = `A clear sky with the sun ${Math.abs(sky.sun)} degrees ${sky.sun < 0 ? 'below' : 'above'} the horizon`;
+    button.onclick = () => {
+        Object.assign(state, sky);
+        bake(null);
+    };
+    get('presets').append(button);
+}
 document.addEventListener('dragover', (event) => {
     event.preventDefault();
     document.body.classList.add('dropping');
@@ -503,6 +577,7 @@ window.addEventListener('hashchange', () => {
     bake(state.source === 'sky' ? null : opened);
 });
 
+stage.started.then(() => refresh());
 // The address holds the name of a file but not its bytes, so the message asks for that file.
 const wanted = state.source;
 await bake(null);

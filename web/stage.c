@@ -18,38 +18,28 @@ struct stage {
     kiln_environment coming;
     kiln_image truth;
     double numbers[STAGE_NUMBERS];
+    double balls[VIEW_MAX_BALLS][10]; // of the last stage_balls: see stage_ball
 };
 
-static bool start(stage *s, const char *canvas)
+stage *stage_create(void)
 {
+    stage *s = calloc(1, sizeof *s);
     kiln_context_def def = {.thread_count = 1};
-    EmscriptenWebGLContextAttributes wanted;
-    emscripten_webgl_init_context_attributes(&wanted);
-    wanted.majorVersion = 2;
-    wanted.alpha = wanted.depth = wanted.antialias = false;
-    wanted.preserveDrawingBuffer = true;
-    if (kiln_context_create(&def, &s->context, &s->error))
-        return false;
-    EMSCRIPTEN_WEBGL_CONTEXT_HANDLE gl = emscripten_webgl_create_context(canvas, &wanted);
+    if (s && kiln_context_create(&def, &s->context, &s->error)) {
+        free(s);
+        return NULL;
+    }
+    return s;
+}
+
+bool stage_start(stage *s, int gl)
+{
     if (gl <= 0 || emscripten_webgl_make_context_current(gl)) {
         snprintf(s->error.message, sizeof s->error.message,
                  "this browser offers no WebGL 2, which is needed to draw the balls");
         return false;
     }
     return view_create(s->context, NULL, &s->renderer, &s->error) == KILN_OK;
-}
-
-stage *stage_create(const char *canvas)
-{
-    stage *s = calloc(1, sizeof *s);
-    if (s)
-        start(s, canvas);
-    return s;
-}
-
-bool stage_ready(const stage *s)
-{
-    return s->renderer != NULL;
 }
 
 const char *stage_message(const stage *s)
@@ -80,6 +70,30 @@ void stage_defaults(stage *s, int scene)
 {
     view_options o = view_defaults((view_scene)scene);
     view_to_numbers(&o, s->numbers);
+}
+
+int stage_balls(stage *s)
+{
+    view_ball balls[VIEW_MAX_BALLS];
+    view_options options = view_from_numbers(s->numbers);
+    int count = view_balls(&options, balls);
+    for (int i = 0; i < count; i++) {
+        double *n = s->balls[i];
+        for (int c = 0; c < 3; c++)
+            n[c] = balls[i].centre[c];
+        n[3] = balls[i].radius;
+        n[4] = balls[i].roughness;
+        n[5] = balls[i].metallic;
+        n[6] = (double)balls[i].method;
+        for (int c = 0; c < 3; c++)
+            n[7 + c] = balls[i].metallic > 0 ? balls[i].f0[c] : balls[i].albedo[c];
+    }
+    return count;
+}
+
+const double *stage_ball(const stage *s, int index)
+{
+    return s->balls[index];
 }
 
 void stage_draw(stage *s, int width, int height)

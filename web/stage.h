@@ -1,5 +1,5 @@
 // Renderer for the web page: C functions over numbers and pointers, which stage.mjs calls. They
-// draw on a canvas. A function that returns false leaves an error message in stage_message.
+// draw in a WebGL 2 context. A function that returns false leaves an error message in stage_message.
 #ifndef STAGE_H
 #define STAGE_H
 
@@ -12,10 +12,12 @@
 
 typedef struct stage stage;
 
-/// Creates a stage on the canvas with this CSS selector. If the browser has no WebGL 2, the stage
-/// is created too, stage_ready returns false and stage_message says why.
-STAGE stage *stage_create(const char *canvas);
-STAGE bool stage_ready(const stage *s);
+/// Creates a stage that does not draw yet. Names, default views and balls can be asked for.
+/// Returns NULL if memory runs out.
+STAGE stage *stage_create(void);
+/// Compiles the shaders in the WebGL 2 context that emscripten knows by the handle `gl`; 0 stands
+/// for a browser without WebGL 2. All functions that draw need a started stage.
+STAGE bool stage_start(stage *s, int gl);
 STAGE const char *stage_message(const stage *s);
 STAGE const char *stage_gl_name(const stage *s);
 /// Returns the array of view numbers (view_numbers.h) that stage_draw, stage_furnace and
@@ -38,6 +40,13 @@ STAGE bool stage_light(stage *s, int slot);
 /// Shows lights as discs: `count` lights of seven numbers each, as baker_light gives them. Lights
 /// beyond KILN_MAX_LIGHTS are left out.
 STAGE void stage_discs(stage *s, const double *numbers, int count);
+
+/// Computes the balls of the view in stage_numbers and returns their number.
+STAGE int stage_balls(stage *s);
+/// Returns ball `index` of the last stage_balls as ten numbers: the centre, the radius, the
+/// roughness, how metallic the ball is, the index of its method, and its linear colour, which is
+/// the reflectance of a metal and the diffuse albedo of another material.
+STAGE const double *stage_ball(const stage *s, int index);
 
 STAGE void stage_draw(stage *s, int width, int height);
 /// Renders the furnace; off[0] receives the largest difference from 1 and off[1] the RMS, of the

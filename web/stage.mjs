@@ -5,16 +5,20 @@ const NUMBERS = ['scene', 'method', 'material', 'targetX', 'targetY', 'targetZ',
                  'bent', 'ground'];
 const WORDS = ['scene', 'method', 'material', 'debug'];
 
+// A view as the array of numbers that web/view_numbers.h names. `words` are Stage's.
+export function numbersOf(words, view) {
+    return NUMBERS.map((name) => (WORDS.includes(name) ? words[name].indexOf(view[name])
+                                                       : Number(view[name])));
+}
+
 export class Stage {
-    // `canvas` is a CSS selector. Without WebGL 2 `ready` is false, `problem` says why, and nothing
-    // is drawn.
-    static async make(makeModule, canvas, options = {}) {
+    // A stage that does not draw before start().
+    static async make(makeModule, options = {}) {
         const stage = new Stage(), module = await makeModule(options);
         stage.module = module;
-        stage.self = module.ccall('stage_create', 'number', ['string'], [canvas]);
-        stage.ready = Boolean(module._stage_ready(stage.self));
-        stage.problem = stage.ready ? '' : stage.message();
-        stage.renderer = module.UTF8ToString(module._stage_gl_name(stage.self));
+        stage.self = module._stage_create();
+        if (!stage.self)
+            throw new Error('the stage cannot start: there is no memory for it');
         stage.words = Object.fromEntries(WORDS.map((name, kind) => {
             const words = [];
             for (let at; (at = module._stage_word(kind, words.length));)
@@ -24,8 +28,36 @@ export class Stage {
         return stage;
     }
 
+    // Starts to draw in a WebGL 2 context. Returns a sentence if that is impossible, else ''.
+    start(gl) {
+        const { module, self } = this;
+        const handle = gl ? module.GL.registerContext(gl, { majorVersion: 2, minorVersion: 0 }) : 0;
+        if (!module._stage_start(self, handle))
+            return this.message();
+        this.renderer = module.UTF8ToString(module._stage_gl_name(self));
+        return '';
+    }
+
+    // What the page must know before the stage draws: the words, and each scene's default view and
+    // balls.
+    names() {
+        const each = (of) => Object.fromEntries(this.words.scene.map((scene) => [scene, of(scene)]));
+        const defaults = each((scene) => this.defaults(scene));
+        return { words: this.words, defaults, ballsOf: each((scene) => this.balls(defaults[scene])) };
+    }
+
     message() {
         return this.module.UTF8ToString(this.module._stage_message(this.self));
+    }
+
+    // The balls of a view, each as the ten numbers of stage_ball.
+    balls(view) {
+        const { module, self } = this;
+        this.set(view);
+        return Array.from({ length: module._stage_balls(self) }, (_, i) => {
+            const at = module._stage_ball(self, i) >>> 3;
+            return [...module.HEAPF64.slice(at, at + 10)];
+        });
     }
 
     // The scene's default view. Scene, method, material and debug view are given by name.
@@ -38,13 +70,8 @@ export class Stage {
         }));
     }
 
-    numbers(view) {
-        return NUMBERS.map((name) => (WORDS.includes(name) ? this.words[name].indexOf(view[name])
-                                                           : Number(view[name])));
-    }
-
     set(view) {
-        this.module.HEAPF64.set(this.numbers(view), this.module._stage_numbers(this.self) >>> 3);
+        this.module.HEAPF64.set(numbersOf(this.words, view), this.module._stage_numbers(this.self) >>> 3);
     }
 
     draw(view, width, height) {

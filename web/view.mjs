@@ -1,58 +1,51 @@
-// The canvas with its input. Draws a coarse frame at each change and a fine frame after a pause;
-// turns pointer and keys into changes of the state.
-const RESTS = 180; // ms without a change before the fine frame
-
+// The canvas with its input: asks for a picture at each change, and turns pointer and keys into
+// changes of the state.
 export const KEYS = [
     ['arrows, drag', 'walk around the balls'],
     ['+ −, wheel', 'nearer, farther'],
     ['[ ]', 'turn the environment'],
     [', .', 'darker, brighter'],
-    ['1 to 5', 'scenes'],
+    ['1 to 6', 'scenes'],
     ['m k', 'next material, next method'],
     ['0', 'the scene as it was'],
-    ['h', 'these keys'],
+    ['? h', 'these keys'],
 ];
 
 export class View {
-    // onChange(name, value) is called for each change of a value, onKeys() for the key that shows
-    // the help.
-    constructor({ canvas, handle, stage, read, onChange, onScene, onNext, onReset, onKeys }) {
-        Object.assign(this, { canvas, handle, stage, read, onChange, onScene, onNext, onReset, onKeys });
+    // draw(width, height) asks for a picture. onChange(name, value) is called for each change of a
+    // value.
+    constructor({ canvas, box, handle, draw, read, onChange, onScene, onNext, onReset }) {
+        Object.assign(this, { canvas, box, handle, draw, read, onChange, onScene, onNext, onReset });
         new ResizeObserver(() => this.change()).observe(canvas);
         canvas.addEventListener('keydown', (event) => this.key(event));
-        canvas.addEventListener('pointerdown', (event) => canvas.setPointerCapture(event.pointerId));
-        canvas.addEventListener('pointermove', (event) => this.drag(event));
-        canvas.addEventListener('wheel', (event) => this.wheel(event), { passive: false });
+        for (const name of ['pointerdown', 'pointermove'])
+            box.addEventListener(name, (event) => this.point(event));
+        box.addEventListener('wheel', (event) => this.wheel(event), { passive: false });
         handle.addEventListener('pointerdown', (event) => handle.setPointerCapture(event.pointerId));
         handle.addEventListener('pointermove', (event) => this.slide(event));
         handle.addEventListener('keydown', (event) => this.slideByKey(event));
     }
 
-    // Requests a coarse frame at once and a fine frame after RESTS ms without another change.
+    // Asks for a picture with the browser's next frame.
     change() {
         this.canvas.dataset.drawn = '';
-        if (!this.asked)
-            this.asked = requestAnimationFrame(() => this.frame(false));
-        clearTimeout(this.timer);
-        this.timer = setTimeout(() => this.frame(true), RESTS);
+        this.asked ||= requestAnimationFrame(() => this.frame());
     }
 
-    frame(fine) {
-        cancelAnimationFrame(this.asked); // a late coarse frame must not follow the fine one
+    frame() {
         this.asked = 0;
-        const { canvas, stage } = this;
-        const scale = Math.min(window.devicePixelRatio || 1, 2);
-        const width = Math.max(1, Math.round(canvas.clientWidth * scale));
-        const height = Math.max(1, Math.round(canvas.clientHeight * scale));
-        if (!stage.ready || canvas.hidden)
+        const { box } = this, scale = Math.min(window.devicePixelRatio || 1, 2);
+        this.draw(Math.max(1, Math.round(box.clientWidth * scale)), Math.max(1, Math.round(box.clientHeight * scale)));
+    }
+
+    // Pointers on pictures; those on the dividing line are its own.
+    point(event) {
+        if (event.target.tagName !== 'CANVAS')
             return;
-        if (canvas.width !== width || canvas.height !== height)
-            [canvas.width, canvas.height] = [width, height];
-        const view = this.read();
-        this.handle.style.left = `${100 * view.split}%`;
-        stage.draw(fine ? view : { ...view, samples: 1 }, width, height);
-        if (fine)
-            canvas.dataset.drawn = 'finely';
+        if (event.type === 'pointerdown')
+            event.target.setPointerCapture(event.pointerId);
+        else if (event.target.hasPointerCapture(event.pointerId))
+            this.drag(event);
     }
 
     add(name, step) {
@@ -60,15 +53,23 @@ export class View {
     }
 
     drag(event) {
-        if (!this.canvas.hasPointerCapture(event.pointerId))
-            return;
         this.add('azimuth', -0.35 * event.movementX);
         this.add('elevation', 0.35 * event.movementY);
     }
 
+    // Goes nearer or farther by a factor.
+    approach(factor) {
+        const { zoom } = this.read();
+        this.onChange('distance', 0);
+        this.onChange('zoom', zoom * factor);
+    }
+
+    // The wheel scrolls the page unless the picture has the focus.
     wheel(event) {
+        if (document.activeElement !== this.canvas)
+            return;
         event.preventDefault();
-        this.onChange('distance', this.read().distance * Math.exp(0.001 * event.deltaY));
+        this.approach(Math.exp(-0.001 * event.deltaY));
     }
 
     key(event) {
@@ -79,21 +80,18 @@ export class View {
             ArrowUp: ['elevation', 5], ArrowDown: ['elevation', -5],
             '[': ['turn', -5], ']': ['turn', 5], ',': ['stops', -0.5], '.': ['stops', 0.5],
         };
-        const { distance } = this.read();
         if (steps[event.key])
             this.add(...steps[event.key]);
         else if (event.key === '+' || event.key === '=')
-            this.onChange('distance', distance / 1.1);
+            this.approach(1.1);
         else if (event.key === '-')
-            this.onChange('distance', distance * 1.1);
-        else if (event.key >= '1' && event.key <= '5')
+            this.approach(1 / 1.1);
+        else if (event.key >= '1' && event.key <= '6')
             this.onScene(Number(event.key) - 1);
         else if (event.key === 'm' || event.key === 'k')
             this.onNext(event.key === 'm' ? 'material' : 'method');
         else if (event.key === '0')
             this.onReset();
-        else if (event.key === 'h')
-            this.onKeys();
         else
             return;
         event.preventDefault();
@@ -102,7 +100,7 @@ export class View {
     slide(event) {
         if (!this.handle.hasPointerCapture(event.pointerId))
             return;
-        const box = this.canvas.getBoundingClientRect();
+        const box = this.box.getBoundingClientRect();
         this.onChange('split', (event.clientX - box.left) / box.width);
     }
 

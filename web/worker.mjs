@@ -20,7 +20,9 @@ async function answer({ id, work, values }) {
         const baker = await ready;
         const given = work === 'open' ? await readable(...values) : values;
         const result = baker[work](...given);
-        postMessage({ id, result }, result?.levels?.map((level) => level.texels.buffer) ?? []);
+        const moved = [...(result?.levels ?? []).map((level) => level.texels.buffer),
+                       ...(result?.files ?? []).map((file) => file.bytes.buffer)];
+        postMessage({ id, result }, moved);
     } catch (error) {
         postMessage({ id, error: error.message, fatal: error instanceof WebAssembly.RuntimeError });
     }

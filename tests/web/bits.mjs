@@ -30,13 +30,14 @@ const sources = {
 };
 const bakes = [
     [{}, []],
-    [{ size: 48, levels: 4, rotation: 33.5, exposure: -2.5 },
+    [{ size: 48, levels: 4, yaw: 33.5, exposure: -2.5 },
      ['--size', '48', '--levels', '4', '--rotate', '33.5', '--exposure', '-2.5']],
 ];
 let compared = 0;
 for (const [name, take] of Object.entries(sources))
     for (const [options, args] of bakes) {
         take();
+        baker.options(options);
         const { cpu } = baker.bake(options);
         check(cpu === 'simd128', `kernels are ${cpu}, not simd128`);
         // All formats once; the bits of all floats always.

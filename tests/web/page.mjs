@@ -1,14 +1,19 @@
 // The page as a visitor meets it: drop a file, bake, see, download; by keyboard; by address; and what
 // a broken file does.
 import { downloaded, drawn, drop, idle, withPage } from './browser.mjs';
+import { execFileSync } from 'node:child_process';
 import fs from 'node:fs';
 import path from 'node:path';
-import { check, checkSame, inFolder, kiln, read, root, site } from './lib.mjs';
+import { check, checkSame, folder, inFolder, kiln, read, root, site } from './lib.mjs';
 
 const text = (page, id) => page.textContent(`#${id}`);
 const levels = (page) => page.locator('#levels button').count();
 const button = (page, name) => page.getByRole('button', { name, exact: true });
-const cube = (page) => downloaded(page, () => button(page, 'Cube, KTX2').click());
+const openMore = (page) => page.evaluate(() => { document.getElementById('more').open = true; });
+const cube = async (page) => {
+    await openMore(page);
+    return downloaded(page, () => button(page, 'Cube, KTX2').click());
+};
 
 function bakeByCommand(source, ...args) {
     kiln('bake', source, '-q', '-o', 'out.ktx2', '--sh', 'out.json', ...args);
@@ -99,7 +104,7 @@ async function theKeyboardSuffices(page, address) {
             await page.keyboard.press('Tab');
         check(await focus() === name, `${name} cannot be reached by Tab`);
     };
-    await tabTo('Choose a panorama');
+    await tabTo('Open a panorama');
     const chooser = page.waitForEvent('filechooser');
     await page.evaluate(() => {}); // the browser knows by now that somebody waits
     await page.keyboard.press('Enter');
@@ -117,6 +122,9 @@ async function theKeyboardSuffices(page, address) {
     check(/scene=grid/.test(page.url()), `after 4 the address is ${page.url()}`);
     await page.keyboard.press('h');
     check(await page.isVisible('#keys'), 'h shows no keys');
+    await page.keyboard.press('?');
+    check(!await page.isVisible('#keys'), '? does not hide the keys');
+    await openMore(page);
     await tabTo('Cube, KTX2');
     const { name, bytes } = await downloaded(page, () => page.keyboard.press('Enter'));
     checkSame(bytes, bakeByCommand('low.hdr'), name);
@@ -154,6 +162,7 @@ async function theFilesAreTheCommands(page, address) {
     await page.goto('about:blank');
     await page.goto(`${address}#size=64&samples=1`);
     await idle(page);
+    await openMore(page);
     kiln('sky', '-o', 'sky.exr', '--azimuth', '150');
     const bake = (name, ...args) => kiln('bake', 'sky.exr', '-q', '--size', '64', '-o', name, ...args);
     const files = {
@@ -185,9 +194,10 @@ async function theSunIsTakenOut(page, address) {
     await idle(page);
     await drawn(page);
     const before = await look(page), whole = (await cube(page)).bytes;
-    await page.getByLabel('take the sun out as a light').click();
+    await page.locator('#controls .lil-title').getByText('Light', { exact: true }).click();
+    await page.getByLabel('Sun and lamps').selectOption('Take out as lights');
     await idle(page);
-    check(/light=1/.test(page.url()), `the address is ${page.url()}`);
+    check(/lamps=extract/.test(page.url()), `the address is ${page.url()}`);
     check(/^sky: a light of radius 0\.\d+ degrees with [\d.]+ % of the light shines/.test(await text(page, 'report')),
           `the report says "${await text(page, 'report')}"`);
     const rest = (await cube(page)).bytes;
@@ -202,24 +212,59 @@ async function theSunIsTakenOut(page, address) {
     await theLinesAreTheDocumentations(page);
 }
 
-// For each engine whose page in docs/engines puts lights into a scene, the page shows that page's lines.
+// What the documentation of engine `name` says: the output of the first command for the engine, the block
+// of code that names that output, and the block of lights.
+function documented(name) {
+    const written = fs.readFileSync(path.join(root, 'docs/engines', `${name.split('-')[0]}.md`), 'utf8');
+    const lines = written.split('\n'), command = new RegExp(`^    kiln bake city.exr --for ${name} -o (.*/)?([^/]+)$`);
+    const at = lines.findIndex((line) => command.test(line)), output = lines[at].match(command)[2];
+    const blocks = (text) => text.split('\n```').filter((_, i) => i % 2).map((block) => block.slice(block.indexOf('\n') + 1));
+    const [, lights = ''] = written.split('\n## Lights that were taken out\n');
+    return { output, lights: blocks(lights)[0] ?? '',
+             load: blocks(lines.slice(at).join('\n')).find((block) => block.includes(output)) ??
+                   lines.filter((line) => /^\d\. /.test(line)).join('\n') };
+}
+
+// For each engine the page shows the lines of the engine's documentation, with the names of the files.
 async function theLinesAreTheDocumentations(page) {
-    const documented = {};
-    for (const name of fs.readdirSync(path.join(root, 'docs/engines'))) {
-        const written = fs.readFileSync(path.join(root, 'docs/engines', name), 'utf8');
-        const [, code] = written.match(/\n## Lights that were taken out\n.*?\n```[a-z]+\n(.*?)```/s) ?? [];
-        if (code)
-            documented[written.match(/^# (.*)/)[1]] = code;
-    }
-    const offered = await page.locator('#engine option').allTextContents();
-    check(offered.slice().sort().join() === Object.keys(documented).sort().join(),
-          `the page offers ${offered}, docs/engines has ${Object.keys(documented)}`);
-    check(offered.length >= 8, `lines for ${offered.length} engines only`);
-    for (const title of offered) {
-        await page.getByLabel(/^Lines that put the lights/).selectOption(title);
+    const known = JSON.parse(kiln('engines', '--json'));
+    check(known.length >= 12, `the command knows ${known.length} engines only`);
+    const titles = await page.locator('#engine option').allTextContents();
+    check(titles.join() === known.map(({ title }) => title).join(), `the page offers ${titles}`);
+    for (const { name, title } of known) {
+        const { load, lights, output } = documented(name);
+        check(load.length > 60, `docs/engines has no lines for ${name}`);
+        const wanted = `${load}${lights && `\n\n${lights}`}`.replaceAll('city/city', 'sky')
+            .replace(/'sun\.json'/g, "'sky-lights.json'").replace(/'kiln-ibl.(three|babylon)'/g, "'./$1.mjs'").replace(/city([._'"])/g, 'sky$1');
+        check(wanted.includes(output.replace('city', 'sky')), `the lines of ${name} do not name ${output}`);
+        await page.locator('#engine').selectOption(title);
         await page.waitForFunction((code) => document.getElementById('lines').textContent === code,
-                                   documented[title], { timeout: 10000 });
+                                   wanted, { timeout: 10000 });
     }
+}
+
+// The engine's files are the command's, alone and in the bundle, which Python's zipfile reads.
+async function theEnginesFilesAreTheCommands(page, address) {
+    await page.goto('about:blank');
+    await page.goto(`${address}#samples=1&engine=babylon&engineSize=64&tune=none&lamps=extract&turn=30&size=16`);
+    await idle(page);
+    const bundle = await downloaded(page, () => button(page, 'All as .zip').click());
+    check(bundle.name === 'sky-babylon.zip', `the bundle is called ${bundle.name}`);
+    fs.writeFileSync(inFolder('bundle.zip'), bundle.bytes);
+    fs.mkdirSync(inFolder('bundle'));
+    execFileSync('python3', ['-m', 'zipfile', '-e', 'bundle.zip', 'bundle'], { cwd: folder });
+    kiln('bake', 'sky.exr', '-q', '--for', 'babylon', '-o', 'sky.env', '--size', '64', '--tune', 'none', '--rotate', '30',
+         '--sun', 'extract', '--lights-file', 'sky-lights.json');
+    const names = fs.readdirSync(inFolder('bundle')).sort();
+    check(names.join() === 'README.txt,babylon.mjs,fetch.mjs,sky-lights.json,sky.env', `the bundle holds ${names}`);
+    checkSame(read('bundle/sky.env'), read('sky.env'), 'sky.env');
+    checkSame(read('bundle/sky-lights.json'), read('sky-lights.json'), 'sky-lights.json');
+    for (const name of ['babylon.mjs', 'fetch.mjs'])
+        checkSame(read(`bundle/${name}`), fs.readFileSync(path.join(root, 'npm', name)), name);
+    const readme = read('bundle/README.txt').toString();
+    check(readme.includes(await text(page, 'lines')), `the README says "${readme}"`);
+    const again = await downloaded(page, () => page.getByRole('button', { name: /^sky\.env/ }).click());
+    checkSame(again.bytes, read('sky.env'), again.name);
 }
 
 const flatError = (page, wanted) => page.waitForFunction(
@@ -228,7 +273,7 @@ const flatError = (page, wanted) => page.waitForFunction(
 // The figure under the picture is the command's, which has the same rays and random numbers.
 async function theErrorIsIntegrated(page, address) {
     await page.goto('about:blank');
-    await page.goto(`${address}#size=64&samples=1&debug=error&noise=0.4&alone=1&sun=60`);
+    await page.goto(`${address}#size=64&samples=1&debug=error&noise=0.4&alone=1&sun=60&fov=45&distance=330`);
     await idle(page);
     await flatError(page, 'whole');
     const note = await text(page, 'note');
@@ -240,7 +285,7 @@ async function theErrorIsIntegrated(page, address) {
     });
     kiln('sky', '-o', 'high.exr', '--elevation', '60', '--azimuth', '150');
     const said = kiln('render', 'high.exr', '-o', 'error.png', '--error', '--alone', '--noise', '0.4',
-                      '--samples', '1', '--bake-size', '64', '--size', `${width}x${height}`);
+                      '--samples', '1', '--fov', '45', '--distance', '330', '--bake-size', '64', '--size', `${width}x${height}`);
     const [, wanted] = said.match(/error RMS ([0-9.]+)/);
     check(Math.abs(rms / wanted - 1) < 0.03, `the page's error is ${rms}, the command's ${wanted}`);
     // A change of the view is followed; what takes too long can be stopped, and the page lives on.
@@ -260,7 +305,7 @@ async function theTextbookTakesItsTime(page, address) {
     await page.goto('about:blank');
     await page.goto(`${address}#size=64&samples=1&scene=compare`);
     await idle(page);
-    await page.waitForFunction(() => /^The textbook bakes/.test(document.getElementById('background').textContent));
+    await page.waitForFunction(() => /^Sampling the right side/.test(document.getElementById('background').textContent));
     await page.locator('#view').focus();
     await page.keyboard.press('ArrowRight');
     await page.waitForFunction(() => document.getElementById('view').dataset.textbook === 'whole',
@@ -273,7 +318,8 @@ await withPage(site, async (page, address) => {
     await page.setViewportSize({ width: 480, height: 360 });
     for (const test of [theSkyIsBakedAtOnce, aFileIsDroppedAndBaked, aBrokenFileGivesASentence,
                         whatWasFoundIsTold, theKeyboardSuffices, theAddressHoldsTheState,
-                        theFilesAreTheCommands, theSunIsTakenOut, theErrorIsIntegrated, theTextbookTakesItsTime]) {
+                        theFilesAreTheCommands, theSunIsTakenOut, theEnginesFilesAreTheCommands,
+                        theErrorIsIntegrated, theTextbookTakesItsTime]) {
         const began = Date.now();
         await test(page, address);
         console.log(`${test.name}: ${Date.now() - began} ms`);

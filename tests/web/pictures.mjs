@@ -13,13 +13,16 @@ const SCENES = [
     ['ibl', { material: 'plastic', method: 'turquin', occlusion: 1, background: 0.4, stops: -5 },
      ['--material', 'plastic', '--method', 'turquin', '--occlusion', '--background', '0.4',
       '--exposure', '-5']],
-    ['ibl', { light: 1, ground: 1, turn: -160, elevation: 14, stops: -5 },
+    ['ibl', { lamps: 'extract', ground: 1, turn: -160, elevation: 14, stops: -5 },
      ['--sun', 'extract', '--ground', '--rotate', '-160', '--elevation', '14', '--exposure', '-5']],
     ['furnace', {}, []],
     ['grid', { cubeDiffuse: 1, method: 'fdez-aguera', stops: -4 },
      ['--diffuse', 'cube', '--method', 'fdez-aguera', '--exposure', '-4']],
     ['compare', { split: 0.4, stops: -4 }, ['--split', '0.4', '--exposure', '-4']],
 ];
+
+// The cameras of `kiln render`, where the page has its own.
+const CAMERAS = { ibl: { fov: 45, distance: 330 }, grid: { fov: 45, distance: 600 }, assignment: {} };
 
 // Red, green and blue bytes of the view, or of a PNG.
 function pixels(page, png) {
@@ -73,12 +76,12 @@ await withPage(site, async (page, address) => {
     await page.goto(`${address}#size=64&samples=1`);
     await idle(page);
     await page.evaluate(([width, height]) => {
-        const view = document.getElementById('view');
-        Object.assign(view.style, { width: `${width}px`, height: `${height}px` });
+        Object.assign(document.getElementById('stage').style,
+                      { width: `${width}px`, height: `${height}px`, minHeight: 0, justifySelf: 'start', alignSelf: 'start' });
     }, [WIDTH, HEIGHT]);
     for (const [scene, state, args] of SCENES) {
         const hash = new URLSearchParams({ scene, size: 64, sun: 20, bearing: 140, samples: 2, auto: 0,
-                                           ...state });
+                                           ...CAMERAS[scene] ?? CAMERAS.ibl, ...state });
         await page.evaluate((wanted) => {
             document.body.setAttribute('aria-busy', 'true');
             location.hash = wanted;

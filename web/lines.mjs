@@ -1,0 +1,33 @@
+// The lines of code by which an engine loads kiln's files, out of the engine's page of the
+// documentation (docs/engines), which the build copies to engines/NAME.md.
+
+// The first block of code after `from` that contains `word`.
+function block(text, from, word = '') {
+    for (const found of text.slice(from).matchAll(/^```[a-z]*\n([^]*?)\n```$/gm))
+        if (found[1].includes(word))
+            return found[1];
+    return '';
+}
+
+// Numbered steps, where an engine has no code.
+const steps = (text) => (text.match(/^\d\. .*(\n {3}.*)*/gm) ?? []).join('\n');
+
+// What the page of documentation `text` says of engine `name`: the name of the output file, whose word
+// `city` stands for the panorama's name, and the lines that load the files and those that add lights.
+export function linesOf(text, name) {
+    const [, output = ''] = text.match(new RegExp(`^    kiln bake \\S+ --for ${name} -o (\\S+)$`, 'm')) ?? [];
+    const at = text.search(new RegExp(`^    kiln bake \\S+ --for ${name} -o`, 'm'));
+    const heading = '\n## Lights that were taken out\n', lights = text.indexOf(heading);
+    return {
+        output: output.replace(/^.*\//, ''),
+        load: at < 0 ? '' : block(text, at, output) || steps(text.slice(at)),
+        lights: lights < 0 ? '' : block(text, lights),
+    };
+}
+
+// The lines with the file names of a panorama called `stem`, and of the lights' file. Modules of the npm
+// package stand beside the files, as in the bundle.
+export function named(lines, stem, lightsName) {
+    return lines.replace(/\bcity\/city/g, stem).replace(/\bcity(?=[._'"])/g, stem).replaceAll('sun.json', lightsName)
+        .replace(/'kiln-ibl\/([\w-]+)'/g, "'./$1.mjs'");
+}
