@@ -10,8 +10,11 @@ usage() {
 ./do test-dist builds and runs the tests of what is handed out, which take long
 ./do demo      bakes a sky and a real panorama into a page: build/demo/index.html
 ./do web [N]   builds the page that bakes in the browser, serves it on loopback (port N, else 8420)
+./do web --build DIR   builds this page as static files in the folder DIR, for any web server
+./do docs [DIR]   makes the documentation and the C library's reference as static pages (DIR, else build/docs)
 ./do python    builds the Python package and its wheel in build/release/python
 ./do npm       builds the npm package: build/npm/kiln-ibl-VERSION.tgz
+./do dist      makes the downloads in build/dist: programs for Linux and Windows, a Debian package, a wheel
 ./do bench     measures speed and accuracy beside other bakers
 ./do lint      clang-tidy, cppcheck, shellcheck, formatting, layers
 ./do format    formats the sources
@@ -194,9 +197,10 @@ test)
     [ "$failed" = 0 ]
     ;;
 test-dist)
-    need build render web test
+    need build render web test python dist docs
     panoramas
-    npm_packages web tests/web tests/engines tests/engines/versions tests/engines/cesium
+    npm_packages web tests/web tests/files/assets tests/engines tests/engines/versions tests/engines/cesium
+    build wasm
     build_release TESTS GOLDEN EXAMPLES PYTHON
     run_tests release -L dist "$@"
     printf '\n%d passed, %d failed\n' "$passed" "$failed"
@@ -213,11 +217,27 @@ npm)
     build_npm
     say "the package is build/npm/$(cat build/npm/name.txt)"
     ;;
+dist)
+    need build python web dist
+    packaging/dist.sh
+    ;;
 web)
     need web
     npm_packages web
     build wasm
+    if [ "${1:-}" = --build ]; then
+        [ $# = 2 ] || fail "say in which folder:  ./do web --build DIR"
+        mkdir -p "$2"
+        cp -R build/wasm/site/. "$2"
+        say "the page is $2/index.html"
+        exit
+    fi
     node web/serve.mjs build/wasm/site "$@"
+    ;;
+docs)
+    need docs
+    packaging/docs/make.sh "${1:-build/docs}"
+    say "the pages begin at ${1:-build/docs}/index.html"
     ;;
 demo)
     need build
