@@ -315,7 +315,7 @@ test-bare)
     exec scripts/test-bare.sh "$@"
     ;;
 clean)
-    rm -rf build web/node_modules tests/*/node_modules tests/*/*/node_modules
+    rm -rf build web/node_modules npm/*/node_modules tests/*/node_modules tests/*/*/node_modules
     ;;
 help | -h | --help)
     usage

@@ -30,6 +30,16 @@ function copy(from, to) {
             fs.copyFileSync(path.join(from, entry.name), path.join(to, entry.name));
 }
 
+// Gives files and folders permissions that do not follow from who packs.
+function allow(where) {
+    fs.chmodSync(where, 0o755);
+    for (const entry of fs.readdirSync(where, { withFileTypes: true }))
+        if (entry.isDirectory())
+            allow(path.join(where, entry.name));
+        else
+            fs.chmodSync(path.join(where, entry.name), 0o644);
+}
+
 // The licences of what is compiled into the module besides kiln.
 function licences() {
     const codecs = path.join(source, 'codecs/node_modules');
@@ -59,6 +69,7 @@ fs.writeFileSync(path.join(target, 'engines.mjs'), '// What the command says of 
     `export const version = ${JSON.stringify(version)};\nexport const engines = ${JSON.stringify(engines, null, 4)};\n`);
 const about = JSON.parse(fs.readFileSync(path.join(source, 'package.json'), 'utf8'));
 fs.writeFileSync(path.join(target, 'package.json'), `${JSON.stringify({ ...about, version }, null, 4)}\n`);
+allow(target);
 fs.chmodSync(path.join(target, 'bin.mjs'), 0o755);
 const words = ['pack', '--ignore-scripts', '--silent', '--pack-destination', path.resolve(folder)];
 const made = execFileSync('npm', words, { cwd: target, encoding: 'utf8' }).trim();

@@ -1,0 +1,45 @@
+// bake() in a browser, from the unpacked tarball served as it is: the native command's files, progress, abort, and the
+// module without vectors where an engine has none.
+import assert from 'node:assert/strict';
+import fs from 'node:fs';
+import { withPage } from '../web/browser.mjs';
+import { folder, inFolder, kiln, makeInputs } from './lib.mjs';
+
+makeInputs();
+kiln('bake', 'a.exr', '-o', 'wanted.ktx2', '--for', 'three', '--size', '64', '-q');
+fs.writeFileSync(inFolder('index.html'), '<!doctype html><meta charset="utf-8"><title>kiln-ibl</title><link rel="icon" href="data:,">');
+
+// Runs in the page. Returns the file in base64, and what was seen.
+async function bakeThere(scalar) {
+    const validate = WebAssembly.validate;
+    if (scalar)
+        WebAssembly.validate = (bytes) => (bytes.length < 100 ? false : validate(bytes));
+    const { bake, engines } = await import(`/node_modules/kiln-ibl/index.mjs?${scalar}`);
+    const input = await (await fetch('/a.exr')).blob();
+    let told = 0;
+    const began = performance.now();
+    const { files, report, sh } = await bake(input, { name: 'a.exr', for: 'three', size: 64, onProgress: () => told++ });
+    const seconds = (performance.now() - began) / 1000;
+    const controller = new AbortController();
+    setTimeout(() => controller.abort(), 100);
+    const stopped = await bake(input, { for: 'three', size: 1024, signal: controller.signal }).catch((error) => error.name);
+    const wrong = await bake(input, { sise: 3 }).catch((error) => error.message);
+    const bytes = Array.from(files[0].bytes, (byte) => String.fromCharCode(byte)).join('');
+    return { base64: btoa(bytes), name: files[0].name, cpu: report.cpu, bands: sh.bands, told, stopped, wrong, seconds,
+             engines: engines.length };
+}
+
+await withPage(folder, async (page, address) => {
+    await page.goto(address);
+    for (const scalar of [false, true]) {
+        const got = await page.evaluate(bakeThere, scalar);
+        assert.equal(got.name, 'a.ktx2');
+        assert.ok(fs.readFileSync(inFolder('wanted.ktx2')).equals(Buffer.from(got.base64, 'base64')));
+        assert.equal(got.cpu, scalar ? 'scalar' : 'simd128');
+        assert.equal(got.bands, 3);
+        assert.ok(got.told > 5 && got.engines >= 12, `${got.told} reports, ${got.engines} engines`);
+        assert.equal(got.stopped, 'AbortError');
+        assert.match(got.wrong, /--sise=3: no such option, did you mean --size\?$/);
+        console.log(`  ${got.cpu}: the first bake took ${got.seconds.toFixed(2)} s`);
+    }
+});
