@@ -197,7 +197,7 @@ test)
     [ "$failed" = 0 ]
     ;;
 test-dist)
-    need build render web test python dist docs
+    need build render web test python dist docs test-dist
     panoramas
     npm_packages web tests/web tests/files/assets tests/engines tests/engines/versions tests/engines/cesium
     build wasm
