@@ -30,7 +30,7 @@ export class ThreeView {
         this.canvas.setAttribute('role', 'img');
         this.canvas.setAttribute('aria-label', 'Balls drawn by three.js, above with kiln\'s file, below with three.js\' own filter');
         this.box.prepend(this.canvas);
-        this.worker = new Remote(new URL('three_worker.mjs', import.meta.url), ['start', 'light', 'draw'], () => {});
+        this.worker = new Remote(new URL('three_worker.mjs', import.meta.url), []);
         const canvas = this.canvas.transferControlToOffscreen();
         this.started = this.worker.ask('start', [canvas], [canvas]);
     }
@@ -53,7 +53,8 @@ export class ThreeView {
             await this.started;
             const { milliseconds } = await this.worker.ask('light', [panorama, bytes], [panorama.texels.buffer, bytes.buffer]);
             this.ready = true;
-            this.say(`Both rows are drawn by three.js, whose own filter took ${(milliseconds / 1000).toFixed(1)} s`);
+            this.done = `Both rows are drawn by three.js. Its own filter took ${(milliseconds / 1000).toFixed(1)} s, and ` +
+                        'cuts off what half floats cannot hold.';
             this.again();
         } catch (problem) {
             if (key !== this.lit)
@@ -68,10 +69,25 @@ export class ThreeView {
             this.draw(...this.last);
     }
 
-    draw(view, width, height) {
+    // Draws the newest view, after the picture that is being drawn.
+    async draw(view, width, height) {
         this.last = [view, width, height];
-        if (this.ready)
-            this.worker.ask('draw', [view, width, height])
-                .then(() => { this.canvas.dataset.drawn = 'finely'; }, (problem) => this.onFailure(problem));
+        if (!this.ready || this.drawing)
+            return;
+        this.drawing = true;
+        try {
+            for (let drawn; drawn !== this.last;) {
+                drawn = this.last;
+                this.canvas.dataset.drawn = '';
+                for (const scale of [0.4, 1])
+                    if (drawn === this.last)
+                        await this.worker.ask('draw', [...drawn, scale]);
+            }
+            this.canvas.dataset.drawn = 'finely';
+            this.say(this.done);
+        } catch (problem) {
+            this.onFailure(problem);
+        }
+        this.drawing = false;
     }
 }

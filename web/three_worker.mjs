@@ -34,12 +34,23 @@ function makeScene({ balls, rotation, background }) {
     scene.background = maps.kiln;
     scene.backgroundBlurriness = background;
     scene.backgroundRotation.set(0, turn, 0);
-    scene.environmentRotation.set(0, turn, 0);
     for (const ball of balls.map(makeBall)) {
         ball.material.envMapRotation.set(0, turn, 0);
         scene.add(ball);
     }
     return scene;
+}
+
+// The scene of a view, which stays while only the camera moves.
+let kept = { key: '', scene: new THREE.Scene() };
+function sceneOf({ balls, rotation, background }) {
+    const key = JSON.stringify([balls, rotation, background, maps.kiln.id]);
+    if (key !== kept.key) {
+        const before = kept.scene;
+        kept = { key, scene: makeScene({ balls, rotation, background }) };
+        before.children.forEach(({ geometry, material }) => [geometry, material].forEach((thing) => thing.dispose()));
+    }
+    return kept.scene;
 }
 
 function makeCamera({ fov, aspect, azimuth, elevation, distance, targetX, targetY, targetZ }) {
@@ -69,15 +80,17 @@ const WORK = {
         maps = { target, own: target.texture, kiln: await loadEnvironment(bytes, renderer) };
         return { milliseconds };
     },
-    draw(view, width, height) {
-        const scene = makeScene(view);
-        renderer.setSize(width, height, false);
+    // Draws with a part of the picture's pixels, and waits until the picture is there.
+    async draw(view, width, height, scale) {
+        const scene = sceneOf(view), gl = renderer.getContext();
+        renderer.setSize(Math.ceil(scale * width), Math.ceil(scale * height), false);
         renderer.toneMappingExposure = 2 ** view.exposure;
         renderer.render(scene, makeCamera(view));
-        scene.traverse((thing) => {
-            thing.geometry?.dispose();
-            thing.material?.dispose?.();
-        });
+        const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+        gl.flush();
+        while (gl.getSyncParameter(fence, gl.SYNC_STATUS) !== gl.SIGNALED && !gl.isContextLost())
+            await new Promise((wake) => { setTimeout(wake, 4); });
+        gl.deleteSync(fence);
     },
 };
 
