@@ -184,7 +184,7 @@ test)
     start build_release EXAMPLES
     need render web test
     panoramas
-    npm_packages web tests/web tests/files/assets tests/files/ktx tests/brdf/witness tests/engines
+    npm_packages web npm/codecs tests/web tests/files/assets tests/files/ktx tests/brdf/witness tests/engines
     await
     start build wasm
     build_release TESTS GOLDEN BENCH EXAMPLES PYTHON
@@ -223,7 +223,7 @@ dist)
     ;;
 web)
     need web
-    npm_packages web
+    npm_packages web npm/codecs
     build wasm
     if [ "${1:-}" = --build ]; then
         [ $# = 2 ] || fail "say in which folder:  ./do web --build DIR"
@@ -264,7 +264,7 @@ demo)
 bench)
     need build web bench
     panoramas
-    npm_packages web tests/web tests/engines bench/blocks
+    npm_packages web npm/codecs tests/web tests/engines bench/blocks
     build_release BENCH
     build wasm
     bench/run.sh "$@"
@@ -290,7 +290,7 @@ lint)
     # nothing is compiled.
     cmake --preset mingw >build/mingw.log 2>&1 || { cat build/mingw.log; exit 1; }
     clang-tidy --quiet -p build/mingw src/base/os_windows.c cli/os_windows.c 2>>build/tidy.log
-    npm_packages web
+    npm_packages web npm/codecs
     cmake --preset wasm >build/wasm.log 2>&1 || { cat build/wasm.log; exit 1; }
     clang-tidy --quiet -p build/wasm --extra-arg=--target=wasm32-unknown-emscripten \
         --extra-arg=--sysroot="$(em-config CACHE)/sysroot" web/*.c 2>>build/tidy.log

@@ -24,9 +24,9 @@ export class Baker {
             throw new Error(this.module.UTF8ToString(this.module._baker_message(this.self)));
     }
 
-    // Opens an image file from its bytes, which are copied; error messages quote `name`. `told` are
-    // sentences about what became of the file before. Returns the source's shape and size.
-    open(bytes, name, told = []) {
+    // Opens an image file from its bytes, which are copied; error messages quote `name`. Returns
+    // the source's shape and size.
+    open(bytes, name) {
         const at = this.module._malloc(bytes.length);
         if (!at)
             throw new Error(`${name}: its ${bytes.length} bytes do not fit into the page's memory`);
@@ -36,13 +36,11 @@ export class Baker {
         } finally {
             this.module._free(at);
         }
-        this.told = told;
         return this.source();
     }
 
     sky({ size = 512, elevation = 30, azimuth = 0, turbidity = 3 } = {}) {
         this.call('baker_sky', size, elevation, azimuth, turbidity);
-        this.told = [];
         return this.source();
     }
 
@@ -63,7 +61,7 @@ export class Baker {
         const { module, self } = this, notes = [];
         for (let at; (at = module._baker_note(self, notes.length)) !== 0;)
             notes.push(module.UTF8ToString(at));
-        return [...(this.told ?? []), ...notes];
+        return notes;
     }
 
     // Sets the options of later bakes, as the command has them. `sun` is 'keep', 'extract' or

@@ -2,7 +2,6 @@
 // order. It answers {id, result} or {id, error, fatal}, and reports progress as {stage, fraction}.
 import makeModule from './baker.js';
 import { Baker } from './baker.mjs';
-import { readable } from './jpeg.mjs';
 
 let told = 0;
 const ready = Baker.make(makeModule, {
@@ -18,8 +17,7 @@ const ready = Baker.make(makeModule, {
 async function answer({ id, work, values }) {
     try {
         const baker = await ready;
-        const given = work === 'open' ? await readable(...values) : values;
-        const result = baker[work](...given);
+        const result = baker[work](...values);
         const moved = [...(result?.levels ?? []).map((level) => level.texels.buffer),
                        ...(result?.files ?? []).map((file) => file.bytes.buffer)];
         postMessage({ id, result }, moved);
