@@ -152,6 +152,7 @@ const bake = (file) => request(async () => {
                         : await engine.sky({ elevation: sun, azimuth: bearing, turbidity: haze });
     await engine.options(options);
     const made = await engine.bake({ size });
+    performance.mark('baked');
     const seen = [file ? file.stamp : [sun, bearing, haze], ...Object.values(options).slice(1)].join();
     const key = `${seen},${size}`;
     if (stage.problem === '' && key !== lit) {
@@ -465,7 +466,7 @@ function draw(width, height) {
     showLabels(get('labels'), { ...seen, scene: state.scene }, width / height, stage.ballsOf[scene]);
     if (three.shows)
         stage.balls(seen).then((balls) => three.draw({ ...seen, balls, aspect: width / height }, width, height));
-    else if (stage.ready)
+    else if (stage.ready && (lit || scene === 'furnace' || scene === 'assignment'))
         stage.show(seen, width, height);
 }
 const view = new View({
@@ -479,6 +480,11 @@ function showKeys() {
     get('help').setAttribute('aria-expanded', String(!get('keys').hidden));
 }
 get('help').onclick = showKeys;
+onDrawn = (how) => {
+    get('stage').dataset.drawn = how;
+    if (how === 'coarsely' && lit)
+        performance.mark('pictured');
+};
 document.addEventListener('keydown', (event) => {
     if (event.target.closest?.('input, select, textarea') || event.ctrlKey || event.altKey || event.metaKey)
         return;

@@ -2,16 +2,17 @@
 // it, for long: while the view changes, frames have one ray a pixel and as few pixels as a short
 // time allows. After a pause the picture is drawn again in bands of rows, with more and more rays.
 const RESTS = 180;       // ms without a change before the picture becomes finer
-const SHORT = 50;        // ms that a coarse frame or a band may take
+const SHORT = 120;       // ms that a coarse frame or a band should take
 const SMALLEST = 1 / 4;  // smallest scale of coarse frames
 
 const pause = (ms) => new Promise((resolve) => { setTimeout(resolve, ms); });
 
 export class Painter {
     // `stage` is a started Stage, `gl` its context. onDrawn(serial, how) tells that a view has been
-    // drawn 'coarsely' or 'finely'.
+    // drawn 'coarsely' or 'finely'. `batch` is the number of rays that take SHORT, which is guessed
+    // low before the first frame has been measured.
     constructor(stage, gl, onDrawn) {
-        Object.assign(this, { stage, gl, onDrawn, rate: 4e-5, serial: 0, wanted: null, waiting: [] });
+        Object.assign(this, { stage, gl, onDrawn, batch: 25000, serial: 0, wanted: null, waiting: [] });
     }
 
     // Asks for a view. Only the newest view is drawn to its end. `samples` of the view squared is the
@@ -38,7 +39,8 @@ export class Painter {
         }
     }
 
-    // Waits until what was drawn is done, and measures the time of a ray.
+    // Waits until what was drawn is done, and corrects the number of rays of the next batch. A draw takes
+    // some time whatever its size, so the correction is by a factor of 2 at most.
     async done(rays) {
         const { gl } = this, began = performance.now();
         const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
@@ -46,8 +48,9 @@ export class Painter {
         while (gl.getSyncParameter(fence, gl.SYNC_STATUS) !== gl.SIGNALED && !gl.isContextLost())
             await pause(2);
         gl.deleteSync(fence);
-        if (rays > 1000)
-            this.rate = Math.max(1e-8, (performance.now() - began) / rays);
+        const factor = SHORT / Math.max(1, performance.now() - began);
+        if (factor < 1 || rays > 0.5 * this.batch)
+            this.batch *= Math.min(2, Math.max(0.5, factor));
     }
 
     resize(width, height) {
@@ -77,7 +80,7 @@ export class Painter {
 
     async coarse({ view, width, height, serial }) {
         const { gl, stage } = this, one = { ...view, samples: 1 };
-        const scale = Math.min(1, Math.max(SMALLEST, Math.sqrt(SHORT / (this.rate * width * height))));
+        const scale = Math.min(1, Math.max(SMALLEST, Math.sqrt(this.batch / (width * height))));
         await this.aside(async () => {
             this.resize(width, height);
             if (scale > 0.9) {
@@ -118,7 +121,7 @@ export class Painter {
         const { gl, stage } = this, { view, width, height } = wanted;
         for (let top = height; top > 0;) {
             const rays = width * samples * samples;
-            const rows = Math.min(top, Math.max(4, Math.floor(SHORT / (this.rate * rays))));
+            const rows = Math.min(top, Math.max(4, Math.floor(this.batch / rays)));
             top -= rows;
             await this.aside(() => {
                 gl.enable(gl.SCISSOR_TEST);

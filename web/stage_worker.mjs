@@ -14,9 +14,14 @@ const WORK = {
         return stage.names();
     },
     start(canvas) {
-        const gl = canvas?.getContext('webgl2', { alpha: false, depth: false, antialias: false,
+        // With alpha, the canvas has the format of the painter's framebuffer, so that drivers compile the
+        // shaders once.
+        const gl = canvas?.getContext('webgl2', { alpha: true, depth: false, antialias: false,
                                                   preserveDrawingBuffer: true });
         const problem = stage.start(gl);
+        // Drivers compile a shader again when it first draws: this goes on while the panorama is baked.
+        if (!problem)
+            stage.draw({ ...stage.defaults('ibl'), samples: 1 }, 1, 1);
         if (!problem)
             painter = new Painter(stage, gl, (serial, drawn) => postMessage({ serial, drawn }));
         return { problem, renderer: stage.renderer };

@@ -267,6 +267,54 @@ async function theEnginesFilesAreTheCommands(page, address) {
     checkSame(again.bytes, read('sky.env'), again.name);
 }
 
+// On a narrow screen everything is there, each ball is named, and colours follow the system or the switch.
+async function theLooksFollowTheVisitor(page, address) {
+    await page.setViewportSize({ width: 390, height: 700 });
+    await page.emulateMedia({ colorScheme: 'light' });
+    await page.goto('about:blank');
+    await page.goto(`${address}#samples=1&size=16`);
+    await idle(page);
+    const seen = () => page.evaluate(() => {
+        const box = (node) => node.getBoundingClientRect(), stage = box(document.getElementById('stage'));
+        const marks = [...document.querySelectorAll('#labels span')].map((node) => [node.textContent, box(node)]);
+        const controls = [...document.querySelectorAll('button, select, summary, canvas')].filter((node) => node.checkVisibility());
+        return {
+            width: document.documentElement.scrollWidth,
+            labels: marks.map(([words]) => words),
+            inside: marks.every(([, { left, right, top, bottom }]) => left >= stage.left && right <= stage.right &&
+                                                                      top >= stage.top && bottom <= stage.bottom),
+            beyond: controls.filter((node) => !node.closest('#levels') && (box(node).left < 0 || box(node).right > 390))
+                .map((node) => node.textContent || node.id),
+            back: getComputedStyle(document.body).backgroundColor,
+            bare: [...document.querySelectorAll('#controls .lil-controller')].filter((node) => !/\.$/.test(node.title))
+                .map((node) => node.textContent),
+            brightest: document.getElementById('brightest').textContent,
+        };
+    });
+    const light = await seen();
+    check(light.width === 390, `the page is ${light.width} wide`);
+    check(light.inside && light.labels.join('; ') === 'glossy 0.15; 0.35; 0.55; 0.75; rough 0.95; Light that rough metal ' +
+          'bounces more than once is added back; Without that light, rough balls are too dark', `labels are ${light.labels}`);
+    check(!light.beyond.length, `beyond the edges are ${light.beyond}`);
+    check(!light.bare.length, `no sentence says what these controls do: ${light.bare}`);
+    check(/^Brightest value 1\.2e6: half floats end at 65504/.test(light.brightest), `it says "${light.brightest}"`);
+    await page.locator('#theme').click();
+    const dark = await seen();
+    check(light.back !== dark.back, `both themes are ${light.back}`);
+    await page.reload();
+    await idle(page);
+    check((await seen()).back === dark.back, 'the chosen theme is forgotten');
+    await page.emulateMedia({ colorScheme: 'dark' });
+    await page.evaluate(() => localStorage.clear());
+    await page.reload();
+    await idle(page);
+    check((await seen()).back === dark.back, 'the theme is not the system\'s');
+    await page.locator('#presets').getByText('Noon').click();
+    await idle(page);
+    check(/sun=62/.test(page.url()), `after Noon the address is ${page.url()}`);
+    await page.setViewportSize({ width: 480, height: 360 });
+}
+
 const flatError = (page, wanted) => page.waitForFunction(
     (value) => document.getElementById('flat').dataset.error === value, wanted, { timeout: 240000 });
 
@@ -319,7 +367,7 @@ await withPage(site, async (page, address) => {
     for (const test of [theSkyIsBakedAtOnce, aFileIsDroppedAndBaked, aBrokenFileGivesASentence,
                         whatWasFoundIsTold, theKeyboardSuffices, theAddressHoldsTheState,
                         theFilesAreTheCommands, theSunIsTakenOut, theEnginesFilesAreTheCommands,
-                        theErrorIsIntegrated, theTextbookTakesItsTime]) {
+                        theLooksFollowTheVisitor, theErrorIsIntegrated, theTextbookTakesItsTime]) {
         const began = Date.now();
         await test(page, address);
         console.log(`${test.name}: ${Date.now() - began} ms`);
