@@ -270,12 +270,14 @@ export async function bakePlain(size, roughness, from = panorama) {
     return readCube(file);
 }
 
-// Where pages find packages, loaders and themselves.
+// Where pages find packages, loaders and themselves. The loaders are those of the sources, or of a built npm package,
+// which can bake.
+export const builtPackage = process.env.KILN_PACKAGE;
 export function makeSite(site) {
     fs.rmSync(site, { recursive: true, force: true });
     fs.mkdirSync(site, { recursive: true });
     fs.symlinkSync(path.join(here, 'node_modules'), path.join(site, 'npm'));
-    fs.symlinkSync(path.join(here, '../../npm'), path.join(site, 'loaders'));
+    fs.symlinkSync(path.resolve(builtPackage ?? path.join(here, '../../npm')), path.join(site, 'loaders'));
     fs.symlinkSync(here, path.join(site, 'pages'));
 }
 

@@ -15,6 +15,15 @@ export const HIDDEN = ['--renderer-process-limit=1', '--disable-gpu-compositing'
 // is reported, `of()` before it. All pages share what can be shared.
 export async function withBrowser(site, work, flags = []) {
     const { server, address } = await serve(site);
+    try {
+        await browse(address, work, flags);
+    } finally {
+        server.close();
+    }
+}
+
+// The same for a server that runs already.
+export async function browse(address, work, flags = []) {
     const browser = await chromium.launch({ executablePath: '/usr/bin/chromium', args: [...FLAGS, ...flags] });
     const context = await browser.newContext({ viewport: { width: 900, height: 640 } });
     const faults = [];
@@ -43,7 +52,6 @@ export async function withBrowser(site, work, flags = []) {
         faults.push(error.stack);
     } finally {
         await browser.close();
-        server.close();
     }
     if (faults.length)
         throw new Error(faults.join('\n'));

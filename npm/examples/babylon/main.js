@@ -5,7 +5,7 @@ import { addLights, bakeEnvironment, loadEnvironment } from 'kiln-ibl/babylon';
 const { ArcRotateCamera, Engine, MeshBuilder, PBRMaterial, Scene, Vector3 } = babylon;
 const engine = new Engine(document.querySelector('canvas'), true);
 const scene = new Scene(engine);
-new ArcRotateCamera('camera', -Math.PI / 2, 1.4, 16, Vector3.Zero(), scene).attachControl();
+new ArcRotateCamera('camera', -Math.PI / 2, 1.53, 16, Vector3.Zero(), scene).attachControl();
 scene.activeCamera.fov = 0.5;
 scene.imageProcessingConfiguration.toneMappingEnabled = true;
 

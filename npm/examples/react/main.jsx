@@ -10,13 +10,13 @@ function Loaded() {
 }
 
 function Baked({ panorama }) {
-    return <Environment map={useBakedEnvironmentMap(panorama, { exposure: -4, size: 128 })} background />;
+    return <Environment map={useBakedEnvironmentMap(panorama, { exposure: -5, size: 128 })} background />;
 }
 
 function App() {
     const [bakes, setBakes] = useState(false);
     return <>
-        <Canvas camera={{ position: [0, 2, 12], fov: 30 }} flat={false}>
+        <Canvas camera={{ position: [0, 0.6, 12], fov: 30 }}>
             <Suspense fallback={null}>
                 {bakes ? <Baked panorama="sky.exr" /> : <Loaded />}
                 {[0, 0.5, 1].map((roughness, i) => (

@@ -1,4 +1,4 @@
-// kiln-ibl finds its worker and its WebAssembly beside its modules, which Vite's bundling of dependencies would separate.
+// Vite would bundle kiln-ibl's modules apart from the worker and the WebAssembly that they find beside them.
 export default {
     optimizeDeps: { exclude: ['kiln-ibl'], include: ['@react-three/fiber', 'three'] },
     esbuild: { jsx: 'automatic' },

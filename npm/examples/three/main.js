@@ -10,7 +10,7 @@ document.body.append(renderer.domElement);
 
 const scene = new THREE.Scene();
 const camera = new THREE.PerspectiveCamera(30, 1, 0.1, 100);
-camera.position.set(0, 3, 16);
+camera.position.set(0, 0.6, 16);
 const controls = new OrbitControls(camera, renderer.domElement);
 
 // A row of metal balls and a row of white plastic ones. Their roughness grows from 0 to 1.

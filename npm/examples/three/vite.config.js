@@ -1,2 +1,3 @@
-// kiln-ibl finds its worker and its WebAssembly beside its modules, which Vite's bundling of dependencies would separate.
-export default { optimizeDeps: { exclude: ['kiln-ibl'] } };
+// Vite would bundle kiln-ibl's modules apart from the worker and the WebAssembly that they find beside them. The page
+// waits at its top level, which Vite's default target forbids.
+export default { optimizeDeps: { exclude: ['kiln-ibl'] }, build: { target: 'es2022' } };

@@ -1,7 +1,7 @@
 // Balls in an environment that Vite bakes: the import gives the baked file's address, and the sun that was taken out.
 import * as THREE from 'three';
 import { addLights, loadEnvironment } from 'kiln-ibl/three';
-import environment, { lights } from './sky.exr?for=three&exposure=-4&sun=extract&kiln';
+import environment, { lights } from './sky.exr?for=three&exposure=-5&sun=extract&kiln';
 
 const renderer = new THREE.WebGLRenderer({ antialias: true });
 renderer.toneMapping = THREE.ACESFilmicToneMapping;
@@ -10,7 +10,7 @@ document.body.append(renderer.domElement);
 
 const scene = new THREE.Scene();
 const camera = new THREE.PerspectiveCamera(30, innerWidth / innerHeight, 0.1, 100);
-camera.position.set(0, 2, 12);
+camera.position.set(0, 0.6, 12);
 camera.lookAt(0, 0, 0);
 
 for (let i = 0; i < 3; i++) {

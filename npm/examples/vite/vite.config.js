@@ -1,3 +1,3 @@
 import kiln from 'kiln-ibl/vite';
 
-export default { plugins: [kiln()], build: { target: 'esnext' } };
+export default { plugins: [kiln()], build: { target: 'es2022' } };
