@@ -35,11 +35,13 @@ async function bytesOf(input) {
     throw new TypeError('kiln-ibl: the input is neither bytes nor a picture { data, width, height }');
 }
 
+// A name that the command does not take for an option or for standard input.
+const harmless = (name) => (name.startsWith('-') ? `./${name}` : name);
+
 // The input as files: one, or the six faces of a cube, which name themselves.
 async function filesOf(input, name) {
-    if (!Array.isArray(input))
-        return [{ name: name ?? 'input', bytes: await bytesOf(input) }];
-    return Promise.all(input.map(async (file) => ({ name: file.name, bytes: await bytesOf(file.bytes) })));
+    const files = Array.isArray(input) ? input : [{ name: name ?? 'input', bytes: input }];
+    return Promise.all(files.map(async (file) => ({ name: harmless(file.name), bytes: await bytesOf(file.bytes) })));
 }
 
 // ----------------------------------------------------------------------------------------- options
@@ -61,9 +63,9 @@ function wordsOf(options) {
 // engine's file. An engine of several files has no ending: the command adds to the name.
 function outputOf(name, engineName) {
     const engine = engines.find((each) => each.name === engineName);
-    const base = name.slice(name.lastIndexOf('/') + 1).replace(/(?<=.)\.[^.]*$/, '');
+    const last = name.slice(name.lastIndexOf('/') + 1), dot = last.lastIndexOf('.');
     const ending = engine ? engine.ending : 'ktx2';
-    return (base || 'output') + (ending && `.${ending}`);
+    return ((dot > 0 ? last.slice(0, dot) : last) || 'output') + (ending && `.${ending}`);
 }
 
 // ------------------------------------------------------------------------------------------ errors
@@ -71,7 +73,7 @@ function outputOf(name, engineName) {
 // The command's own sentence, without "kiln: " and without the hint at --help.
 function failureOf({ code, stderr }) {
     const said = stderr.split('\n').filter((line) => /^kiln: (?!warning: |note: )/.test(line));
-    const message = said.at(-1)?.slice('kiln: '.length) ?? `the command ended with the code ${code}`;
+    const message = said[said.length - 1]?.slice('kiln: '.length) ?? `the command ended with the code ${code}`;
     return Object.assign(new Error(message), { name: 'KilnError', exitCode: code, stderr });
 }
 
@@ -129,7 +131,7 @@ export function makeApi(loadModule, startWorker) {
 
     async function bake(input, options = {}) {
         const named = await filesOf(input, options.name);
-        const output = options.output ?? outputOf(options.name ?? named[0].name, options.for);
+        const output = harmless(options.output ?? outputOf(options.name ?? named[0].name, options.for));
         const words = ['bake', ...named.map(({ name }) => name), '--output', output, ...wordsOf(options), '--json'];
         if (!options.sh)
             words.push('--sh', HARMONICS);

@@ -2,7 +2,7 @@
 
 In: the Markdown files README.md, CHANGELOG.md, SECURITY.md and CONTRIBUTING.md in the folder ROOT, those of docs/, and
 the README.md of npm/. Out: OUT/index.html for README.md, and for each other file a page at its path. Files
-that pages show or name are copied: pictures as they are, sources as pages. Links to public headers become links to the
+that pages show or name are copied: pictures as they are, sources as pages; a folder without a page becomes a list of its files. Links to public headers become links to the
 API reference in OUT/api, which Doxygen makes. cmark-gfm translates Markdown to HTML.
 SPDX-License-Identifier: MIT
 """
@@ -57,9 +57,9 @@ def target(page: str, source: str, link: str, others: Dict[str, None]) -> str:
     elif posixpath.dirname(path) == "include/kiln":
         to = "api/%s_8h.html" % posixpath.basename(path)[:-len(".h")]
     elif os.path.isdir(os.path.join(ROOT, path)):
-        to = PAGES.get(posixpath.join(path, "README.md"), "")
-        if not to:
-            raise SystemExit("pages: %s names the folder %s, which has no page" % (source, path))
+        to = posixpath.join(path, "index.html")
+        if posixpath.join(path, "README.md") not in PAGES:
+            others[path] = None
     else:
         others[path] = None
         to = path if path.endswith((".png", ".svg", ".jpg")) else path + ".html"
@@ -122,6 +122,10 @@ def main() -> None:
         if path.endswith((".png", ".svg", ".jpg")):
             os.makedirs(os.path.dirname(os.path.join(OUT, path)), exist_ok=True)
             shutil.copyfile(os.path.join(ROOT, path), os.path.join(OUT, path))
+        elif os.path.isdir(os.path.join(ROOT, path)):
+            names = sorted(name for name in os.listdir(os.path.join(ROOT, path)) if name != "node_modules")
+            write(posixpath.join(path, "index.html"), path + "/", "<h1>%s/</h1>\n<p>This folder of the sources holds:</p>"
+                  "\n<ul>%s</ul>\n" % (path, "".join("<li><code>%s</code></li>" % html.escape(n) for n in names)))
         else:
             write(path + ".html", path, "<h1>%s</h1>\n<pre><code>%s</code></pre>\n"
                   % (html.escape(path), html.escape(read(path))))

@@ -58,6 +58,9 @@ assert.ok(y > 0.5 && Math.abs(z) < 1e-6 && Math.abs(x) < 1e-6, `${[x, y, z]}`);
 const faces = ['px', 'nx', 'py', 'ny', 'pz', 'nz'].map((face) => ({ name: `${face}.exr`, bytes: read(`faces/${face}.exr`) }));
 run('bake', 'faces/{face}.exr', '-o', 'f.ktx2', '--size', '16', '-q');
 assert.ok(read('f.ktx2').equals(Buffer.from((await bake(faces, { size: 16 })).files[0].bytes)));
+// A name that looks like an option or like standard input is a name.
+for (const name of ['-', '--json', '.exr'])
+    assert.equal((await bake(sky, { name, size: 8 })).files[0].name, { '.exr': '.exr.ktx2' }[name] ?? `${name}.ktx2`);
 await assert.rejects(bake({ data: new Float32Array(5), width: 2, height: 1 }), /needs a Float32Array of 6 or 8 numbers/);
 await assert.rejects(bake('a.exr'), /neither bytes nor a picture/);
 
