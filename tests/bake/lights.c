@@ -5,9 +5,9 @@
 #include "math/math.h"
 #include "sphere/sh.h"
 
-#include "kit/context.h"
+#include "kit/lights.h"
 
-enum { COEFFICIENTS = KILN_MAX_BANDS * KILN_MAX_BANDS };
+#include "kit/context.h"
 
 static const double sun_colour[3] = {1, 0.9, 0.7};
 
@@ -104,101 +104,6 @@ static void paint_bloom(kiln_map *map, const double centre[3], double radiance)
 
 // ------------------------------------------------------------------------------------------- laws
 
-// Returns the irradiance of a surface from a disc, by a sum over points of equal area on the disc.
-static void disc_irradiance(const kiln_light *light, const double normal[3], double irradiance[3])
-{
-    enum { RINGS = 48, POINTS = 96 };
-    double radius = light->angular_radius * pi / 180, sine = sin(radius), sum = 0;
-    const double *d = light->direction;
-    double a[3] = {d[1], -d[0], 0}, b[3];
-    if (fabs(d[0]) + fabs(d[1]) < 0.1)
-        a[0] = 0, a[1] = d[2], a[2] = -d[1];
-    normalize(a);
-    for (int k = 0; k < 3; k++)
-        b[k] = d[(k + 1) % 3] * a[(k + 2) % 3] - d[(k + 2) % 3] * a[(k + 1) % 3];
-    for (int i = 0; i < RINGS; i++)
-        for (int j = 0; j < POINTS; j++) {
-            double height = 1 - (i + 0.5) / RINGS * (1 - cos(radius)), at[3];
-            double away = sqrt(1 - height * height), phi = 2 * pi * (j + 0.5) / POINTS;
-            for (int k = 0; k < 3; k++)
-                at[k] = height * d[k] + away * (cos(phi) * a[k] + sin(phi) * b[k]);
-            sum += fmax(0, dot(at, normal));
-        }
-    double solid = 2 * pi * (1 - cos(radius)) / (RINGS * POINTS);
-    for (int c = 0; c < 3; c++)
-        irradiance[c] = light->irradiance[c] / (pi * sine * sine) * sum * solid;
-}
-
-// Returns the irradiance of a surface from a map, channel by channel: exact where the map differs from
-// `other`, from the centres of the texels elsewhere. `difference` is the part from these texels.
-static void map_irradiance(const kiln_map *map, const kiln_map *other, const double normal[3],
-                           double irradiance[3], double difference[3])
-{
-    for (int c = 0; c < 3; c++)
-        irradiance[c] = difference[c] = 0;
-    for (size_t i = 0; i < kiln_map_texels(map, 0); i++) {
-        const float *rgb = map->level[0] + 3 * i, *rest = other->level[0] + 3 * i;
-        double weight = 0, d[3];
-        if (memcmp(rgb, rest, 3 * sizeof *rgb) != 0) {
-            ki_texel_nodes nodes;
-            ki_texel_nodes_find(map, i, 4, &nodes);
-            for (int n = 0; n < nodes.count; n++)
-                weight += nodes.weight[n] * fmax(0, dot(nodes.direction[n], normal));
-        } else {
-            kiln_map_direction(map, 0, i, d);
-            weight = fmax(0, dot(d, normal)) * ki_texel_solid_angle(map, i);
-        }
-        for (int c = 0; c < 3; c++) {
-            irradiance[c] += weight * (double)rgb[c];
-            difference[c] += weight * ((double)rgb[c] - (double)rest[c]);
-        }
-    }
-}
-
-static void check_harmonics(const kiln_map *map, const kiln_map *left, const kiln_lights *lights)
-{
-    kiln_sh whole, rest, taken;
-    double squares = 0;
-    CHECK_OK(kiln_map_sh(context, map, KILN_MAX_BANDS, 0, &whole, &error));
-    CHECK_OK(kiln_map_sh(context, left, KILN_MAX_BANDS, 0, &rest, &error));
-    CHECK_OK(kiln_lights_sh(lights, KILN_MAX_BANDS, &taken, &error));
-    for (int k = 0; k < COEFFICIENTS; k++)
-        for (int c = 0; c < 3; c++)
-            squares += whole.c[k][c] * whole.c[k][c];
-    for (int k = 0; k < COEFFICIENTS; k++)
-        for (int c = 0; c < 3; c++)
-            CHECK_NEAR(rest.c[k][c] + taken.c[k][c], whole.c[k][c], 1e-3 * sqrt(squares / 3));
-}
-
-// The irradiance of surfaces that face every way, those included that face the largest light and those whose
-// horizon cuts through this light, to a thousandth of the greatest irradiance.
-static void check_irradiance(const kiln_map *map, const kiln_map *left, const kiln_lights *lights)
-{
-    enum { NORMALS = 9 };
-    uint64_t seed = 4;
-    double off[NORMALS][3], most[3] = {0};
-    for (int i = 0; i < NORMALS; i++) {
-        double normal[3], whole[3], taken[3];
-        const double *d = lights->light[0].direction;
-        random_direction(&seed, normal);
-        double along = dot(normal, d);
-        for (int k = 0; k < 3; k++)
-            normal[k] = i == 0 ? d[k] : i % 2 ? normal[k] : normal[k] - along * d[k];
-        normalize(normal);
-        map_irradiance(map, left, normal, whole, off[i]);
-        for (int n = 0; n < lights->count; n++) {
-            disc_irradiance(&lights->light[n], normal, taken);
-            for (int c = 0; c < 3; c++)
-                off[i][c] -= taken[c];
-        }
-        for (int c = 0; c < 3; c++)
-            most[c] = fmax(most[c], whole[c]);
-    }
-    for (int i = 0; i < NORMALS; i++)
-        for (int c = 0; c < 3; c++)
-            CHECK_BELOW(fabs(off[i][c]), 1e-3 * most[c]);
-}
-
 // Nothing is brighter or more negative than before, only texels of lights differ, and lights shine.
 static void check_signs(const kiln_map *map, const kiln_map *left, const kiln_lights *lights)
 {
@@ -242,9 +147,9 @@ static kiln_lights extract(kiln_map *map, int count, bool whole_check)
     CHECK_OK(kiln_lights_extract(context, &left, &def, &lights, &error));
     assert_memory_equal(&lights, &found, sizeof lights);
     check_signs(map, &left, &lights);
-    check_harmonics(map, &left, &lights);
+    check_light_harmonics(context, map, &left, &lights);
     if (whole_check)
-        check_irradiance(map, &left, &lights);
+        check_light_irradiance(map, &left, &lights);
     kiln_map_free(&left);
     kiln_map_free(map);
     return lights;

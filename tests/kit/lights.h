@@ -1,0 +1,16 @@
+// The laws of lights that are taken out of a map: the map that is left and the lights are together as bright as the
+// map.
+#ifndef KILN_KIT_LIGHTS_H
+#define KILN_KIT_LIGHTS_H
+
+#include <kiln/kiln.h>
+
+/// Checks each harmonic of five bands to a thousandth of the RMS norm of the map's harmonics.
+void check_light_harmonics(kiln_context *context, const kiln_map *map, const kiln_map *left,
+                           const kiln_lights *lights);
+
+/// Checks the irradiance to a thousandth of the greatest irradiance, channel by channel. Surfaces face the largest
+/// light, have this light on their horizon or close to the horizon, or face every way.
+void check_light_irradiance(const kiln_map *map, const kiln_map *left, const kiln_lights *lights);
+
+#endif
