@@ -46,5 +46,5 @@ export interface LightOptions<C> {
 /** Adds directional lights to a scene: those that kiln took out of the environment with `--sun extract`, as read from
  * the file of `--lights-file` or as `lights` of a bake. Their intensity is the irradiance of a surface that faces the
  * light. Returns the lights. */
-export function addLights<C extends LightClasses>(scene: object, lights: readonly Light[] | { lights: readonly Light[] },
-    options?: LightOptions<C>): MadeLight<C>[];
+export function addLights<C extends LightClasses>(
+    scene: object, lights: readonly Light[] | { lights: readonly Light[] }, options?: LightOptions<C>): MadeLight<C>[];

@@ -16,21 +16,24 @@ function classesOf(babylon, ...names) {
 
 const ENDINGS = { '.env': '.env', DDS: '.dds' };
 
-// Makes a texture of a file's bytes, which Babylon.js loads from an address of their own.
+// Makes a texture of a file's bytes, which Babylon.js loads from an address of their own. The address lasts as long as
+// the texture, since Babylon.js loads again when the browser has lost what was on the GPU.
 function makeTexture({ name, bytes }, scene, { CubeTexture }) {
     const kind = kindOf(bytes), ending = ENDINGS[kind];
     if (!ending)
         throw new Error(`${name}: the file is of the kind "${kind}", and not an environment that kiln baked with ` +
                         '--for babylon or --for babylon-dds; bakeEnvironment() bakes panoramas');
-    const url = URL.createObjectURL(new Blob([bytes]));
-    const made = new Promise((resolve, reject) => {
-        const fail = (message, error) =>
+    const url = URL.createObjectURL(new Blob([bytes])), free = () => URL.revokeObjectURL(url);
+    return new Promise((resolve, reject) => {
+        const fail = (message, error) => {
+            free();
             reject(new Error(`${name}: Babylon.js cannot load the file: ${message || error?.message || 'no reason'}`));
+        };
         const texture = new CubeTexture(url, scene, null, false, null, () => resolve(texture), fail, undefined, true,
                                         ending, true);
         texture.name = name;
+        texture.onDisposeObservable.add(free);
     });
-    return made.finally(() => URL.revokeObjectURL(url));
 }
 
 export async function loadEnvironment(source, scene, { babylon = globalThis.BABYLON, signal } = {}) {

@@ -38,7 +38,7 @@ function stored(texture) {
     const { image } = texture;
     const refuse = (sentence) => { throw new Error(`bakeEnvironment: ${sentence}`); };
     if (texture.isRenderTargetTexture)
-        refuse('the texture is a render target\'s, whose texels are on the GPU alone; pass the address of the panorama');
+        refuse('the texture is a render target\'s, whose texels are on the GPU alone; pass the panorama\'s address');
     if (texture.isCubeTexture || texture.isCompressedTexture)
         refuse(`a ${texture.isCubeTexture ? 'cube' : 'compressed'} texture is not a panorama; pass the address of ` +
                'the panorama, or a texture of HDRLoader, EXRLoader or TextureLoader');

@@ -19,7 +19,7 @@ export const engine = revision >= CUBES ? 'three' : 'three-cubeuv';
 
 function checkVersion(renderer) {
     if (revision < OLDEST)
-        throw new Error(`kiln-ibl/three: this is three.js r${REVISION}; environments can be loaded from r${OLDEST} on`);
+        throw new Error(`kiln-ibl/three: this is three.js r${REVISION}; environments are loaded from r${OLDEST} on`);
     if (!renderer?.isWebGLRenderer && !renderer?.isWebGPURenderer)
         throw new Error('kiln-ibl/three: the second argument must be the renderer of the scene, a WebGLRenderer or ' +
                         'a WebGPURenderer');
@@ -57,8 +57,8 @@ function checkRoughness(name, metadata, count) {
     const text = metadata.match(/kiln:roughness\0([\d.e+ -]+)/)?.[1];
     const found = text?.trim().split(' ').map(Number) ?? [];
     if (found.some((r, k) => Math.abs(r - (1 - Math.sqrt(1 - k / (count - 1)))) > 1e-4))
-        throw new Error(`${name}: the levels have the roughnesses ${found.map((r) => +r.toFixed(3)).join(' ')}, which ` +
-                        'are not those of three.js; bake the file with --for three');
+        throw new Error(`${name}: the levels have the roughnesses ${found.map((r) => +r.toFixed(3)).join(' ')}, ` +
+                        'which are not those of three.js; bake the file with --for three');
 }
 
 async function unzip(levels) {
@@ -149,7 +149,7 @@ export async function loadEnvironment(source, renderer, { signal } = {}) {
     checkVersion(renderer);
     const files = source?.three ?? source?.['three-cubeuv'] ? source : { [engine]: source };
     if (!files[engine])
-        throw new Error(`kiln-ibl/three: three.js r${REVISION} needs the file that kiln bakes with --for ${engine}, ` +
+        throw new Error(`kiln-ibl/three: three.js r${REVISION} needs the file of kiln bake --for ${engine}, ` +
                         `and only ${Object.keys(files).join()} is given`);
     return makeTexture(await openFile(files[engine], { signal }), renderer);
 }

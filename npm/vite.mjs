@@ -46,8 +46,8 @@ async function revisionOf(root) {
     return NaN;
 }
 
-// With for=three, the engine whose files the installed three.js loads. The size of CubeUV files is that of the cube that
-// they are made of, which is twice the size of a face.
+// With for=three, the engine whose files the installed three.js loads. The size of CubeUV files is that of the cube
+// that they are made of, which is twice the size of a face.
 async function forInstalled(options, root) {
     if (options.for !== 'three' || !(await revisionOf(root) < 187))
         return options;
@@ -143,7 +143,8 @@ export default function kiln({ cache } = {}) {
                         type: 'asset', name: path.basename(name), source: await fs.readFile(path.join(kept, key, name)),
                     })}__`
                     : `${config.base.replace(/\/$/, '')}${SERVED}${key}/${name}`;
-            const lines = ['levels', 'sh', 'lights'].map((field) => `export const ${field} = ${JSON.stringify(made[field])};`);
+            const lines = ['levels', 'sh', 'lights'].map((field) =>
+                `export const ${field} = ${JSON.stringify(made[field])};`);
             return [`export const files = ${JSON.stringify(addresses)};`,
                     `export default ${JSON.stringify(addresses[made.files[0]])};`, ...lines].join('\n');
         },

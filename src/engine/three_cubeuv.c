@@ -1,4 +1,4 @@
-// three.js r181 to r186 and model-viewer: a cube and its levels go in, an atlas called CubeUV comes
+// three.js r150 to r186 and model-viewer: a cube and its levels go in, an atlas called CubeUV comes
 // out as an EXR picture. cube_uv_reflection_fragment.glsl.js is the shader that reads the atlas.
 // Each level ("mip" m of M) has six faces with a border of one texel each: +X +Y +Z in a row, and
 // -X -Y -Z in the row above. Mips M to 4 have faces of 2^m texels and lie 4 (2^M - 2^m) texels
@@ -146,7 +146,7 @@ static kiln_result write_files(ki_export *to, kiln_error *error)
 
 const ki_recipe ki_three_cubeuv = {
     .about = {.name = "three-cubeuv",
-              .title = "three.js r181 to r186",
+              .title = "three.js r150 to r186",
               .files = "NAME.exr",
               .ending = "exr",
               .mapping = "r = 2^(-m / 2) / 1.16, .21 .305 .4 .53 .67 .8 1",

@@ -1,8 +1,9 @@
-// The examples of the npm package run as their README says, from the packed package alone, and show right pictures.
+// The examples of the npm package run as npm/README.md says, from the packed package alone, and show right pictures.
 //     node examples.mjs PACKED FOLDER [EXAMPLE...], where PACKED holds the tarball and its name in name.txt
-// Each example is copied to an empty folder, its dependency kiln-ibl becomes the tarball, and `npm install`, `npm start`
-// and `npm run build` are typed. Pictures are left in FOLDER. A picture is right where the mirror ball shows a
-// blue sky, every ball is lit, the built page shows what the development server shows, and dropped panoramas of one colour have this colour.
+// Each example is copied to an empty folder, its dependency kiln-ibl becomes the tarball, and `npm install`,
+// `npm start` and `npm run build` are typed. Pictures are left in FOLDER. A picture is right where the mirror ball
+// shows a blue sky and every ball is lit, the built page shows what the development server shows, and in a dropped
+// panorama of one colour everything has this colour.
 import { execFileSync, spawn } from 'node:child_process';
 import fs from 'node:fs';
 import path from 'node:path';
@@ -27,7 +28,8 @@ async function look(page, file) {
         const bitmap = await createImageBitmap(new Blob([bytes]));
         const pen = new OffscreenCanvas(bitmap.width, bitmap.height).getContext('2d');
         pen.drawImage(bitmap, 0, 0);
-        return new TextDecoder('latin1').decode(pen.getImageData(0, 0, bitmap.width, bitmap.height).data.map((x) => x >> 1));
+        const { data } = pen.getImageData(0, 0, bitmap.width, bitmap.height);
+        return new TextDecoder().decode(data.map((x) => x >> 1)); // of seven bits, one text, which is passed on quickly
     }, png.toString('base64'));
     const data = Buffer.from(text, 'latin1').map((x) => 2 * x);
     return { data, at: (x, y) => [...data.subarray(4 * (y * WIDTH + x), 4 * (y * WIDTH + x) + 3)] };
@@ -77,7 +79,7 @@ const EXAMPLES = {
     three: { balls: rows([80, 152, 225, 298, 370], [122, 195]), mirror: [80, 97], drops: true },
     babylon: { balls: rows([80, 152, 225, 298, 370], [122, 195]), mirror: [80, 97], drops: true, servedAlone: true },
     react: { balls: rows([135, 225, 315], [160]), mirror: [135, 130], presses: true },
-    vite: { balls: rows([135, 225, 315], [160]), mirror: [135, 130] },
+    vite: { balls: rows([135, 225, 315], [160]), mirror: [135, 130], older: '0.170.0' },
 };
 const BEHIND = [225, 15];
 
@@ -134,6 +136,27 @@ async function whileServed(cwd, port, work) {
     }
 }
 
+async function proveBuilt(name, cwd, stage, say) {
+    npm(['run', 'build', '--', '--base', './'], cwd);
+    const { server, address } = await serve(path.join(cwd, 'dist'));
+    try {
+        return await proveExample(name, address, stage, say);
+    } finally {
+        server.close();
+    }
+}
+
+// The plugin bakes once for the server and for the build, and another file for a version of three.js before r187.
+async function proveOlder(name, cwd, version, say) {
+    const kept = () => fs.readdirSync(path.join(cwd, 'node_modules/.vite/kiln-ibl')).length;
+    const files = () => fs.readdirSync(path.join(cwd, 'dist/assets')).filter((each) => each.startsWith('sky-')).join();
+    check(kept() === 1 && /^sky-[^,]*\.ktx2$/.test(files()), `${kept()} bakes are kept, and ${files()} is built`);
+    npm(['install', '--no-audit', '--no-fund', `three@${version}`], cwd);
+    await proveBuilt(name, cwd, 'older', say);
+    check(kept() === 2 && /^sky-[^,]*\.exr$/.test(files()), `${kept()} bakes are kept, and ${files()} is built`);
+    say(`with three.js ${version}: ${files()}`);
+}
+
 async function proveAll(name, port) {
     const say = (line) => console.log(`  ${name}: ${line}`);
     const cwd = path.join(folder, name);
@@ -149,18 +172,13 @@ async function proveAll(name, port) {
     const served = await whileServed(cwd, port, (address) => proveExample(name, address, 'served', say));
     if (EXAMPLES[name].servedAlone) // to bundle Babylon.js takes a minute of a processor
         return;
-    npm(['run', 'build', '--', '--base', './'], cwd);
-    let built;
-    const dist = path.join(cwd, 'dist');
-    const { server, address } = await serve(dist);
-    try {
-        built = await proveExample(name, address, 'built', say);
-    } finally {
-        server.close();
-    }
+    const built = await proveBuilt(name, cwd, 'built', say);
+    if (EXAMPLES[name].older)
+        await proveOlder(name, cwd, EXAMPLES[name].older, say);
     const off = differ(served, built);
     say(`built and served differ by ${off.toFixed(3)} of 255 rms`);
     check(off < 0.5, `${name}: the built page shows another picture than the served one, by ${off}`);
+    const dist = path.join(cwd, 'dist');
     const bytes = fs.readdirSync(path.join(dist, 'assets')).map((each) =>
         [each, fs.statSync(path.join(dist, 'assets', each)).size]);
     say(`assets: ${bytes.map(([each, size]) => `${each} ${size}`).join(', ')}`);

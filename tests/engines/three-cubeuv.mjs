@@ -1,4 +1,4 @@
-// three.js r183 shows what kiln wrote for r181 to r186: MeshStandardMaterial, lit by scene.environment.
+// three.js r183 shows what kiln wrote for r150 to r186: MeshStandardMaterial, lit by scene.environment.
 import { threeCubeUv } from './models.mjs';
 
 export default [{

@@ -1,5 +1,5 @@
 // kiln-ibl/three shows the right pixels in versions of three.js from the oldest to the newest, and refuses the file
-// of the other layout by an error. With a built package, bakeEnvironment() shows the pixels of the native command's file.
+// of the other layout by an error. With a built package, bakeEnvironment() shows the pixels of the command's file.
 import fs from 'node:fs';
 import path from 'node:path';
 import { three, threeCubeUv, threeCubeUvApproximate } from './models.mjs';
@@ -72,7 +72,7 @@ const proofOf = (version, engine, bounds) => ({
     check: async (files, draw, say) => {
         await prove({ ...engine, bounds }, files, draw, say);
         const [other, pattern] = engine.name === 'three'
-            ? ['three-cubeuv-real.exr', /up to r186, and this is r187; bake the panorama with --for three, or call bake/]
+            ? ['three-cubeuv-real.exr', /up to r186, and this is r187; bake the panorama with --for three, or/]
             : ['three-real.ktx2', /from r187 on, and this is r1[5-8]\d; bake the file with --for three-cubeuv$/];
         await checkRefusal(other, pattern, draw, say);
         await checkBakes(version, engine, draw, say);
@@ -81,8 +81,8 @@ const proofOf = (version, engine, bounds) => ({
     },
 });
 
-// Files that are refused by r187, and by r150 where its reason is another. The cube of `kiln bake` without an engine has
-// equal steps of roughness.
+// Files that are refused by r187, and by r150 where its reason is another. The cube of `kiln bake` without an engine
+// has equal steps of roughness.
 const REFUSED = {
     'plain.ktx2': [/the levels have the roughnesses 0 0.2 0.4 0.6 0.8 1, which are not those of three.js/,
                    /three.js shows cubes like this from r187 on/],
