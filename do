@@ -284,16 +284,17 @@ lint)
     cppcheck --quiet --error-exitcode=1 --inline-suppr --std=c11 -I include -I src \
         --enable=warning,performance,portability --suppress=missingInclude --suppress=ctuuninitvar $sources
     say "clang-tidy"
-    printf '%s\n' "$sources" | grep -v '/os_windows\.c$' |
+    printf '%s\n' "$sources" | grep -vE '/os_(windows|host)\.c$' |
         xargs -n 1 -P 2 clang-tidy --quiet -p build/strict 2>build/tidy.log
-    # The sources for Windows and those of the page, by the commands that the cross compilers are called with;
+    # The sources for Windows and those for WebAssembly, by the commands that the cross compilers are called with;
     # nothing is compiled.
     cmake --preset mingw >build/mingw.log 2>&1 || { cat build/mingw.log; exit 1; }
     clang-tidy --quiet -p build/mingw src/base/os_windows.c cli/os_windows.c 2>>build/tidy.log
     npm_packages web npm/codecs
     cmake --preset wasm >build/wasm.log 2>&1 || { cat build/wasm.log; exit 1; }
     clang-tidy --quiet -p build/wasm --extra-arg=--target=wasm32-unknown-emscripten \
-        --extra-arg=--sysroot="$(em-config CACHE)/sysroot" web/*.c 2>>build/tidy.log
+        --extra-arg=--sysroot="$(em-config CACHE)/sysroot" web/*.c src/base/os_host.c cli/os_host.c \
+        2>>build/tidy.log
     ;;
 format)
     need format
