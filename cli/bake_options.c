@@ -100,14 +100,15 @@ const cli_option bake_options[OPTIONS + 1] = {
                 .help = "mip levels to write", .unset = "all, down to 1 texel"},
     [SHAPE] = {"shape", CLI_CHOICE, AT(shape), 0, 0, KILN_SHAPE_CUBE - KILN_SHAPE_PANORAMA, "SHAPE",
                .words = bake_shapes + KILN_SHAPE_PANORAMA, .help = "the kind of map to write"},
-    [FORMAT] = {"format", CLI_CHOICE, AT(format), .value = "FORMAT", .word = format_word,
-                .help = "how texels are stored in KTX2 and DDS; rgba16f and rgba32f are half and "
-                        "float in EXR too; rgbm, rgbd and rgbp are for PNG",
-                .unset = "rgba16f",
-                .more =
-                    "bc6h takes one byte for each texel and has errors of about a per cent. rgbm, "
-                    "rgbd and rgbp hold radiance up to 64, 255 and 64 in four bytes. With --for "
-                    "filament, b10g11r11 writes the texel format that Filament's cmgen writes."},
+    [FORMAT] =
+        {"format", CLI_CHOICE, AT(format), .value = "FORMAT", .word = format_word,
+         .help = "how texels are stored in KTX2 and DDS; rgba16f and rgba32f are half and "
+                 "float in EXR too; rgbm, rgbd and rgbp are for PNG",
+         .unset = "rgba16f",
+         .more = "bc6h and uastc take one byte for each texel and have errors of about a per cent; "
+                 "uastc (UASTC HDR 4x4) is for KTX2 and for web engines. rgbm, rgbd and rgbp hold "
+                 "radiance up to 64, 255 and 64 in four bytes. With --for "
+                 "filament, b10g11r11 writes the texel format that Filament's cmgen writes."},
     [ZSTD] = {"zstd", CLI_INTEGER, AT(zstd), 1, 22, 0, "LEVEL",
               .help = "compress KTX2 files by Zstandard", .alone = "3"},
     [LOBE] = {"lobe", CLI_CHOICE, AT(lobe), .value = "LOBE", .words = bake_lobes, .group = "Filter",

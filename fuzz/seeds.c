@@ -118,7 +118,7 @@ static void write_maps(void)
     kiln_map map = seed_cube(4, 0);
     kiln_sh sh = {.bands = 3, .c = {{1, 2, 3}, {0.5, 0, -0.5}}};
     for (size_t n = 0; n < sizeof names / sizeof *names; n++)
-        for (int format = 0; format <= KILN_FORMAT_RGBP; format++)
+        for (int format = 0; format <= KILN_FORMAT_UASTC; format++)
             for (int zstd = 0; zstd < 2; zstd++) {
                 const kiln_save_def def = {
                     .format = (kiln_format)format, .zstd = zstd, .sh = &sh, .lobe = "ggx"};

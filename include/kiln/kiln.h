@@ -826,7 +826,10 @@ typedef enum kiln_format {
     /// RGBM, RGBD and RGBP: four bytes a texel, PNG only; see docs/conventions.md.
     KILN_FORMAT_RGBM,
     KILN_FORMAT_RGBD,
-    KILN_FORMAT_RGBP
+    KILN_FORMAT_RGBP,
+    /// UASTC HDR 4x4: 4 x 4 texels in 16 bytes, as a subset of ASTC HDR that loaders can convert to
+    /// BC6H quickly; KTX2 only
+    KILN_FORMAT_UASTC
 } kiln_format;
 /// Returns the names of the formats, "auto", "rgba16f", ..., in the order of the enum, with NULL
 /// after the last name.
@@ -860,8 +863,8 @@ KILN_API double kiln_map_save_limit(const char *path, kiln_format format);
 /// gaps between rows. Returns 0 where kiln_map_pack fails.
 KILN_API size_t kiln_map_packed_size(const kiln_map *map, int level, kiln_format format);
 /// Packs a level in the layout that a graphics processor reads: rgba16f (also for
-/// KILN_FORMAT_AUTO), rgba32f, rgb9e5, b10g11r11, or bc6h blocks. Faces are stored one after the
-/// other. A row of texels or blocks begins `row_stride` bytes after the row before it; 0 for no
+/// KILN_FORMAT_AUTO), rgba32f, rgb9e5, b10g11r11, or bc6h or uastc blocks. Faces are stored one after
+/// the other. A row of texels or blocks begins `row_stride` bytes after the row before it; 0 for no
 /// gaps. Values above kiln_format_limit are stored as the limit. Fails if `destination_size` is too
 /// small.
 KILN_API KILN_CHECKED kiln_result kiln_map_pack(kiln_context *context, const kiln_map *map,

@@ -45,7 +45,7 @@ static kiln_result check(const kiln_map *map, const kiln_save_def *def, kiln_err
     if (map->shape != KILN_SHAPE_CUBE)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
                        "a DDS file holds a cube only, convert the map by kiln_map_convert");
-    if (!pixel || !pixel->vk)
+    if (!pixel || !pixel->dxgi)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "format is %d, it must be 0 to %d",
                        (int)def->format, (int)KILN_FORMAT_BC6H);
     if (map->smallest > 1 && map->size >> (map->level_count - 1) < map->smallest)

@@ -27,10 +27,11 @@ typedef struct ki_ktx2_sample {
 typedef struct ki_ktx2_file {
     uint32_t vk;
     // type_size: bytes of a number that is swapped for byte order; texel_size: bytes of a texel, or
-    // of a BC6H block.
+    // of a block of texels.
     int type_size, texel_size;
-    // Side of a BC6H block in texels; 0 or 1 for formats of single texels.
+    // Side of a block in texels; 0 or 1 for formats of single texels.
     int block;
+    int model;                // colour model of the Khronos Data Format; 0 for RGBSDA
     int width, height, depth; // size in texels; depth 0 for a texture that is not 3-D
     int face_count, level_count;
     int zstd; // zstd compression level, 0 for no compression
@@ -94,6 +95,10 @@ kiln_result ki_ktx2_unpack(kiln_context *context, const ki_ktx2_source *source, 
 
 /// Describes how the texels are stored. Fails for formats and colours that kiln does not read.
 kiln_result ki_ktx2_texels(const ki_ktx2_source *source, ki_texels *texels, kiln_error *error);
+/// Fails if a level of UASTC HDR blocks, which may come from a file of general ASTC, has a block
+/// that kiln cannot decode.
+kiln_result ki_ktx2_check_blocks(const ki_ktx2_source *source, const ki_texels *texels,
+                                 const uint8_t *plain, size_t size, int level, kiln_error *error);
 /// Returns the end of the description of the texels: ", zstd", ", zlib" or "".
 const char *ki_ktx2_scheme(const ki_ktx2_source *source);
 /// Turns a picture of RGB floats from the orientation that the metadata state to rows from the top

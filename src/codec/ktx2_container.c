@@ -21,13 +21,13 @@ enum { INDEX_ENTRY = 24, SCHEME_NONE = 0, SCHEME_BASIS = 1, SCHEME_ZSTD = 2, SCH
 // Writes the data format descriptor: a basic descriptor block of the Khronos Data Format 1.3.
 static void write_format(ki_writer *w, const ki_ktx2_file *file)
 {
-    enum { MODEL_RGBSDA = 1, MODEL_BC6H = 133, PRIMARIES_BT709 = 1, TRANSFER_LINEAR = 1 };
+    enum { MODEL_RGBSDA = 1, PRIMARIES_BT709 = 1, TRANSFER_LINEAR = 1 };
     uint32_t block = 24 + 16 * (uint32_t)file->sample_count;
     ki_write_u32(w, 4 + block);
     ki_write_u32(w, 0); // descriptor block: vendor Khronos, type "basic format"
     // version of the descriptor block, 2 for Khronos Data Format 1.3, and the block's size in bytes
     ki_write_u32(w, 2 | block << 16);
-    ki_write_u8(w, file->block > 1 ? MODEL_BC6H : MODEL_RGBSDA);
+    ki_write_u8(w, (uint8_t)(file->model ? file->model : MODEL_RGBSDA));
     ki_write_u8(w, PRIMARIES_BT709);
     ki_write_u8(w, TRANSFER_LINEAR);
     ki_write_u8(w, 0); // flags: alpha is not multiplied into the colours

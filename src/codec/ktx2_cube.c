@@ -29,6 +29,7 @@ static int find_samples(const ki_pixel_format *pixel, ki_ktx2_sample samples[6])
         samples[2] = (ki_ktx2_sample){22, 10, 2 | KI_KTX2_FLOAT, 0, one};
         return 3;
     case KILN_FORMAT_BC6H:
+    case KILN_FORMAT_UASTC:
         samples[0] = (ki_ktx2_sample){0, 128, 0 | KI_KTX2_FLOAT, 0, one};
         return 1;
     default:
@@ -91,8 +92,8 @@ kiln_result ki_ktx2_encode(const kiln_map *map, const kiln_save_def *def, ki_wri
         return ki_fail(error, KILN_ERROR_ARGUMENT,
                        "a KTX2 file holds a cube only, convert the map by kiln_map_convert");
     if (!pixel || !pixel->vk)
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "format is %d, it must be 0 to %d",
-                       (int)def->format, (int)KILN_FORMAT_BC6H);
+        return ki_fail(error, KILN_ERROR_ARGUMENT, "format is %d, it must be 0 to %d or %d",
+                       (int)def->format, (int)KILN_FORMAT_BC6H, (int)KILN_FORMAT_UASTC);
     if (map->smallest > 1 && map->size >> (map->level_count - 1) < map->smallest)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
                        "each level of a KTX2 file has half the size of the previous level, which "
@@ -102,6 +103,7 @@ kiln_result ki_ktx2_encode(const kiln_map *map, const kiln_save_def *def, ki_wri
                          .type_size = pixel->type_size,
                          .texel_size = pixel->bytes,
                          .block = pixel->block,
+                         .model = pixel->model,
                          .width = map->size,
                          .height = map->size,
                          .face_count = 6,
@@ -145,6 +147,8 @@ static kiln_result read_level(kiln_context *context, const ki_ktx2_source *s,
     kiln_result result = ki_ktx2_unpack(context, s, k, level, &plain, &unpacked, error);
     int n = kiln_map_level_size(map, k);
     size_t face = (size_t)ki_texels_size(format, n, n, 1), texels = kiln_map_texels(map, k) / 6;
+    if (result == KILN_OK)
+        result = ki_ktx2_check_blocks(s, format, plain, 6 * face, k, error);
     for (size_t i = 0; i < 6 && result == KILN_OK; i++)
         if (!ki_texels_read(context, format, plain + face * i, n, n, 1,
                             map->level[k] + 3 * texels * i))

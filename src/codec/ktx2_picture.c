@@ -3,12 +3,13 @@
 // a 2-D texture.
 #include "codec/ktx2.h"
 #include "codec/report.h"
+#include "codec/uastc.h"
 
 #include <stdio.h>
 
 kiln_result ki_ktx2_texels(const ki_ktx2_source *s, ki_texels *texels, kiln_error *error)
 {
-    enum { MODEL_UASTC = 166, MODEL_UASTC_HDR = 167, VK_BC6H_SIGNED = 144 };
+    enum { MODEL_UASTC = 166, VK_BC6H_SIGNED = 144 };
     enum { PRIMARIES_AT = 13, LINEAR = 1, SRGB = 2, BT709 = 1 };
     uint8_t model = 0, primaries = 0, transfer = 0;
     if (s->descriptor_offset && s->descriptor_offset <= s->size &&
@@ -18,7 +19,7 @@ kiln_result ki_ktx2_texels(const ki_ktx2_source *s, ki_texels *texels, kiln_erro
         primaries = at[0];
         transfer = at[1];
     }
-    if (model == MODEL_UASTC || model == MODEL_UASTC_HDR)
+    if (model == MODEL_UASTC)
         return ki_fail(
             error, KILN_ERROR_UNSUPPORTED,
             "%s: holds UASTC texels; expand the file first, for example by 'ktx transcode "
@@ -31,7 +32,7 @@ kiln_result ki_ktx2_texels(const ki_ktx2_source *s, ki_texels *texels, kiln_erro
         return ki_fail(
             error, KILN_ERROR_UNSUPPORTED,
             "%s: has vkFormat %u; kiln reads RGB and RGBA of 8 and 16 bits, of 16-bit and "
-            "32-bit floats, and the formats 122, 123 and 143",
+            "32-bit floats, and the formats 122, 123, 143 and 1000066000",
             s->name, s->vk);
     if (primaries > BT709 || transfer > SRGB)
         return ki_fail(error, KILN_ERROR_UNSUPPORTED,
@@ -41,6 +42,20 @@ kiln_result ki_ktx2_texels(const ki_ktx2_source *s, ki_texels *texels, kiln_erro
     if (texels->kind == KI_TEXEL_U8 && transfer == SRGB)
         texels->kind = KI_TEXEL_SRGB8;
     return KILN_OK;
+}
+
+kiln_result ki_ktx2_check_blocks(const ki_ktx2_source *s, const ki_texels *texels,
+                                 const uint8_t *plain, size_t size, int level, kiln_error *error)
+{
+    if (!texels->pixel || texels->pixel->format != KILN_FORMAT_UASTC)
+        return KILN_OK;
+    size_t count = size / KI_UASTC_BYTES, unknown = ki_uastc_first_unknown(plain, count);
+    if (unknown == count)
+        return KILN_OK;
+    return ki_fail(error, KILN_ERROR_UNSUPPORTED,
+                   "%s: block %zu of %zu in level %d is not in one of the 24 modes of UASTC HDR "
+                   "4x4; kiln reads no other ASTC, expand the file first",
+                   s->name, unknown, count, level);
 }
 
 kiln_result ki_ktx2_turn(kiln_context *context, const kiln_file_info *info, float *rgb, int width,
@@ -103,6 +118,9 @@ kiln_result ki_ktx2_decode_picture(kiln_context *context, ki_ktx2_source *s, kil
     if (result != KILN_OK || !image)
         return result;
     result = ki_ktx2_unpack(context, s, 0, &level, &plain, &unpacked, error);
+    if (result == KILN_OK)
+        result = ki_ktx2_check_blocks(s, &texels, plain, (size_t)ki_texels_size(&texels, w, h, 1),
+                                      0, error);
     *image = (kiln_image){.width = w, .height = h, .channels = 3};
     if (result == KILN_OK)
         result = ki_image_allocate(context, image, error);

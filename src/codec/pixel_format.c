@@ -4,6 +4,7 @@
 #include "codec/pixel_format.h"
 
 #include "codec/bc6h.h"
+#include "codec/uastc.h"
 #include "image/image.h"
 #include "image/pack.h"
 
@@ -11,8 +12,8 @@
 
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "files are written as memory is");
 
-const char *const ki_format_names[] = {"auto", "rgba16f", "rgba32f", "rgb9e5", "b10g11r11",
-                                       "bc6h", "rgbm",    "rgbd",    "rgbp",   NULL};
+const char *const ki_format_names[] = {"auto", "rgba16f", "rgba32f", "rgb9e5", "b10g11r11", "bc6h",
+                                       "rgbm", "rgbd",    "rgbp",    "uastc",  NULL};
 
 const char *const *kiln_format_names(void)
 {
@@ -20,22 +21,24 @@ const char *const *kiln_format_names(void)
 }
 
 // One row for each kiln_format, in the order of the enum. The first row, for KILN_FORMAT_AUTO, has
-// the values of RGBA16F. The last three formats exist only in PNG files and have no Vulkan or DXGI
-// number.
+// the values of RGBA16F. The formats rgbm, rgbd and rgbp exist only in PNG files and have no Vulkan
+// or DXGI number.
+enum { RGB = 1, BC6H = 133, UASTC_HDR = 167 }; // colour models
 static const ki_pixel_format formats[] = {
-    {KILN_FORMAT_RGBA16F, KI_HALF_MAX, 97, 10, 8, 2, 1, 4, NULL},
-    {KILN_FORMAT_RGBA16F, KI_HALF_MAX, 97, 10, 8, 2, 1, 4, NULL},
-    {KILN_FORMAT_RGBA32F, 0, 109, 2, 16, 4, 1, 4, NULL},
-    {KILN_FORMAT_RGB9E5, KI_RGB9E5_MAX, 123, 67, 4, 4, 1, 3, NULL},
-    {KILN_FORMAT_B10G11R11, KI_B10G11R11_MAX, 122, 26, 4, 4, 1, 3, NULL},
-    {KILN_FORMAT_BC6H, KI_HALF_MAX, 143, 95, KI_BC6H_BYTES, 1, 4, 3, NULL},
-    {KILN_FORMAT_RGBM, KI_RGBM_MAX, 0, 0, 4, 1, 1, 4, ki_rgbm_from_float},
-    {KILN_FORMAT_RGBD, KI_RGBD_MAX, 0, 0, 4, 1, 1, 4, ki_rgbd_from_float},
-    {KILN_FORMAT_RGBP, KI_RGBP_MAX, 0, 0, 4, 1, 1, 4, ki_rgbp_from_float},
+    {KILN_FORMAT_RGBA16F, KI_HALF_MAX, 97, 10, 8, 2, 1, 4, RGB, NULL},
+    {KILN_FORMAT_RGBA16F, KI_HALF_MAX, 97, 10, 8, 2, 1, 4, RGB, NULL},
+    {KILN_FORMAT_RGBA32F, 0, 109, 2, 16, 4, 1, 4, RGB, NULL},
+    {KILN_FORMAT_RGB9E5, KI_RGB9E5_MAX, 123, 67, 4, 4, 1, 3, RGB, NULL},
+    {KILN_FORMAT_B10G11R11, KI_B10G11R11_MAX, 122, 26, 4, 4, 1, 3, RGB, NULL},
+    {KILN_FORMAT_BC6H, KI_HALF_MAX, 143, 95, KI_BC6H_BYTES, 1, 4, 3, BC6H, NULL},
+    {KILN_FORMAT_RGBM, KI_RGBM_MAX, 0, 0, 4, 1, 1, 4, RGB, ki_rgbm_from_float},
+    {KILN_FORMAT_RGBD, KI_RGBD_MAX, 0, 0, 4, 1, 1, 4, RGB, ki_rgbd_from_float},
+    {KILN_FORMAT_RGBP, KI_RGBP_MAX, 0, 0, 4, 1, 1, 4, RGB, ki_rgbp_from_float},
+    {KILN_FORMAT_UASTC, KI_HALF_MAX, 1000066000, 0, KI_UASTC_BYTES, 1, 4, 3, UASTC_HDR, NULL},
 };
 
 enum { FORMATS = sizeof formats / sizeof *formats };
-_Static_assert(FORMATS == KILN_FORMAT_RGBP + 1, "a row for each format");
+_Static_assert(FORMATS == KILN_FORMAT_UASTC + 1, "a row for each format");
 _Static_assert(sizeof ki_format_names / sizeof *ki_format_names == FORMATS + 1, "and a name");
 
 const ki_pixel_format *ki_pixel_format_of(kiln_format format)
@@ -45,16 +48,16 @@ const ki_pixel_format *ki_pixel_format_of(kiln_format format)
 
 const ki_pixel_format *ki_pixel_format_of_vk(uint32_t vk)
 {
-    for (int i = KILN_FORMAT_RGBA16F; i <= KILN_FORMAT_BC6H; i++)
-        if (formats[i].vk == vk)
+    for (int i = KILN_FORMAT_RGBA16F; i < FORMATS; i++)
+        if (vk && formats[i].vk == vk)
             return &formats[i];
     return NULL;
 }
 
 const ki_pixel_format *ki_pixel_format_of_dxgi(uint32_t dxgi)
 {
-    for (int i = KILN_FORMAT_RGBA16F; i <= KILN_FORMAT_BC6H; i++)
-        if (formats[i].dxgi == dxgi)
+    for (int i = KILN_FORMAT_RGBA16F; i < FORMATS; i++)
+        if (dxgi && formats[i].dxgi == dxgi)
             return &formats[i];
     return NULL;
 }
@@ -127,6 +130,8 @@ bool ki_pixels_pack(kiln_context *context, const ki_pixel_format *pixel, const f
 {
     if (pixel->format == KILN_FORMAT_BC6H)
         return ki_bc6h_encode(context, rgb, width, height, count, bytes);
+    if (pixel->format == KILN_FORMAT_UASTC)
+        return ki_uastc_encode(context, rgb, width, height, count, bytes);
     pack_job job = {pixel, rgb, (size_t)width * (size_t)height * (size_t)count, bytes};
     return ki_parallel_steps(context, NULL, (int)((job.count + PIECE - 1) / PIECE), pack_piece,
                              &job);
@@ -162,6 +167,8 @@ void ki_pixels_unpack(const ki_pixel_format *pixel, const uint8_t *bytes, int wi
 {
     if (pixel->format == KILN_FORMAT_BC6H)
         ki_bc6h_decode(bytes, width, height, rgb);
+    else if (pixel->format == KILN_FORMAT_UASTC)
+        ki_uastc_decode(bytes, width, height, rgb);
     else
         unpack(pixel, bytes, (size_t)width * (size_t)height, rgb);
 }
@@ -204,7 +211,7 @@ static kiln_result check_pack(const kiln_map *map, int level, kiln_format format
     if (!packed_rows(map, level, format, rows, row_bytes))
         return ki_fail(
             error, KILN_ERROR_ARGUMENT,
-            "format is %d, it must be one of rgba16f, rgba32f, rgb9e5, b10g11r11 and bc6h",
+            "format is %d, it must be one of rgba16f, rgba32f, rgb9e5, b10g11r11, bc6h and uastc",
             (int)format);
     stride = stride ? stride : *row_bytes;
     if (stride < *row_bytes)

@@ -18,6 +18,8 @@ typedef struct ki_pixel_format {
     int type_size; ///< number of bytes of the unit that is swapped for byte order
     int block;     ///< texels along the side of a block: 4, or 1 for formats without blocks
     int channels;
+    /// colour model of the Khronos Data Format, which KTX2 files state
+    int model;
     ki_rgbx *rgbx; ///< converts a texel of radiance to the four numbers that PNG stores, or NULL
 } ki_pixel_format;
 

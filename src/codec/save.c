@@ -25,7 +25,7 @@ static kiln_result check_def(kiln_shape shape, const kiln_save_def *def, kiln_er
                        KILN_SHAPE_PANORAMA, KILN_SHAPE_OCTAHEDRON);
     if (!ki_pixel_format_of(def->format))
         return ki_fail(error, KILN_ERROR_ARGUMENT, "format is %d, it must be 0 to %d",
-                       (int)def->format, (int)KILN_FORMAT_RGBP);
+                       (int)def->format, (int)KILN_FORMAT_UASTC);
     return ki_sh_check(def->sh, error);
 }
 

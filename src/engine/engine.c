@@ -144,7 +144,7 @@ kiln_result kiln_engine_format(const kiln_engine *engine, kiln_format *format, k
         return ki_fail(error, KILN_ERROR_ARGUMENT,
                        "%s: the engine's files have one format only, leave the format out",
                        engine->name);
-    bool known = *format > KILN_FORMAT_AUTO && *format <= KILN_FORMAT_RGBP;
+    bool known = *format > KILN_FORMAT_AUTO && *format <= KILN_FORMAT_UASTC;
     return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: format is %s, it must be %s", engine->name,
                    known ? ki_format_names[*format] : "unknown", names);
 }

@@ -32,18 +32,18 @@ static int make_samples(void **state)
     ki_writer w = {.context = context};
     ki_exr_options options = {.half = true, .roughness = 1};
     kiln_sh sh = {.bands = 5};
-    for (int i = 0; i < 9; i++) {
+    for (int i = 0; i < 10; i++) {
         w.size = 0;
         kiln_save_def def = {.format = (kiln_format)(1 + i % 4), .sh = &sh, .lobe = "ggx"};
         if (i > 6)
-            def.format = KILN_FORMAT_BC6H;
+            def.format = i == 9 ? KILN_FORMAT_UASTC : KILN_FORMAT_BC6H;
         def.zstd = i == 1 ? 3 * KILN_TEST_ZSTD : 0;
-        static const char *const names[] = {"dds", "ktx2 zstd", "ktx2",
-                                            "hdr", "png grey",  "png rgb",
-                                            "exr", "dds bc6h",  "ktx2 bc6h"};
+        static const char *const names[] = {"dds",       "ktx2 zstd", "ktx2", "hdr",
+                                            "png grey",  "png rgb",   "exr",  "dds bc6h",
+                                            "ktx2 bc6h", "ktx2 uastc"};
         if (i == 0 || i == 7)
             CHECK_OK(ki_dds_encode(&map, &def, &w, &error));
-        else if (i < 3 || i == 8)
+        else if (i < 3 || i > 7)
             CHECK_OK(ki_ktx2_encode(&map, &def, &w, &error));
         else if (i == 3)
             CHECK_OK(ki_hdr_encode(map.level[0], 32, 16, &w, &error));

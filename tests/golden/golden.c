@@ -259,6 +259,11 @@ static uint64_t file_dds(kiln_context *context)
     return file_of(context, KILN_SHAPE_CUBE, "golden.dds", KILN_FORMAT_BC6H);
 }
 
+static uint64_t uastc(kiln_context *context)
+{
+    return file_of(context, KILN_SHAPE_CUBE, "golden.ktx2", KILN_FORMAT_UASTC);
+}
+
 // Numbers as text.
 static uint64_t file_sh_json(kiln_context *context)
 {
@@ -296,6 +301,7 @@ static entry entries[] = {
     {"file-png-rgbm", file_png, false, 0},
     {"file-ktx2", file_ktx2, false, 0},
     {"file-dds-bc6h", file_dds, false, 0},
+    {"uastc", uastc, false, 0},
     {"file-json", file_sh_json, false, 0},
 };
 enum { ENTRIES = sizeof entries / sizeof *entries };

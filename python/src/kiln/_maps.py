@@ -127,7 +127,8 @@ class Map:
 
         path    .ktx2 or .dds for a cube with all levels; .exr, .hdr, .png or a folder for one file a face and level,
                 whose name has {face} and {level} in it
-        format  "auto", "rgba16f", "rgba32f", "rgb9e5", "b10g11r11", "bc6h", "rgbm", "rgbd" or "rgbp"
+        format  "auto", "rgba16f", "rgba32f", "rgb9e5", "b10g11r11", "bc6h", "rgbm", "rgbd", "rgbp"
+                or "uastc"
         zstd    compression level of a KTX2 file, 1 to 22; 0 for none
         """
         report = c.kiln_save_report()

@@ -23,6 +23,8 @@ const formats = {
         [0, 11, RED | FLOAT, 0, one], [11, 11, GREEN | FLOAT, 0, one], [22, 10, BLUE | FLOAT, 0, one]] },
     bc6h: { vk: ktx.VK_FORMAT_BC6H_UFLOAT_BLOCK, bytes: 16, type: 1, block: 4, model: 133, // KHR_DF_MODEL_BC6H
             samples: [[0, 128, FLOAT, 0, one]] },
+    uastc: { vk: ktx.VK_FORMAT_ASTC_4x4_SFLOAT_BLOCK_EXT, bytes: 16, type: 1, block: 4, model: 167, // UASTC HDR 4x4
+             samples: [[0, 128, FLOAT, 0, one]] },
 };
 
 const text = (value) => typeof value === "string" ? value : Buffer.from(value).toString().replace(/\0$/, "");
@@ -146,7 +148,7 @@ function checkTable(path, kind, number, zstd, channels, depth) {
 
 const folder = process.argv[2];
 const names = readdirSync(folder).filter((name) => name.endsWith(".ktx2"));
-assert.equal(names.length, 80);
+assert.equal(names.length, 84);
 for (const name of names) {
     const [format, coding, size, levels] = name.replace(".ktx2", "").split("-");
     const [, kind, number, packing, channels, depth] = name.replace(".ktx2", "").split("-");

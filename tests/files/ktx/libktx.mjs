@@ -43,6 +43,7 @@ const formats = {
     76: [0x822d, RED, H, 2], 83: [0x822f, RG, H, 4], 97: [0x881a, RGBA, H, 8],
     100: [0x822e, RED, F, 4], 103: [0x8230, RG, F, 8], 109: [0x8814, RGBA, F, 16],
     122: [0x8c3a, RGB, 0x8c3b, 4], 123: [0x8c3d, RGB, 0x8c3e, 4],
+    1000066000: [0x93b0, undefined, undefined, 16], // COMPRESSED_RGBA_ASTC_4x4
     143: [0x8e8f, undefined, undefined, 16], // COMPRESSED_RGB_BPTC_UNSIGNED_FLOAT
 };
 const CUBE = 0x8513, POSITIVE_X = 0x8515, TEXTURE_2D = 0x0de1, TEXTURE_3D = 0x806f;
@@ -67,7 +68,7 @@ function check(name) {
     assert.equal(calls.length, file.levels.length * file.faceCount);
     for (const call of calls) {
         const edge = (x) => Math.max(1, x >> call.level);
-        const blocks = (x) => (file.vkFormat === 143 ? Math.ceil(x / 4) : x);
+        const blocks = (x) => (file.vkFormat === 143 || file.vkFormat === 1000066000 ? Math.ceil(x / 4) : x);
         const face = cube ? call.target - POSITIVE_X : 0;
         const length = blocks(edge(file.pixelWidth)) * blocks(edge(file.pixelHeight)) *
                        edge(file.pixelDepth) * size;

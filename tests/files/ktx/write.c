@@ -6,7 +6,7 @@
 
 #include <stdio.h>
 
-static const char *const names[] = {"rgba16f", "rgba32f", "rgb9e5", "b10g11r11", "bc6h"};
+static const char *const names[] = {"rgba16f", "rgba32f", "rgb9e5", "b10g11r11", "bc6h", "uastc"};
 
 // Number i of a table is i / 1024.
 static kiln_result write_table(kiln_context *context, const char *folder, int index,
@@ -78,8 +78,8 @@ int main(int argc, char **argv)
     if (argc != 2 || kiln_context_create(NULL, &context, &error))
         return 2;
     kiln_sh sh = {.bands = 2, .c = {{1, 2, 3}, {-0.5, 0, 0.125}}};
-    for (int i = 0; i < 20; i++) {
-        int size = i < 10 ? 8 : 5, levels = i < 10 ? 4 : 2, format = i % 5, zstd = i / 5 % 2;
+    for (int i = 0; i < 24; i++) {
+        int size = i < 12 ? 8 : 5, levels = i < 12 ? 4 : 2, format = i % 6, zstd = i / 6 % 2;
         kiln_map map;
         if (kiln_map_create(context, KILN_SHAPE_CUBE, size, levels, &map, &error))
             break;
@@ -94,7 +94,8 @@ int main(int argc, char **argv)
         char path[512];
         snprintf(path, sizeof path, "%s/%s-%s-%d-%d.ktx2", argv[1], names[format],
                  zstd ? "zstd" : "plain", size, levels);
-        kiln_save_def def = {.format = (kiln_format)(KILN_FORMAT_RGBA16F + format),
+        kiln_save_def def = {.format = format == 5 ? KILN_FORMAT_UASTC
+                                                   : (kiln_format)(KILN_FORMAT_RGBA16F + format),
                              .zstd = zstd ? 5 : 0,
                              .sh = &sh,
                              .lobe = "ggx"};
