@@ -7,7 +7,7 @@ import { Engine } from './engine.mjs';
 // key is running or finished.
 export class BackgroundWork {
     // onWords(sentence) reports progress, and '' when work ends. onResult(result, step, last)
-    // receives the result of each step; `last` is true for the final step. onFailure(error)
+    // receives the result of each step and may return a promise; `last` is true for the final step. onFailure(error)
     // receives an exception.
     constructor({ onWords, onResult, onFailure }) {
         Object.assign(this, { onWords, onResult, onFailure, key: '', opened: '', round: 0, busy: false });
@@ -56,7 +56,7 @@ export class BackgroundWork {
                 const result = await step.work(this.engine);
                 if (round !== this.round)
                     return;
-                this.onResult(result, step, i === steps.length - 1);
+                await this.onResult(result, step, i === steps.length - 1);
             }
         } catch (problem) {
             if (round !== this.round)

@@ -18,19 +18,19 @@ function inCamera(view, point) {
     return axes(view).map((axis) => dot(axis, from));
 }
 
-// Parts of the picture that the balls fill at most; above and below, labels need room.
-const FILLED = { across: 0.95, down: 0.8 };
+// Parts of the picture that the balls fill at most; the labels need the rest.
+const FILLED = { across: 0.95, down: 0.8 }, FILLED_BY_GRID = { across: 0.74, down: 0.8 };
 
 // Distance of the camera from its target at which the silhouettes of all balls fill FILLED of a picture
 // whose width is `aspect` times its height. A plane through the eye touches a ball of radius
 // r if (distance - z) t = |x| + r sqrt(1 + t^2), with t the tangent of the plane's angle.
 export function wholeDistance(view, balls, aspect) {
     const slope = Math.tan(view.fov / 2 * DEGREE);
-    const towards = { ...view, azimuth: 0 };
+    const towards = { ...view, azimuth: 0 }, filled = view.scene === 'grid' ? FILLED_BY_GRID : FILLED;
     return Math.max(...balls.map((ball) => {
         const [x, y, z] = inCamera(towards, ball);
         const along = (offset, t) => z + (Math.abs(offset) + ball[3] * Math.hypot(1, t)) / t;
-        return Math.max(along(x, FILLED.across * slope * aspect), along(y, FILLED.down * slope));
+        return Math.max(along(x, filled.across * slope * aspect), along(y, filled.down * slope));
     }));
 }
 

@@ -98,7 +98,7 @@ export class Files {
             made.onclick = () => this.work(work);
             return made;
         };
-        const bundle = button(fresh && this.bundle ? `All as .zip · ${size(this.bundle.length)}` : 'All as .zip',
+        const bundle = button(fresh && this.bundle ? `Download all (.zip) · ${size(this.bundle.length)}` : 'Download all (.zip)',
                               'The files, their loader and a README with the lines of code', () => this.takeBundle(), several);
         const files = fresh
             ? this.made.files.map(({ name, bytes }) => button(`${name} · ${size(bytes.length)}`, `Download ${name}`,

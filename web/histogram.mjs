@@ -10,12 +10,12 @@ export function showHistogram(canvas, { first, parts, largest }) {
     const style = getComputedStyle(document.documentElement), color = (name) => style.getPropertyValue(name);
     const scale = Math.min(window.devicePixelRatio || 1, 2), pen = canvas.getContext('2d');
     const width = canvas.clientWidth * scale, height = canvas.clientHeight * scale;
-    const clip = Math.log2(CLIP) - first, foot = 2 * scale, step = width / parts.length;
+    const clip = Math.log2(CLIP) - first, foot = 2 * scale, head = 18 * scale, step = width / parts.length;
     [canvas.width, canvas.height] = [width, height];
     // The square root keeps the few texels of a sun visible beside the sky.
     const most = Math.sqrt(Math.max(...parts));
     parts.forEach((part, i) => {
-        const tall = part > 0 ? Math.max(2 * scale, Math.sqrt(part) / most * (height - foot - 2 * scale)) : 0;
+        const tall = part > 0 ? Math.max(2 * scale, Math.sqrt(part) / most * (height - foot - head)) : 0;
         pen.fillStyle = color(i >= Math.floor(clip) ? '--wrong' : '--ember');
         pen.fillRect(i * step, height - foot - tall, Math.max(1, step - scale), tall);
     });

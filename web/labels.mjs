@@ -41,14 +41,14 @@ function grid(view, aspect, balls) {
     const low = Math.min(...balls.map((ball) => ball[1])), left = Math.min(...balls.map((ball) => ball[0]));
     const bottom = balls.filter((ball) => ball[1] === low), side = balls.filter((ball) => ball[0] === left);
     const under = (ball) => project(view, aspect, [ball[0], low - 1.35 * ball[3], ball[2]]);
-    const beside = (ball) => project(view, aspect, [left - 1.35 * ball[3], ball[1], ball[2]]);
+    const beside = (ball) => project(view, aspect, [left - 1.1 * ball[3], ball[1], ball[2]]);
     const words = (i, last, lowest, highest) => (i === 0 ? lowest : i === last ? highest : '');
     return [...bottom.map((ball, i) => {
         const { x, y } = under(ball);
         return label(words(i, bottom.length - 1, 'mirror 0', 'rough 1') || percent(ball[4]), x, y, 'roughness');
     }), ...side.map((ball, i) => {
         const { x, y } = beside(ball);
-        return label(words(i, side.length - 1, 'paint', 'metal'), x, y, 'roughness');
+        return label(words(i, side.length - 1, 'paint', 'metal'), x, y, 'side');
     })];
 }
 

@@ -33,8 +33,13 @@ const engine = new Engine({
     },
 });
 let onDrawn = () => {}; // set once the view is there
-const stage = await StageClient.make(canvas, (drawn) => onDrawn(drawn));
-const engines = await engine.engines();
+const [stage, engines] = await Promise.all([
+    StageClient.make(canvas, (drawn) => onDrawn(drawn)), engine.engines(),
+]).catch((problem) => {
+    say('The page cannot start.');
+    complain(problem.message);
+    throw problem;
+});
 
 // ------------------------------------------------------------------------------------------- state
 
@@ -107,6 +112,11 @@ const stem = () => (opened ? opened.name.replace(/\.[^.]*$/, '').replace(/['"\\`
 const optionsOf = ({ turn, stops, lamps, count, clamp }) =>
     ({ yaw: turn, exposure: stops, sun: lamps, lights: count, clamp });
 
+// What names the open file or sky, and what the options do with its lights.
+const keyOf = (file) => (file ? file.stamp : [state.sun, state.bearing, state.haze].join());
+const sunKey = ({ lamps, count, clamp, stops }) =>
+    ({ keep: '', extract: `without ${count} lights`, clamp: `at most ${clamp} at ${stops} stops` })[lamps];
+
 function describe(source) {
     const from = `a ${source.shape} of ${source.width} x ${source.height}`;
     const made = `a cube of ${baked.levels[0].size} with ${baked.levels.length} levels`;
@@ -153,8 +163,7 @@ const bake = (file) => request(async () => {
     await engine.options(options);
     const made = await engine.bake({ size });
     performance.mark('baked');
-    const seen = [file ? file.stamp : [sun, bearing, haze], ...Object.values(options).slice(1)].join();
-    const key = `${seen},${size}`;
+    const key = [keyOf(file), sunKey(state), size].join();
     if (stage.problem === '' && key !== lit) {
         const measured = await engine.histogram();
         const taken = await engine.sun(), scenery = await engine.scenery({ size });
@@ -184,8 +193,7 @@ const speak = (who) => (sentence) => {
     get('stop').hidden = !get('background').textContent;
 };
 
-const sourceKey = () => [opened ? opened.stamp : [state.sun, state.bearing, state.haze],
-                         ...Object.values(optionsOf(state)).slice(1)].join();
+const sourceKey = () => [keyOf(opened), sunKey(state)].join();
 // Opens what is open here in another worker, with the page's options.
 const openWhole = async (worker) => {
     await (opened ? worker.open(opened.bytes, opened.name)
@@ -201,8 +209,8 @@ const openIn = async (worker) => {
 const textbook = new BackgroundWork({
     onWords: speak('textbook'),
     onFailure: (problem) => complain(problem.message),
-    onResult(scenery, _, last) {
-        stage.upload(scenery, true);
+    async onResult(scenery, _, last) {
+        await stage.upload(scenery, true);
         canvas.dataset.textbook = last ? 'whole' : 'so far';
         view.change();
     },
@@ -453,10 +461,10 @@ function next(name) {
 const controls = makeControls(get('controls'), state, stage.words, changed);
 const files = new Files({
     engines, read: () => state, onChange: change, onFailure: (problem) => complain(problem.message),
-    source: () => ({ key: baked ? `${sourceKey()},${state.turn}` : '', stem: stem(), open: openWhole }),
+    source: () => ({ key: baked ? [keyOf(opened), ...Object.values(optionsOf(state))].join() : '', stem: stem(), open: openWhole }),
 });
 const three = new ThreeView({
-    box: get('stage'), open: openWhole, engines, key: sourceKey, onFailure: (problem) => complain(problem.message),
+    box: get('stage'), open: openWhole, engines, key: () => keyOf(opened), onFailure: (problem) => complain(problem.message),
     onNote: () => { if (state.scene === 'three') get('note').textContent = three.note; },
 });
 

@@ -248,7 +248,7 @@ async function theEnginesFilesAreTheCommands(page, address) {
     await page.goto('about:blank');
     await page.goto(`${address}#samples=1&engine=babylon&engineSize=64&tune=none&lamps=extract&turn=30&size=16`);
     await idle(page);
-    const bundle = await downloaded(page, () => button(page, 'All as .zip').click());
+    const bundle = await downloaded(page, () => button(page, 'Download all (.zip)').click());
     check(bundle.name === 'sky-babylon.zip', `the bundle is called ${bundle.name}`);
     fs.writeFileSync(inFolder('bundle.zip'), bundle.bytes);
     fs.mkdirSync(inFolder('bundle'));

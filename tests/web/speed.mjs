@@ -66,7 +66,7 @@ await withPage(site, async (page, address) => {
         },
         'the view is dragged': drag,
         'levels and engines are chosen': show,
-        'files are downloaded': () => downloaded(page, () => page.getByRole('button', { name: 'All as .zip' }).click()),
+        'files are downloaded': () => downloaded(page, () => page.getByRole('button', { name: 'Download all (.zip)' }).click()),
     };
     await page.route('**/favicon.ico', (route) => route.fulfill({ body: '' }));
     await page.goto(`${address}style.css`); // the page's process, whose threads are named in the trace

@@ -12,8 +12,8 @@ const colours = (page, id) => page.evaluate((name) => {
     pen.drawImage(canvas, 0, 0);
     const places = [...document.querySelectorAll('#labels .roughness')].map(({ style }) => parseFloat(style.left) / 100);
     const rows = ['.above', '.below'].map((row) => parseFloat(document.querySelector(`#labels ${row}`).style.top) / 100);
-    return [0.42, -0.42].map((up, row) => places.map((x) => {
-        const y = 0.5 * (rows[0] + rows[1]) - (up < 0 ? -0.29 : 0.29) * (rows[1] - rows[0]);
+    return [-0.29, 0.29].map((down) => places.map((x) => {
+        const y = 0.5 * (rows[0] + rows[1]) + down * (rows[1] - rows[0]);
         const { data } = pen.getImageData(Math.round(x * copy.width) - 4, Math.round(y * copy.height) - 4, 9, 9);
         return [0, 1, 2].map((c) => data.reduce((sum, v, i) => sum + (i % 4 === c ? v : 0), 0) / 81);
     }));
