@@ -15,7 +15,14 @@ export type Files = Source | { three?: Source; 'three-cubeuv'?: Source };
  * r186), for `scene.environment`, `scene.background` or a material's `envMap`. Is rejected with an error if the file
  * cannot be shown by the running three.js. `renderer` is the WebGLRenderer, or from r186 on the WebGPURenderer, that
  * draws the scene: the two need different textures. */
-export function loadEnvironment(files: Files, renderer: object, options?: { signal?: AbortSignal }): Promise<Texture>;
+export function loadEnvironment(files: Files, renderer: object, options?: LoadOptions): Promise<Texture>;
+
+export interface LoadOptions {
+    signal?: AbortSignal;
+    /** A KTX2Loader of three.js with its transcoder's path that has detected the renderer's support. Is needed for
+     * KTX2 files with compressed texels, and for those in CubeUV layout. */
+    ktx2Loader?: object;
+}
 
 export interface BakeEnvironmentOptions extends Omit<BakeOptions, 'for' | 'output' | 'format'> {
     /** Texels along the edge of a face of the finest level, by default 256. */

@@ -44,7 +44,7 @@ function readKtx2({ name, bytes }) {
             return { data: bytes.slice(offset, offset + length), size: u64(at + 16) };
         });
         const metadata = new TextDecoder('latin1').decode(bytes.subarray(u32(56), u32(56) + u32(60)));
-        return { format: u32(12), width: u32(20), faces: u32(36), scheme: u32(44), levels, metadata };
+        return { format: u32(12), width: u32(20), height: u32(24), faces: u32(36), scheme: u32(44), levels, metadata };
     } catch (error) {
         if (error instanceof RangeError)
             throw new Error(`${name}: the KTX2 file ends after ${bytes.length} bytes, before its texels end`);
@@ -68,6 +68,11 @@ async function unzip(levels) {
     return levels.map(({ data, size }) => decoder.decode(data, size));
 }
 
+// What three.js must know of a cube: that it need not be filtered again, and that it is not mirrored in x, as cubes are
+// that are not render targets. WebGPURenderer would not upload the texels of a render target, so that the texels
+// themselves are mirrored for it.
+const CUBE = { minFilter: LinearMipmapLinearFilter, isPMREMTexture: true, isRenderTargetTexture: true };
+
 // The six faces of each level as halves: [level][face].
 const splitFaces = (levels) => levels.map((all) => Array.from({ length: 6 }, (_, face) => {
     const length = all.length / 12, halves = new Uint16Array(all.buffer, all.byteOffset, 6 * length);
@@ -85,19 +90,36 @@ function mirror([right, left, ...others], width) {
     return faces;
 }
 
-async function makeCube(file, renderer) {
-    const { name } = file, { format, width, faces, scheme, levels, metadata } = readKtx2(file);
-    if (faces !== 6)
-        throw new Error(`${name}: the KTX2 file holds a flat picture and not a cube; bake it with --for ${engine}`);
+// Reads a compressed file by KTX2Loader, which knows what the GPU can hold. Up to r162 the loader reads from addresses
+// alone.
+async function readByLoader({ name, bytes }, format, { ktx2Loader }) {
+    if (!ktx2Loader)
+        throw new Error(`${name}: its texels have the VkFormat ${format}, which KTX2Loader reads; pass the option ` +
+                        'ktx2Loader: new KTX2Loader().setTranscoderPath(PATH).detectSupport(renderer)');
+    const url = URL.createObjectURL(new Blob([bytes]));
+    try {
+        return await ktx2Loader.loadAsync(url);
+    } catch (error) {
+        throw new Error(`${name}: KTX2Loader cannot read the file: ${error?.message ?? error}`);
+    } finally {
+        URL.revokeObjectURL(url);
+    }
+}
+
+async function makeCube(file, ktx2, renderer, options) {
+    const { name } = file, { format, width, scheme, levels, metadata } = ktx2;
     if (engine !== 'three')
         throw new Error(`${name}: three.js shows cubes like this from r${CUBES} on, and this is r${REVISION}; ` +
                         `bake the file with --for ${engine}`);
-    if (format !== RGBA16F || (scheme !== 0 && scheme !== ZSTD))
-        throw new Error(`${name}: its texels have the VkFormat ${format} and supercompression ${scheme}; ` +
-                        'bake it with --for three, which writes rgba16f (97)');
     checkRoughness(name, metadata, levels.length);
-    const texels = scheme === ZSTD ? await unzip(levels) : levels.map(({ data }) => data);
     const gpu = Boolean(renderer.isWebGPURenderer);
+    if (format !== RGBA16F || (scheme !== 0 && scheme !== ZSTD)) {
+        if (gpu)
+            throw new Error(`${name}: for WebGPURenderer the cube must be mirrored, which its VkFormat ${format} ` +
+                            'does not allow; bake it with --format rgba16f, or use WebGLRenderer');
+        return Object.assign(await readByLoader(file, format, options), CUBE);
+    }
+    const texels = scheme === ZSTD ? await unzip(levels) : levels.map(({ data }) => data);
     const cubes = splitFaces(texels).map((cube, k) => (gpu ? mirror(cube, width >> k) : cube));
     const sides = Array.from({ length: 6 }, (_, face) => ({
         width, height: width,
@@ -106,52 +128,62 @@ async function makeCube(file, renderer) {
     // This is a CompressedCubeTexture, which r150 does not have. The formats of CompressedTexture may be uncompressed.
     const texture = new CompressedTexture([], width, width, RGBAFormat, HalfFloatType, CubeReflectionMapping);
     return Object.assign(texture, {
-        image: sides, isCubeTexture: true, isCompressedCubeTexture: true, minFilter: LinearMipmapLinearFilter,
-        isPMREMTexture: true, // else three.js filters the cube again
-        // Cubes are mirrored in x when they are read, unless they are render targets. WebGPURenderer would not upload
-        // the texels of a render target, so that the texels themselves are mirrored for it.
-        isRenderTargetTexture: !gpu,
+        image: sides, isCubeTexture: true, isCompressedCubeTexture: true, ...CUBE, isRenderTargetTexture: !gpu,
     });
 }
 
-// --------------------------------------------------------------------------------------------- CubeUV (EXR)
+// ------------------------------------------------------------------------------------- CubeUV (EXR and KTX2)
+
+const CUBE_UV = { mapping: CUBE_UV_MAPPING, magFilter: LinearFilter, minFilter: LinearFilter };
+
+function checkCubeUv(name, width, height) {
+    if (3 * height !== 4 * width || height & (height - 1))
+        throw new Error(`${name}: a picture of ${width} x ${height} is not an environment in CubeUV layout, which ` +
+                        `has 3/4 as many columns as rows; bake it with --for ${engine}, or call bakeEnvironment()`);
+}
 
 async function makeCubeUv({ name, bytes }) {
     if (engine !== 'three-cubeuv')
         throw new Error(`${name}: three.js shows EXR environments up to r${CUBES - 1}, and this is r${REVISION}; ` +
                         `bake the panorama with --for ${engine}, or call bakeEnvironment()`);
     const { EXRLoader } = await import('three/addons/loaders/EXRLoader.js');
-    const exact = bytes.slice(); // a buffer of its own
-    const { data, width, height, format, type } = new EXRLoader().parse(exact.buffer);
-    if (3 * height !== 4 * width || height & (height - 1))
-        throw new Error(`${name}: a picture of ${width} x ${height} is not an environment in CubeUV layout, which ` +
-                        `has 3/4 as many columns as rows; bake it with --for ${engine}, or call bakeEnvironment()`);
-    const texture = new DataTexture(data, width, height, format, type, CUBE_UV_MAPPING);
-    return Object.assign(texture, { magFilter: LinearFilter, minFilter: LinearFilter });
+    const { data, width, height, format, type } = new EXRLoader().parse(bytes.slice().buffer);
+    checkCubeUv(name, width, height);
+    return Object.assign(new DataTexture(data, width, height, format, type), CUBE_UV);
+}
+
+async function makeKtx2(file, renderer, options) {
+    const { name } = file, ktx2 = readKtx2(file), { format, width, height, faces } = ktx2;
+    if (faces === 6)
+        return makeCube(file, ktx2, renderer, options);
+    if (engine !== 'three-cubeuv')
+        throw new Error(`${name}: the KTX2 file holds a flat picture and not a cube; bake it with --for ${engine}`);
+    checkCubeUv(name, width, height);
+    return Object.assign(await readByLoader(file, format, options), CUBE_UV);
 }
 
 // ------------------------------------------------------------------------------------------------ functions
 
 // Makes a texture for a renderer from the bytes of a file that kiln baked.
-async function makeTexture(file, renderer) {
+async function makeTexture(file, renderer, options) {
     const kind = kindOf(file.bytes);
     if (kind !== 'KTX2' && kind !== 'EXR')
         throw new Error(`${file.name}: the file is of the kind "${kind}", and not an environment that kiln baked ` +
                         `with --for ${engine}; bakeEnvironment() bakes panoramas`);
-    const texture = await (kind === 'KTX2' ? makeCube : makeCubeUv)(file, renderer);
+    const texture = await (kind === 'KTX2' ? makeKtx2 : makeCubeUv)(file, renderer, options);
     texture.name = file.name;
     texture.generateMipmaps = false;
     texture.needsUpdate = true;
     return texture;
 }
 
-export async function loadEnvironment(source, renderer, { signal } = {}) {
+export async function loadEnvironment(source, renderer, options = {}) {
     checkVersion(renderer);
     const files = source?.three ?? source?.['three-cubeuv'] ? source : { [engine]: source };
     if (!files[engine])
         throw new Error(`kiln-ibl/three: three.js r${REVISION} needs the file of kiln bake --for ${engine}, ` +
                         `and only ${Object.keys(files).join()} is given`);
-    return makeTexture(await openFile(files[engine], { signal }), renderer);
+    return makeTexture(await openFile(files[engine], { signal: options.signal }), renderer, options);
 }
 
 export async function bakeEnvironment(source, renderer, { size, ...options } = {}) {
@@ -163,7 +195,7 @@ export async function bakeEnvironment(source, renderer, { size, ...options } = {
     const texels = size && { size: engine === 'three' ? size : 2 * size };
     const { files, levels, sh, lights, report } = await bake(input.bytes, { name: input.name, ...options, ...texels,
                                                                            for: engine });
-    const texture = await makeTexture(files[0], renderer);
+    const texture = await makeTexture(files[0], renderer, {});
     texture.userData.kiln = { levels, sh, lights, report };
     return texture;
 }

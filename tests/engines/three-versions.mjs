@@ -62,11 +62,33 @@ async function checkBakes(version, { name, ending }, draw, say) {
     }
 }
 
+// The same texels in other containers show the same pixels: a cube whose KTX2 file is compressed by zstd, and a CubeUV
+// picture in KTX2, which KTX2Loader reads.
+async function checkContainers({ name, ending }, { files }, draw, say) {
+    const show = async (file, asked) => (await draw(file, views, ROUGHNESS, CELL, asked)).flat(3);
+    const [first, second] = name === 'three'
+        ? [await show('unzipped.ktx2'), await show('zipped.ktx2')]
+        : [await show(`${files}-real${ending}`), await show(`${files}-real${ending}`, { header: 'flat.ktx2' })];
+    const off = first.filter((x, i) => x !== second[i]).length;
+    say(`${first.length - off} values of ${first.length} are equal in ${name === 'three' ? 'zstd' : 'KTX2'}`);
+    check(off === 0, `${off} values are others in another container`);
+}
+async function makeContainers() {
+    await kiln('bake', panorama, '-q', '-o', 'faces.ktx2', '--size', 8, '--levels', 1);
+    const flat = readFile('faces.ktx2');
+    flat.writeUInt32LE(1, 36); // the number of faces
+    fs.writeFileSync(path.join(folder, 'flat.ktx2'), flat);
+    const roughness = Array.from({ length: 6 }, (_, k) => 1 - Math.sqrt(1 - k / 5)).join();
+    const words = ['-q', '--size', 64, '--levels', 6, '--roughness', roughness];
+    await kiln('bake', panorama, '-o', 'unzipped.ktx2', ...words);
+    await kiln('bake', panorama, '-o', 'zipped.ktx2', '--zstd', ...words);
+}
+
 const proofOf = (version, engine, bounds) => ({
     ...engine, bounds, title: version, page: `three-version.html?${version}`,
     prepare: async (proof) => {
         const [files] = await Promise.all([makeFiles(proof), makeFiles({ ...three, bounds: {} }),
-                                           makeFiles({ ...threeCubeUv, bounds: {} })]);
+                                           makeFiles({ ...threeCubeUv, bounds: {} }), makeContainers()]);
         return files;
     },
     check: async (files, draw, say) => {
@@ -75,6 +97,8 @@ const proofOf = (version, engine, bounds) => ({
             ? ['three-cubeuv-real.exr', /up to r186, and this is r187; bake the panorama with --for three, or/]
             : ['three-real.ktx2', /from r187 on, and this is r1[5-8]\d; bake the file with --for three-cubeuv$/];
         await checkRefusal(other, pattern, draw, say);
+        if (!version.endsWith('webgpu') || engine.name === 'three')
+            await checkContainers(engine, files, draw, say);
         await checkBakes(version, engine, draw, say);
         // WebGPURenderer of r186 shows up to 0.3 % less or more, of which the cause is not known.
         await checkLight(engine, version === 'three-r186,webgpu' ? 5e-3 : 1e-5, draw, say);
@@ -86,6 +110,8 @@ const proofOf = (version, engine, bounds) => ({
 const REFUSED = {
     'plain.ktx2': [/the levels have the roughnesses 0 0.2 0.4 0.6 0.8 1, which are not those of three.js/,
                    /three.js shows cubes like this from r187 on/],
+    'flat.ktx2': [/holds a flat picture and not a cube; bake it with --for three/,
+                  /a picture of 8 x 8 is not an environment in CubeUV layout/],
     'flat.hdr': /is of the kind "HDR", and not an environment.*bakeEnvironment\(\) bakes panoramas/,
     'short.ktx2': /short.ktx2: the KTX2 file ends after 1000 bytes, before its texels end/,
     'page.ktx2': /the server answers with a web page, as if the file were missing/,
@@ -93,6 +119,7 @@ const REFUSED = {
                     /a picture of 1024 x 512 is not an environment in CubeUV layout.*or call bakeEnvironment\(\)/],
 };
 async function makeRefused() {
+    await makeContainers();
     const put = (name, bytes) => fs.writeFileSync(path.join(folder, name), bytes);
     await kiln('bake', panorama, '-q', '-o', 'plain.ktx2', '--size', 32, '--levels', 6);
     await kiln('bake', panorama, '-q', '-o', 'flat.hdr', '--size', 16, '--levels', 1, '--shape', 'panorama');
