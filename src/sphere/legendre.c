@@ -5,14 +5,30 @@
 
 #include <math.h>
 
-// Number of unused entries after the last degree in each order's row of coefficients. The kernels
-// handle several degrees at once, and may read these entries beyond the last degree.
-enum { ROW_PADDING = 8 };
-
 size_t ki_legendre_row(const ki_legendre *legendre, int m)
 {
-    size_t row = (size_t)m, length = (size_t)legendre->degree + 1 + ROW_PADDING;
+    size_t row = (size_t)m, length = (size_t)legendre->degree + 1 + KI_LEGENDRE_PADDING;
     return row * length - row * (row - (row > 0)) / 2;
+}
+
+void ki_legendre_order(int degree, int m, double *start, double *f, double *scale)
+{
+    // For order m, P_mm = sqrt((2m+1)!! / (2m)!! / 4 pi) sin^m theta. For l > m,
+    // P_l = a_l (x P_{l-1} - P_{l-2} / a_{l-1}) with a_l = sqrt((4 l^2 - 1) / (l^2 - m^2)).
+    // With P_l = scale_l q_l and q_l = 2 x q_{l-1} - f_l q_{l-2}, that makes
+    // scale_l = a_l scale_{l-1} / 2 and f_l = 4 / a_{l-1}^2.
+    if (m > 0)
+        *start *= sqrt((2.0 * m + 1) / (2.0 * m));
+    else
+        *start = sqrt(1 / (4 * KI_PI));
+    f[0] = f[1] = 0;
+    scale[0] = *start;
+    double m2 = (double)m * m;
+    for (int i = 1; i < degree + 1 - m + KI_LEGENDRE_PADDING; i++) {
+        double l = m + i, k = l - 1;
+        f[i] = i > 1 ? 4 * (k * k - m2) / (4 * k * k - 1) : 0;
+        scale[i] = scale[i - 1] * 0.5 * sqrt((4 * l * l - 1) / (l * l - m2));
+    }
 }
 
 bool ki_legendre_create(kiln_context *context, int degree, ki_legendre *legendre)
@@ -25,24 +41,10 @@ bool ki_legendre_create(kiln_context *context, int degree, ki_legendre *legendre
         ki_legendre_destroy(legendre);
         return false;
     }
-    // For order m, P_mm = sqrt((2m+1)!! / (2m)!! / 4 pi) sin^m theta. For l > m,
-    // P_l = a_l (x P_{l-1} - P_{l-2} / a_{l-1}) with a_l = sqrt((4 l^2 - 1) / (l^2 - m^2)).
-    // With P_l = scale_l q_l and q_l = 2 x q_{l-1} - f_l q_{l-2}, that makes
-    // scale_l = a_l scale_{l-1} / 2 and f_l = 4 / a_{l-1}^2.
-    double start = sqrt(1 / (4 * KI_PI));
+    double start = 0;
     for (int m = 0; m <= degree; m++) {
-        double *f = legendre->f + ki_legendre_row(legendre, m);
-        double *scale = legendre->scale + ki_legendre_row(legendre, m);
-        if (m > 0)
-            start *= sqrt((2.0 * m + 1) / (2.0 * m));
-        f[0] = f[1] = 0;
-        scale[0] = start;
-        double m2 = (double)m * m;
-        for (int i = 1; i < degree + 1 - m + ROW_PADDING; i++) {
-            double l = m + i, k = l - 1;
-            f[i] = i > 1 ? 4 * (k * k - m2) / (4 * k * k - 1) : 0;
-            scale[i] = scale[i - 1] * 0.5 * sqrt((4 * l * l - 1) / (l * l - m2));
-        }
+        size_t row = ki_legendre_row(legendre, m);
+        ki_legendre_order(degree, m, &start, legendre->f + row, legendre->scale + row);
     }
     return true;
 }

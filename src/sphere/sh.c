@@ -180,36 +180,14 @@ void kiln_sh_evaluate(const kiln_sh *sh, const double direction[3], double value
     }
 }
 
-kiln_result ki_spectrum_power(const kiln_spectrum *spectrum, bool suns, double (*power)[3],
-                              kiln_error *error)
-{
-    int degree = spectrum->degree;
-    size_t count = ki_coefficient_count(degree);
-    memset(power, 0, ((size_t)degree + 1) * sizeof *power);
-    const double *a = spectrum->a;
-    double *all = NULL;
-    kiln_result result = KILN_OK;
-    if (suns && spectrum->sun_count) {
-        a = all = ki_alloc_raw(spectrum->context, count, sizeof *all);
-        if (!all)
-            return ki_fail_memory(spectrum->context, error, "a spectrum's power",
-                                  count * sizeof *all);
-        memcpy(all, spectrum->a, count * sizeof *all);
-        result = ki_spectrum_add_suns(spectrum, degree, all, error);
-    }
-    for (int m = 0; m <= degree && result == KILN_OK; m++) {
-        const double *row = a + ki_coefficient_row(degree, m);
-        for (int l = m; l <= degree; l++, row += KI_COMPONENTS)
-            for (size_t c = 0; c < 3; c++)
-                power[l][c] +=
-                    (m ? 2 : 1) * (row[2 * c] * row[2 * c] + row[2 * c + 1] * row[2 * c + 1]);
-    }
-    ki_free(all);
-    return result;
-}
-
 kiln_result kiln_spectrum_power(const kiln_spectrum *spectrum, double (*power)[3],
                                 kiln_error *error)
 {
-    return ki_spectrum_power(spectrum, true, power, error);
+    size_t count = (size_t)spectrum->degree + 1;
+    double(*calm)[3] = ki_alloc_raw(spectrum->context, count, sizeof *calm);
+    if (!calm)
+        return ki_fail_memory(spectrum->context, error, "a spectrum's power", count * sizeof *calm);
+    kiln_result result = ki_spectrum_power(spectrum, spectrum->degree, calm, power, error);
+    ki_free(calm);
+    return result;
 }

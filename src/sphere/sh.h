@@ -14,9 +14,4 @@ kiln_result ki_sh_check_bands(int bands, double window, double rotation, kiln_er
 kiln_result ki_sh_project(const kiln_spectrum *spectrum, int bands, const ki_tilt *tilt,
                           double rotation, kiln_sh *sh, kiln_error *error);
 
-/// Sums |a_lm|^2 over m for each channel and each degree from 0 to the degree of the spectrum.
-/// `suns` says whether the harmonics of the suns are included.
-kiln_result ki_spectrum_power(const kiln_spectrum *spectrum, bool suns, double (*power)[3],
-                              kiln_error *error);
-
 #endif

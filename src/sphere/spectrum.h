@@ -96,4 +96,11 @@ kiln_result ki_analysis_finish(const ki_analysis *analysis, ki_analysis_workspac
 kiln_result ki_spectrum_add_suns(const kiln_spectrum *spectrum, int degree, double *a,
                                  kiln_error *error);
 
+/// Sums |a_lm|^2 over m for each channel and each degree from 0 to `degree`: in `calm` without the suns,
+/// in `all` with their harmonics. Above the degree of the spectrum only the suns are known.
+kiln_result ki_spectrum_power(const kiln_spectrum *spectrum, int degree, double (*calm)[3],
+                              double (*all)[3], kiln_error *error);
+/// Returns the number of bytes that ki_spectrum_power allocates for `count` suns more than for none.
+size_t ki_suns_power_size(size_t count);
+
 #endif

@@ -33,6 +33,8 @@ struct ki_tune {
     int size, smallest, level_count;
     double tolerance;
     bool pinned[KILN_MAX_LEVELS];
+    int lobe_degree; // the largest degree of a node's lobe
+    int degree;      // to which the finest tuned level is computed at most
     ki_nodes nodes;
 };
 
@@ -47,8 +49,8 @@ typedef struct run {
     // every level is computed to its highest degree, see ki_tune_execute
     bool rehearses;
     ki_mixtures mixtures;
-    // power of each degree of the spectrum and channel: [degree + 1] without the suns, then [degree
-    // + 1] with the suns
+    // power of each degree of the norms and channel: [degree + 1] without the suns, then [degree + 1]
+    // with the suns
     double (*power)[3];
     // the unfiltered environment: level 0 of `map`, and its means over ever larger texels
     // (ki_make_mirrors)
@@ -80,7 +82,12 @@ static kiln_result analyze_lobes(kiln_context *context, ki_tune *t, kiln_error *
         ki_zonal zonal = {.lobe = kiln_lobe_ggx(nodes->roughness[n] * nodes->roughness[n])};
         result = ki_zonal_analyze(context, &zonal, t->tolerance, most_degree(t->size),
                                   &nodes->spectra[n], error);
+        t->lobe_degree = ki_max(t->lobe_degree, nodes->spectra[n].degree);
     }
+    int finest = 0;
+    while (finest < t->level_count - 1 && !nodes->tuned[finest])
+        finest++;
+    t->degree = ki_min(t->lobe_degree, most_degree(size_at(t, finest)));
     return result;
 }
 
@@ -136,10 +143,7 @@ void ki_tune_destroy(ki_tune *t)
 
 int ki_tune_degree(const ki_tune *t)
 {
-    int degree = 0;
-    for (int n = 0; n <= t->nodes.count; n++)
-        degree = ki_max(degree, t->nodes.spectra[n].degree);
-    return degree;
+    return t->degree;
 }
 
 bool ki_tune_makes(const ki_tune *t, int level)
@@ -147,19 +151,38 @@ bool ki_tune_makes(const ki_tune *t, int level)
     return t->nodes.tuned[level];
 }
 
+// Continues the power without suns beyond the degree `known` of the spectrum, up to which no level is
+// computed, but to which the norms of the narrowest lobes and of the mirror reach. Panoramas have nearly the
+// same power at all high degrees, as uncorrelated texels have, so that the mean of the last TAIL degrees
+// stands for each further one.
+static void continue_power(int known, int degree, double (*calm)[3], double (*all)[3])
+{
+    enum { TAIL = 64 };
+    for (int c = 0; c < 3 && known >= TAIL; c++) {
+        double mean = 0;
+        for (int l = known - TAIL + 1; l <= known; l++)
+            mean += calm[l][c] / TAIL;
+        for (int l = known + 1; l <= degree; l++) {
+            calm[l][c] += mean;
+            all[l][c] += mean;
+        }
+    }
+}
+
 static kiln_result choose_mixtures(run *r, kiln_error *error)
 {
-    size_t count = (size_t)r->spectrum->degree + 1;
+    int degree = ki_max(r->tune->lobe_degree, r->spectrum->degree);
+    size_t count = (size_t)degree + 1;
     r->power = ki_alloc(r->context, 2 * count, sizeof *r->power);
     if (!r->power)
         return ki_fail_memory(r->context, error, "a spectrum's power",
                               2 * count * sizeof *r->power);
-    kiln_result result = ki_spectrum_power(r->spectrum, false, r->power, error);
+    kiln_result result = ki_spectrum_power(r->spectrum, degree, r->power, r->power + count, error);
     if (result == KILN_OK)
-        result = ki_spectrum_power(r->spectrum, true, r->power + count, error);
+        continue_power(r->spectrum->degree, degree, r->power, r->power + count);
     if (result == KILN_OK)
         result = ki_mixtures_find(r->context, &r->tune->nodes, r->spectrum,
-                                  (const double(*)[3])r->power, &r->mixtures, error);
+                                  (const double(*)[3])r->power, degree, &r->mixtures, error);
     return result;
 }
 
@@ -190,7 +213,7 @@ static kiln_result make_kernel(const run *r, int level, ki_zonal *zonal, ki_mixt
         alphas[count] = t->nodes.roughness[n] * t->nodes.roughness[n];
         weights[count] = weight;
         integrals[count++] = t->nodes.spectra[n].integral;
-        for (int l = 0; l <= t->nodes.spectra[n].degree; l++)
+        for (int l = 0; l <= t->nodes.spectra[n].degree && l <= degree; l++)
             spectrum->k[l] += weight * t->nodes.spectra[n].k[l];
     }
     double all = 0, left = 0;
@@ -266,19 +289,33 @@ typedef struct correction {
     double factor;
 } correction;
 
+// Reads a level at (s, t) of a face.
+static void read_face(const kiln_map *map, int level, int face, double s, double t, double rgb[3])
+{
+    size_t texels[4];
+    double w[4];
+    ki_face_taps(kiln_map_level_size(map, level), face, s, t, texels, w);
+    for (size_t c = 0; c < 3; c++) {
+        rgb[c] = 0;
+        for (int i = 0; i < 4; i++)
+            rgb[c] += w[i] * (double)map->level[level][3 * texels[i] + c];
+    }
+}
+
 // Task of one thread: subtracts from a row of the goal the error of the next coarser level, times
 // `factor`.
 static void correct_row(void *data, int row)
 {
     const correction *a = data;
-    size_t size = (size_t)a->goal->size;
-    for (size_t i = (size_t)row * size; i < ((size_t)row + 1) * size; i++) {
-        double direction[3], shown[3], wanted[3];
-        kiln_map_direction(a->goal, 0, i, direction);
-        ki_cube_read(a->map, a->level, direction, shown);
-        ki_cube_read(a->target, 0, direction, wanted);
+    int size = a->goal->size, face = row / size;
+    double t = (2 * (row % size) + 1.0) / size - 1;
+    float *to = a->goal->level[0] + 3 * (size_t)row * (size_t)size;
+    for (int x = 0; x < size; x++, to += 3) {
+        double shown[3], wanted[3], s = (2 * x + 1.0) / size - 1;
+        read_face(a->map, a->level, face, s, t, shown);
+        read_face(a->target, 0, face, s, t, wanted);
         for (size_t c = 0; c < 3; c++)
-            a->goal->level[0][3 * i + c] -= (float)(a->factor * (shown[c] - wanted[c]));
+            to[c] -= (float)(a->factor * (shown[c] - wanted[c]));
     }
 }
 
@@ -366,5 +403,6 @@ size_t ki_tune_suns_size(const ki_tune *t, int source_size, size_t count)
     for (int n = 0; n <= t->nodes.count; n++)
         narrowest = fmin(narrowest, t->nodes.roughness[n] * t->nodes.roughness[n]);
     const ki_zonal zonal = {.lobe = kiln_lobe_ggx(narrowest)};
-    return ki_points_size(&zonal, source_size, count) + ki_block_size(count, 6 * sizeof(double));
+    return ki_points_size(&zonal, source_size, count) + ki_block_size(count, 6 * sizeof(double)) +
+           ki_suns_power_size(count);
 }

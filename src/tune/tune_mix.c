@@ -173,11 +173,11 @@ static void finish(const ki_nodes *nodes, ki_mixtures *mixtures)
 }
 
 kiln_result ki_mixtures_find(kiln_context *context, const ki_nodes *nodes,
-                             const kiln_spectrum *spectrum, const double (*power)[3],
+                             const kiln_spectrum *spectrum, const double (*power)[3], int degree,
                              ki_mixtures *mixtures, kiln_error *error)
 {
     ki_norms n;
-    kiln_result result = ki_norms_create(context, nodes, spectrum, power, &n, error);
+    kiln_result result = ki_norms_create(context, nodes, spectrum, power, degree, &n, error);
     if (result != KILN_OK)
         return result;
     memset(mixtures, 0, sizeof *mixtures);

@@ -45,10 +45,10 @@ void ki_nodes_place(ki_nodes *nodes, double (*level)(double roughness, int level
                     int level_count, int size);
 
 /// Finds the mixture of lobes of each level, and the couplings of levels, for an environment.
-/// `power` has the power of each degree and channel of its spectrum, [2][degree + 1][channel]:
+/// `power` has the environment's power of each degree and channel, [2][degree + 1][channel]:
 /// first without its suns, then with the suns.
 kiln_result ki_mixtures_find(kiln_context *context, const ki_nodes *nodes,
-                             const kiln_spectrum *spectrum, const double (*power)[3],
+                             const kiln_spectrum *spectrum, const double (*power)[3], int degree,
                              ki_mixtures *mixtures, kiln_error *error);
 
 #endif

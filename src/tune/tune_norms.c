@@ -163,10 +163,10 @@ static void turn_axes(ki_norms *n, const double *lower, const double *axes)
 }
 
 kiln_result ki_norms_create(kiln_context *context, const ki_nodes *nodes,
-                            const kiln_spectrum *spectrum, const double (*power)[3], ki_norms *n,
-                            kiln_error *error)
+                            const kiln_spectrum *spectrum, const double (*power)[3], int degree,
+                            ki_norms *n, kiln_error *error)
 {
-    const double(*all)[3] = power + spectrum->degree + 1;
+    const double(*all)[3] = power + degree + 1;
     double light, mean = all[0][0] + all[0][1] + all[0][2];
     *n = (ki_norms){.count = nodes->count + 2};
     size_t count = (size_t)n->count, size = count * count;
@@ -185,8 +185,8 @@ kiln_result ki_norms_create(kiln_context *context, const ki_nodes *nodes,
     // The scalar products are divided by the squared mean radiance, so that no unit of radiance
     // overflows. A black environment is treated as a white one.
     bool dark = !(mean > 0);
-    add_power(nodes, dark ? NULL : all, spectrum->degree, dark ? 1 : mean, lower);
-    add_power(nodes, dark ? NULL : power, spectrum->degree, dark ? 1 : mean, away);
+    add_power(nodes, dark ? NULL : all, degree, dark ? 1 : mean, lower);
+    add_power(nodes, dark ? NULL : power, degree, dark ? 1 : mean, away);
     if (!dark)
         add_tails(nodes, light / mean, away);
     for (size_t i = 0; i < count; i++) {

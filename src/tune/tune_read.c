@@ -16,6 +16,10 @@
 // remaining texels are solved again, in up to ROUNDS rounds. Tasks process CHUNK texels or points.
 enum { STEPS = 14, ROUNDS = 3, CHUNK = 2048 };
 
+// The steps end when the squared residual, weighted by the inverse diagonal, is this part of what it was
+// before the first step.
+static const double near = 1e-5;
+
 typedef struct tap {
     // in `taps` the index of the texel that a point reads, in `reverse` the index of the point that
     // reads a texel
@@ -46,7 +50,6 @@ typedef struct reads {
     // [chunk][2][channel]: for each chunk of texels or points, two sums that a task has written;
     // show_points, gather, take_step and hold say which.
     double (*sums)[2][3];
-    double scale[3];
 } reads;
 
 static int chunks(size_t count)
@@ -78,19 +81,19 @@ static void make_taps(void *data, int index)
     reads *r = data;
     size_t face = r->point_count / 6;
     int size = (int)(sqrt((double)r->texel_count / 6) + 0.5);
+    size_t edge = (size_t)r->goal->size;
     for (size_t p = (size_t)index * CHUNK; p < chunk_end(index, r->point_count); p++) {
-        double direction[3], weights[4];
+        double s = (2 * (double)(p % edge) + 1) / (double)edge - 1, weights[4];
+        double t = (2 * (double)(p % face / edge) + 1) / (double)edge - 1;
         size_t texels[4];
-        kiln_map_direction(r->goal, 0, p, direction);
-        ki_cube_taps(size, direction, texels, weights);
+        ki_face_taps(size, (int)(p / face), s, t, texels, weights);
         for (int i = 0; i < 4; i++)
             r->taps[p][i] = (tap){(uint32_t)texels[i], (float)weights[i]};
         // A texel's solid angle is proportional to 1 / d^3, where d is the distance from the cube's
-        // centre to the texel on a face at distance 1, and 1 / d is the direction's largest
-        // coordinate.
-        double largest = fmax(fabs(direction[0]), fmax(fabs(direction[1]), fabs(direction[2])));
+        // centre to the texel on a face at distance 1.
+        double squared = 1 + s * s + t * t;
         if (p < face)
-            r->solid[p] = (float)(largest * largest * largest);
+            r->solid[p] = (float)(1 / (squared * sqrt(squared)));
     }
 }
 
@@ -116,15 +119,15 @@ static bool allocate(reads *r)
 {
     kiln_context *k = r->context;
     size_t texels = r->texel_count, points = r->point_count;
-    r->taps = ki_alloc(k, points, sizeof *r->taps);
+    r->taps = ki_alloc_raw(k, points, sizeof *r->taps);
     r->start = ki_alloc(k, texels + 1, sizeof *r->start);
-    r->reverse = ki_alloc(k, 4 * points, sizeof *r->reverse);
-    r->solid = ki_alloc(k, points / 6, sizeof *r->solid);
-    r->shown = ki_alloc(k, points, sizeof *r->shown);
-    r->x = ki_alloc(k, texels, sizeof *r->x);
-    r->residual = ki_alloc(k, texels, sizeof *r->residual);
+    r->reverse = ki_alloc_raw(k, 4 * points, sizeof *r->reverse);
+    r->solid = ki_alloc_raw(k, points / 6, sizeof *r->solid);
+    r->shown = ki_alloc_raw(k, points, sizeof *r->shown);
+    r->x = ki_alloc_raw(k, texels, sizeof *r->x);
+    r->residual = ki_alloc_raw(k, texels, sizeof *r->residual);
     r->direction = ki_alloc(k, texels, sizeof *r->direction);
-    r->product = ki_alloc(k, texels, sizeof *r->product);
+    r->product = ki_alloc_raw(k, texels, sizeof *r->product);
     r->diagonal = ki_alloc(k, texels, sizeof *r->diagonal);
     r->held = ki_alloc(k, texels, sizeof *r->held);
     r->sums = ki_alloc(k, (size_t)chunks(points), sizeof *r->sums);
@@ -276,19 +279,23 @@ static void turn_direction(void *data, int index)
 static void solve(reads *r)
 {
     int texel_chunks = chunks(r->texel_count);
-    double norm[3], next[3], along[3];
+    double first[3], norm[3], next[3], along[3];
     step s = {.r = r};
     multiply(r, (const double(*)[3])r->x, r->residual, true);
     add_up(r, r->texel_count, 1, norm);
+    memcpy(first, norm, sizeof first);
     ki_parallel_for(r->context, texel_chunks, turn_direction, &s);
-    for (int i = 0; i < STEPS; i++) {
+    bool far = true;
+    for (int i = 0; i < STEPS && far; i++) {
         multiply(r, (const double(*)[3])r->direction, r->product, false);
         add_up(r, r->texel_count, 0, along);
         for (int c = 0; c < 3; c++)
             s.length[c] = along[c] > 0 ? norm[c] / along[c] : 0;
         ki_parallel_for(r->context, texel_chunks, take_step, &s);
         add_up(r, r->texel_count, 1, next);
+        far = false;
         for (int c = 0; c < 3; c++) {
+            far = far || next[c] > near * first[c];
             s.turn[c] = norm[c] > 0 ? next[c] / norm[c] : 0;
             norm[c] = next[c];
         }

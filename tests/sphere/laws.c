@@ -239,6 +239,31 @@ static void power_is_that_of_the_environment(void **state)
     kiln_map_free(&in);
 }
 
+// A sun on black: above its degree a spectrum has the power of the sun, which a spectrum of that degree has.
+static void suns_have_power_above_the_degree(void **state)
+{
+    (void)state;
+    kiln_map in = make_panorama(context, 48);
+    for (int c = 0; c < 3; c++)
+        texel_at(&in, 31, 13)[c] = 1e5F * (float)(c + 1);
+    kiln_spectrum *low, *high;
+    CHECK_OK(kiln_spectrum_analyze(context, &in, 40, &low, &error));
+    CHECK_OK(kiln_spectrum_analyze(context, &in, 96, &high, &error));
+    static double calm[2][97][3], all[2][97][3];
+    CHECK_OK(ki_spectrum_power(low, 96, calm[0], all[0], &error));
+    CHECK_OK(ki_spectrum_power(high, 96, calm[1], all[1], &error));
+    double solid = 2 * pi / 96 * 2 * sin(pi * 13.5 / 48) * sin(pi / 96);
+    CHECK_NEAR(all[0][0][1] / (4 * pi * pow(2e5 * solid / (4 * pi), 2)), 1, 1e-6);
+    for (int l = 0; l <= 96; l++)
+        for (int c = 0; c < 3; c++) {
+            CHECK_NEAR(all[0][l][c] / all[1][l][c], 1, 1e-9);
+            assert_true(calm[0][l][c] <= 1e-12 * all[0][l][c]);
+        }
+    kiln_spectrum_destroy(low);
+    kiln_spectrum_destroy(high);
+    kiln_map_free(&in);
+}
+
 static void bad_arguments_give_sentences(void **state)
 {
     (void)state;
@@ -270,6 +295,7 @@ int main(void)
         cmocka_unit_test(a_custom_lobe_matches_brute_force),
         cmocka_unit_test(sh_matches_brute_force),
         cmocka_unit_test(power_is_that_of_the_environment),
+        cmocka_unit_test(suns_have_power_above_the_degree),
         cmocka_unit_test(bad_arguments_give_sentences),
     };
     return cmocka_run_group_tests_name("sphere laws", tests, set_up, tear_down);
