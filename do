@@ -275,7 +275,7 @@ lint)
     say "formatting" && scripts/format.sh --check
     say "shellcheck"
     shellcheck -S warning ./do .ci/run
-    find scripts tests bench -name "*.sh" -not -path "*/node_modules/*" -exec shellcheck -x -P SCRIPTDIR -S warning {} +
+    find scripts packaging tests bench -name "*.sh" -not -path "*/node_modules/*" -exec shellcheck -x -P SCRIPTDIR -S warning {} +
     build strict
     sources=$(find src cli viewer bench examples tests -name '*.c' -not -path '*/node_modules/*')
     say "cppcheck"

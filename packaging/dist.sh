@@ -12,6 +12,9 @@ umask 022
 unset CMAKE_C_COMPILER_LAUNCHER CFLAGS LDFLAGS
 export LC_ALL=C TZ=UTC
 
+case $PWD in
+*[!A-Za-z0-9/._+-]*) fail "the path '$PWD' has a character that the settings of compilers cannot hold: move the clone" ;;
+esac
 git rev-parse HEAD >/dev/null 2>&1 || fail "the source archive is made by git: this folder is no clone"
 [ -z "$(git status --porcelain)" ] || echo "dist: files that are not committed are left out"
 SOURCE_DATE_EPOCH=$(git log -1 --format=%ct)

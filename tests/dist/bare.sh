@@ -17,14 +17,17 @@ die() { echo "FAILED: $*"; exit 1; }
 fail() { die "$@"; }
 
 if [ "$system" = deb ]; then
-    # In namespaces, so that nothing stays mounted and no process is left.
+    # In namespaces, so that nothing stays mounted and no process is left. Afterwards the root can be removed.
     [ "$(id -u)" = 0 ] || die "only root can make a bare Debian: sudo -E ./do test-dist"
-    exec unshare --mount --propagation private --pid --fork --kill-child sh "$0" "$1" "$2" "$3" deb-inside
+    trap 'rm -rf --one-file-system "$3/deb"' EXIT
+    trap 'exit 130' INT TERM HUP
+    unshare --mount --propagation private --pid --fork --kill-child sh "$0" "$1" "$2" "$3/deb" deb-inside
+    exit
 fi
 mkdir -p "$3"
 build=$(cd "$3" && pwd)
 work=$(mktemp -d "$build/bare.XXXXXX")
-trap 'rm -rf --one-file-system "$work"' EXIT
+[ "$system" = deb-inside ] || trap 'rm -rf --one-file-system "$work"' EXIT
 trap 'exit 130' INT TERM HUP
 
 # The bakes: README's first one, then each format that a library is linked for.
@@ -37,6 +40,7 @@ bake -q sky.exr -o picture.png --shape panorama --size 64 --levels 1 --exposure 
 bake -q picture.png -o png.ktx2 --size 16
 bake -q photo.jpg -o jpeg.ktx2 --size 32
 COMMANDS
+[ "$system" != aarch64 ] || sed -i 's/--for three/& --size 32 --tune none/' "$work/commands" # QEMU is slow
 oiiotool "$source/docs/images/balls.png" --ch R,G,B --resize 256x128 -o "$work/photo.jpg" >/dev/null
 
 # bakes FOLDER PROGRAM...: every command by the program, in the folder.
@@ -95,21 +99,20 @@ wheel)
     mkdir "$work/wheel"
     python=$(for each in /usr/bin/python3 python3; do "$each" -c 'import numpy' 2>/dev/null && echo "$each" && break; done)
     (cd "$work/wheel" && python3 -m zipfile -e "$dist"/kiln_ibl-*.whl .)
-    (cd "$work/wheel" && cp "$work/photo.jpg" . && "$python" -I - <<'PYTHON'
+    (cd "$work/wheel" && cp "$work/photo.jpg" "$work/native/sky.exr" . && "$python" -I - <<'PYTHON'
 import sys
 sys.path.insert(0, ".")
 import kiln
-kiln.sky(512, elevation=12).save("sky.exr")
 kiln.bake("sky.exr", "three").save("three.ktx2")
 kiln.bake("sky.exr", size=64).save("packed.ktx2", zstd=3)
 kiln.bake("packed.ktx2", size=16).save("unpacked.ktx2")
 kiln.bake("photo.jpg", size=32).save("jpeg.ktx2")
 PYTHON
     )
-    for file in sky.exr three.ktx2 packed.ktx2 unpacked.ktx2 jpeg.ktx2; do
+    for file in three.ktx2 packed.ktx2 unpacked.ktx2 jpeg.ktx2; do
         cmp "$work/native/$file" "$work/wheel/$file"
     done
-    echo "wheel: the same bytes in five files"
+    echo "wheel: the same bytes in four files"
     ;;
 deb-inside)
     suite=$(. /etc/os-release && echo "$VERSION_CODENAME")
