@@ -10,8 +10,25 @@ async function loadModule() {
     return WebAssembly.compile(await response.arrayBuffer());
 }
 
+// A page may start no worker whose script is of another origin, but one of its own that imports that script.
+function foreignWorker() {
+    const base = import.meta.url; // apart from the file's name, so that bundlers do not copy the file once more
+    const script = `import ${JSON.stringify(new URL('worker.mjs', base).href)};`;
+    return new Worker(URL.createObjectURL(new Blob([script], { type: 'text/javascript' })), { type: 'module' });
+}
+
+function ownWorker() {
+    try {
+        return new Worker(new URL('./worker.mjs', import.meta.url), { type: 'module' });
+    } catch (error) {
+        if (error.name !== 'SecurityError')
+            throw error;
+        return foreignWorker();
+    }
+}
+
 function startWorker() {
-    const worker = new Worker(new URL('./worker.mjs', import.meta.url), { type: 'module' });
+    const worker = ownWorker();
     return {
         post: (message) => worker.postMessage(message),
         listen(onMessage, onError) {

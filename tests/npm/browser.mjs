@@ -1,9 +1,11 @@
-// bake() in a browser, from the unpacked tarball served as it is: the native command's files, progress, abort, and the
-// module without vectors where an engine has none.
+// bake() in a browser, from the unpacked tarball served as it is: the native command's files, progress, abort, the
+// module without vectors where an engine has none, and the package on another server than the page.
 import assert from 'node:assert/strict';
 import fs from 'node:fs';
+import http from 'node:http';
+import { chromium } from '../web/node_modules/playwright-core/index.mjs';
 import { withPage } from '../web/browser.mjs';
-import { folder, inFolder, kiln, makeInputs } from './lib.mjs';
+import { folder, inFolder, installed, kiln, makeInputs } from './lib.mjs';
 
 makeInputs();
 kiln('bake', 'a.exr', '-o', 'wanted.ktx2', '--for', 'three', '--size', '64', '-q');
@@ -43,3 +45,35 @@ await withPage(folder, async (page, address) => {
         console.log(`  ${got.cpu}: the first bake took ${got.seconds.toFixed(2)} s`);
     }
 });
+
+// Two servers, which are two origins. withPage would take the second one's address for a fault.
+const listen = (answer) => new Promise((resolve) => {
+    const server = http.createServer(answer);
+    server.listen(0, '127.0.0.1', () => resolve([server, `http://127.0.0.1:${server.address().port}`]));
+});
+const types = { mjs: 'text/javascript', wasm: 'application/wasm' };
+const [packages, far] = await listen((request, response) => {
+    const name = request.url.slice(1);
+    response.writeHead(200, { 'Access-Control-Allow-Origin': '*', 'Content-Type': types[name.split('.')[1]] });
+    response.end(fs.readFileSync(`${installed}/${name}`));
+});
+const [pages, near] = await listen((request, response) => {
+    response.writeHead(200, { 'Content-Type': 'text/html' });
+    response.end('<!doctype html><title>kiln-ibl</title>');
+});
+const browser = await chromium.launch({ executablePath: '/usr/bin/chromium', args: ['--no-sandbox'] });
+try {
+    const page = await browser.newPage();
+    await page.goto(near);
+    const texel = await page.evaluate(async (address) => {
+        const { bake } = await import(`${address}/index.mjs`);
+        const { sh } = await bake({ data: new Float32Array(3 * 32 * 16).fill(2), width: 32, height: 16 }, { size: 8 });
+        return sh.coefficients[0][0] / Math.sqrt(4 * Math.PI);
+    }, far);
+    assert.ok(Math.abs(texel - 2) < 1e-6, `the radiance is ${texel}`);
+    console.log('  the package on another server: bakes');
+} finally {
+    await browser.close();
+    packages.close();
+    pages.close();
+}
