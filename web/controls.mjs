@@ -22,19 +22,21 @@ export const NAMES = {
 const list = (names, words) => Object.fromEntries(
     Object.entries(names).filter(([word]) => words.includes(word)).map(([word, name]) => [name, word]));
 
-// Each control: its folder, the name of its value in the state, its name on the page, its sentence, and
-// what lil-gui wants. `scenes` names the scenes in which a control has an effect.
+// The folders of the panel with their titles, and each folder's controls: the name of the value in the
+// state, the name on the page, the sentence, and what lil-gui wants, which is a list or a range.
 function rows(words) {
     const sky = [
         ['sun', 'Sun height', 'How high the sun stands above the horizon, in degrees.', -5, 90, 0.5],
-        ['bearing', 'Sun direction', 'The compass direction of the sun, in degrees to the right of the panorama\'s centre.', -180, 180, 1],
+        ['bearing', 'Sun direction',
+         'The compass direction of the sun, in degrees to the right of the panorama\'s centre.', -180, 180, 1],
         ['haze', 'Haze', 'How hazy the air is: 2 is a clear mountain sky, 10 is thick haze.', 1.7, 10, 0.1],
     ];
     const bake = [
         ['turn', 'Rotation, degrees', 'Turns the surroundings about the vertical axis.', -180, 180, 1],
         ['stops', 'Exposure, stops', 'Makes the baked light brighter or darker: each stop doubles it.', -16, 16, 0.5],
-        ['lamps', 'Sun and lamps', 'What becomes of very bright, small lights: they can stay in the texture, be taken ' +
-         'out to become a real light with sharp highlights and shadows, or be limited to a brightness.',
+        ['lamps', 'Sun and lamps',
+         'What becomes of very bright, small lights: they can stay in the texture, be taken out to become a real ' +
+         'light with sharp highlights and shadows, or be limited to a brightness.',
          { 'Stay in the texture': 'keep', 'Take out as lights': 'extract', 'Limit their brightness': 'clamp' }],
         ['count', 'Lights to take out', 'At most this many lights are taken out, the strongest first.', 1, 16, 1],
         ['clamp', 'Largest brightness', 'Brighter texels are darkened to this radiance; 0 lets kiln choose.', 0, 65504, 1],
@@ -42,25 +44,38 @@ function rows(words) {
     ];
     const see = [
         ['scene', 'Scene', 'What is drawn in the baked light.', list(NAMES.scene, [...words.scene, 'three'])],
-        ['material', 'Material', 'What the balls are made of. The metals have measured colours.', list(NAMES.material, words.material)],
-        ['method', 'Lost light added by', 'A rough metal bounces light several times between its microscopic facets. ' +
-         'Simple shaders lose the light of later bounces; this formula adds it back.', list(NAMES.method, words.method)],
+        ['material', 'Material', 'What the balls are made of. The metals have measured colours.',
+         list(NAMES.material, words.material)],
+        ['method', 'Lost light added by',
+         'A rough metal bounces light several times between its microscopic facets. Simple shaders lose the light ' +
+         'of later bounces; this formula adds it back.', list(NAMES.method, words.method)],
         ['auto', 'Automatic brightness', 'Shows every panorama at a comfortable brightness; the files are not changed.'],
         ['background', 'Blurred background', 'Blurs the surroundings behind the balls; the light stays as it is.', 0, 1, 0.01],
-        ['ground', 'Ground with shadows', 'Puts a matte floor under the balls, with the shadows of lights that were taken out.'],
-        ['occlusion', 'Balls shade each other', 'Darkens places where a neighbouring ball hides a part of the surroundings.'],
+        ['ground', 'Ground with shadows',
+         'Puts a matte floor under the balls, with the shadows of lights that were taken out.'],
+        ['occlusion', 'Balls shade each other',
+         'Darkens places where a neighbouring ball hides a part of the surroundings.'],
         ['split', 'Dividing line', 'Where the two halves of the picture meet.', 0, 1, 0.01],
-        ['fov', 'Lens angle, degrees', 'Vertical field of view of the camera: a small angle is a long lens, which keeps balls round.', 5, 90, 1],
-        ['samples', 'Finest picture', 'Rays for each pixel when nothing moves: 4 means 4 x 4 rays and smooth edges.', 1, 8, 1],
+        ['fov', 'Lens angle, degrees',
+         'Vertical field of view of the camera: a small angle is a long lens, which keeps balls round.', 5, 90, 1],
+        ['samples', 'Finest picture',
+         'Rays for each pixel when nothing moves: 4 means 4 x 4 rays and smooth edges.', 1, 8, 1],
     ];
     const expert = [
-        ['debug', 'Show', 'The picture, its error against a slow and exact integration of all light paths, or a table that the shader reads.',
-         list(NAMES.debug, [...words.debug.filter((word) => word !== 'level'), 'error'])],
-        ['noise', 'Noise of the error', 'The integration goes on until its own noise is below this part of each pixel.', 0.01, 0.5, 0.01],
-        ['alone', 'Without light between balls', 'The integration leaves out light that goes from one ball to another, as real-time shaders do.'],
-        ['cubeDiffuse', 'Soft light from a cube', 'Takes the light of matte surfaces from a small cube map instead of nine numbers (spherical harmonics).'],
-        ['bent', 'Correct rough reflections', 'A rough surface reflects from a direction nearer to its normal than a mirror does; this looks the reflection up there.'],
-        ['asPrinted', 'Repeat a known mistake', 'Draws the assignment\'s figure 6 with the mistake that it was printed with.'],
+        ['debug', 'Show',
+         'The picture, its error against a slow and exact integration of all light paths, or a table that the ' +
+         'shader reads.', list(NAMES.debug, [...words.debug.filter((word) => word !== 'level'), 'error'])],
+        ['noise', 'Noise of the error',
+         'The integration goes on until its own noise is below this part of each pixel.', 0.01, 0.5, 0.01],
+        ['alone', 'Without light between balls',
+         'The integration leaves out light that goes from one ball to another, as real-time shaders do.'],
+        ['cubeDiffuse', 'Soft light from a cube',
+         'Takes the light of matte surfaces from a small cube map instead of nine numbers (spherical harmonics).'],
+        ['bent', 'Correct rough reflections',
+         'A rough surface reflects from a direction nearer to its normal than a mirror does; this looks the ' +
+         'reflection up there.'],
+        ['asPrinted', 'Repeat a known mistake',
+         'Draws the assignment\'s figure 6 with the mistake that it was printed with.'],
     ];
     return { sky: ['Sky', sky], bake: ['Light', bake], see: ['View', see], expert: ['For experts', expert] };
 }
@@ -85,9 +100,10 @@ export function makeControls(container, state, words, changed) {
         split: () => state.scene === 'compare', asPrinted: () => state.scene === 'assignment',
         noise: () => state.debug === 'error', alone: () => state.debug === 'error',
         material: () => !bare(state.scene), method: () => state.scene !== 'three',
-        ground: () => !bare(state.scene) && state.scene !== 'three',
+        auto: () => !bare(state.scene), ground: () => !bare(state.scene) && state.scene !== 'three',
         background: () => !bare(state.scene), occlusion: () => !bare(state.scene) && state.scene !== 'three',
-        debug: () => state.scene !== 'three', cubeDiffuse: () => state.scene !== 'three', bent: () => state.scene !== 'three',
+        debug: () => state.scene !== 'three', cubeDiffuse: () => state.scene !== 'three',
+        bent: () => state.scene !== 'three',
     };
     return {
         // Shows the present state, after it has changed elsewhere; hides controls without effect.

@@ -36,8 +36,9 @@ export class Files {
         this.pages = new Map();
         get('engine').append(...engines.map(({ name, title }) => new Option(title, name)));
         get('tune').append(...Object.entries(TUNES).map(([name, title]) => new Option(title, name)));
-        for (const [id, name] of [['engine', 'engine'], ['engine-size', 'engineSize'], ['format', 'format'], ['tune', 'tune']])
-            get(id).onchange = () => onChange(name, name === 'engineSize' ? Number(get(id).value) : get(id).value);
+        for (const name of ['engine', 'format', 'tune'])
+            get(name).onchange = () => onChange(name, get(name).value);
+        get('engine-size').onchange = () => onChange('engineSize', Number(get('engine-size').value));
         get('copy').onclick = () => this.copy();
     }
 
@@ -68,7 +69,8 @@ export class Files {
             new Option(`${chosen.size} (usual)`, 0),
             ...[64, 128, 256, 512, 1024].filter((n) => n !== chosen.size).map((n) => new Option(n, n)));
         get('engine-size').value = state.engineSize;
-        get('format').replaceChildren(...chosen.formats.map((name, i) => new Option(i ? name : `${name} (usual)`, i ? name : 'auto')));
+        get('format').replaceChildren(...chosen.formats.map(
+            (name, i) => (i ? new Option(name, name) : new Option(`${name} (usual)`, 'auto'))));
         get('format').value = state.format;
         get('format-row').hidden = chosen.formats.length < 2;
         get('tune').value = state.tune;
@@ -80,7 +82,9 @@ export class Files {
         const shown = [lines.load, ...(lights ? [lights] : [])].join('\n\n');
         const code = get('lines').textContent = named(shown, stem, `${stem}-lights.json`);
         const [, loader] = code.match(/from '\.\/([\w-]+\.mjs)'/) ?? [];
-        get('code-title').textContent = `Lines that load these files${loader ? ` (${loader} is in the .zip)` : ''}`;
+        const what = /^\d\. /.test(code) ? 'Steps' : 'Lines';
+        get('code-title').textContent = `${what} that load these files${loader ? ` (${loader} is in the .zip)` : ''}`;
+        get('lines').classList.toggle('steps', what === 'Steps');
         this.buttons(named(lines.output, stem, ''));
     }
 
@@ -98,11 +102,12 @@ export class Files {
             made.onclick = () => this.work(work);
             return made;
         };
-        const bundle = button(fresh && this.bundle ? `Download all (.zip) · ${size(this.bundle.length)}` : 'Download all (.zip)',
-                              'The files, their loader and a README with the lines of code', () => this.takeBundle(), several);
+        const length = fresh && this.bundle ? ` · ${size(this.bundle.length)}` : '';
+        const bundle = button(`Download all (.zip)${length}`, 'The files, their loader and a README with the lines of code',
+                              () => this.takeBundle(), several);
         const files = fresh
-            ? this.made.files.map(({ name, bytes }) => button(`${name} · ${size(bytes.length)}`, `Download ${name}`,
-                                                              () => save(name, bytes), !several))
+            ? this.made.files.map(({ name, bytes }) =>
+                button(`${name} · ${size(bytes.length)}`, `Download ${name}`, () => save(name, bytes), !several))
             : several ? [] : [button(`Download ${output}`, 'Bakes for this engine and downloads the file',
                                      () => this.takeOnly(), true)];
         get('get').replaceChildren(...(several ? [bundle, ...files] : [...files, bundle]));
@@ -141,9 +146,10 @@ export class Files {
             this.opened = opened;
         }
         const lightsName = lamps === 'extract' ? `${stem}-lights.json` : '';
-        const made = await this.engine.engineFiles({ index: this.engines.indexOf(chosen), size: engineSize, tune, format,
-                                                     name: named(lines.output, stem, ''), lightsName })
-            .catch((problem) => { this.opened = ''; throw problem; });
+        const made = await this.engine.engineFiles({
+            index: this.engines.indexOf(chosen), size: engineSize, tune, format, lightsName,
+            name: named(lines.output, stem, ''),
+        }).catch((problem) => { this.opened = ''; throw problem; });
         Object.assign(this, { key, made, bundle: null });
         get('engine-status').textContent = made.note ? `${made.files[0].name}: ${made.note}.` : '';
     }

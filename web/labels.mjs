@@ -2,9 +2,10 @@
 import { project } from './camera.mjs';
 
 // What the upper row and the lower row of balls show, for each scene with two rows.
+const ADDED = ['Light that bounces more than once is added back', 'Without that light, rough balls are too dark'];
 const ROWS = {
-    ibl: ['Light that rough metal bounces more than once is added back', 'Without that light, rough balls are too dark'],
-    compare: ['Light that rough metal bounces more than once is added back', 'Without that light, rough balls are too dark'],
+    ibl: ADDED,
+    compare: ADDED,
     furnace: ['With all light added back, the balls are invisible', 'The light that is lost shows as grey'],
     assignment: ['Lost light added back', 'Without the lost light'],
     three: ['three.js with kiln\'s file', 'three.js with its own filter'],

@@ -9,8 +9,8 @@ function block(text, from, word = '') {
     return '';
 }
 
-// Numbered steps, where an engine has no code.
-const steps = (text) => (text.match(/^\d\. .*(\n {3}.*)*/gm) ?? []).join('\n');
+// Numbered steps, where an engine has no code, without Markdown's marks.
+const steps = (text) => (text.match(/^\d\. .*(\n {3}.*)*/gm) ?? []).join('\n').replace(/[*`]/g, '');
 
 // What the page of documentation `text` says of engine `name`: the name of the output file, whose word
 // `city` stands for the panorama's name, and the lines that load the files and those that add lights.

@@ -461,10 +461,12 @@ function next(name) {
 const controls = makeControls(get('controls'), state, stage.words, changed);
 const files = new Files({
     engines, read: () => state, onChange: change, onFailure: (problem) => complain(problem.message),
-    source: () => ({ key: baked ? [keyOf(opened), ...Object.values(optionsOf(state))].join() : '', stem: stem(), open: openWhole }),
+    source: () => ({ key: baked ? [keyOf(opened), ...Object.values(optionsOf(state))].join() : '', stem: stem(),
+                     open: openWhole }),
 });
 const three = new ThreeView({
-    box: get('stage'), open: openWhole, engines, key: () => keyOf(opened), onFailure: (problem) => complain(problem.message),
+    box: get('stage'), open: openWhole, engines, key: () => keyOf(opened),
+    onFailure: (problem) => complain(problem.message),
     onNote: () => { if (state.scene === 'three') get('note').textContent = three.note; },
 });
 

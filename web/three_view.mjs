@@ -28,7 +28,8 @@ export class ThreeView {
         this.canvas = document.createElement('canvas');
         this.canvas.id = 'three';
         this.canvas.setAttribute('role', 'img');
-        this.canvas.setAttribute('aria-label', 'Balls drawn by three.js, above with kiln\'s file, below with three.js\' own filter');
+        this.canvas.setAttribute('aria-label',
+                                 'Balls drawn by three.js, above with kiln\'s file, below with three.js\' own filter');
         this.box.prepend(this.canvas);
         this.worker = new Remote(new URL('three_worker.mjs', import.meta.url), []);
         const canvas = this.canvas.transferControlToOffscreen();
@@ -51,7 +52,8 @@ export class ThreeView {
                 return;
             this.say('three.js filters the same panorama');
             await this.started;
-            const { milliseconds } = await this.worker.ask('light', [panorama, bytes], [panorama.texels.buffer, bytes.buffer]);
+            const { milliseconds } = await this.worker.ask('light', [panorama, bytes],
+                                                           [panorama.texels.buffer, bytes.buffer]);
             this.ready = true;
             this.done = `Both rows are drawn by three.js. Its own filter took ${(milliseconds / 1000).toFixed(1)} s, and ` +
                         'cuts off what half floats cannot hold.';

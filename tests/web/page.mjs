@@ -29,6 +29,14 @@ const brightness = (page) => page.evaluate(() => {
     return pen.getImageData(0, 0, 16, 16).data.reduce((sum, v) => sum + v, 0) / 1024;
 });
 
+// Opens an address anew, also where only the part behind # differs from the page's.
+let visits = 0;
+function visit(page, address) {
+    const url = new URL(address);
+    url.search = `?${++visits}`;
+    return page.goto(url.href);
+}
+
 const look = (page) => page.evaluate(() => document.getElementById('view').toDataURL());
 
 async function theSkyIsBakedAtOnce(page, address) {
@@ -94,8 +102,7 @@ async function whatWasFoundIsTold(page) {
 }
 
 async function theKeyboardSuffices(page, address) {
-    await page.goto('about:blank');
-    await page.goto(`${address}#samples=1`);
+    await visit(page, `${address}#samples=1`);
     await idle(page);
     const focus = () => page.evaluate(() => document.activeElement.textContent ||
                                             document.activeElement.id);
@@ -131,8 +138,7 @@ async function theKeyboardSuffices(page, address) {
 }
 
 async function theAddressHoldsTheState(page, address) {
-    await page.goto('about:blank');
-    await page.goto(`${address}#sun=8&bearing=40&size=64&turn=33.5&stops=-2.5&shown=2&samples=1&size2=x`);
+    await visit(page, `${address}#sun=8&bearing=40&size=64&turn=33.5&stops=-2.5&shown=2&samples=1&size2=x`);
     await idle(page);
     kiln('sky', '-o', 'low.exr', '--elevation', '8', '--azimuth', '40');
     const wanted = bakeByCommand('low.exr', '--size', '64', '--rotate', '33.5', '--exposure', '-2.5');
@@ -143,15 +149,13 @@ async function theAddressHoldsTheState(page, address) {
     const url = new URL(page.url());
     check(/shown=4/.test(url.hash) && /sun=8/.test(url.hash) && !/size2/.test(url.hash),
           `the address is ${url.hash}`);
-    await page.goto('about:blank');
-    await page.goto(url.href);
+    await visit(page, url.href);
     await idle(page);
     check(await page.getAttribute('#levels li:nth-child(5) button', 'aria-pressed') === 'true',
           'level 4 is not restored');
     checkSame((await cube(page)).bytes, wanted, 'the restored cube');
     // Nonsense in an address is no reason to fail.
-    await page.goto('about:blank');
-    await page.goto(`${address}#sun=high&size=512.3&turn=&shown=-30&scene=moon&source=mine.exr`);
+    await visit(page, `${address}#sun=high&size=512.3&turn=&shown=-30&scene=moon&source=mine.exr`);
     await idle(page);
     check(await levels(page) === 10, `${await levels(page)} levels of 512`);
     check(/mine\.exr/.test(await text(page, 'error')), 'the missing file is not named');
@@ -159,8 +163,7 @@ async function theAddressHoldsTheState(page, address) {
 
 // Every button's file is the command's.
 async function theFilesAreTheCommands(page, address) {
-    await page.goto('about:blank');
-    await page.goto(`${address}#size=64&samples=1`);
+    await visit(page, `${address}#size=64&samples=1`);
     await idle(page);
     await openMore(page);
     kiln('sky', '-o', 'sky.exr', '--azimuth', '150');
@@ -189,8 +192,7 @@ async function theFilesAreTheCommands(page, address) {
 
 // The strongest light is taken out of the levels, told, and downloaded.
 async function theSunIsTakenOut(page, address) {
-    await page.goto('about:blank');
-    await page.goto(`${address}#size=64&samples=1&turn=20&stops=1&ground=1`);
+    await visit(page, `${address}#size=64&samples=1&turn=20&stops=1&ground=1`);
     await idle(page);
     await drawn(page);
     const before = await look(page), whole = (await cube(page)).bytes;
@@ -222,7 +224,7 @@ function documented(name) {
     const [, lights = ''] = written.split('\n## Lights that were taken out\n');
     return { output, lights: blocks(lights)[0] ?? '',
              load: blocks(lines.slice(at).join('\n')).find((block) => block.includes(output)) ??
-                   lines.filter((line) => /^\d\. /.test(line)).join('\n') };
+                   lines.filter((line) => /^\d\. /.test(line)).join('\n').replace(/[*`]/g, '') };
 }
 
 // For each engine the page shows the lines of the engine's documentation, with the names of the files.
@@ -245,8 +247,7 @@ async function theLinesAreTheDocumentations(page) {
 
 // The engine's files are the command's, alone and in the bundle, which Python's zipfile reads.
 async function theEnginesFilesAreTheCommands(page, address) {
-    await page.goto('about:blank');
-    await page.goto(`${address}#samples=1&engine=babylon&engineSize=64&tune=none&lamps=extract&turn=30&size=16`);
+    await visit(page, `${address}#samples=1&engine=babylon&engineSize=64&tune=none&lamps=extract&turn=30&size=16`);
     await idle(page);
     const bundle = await downloaded(page, () => button(page, 'Download all (.zip)').click());
     check(bundle.name === 'sky-babylon.zip', `the bundle is called ${bundle.name}`);
@@ -271,8 +272,7 @@ async function theEnginesFilesAreTheCommands(page, address) {
 async function theLooksFollowTheVisitor(page, address) {
     await page.setViewportSize({ width: 390, height: 700 });
     await page.emulateMedia({ colorScheme: 'light' });
-    await page.goto('about:blank');
-    await page.goto(`${address}#samples=1&size=16`);
+    await visit(page, `${address}#samples=1&size=16`);
     await idle(page);
     const seen = () => page.evaluate(() => {
         const box = (node) => node.getBoundingClientRect(), stage = box(document.getElementById('stage'));
@@ -293,7 +293,7 @@ async function theLooksFollowTheVisitor(page, address) {
     });
     const light = await seen();
     check(light.width === 390, `the page is ${light.width} wide`);
-    check(light.inside && light.labels.join('; ') === 'glossy 0.15; 0.35; 0.55; 0.75; rough 0.95; Light that rough metal ' +
+    check(light.inside && light.labels.join('; ') === 'glossy 0.15; 0.35; 0.55; 0.75; rough 0.95; Light that ' +
           'bounces more than once is added back; Without that light, rough balls are too dark', `labels are ${light.labels}`);
     check(!light.beyond.length, `beyond the edges are ${light.beyond}`);
     check(!light.bare.length, `no sentence says what these controls do: ${light.bare}`);
@@ -320,8 +320,7 @@ const flatError = (page, wanted) => page.waitForFunction(
 
 // The figure under the picture is the command's, which has the same rays and random numbers.
 async function theErrorIsIntegrated(page, address) {
-    await page.goto('about:blank');
-    await page.goto(`${address}#size=64&samples=1&debug=error&noise=0.4&alone=1&sun=60&fov=45&distance=330`);
+    await visit(page, `${address}#size=64&samples=1&debug=error&noise=0.4&alone=1&sun=60&fov=45&distance=330`);
     await idle(page);
     await flatError(page, 'whole');
     const note = await text(page, 'note');
@@ -350,8 +349,7 @@ async function theErrorIsIntegrated(page, address) {
 
 // The textbook's half of compare comes by and by, and the page takes keys meanwhile.
 async function theTextbookTakesItsTime(page, address) {
-    await page.goto('about:blank');
-    await page.goto(`${address}#size=64&samples=1&scene=compare`);
+    await visit(page, `${address}#size=64&samples=1&scene=compare`);
     await idle(page);
     await page.waitForFunction(() => /^Sampling the right side/.test(document.getElementById('background').textContent));
     await page.locator('#view').focus();
