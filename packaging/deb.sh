@@ -7,7 +7,6 @@
 set -eu
 build=$(cd "$1" && pwd)
 out=$(cd "$2" && pwd)
-here=$(cd "$(dirname "$0")/.." && pwd)
 work=$build/deb
 root=$work/debian/kiln
 umask 022
@@ -15,8 +14,7 @@ rm -rf "$work"
 mkdir -p "$root/DEBIAN"
 
 DESTDIR=$root cmake --install "$build" >"$work/log" || { cat "$work/log" >&2; exit 1; }
-cp "$here/LICENSE" "$root/usr/share/doc/kiln/copyright"
-rm "$root/usr/share/doc/kiln/LICENSE"
+mv "$root/usr/share/doc/kiln/LICENSE" "$root/usr/share/doc/kiln/copyright"
 gzip -n9 "$root/usr/share/man/man1/kiln.1" "$root/usr/share/doc/kiln/CHANGELOG.md"
 mv "$root/usr/share/doc/kiln/CHANGELOG.md.gz" "$root/usr/share/doc/kiln/changelog.gz"
 strip --remove-section=.comment --remove-section=.note "$root/usr/bin/kiln"
