@@ -34,6 +34,7 @@ void fuzz_harmonics(const uint8_t *bytes, size_t size);
 // parts.c: what lies inside of files, put into a file that is otherwise whole.
 void fuzz_exr_chunk(const uint8_t *bytes, size_t size);
 void fuzz_png_rows(const uint8_t *bytes, size_t size);
+void fuzz_uastc(const uint8_t *bytes, size_t size);
 void fuzz_icc(const uint8_t *bytes, size_t size);
 void fuzz_gain_map(const uint8_t *bytes, size_t size);
 void fuzz_metadata(const uint8_t *bytes, size_t size);

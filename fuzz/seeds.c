@@ -5,6 +5,7 @@
 #include "codec/codec.h"
 #include "codec/deflate.h"
 #include "codec/engine_text.h"
+#include "codec/uastc.h"
 #include "files/exr_make.h"
 #include "files/exr_plain.h"
 
@@ -110,6 +111,24 @@ static void save_files(const char *prefix, kiln_files *files)
             save("input", name, file->bytes, file->size);
     }
     kiln_files_free(files);
+}
+
+// A block of each mode of UASTC HDR, with values and weights of all sizes.
+static void write_uastc(void)
+{
+    for (int mode = 0; mode <= KI_UASTC_SOLID; mode++) {
+        ki_uastc_block b = {.mode = mode, .partition = mode, .solid = {1, 0x3c00, 0x7bff}};
+        uint8_t bytes[KI_UASTC_BYTES];
+        char name[32];
+        for (int i = 0; i < 12 && mode < KI_UASTC_SOLID; i++)
+            b.value[i / 6][i % 6] = (uint8_t)ki_uastc_quantize((67 * i + 40 * mode) % 256,
+                                                               ki_uastc_modes[mode].values, 0);
+        for (int i = 0; i < 16 && mode < KI_UASTC_SOLID; i++)
+            b.index[i] = (uint8_t)(i % ki_uastc_levels[ki_uastc_modes[mode].weights]);
+        ki_uastc_pack(&b, bytes);
+        snprintf(name, sizeof name, "mode-%d", mode);
+        save("uastc", name, bytes, sizeof bytes);
+    }
 }
 
 static void write_maps(void)
@@ -586,6 +605,7 @@ int main(int argc, char **argv)
     mkdir(folder, 0777);
     must(kiln_context_create(NULL, &context, &error));
     write_maps();
+    write_uastc();
     write_engines();
     write_harmonics();
     write_tables();
