@@ -1,14 +1,15 @@
 // Compares the errors of BC6H by kiln and by Basis Universal: node blocks.mjs BIN PANORAMAS FOLDER CSV
 // In: the panoramas NAMES. Out: errors and CPU times, printed and as rows of CSV. kiln bakes a cube of each
 // panorama and encodes its levels. Basis Universal (UASTC HDR 4x4 at its default effort, transcoded to BC6H; npm
-// ktx2-encoder, WebAssembly) encodes the same levels. oiiotool decodes the files of the two encoders.
+// ktx2-encoder, WebAssembly) encodes the same levels. oiiotool decodes the files of the two encoders. Then the UASTC HDR
+// blocks of the two are compared, which kiln and Basis Universal's transcoder decode.
 import { execFileSync } from 'node:child_process';
 import fs from 'node:fs';
 import path from 'node:path';
 import BASIS from './node_modules/ktx2-encoder/dist/basis/basis_encoder.js';
 
 const [bin, panoramas, folder, csv] = process.argv.slice(2).map((name) => path.resolve(name));
-const NAMES = ['city', 'courtyard', 'studio'], LEVELS = 6, PEER_LEVELS = [0, 2, 4];
+const NAMES = ['city', 'courtyard', 'forest', 'interior', 'night', 'studio', 'sunrise', 'sunset'], LEVELS = 6, PEER_LEVELS = [0, 2, 4];
 const run = (program, ...args) => execFileSync(program, args, { encoding: 'utf8', cwd: folder });
 const ours = (...args) => run(path.join(bin, 'bench_blocks'), ...args).trim().split(' ').map(Number);
 
@@ -52,11 +53,14 @@ function basisFace(pixels, size) {
         throw new Error('Basis encodes nothing');
     const blocks = new Uint8Array(file.getImageTranscodedSizeInBytes(0, 0, 0, format));
     file.transcodeImage(blocks, 0, 0, 0, format, 0, -1, -1);
+    const plain = basis.transcoder_texture_format.cTFRGBA_HALF.value;
+    const halfs = new Uint8Array(file.getImageTranscodedSizeInBytes(0, 0, 0, plain));
     const microseconds = process.cpuUsage(begin).user;
+    file.transcodeImage(halfs, 0, 0, 0, plain, 0, -1, -1);
     file.close();
     file.delete();
     encoder.delete();
-    return { blocks, microseconds };
+    return { blocks, microseconds, halfs: new Uint16Array(halfs.buffer) };
 }
 
 // Returns the RMS difference of the half floats' bits, and the RMS difference of the radiance relative to the
@@ -64,6 +68,23 @@ function basisFace(pixels, size) {
 function measure(name, truth, level) {
     run('oiiotool', `${name}.dds`, '--fullpixels', '--scanline', '-o', `${name}.exr`);
     return ours('error', truth, `${level}`, `${name}.exr`);
+}
+
+const valueOf = (h) => (h >> 10 ? (1024 + (h & 1023)) * 2 ** ((h >> 10) - 25) : h * 2 ** -24);
+
+// The RMS difference of UASTC HDR as the transcoder decodes it, relative to the level's RMS radiance.
+function measureHalfs(faces, made) {
+    let off = 0, all = 0;
+    faces.forEach((bytes, face) => {
+        const floats = new Float32Array(bytes.slice().buffer);
+        floats.forEach((x, i) => {
+            if (i % 4 === 3)
+                return;
+            off += (x - valueOf(made[face].halfs[i])) ** 2;
+            all += x * x;
+        });
+    });
+    return Math.sqrt(off / all);
 }
 
 const rows = ['name,unit,median,minimum'];
@@ -78,6 +99,9 @@ for (const name of NAMES) {
     add(`${name} kiln`, 'us/texel', time);
     const sizes = Array.from({ length: 9 }, (_, k) => 16 * Math.ceil((256 >> k || 1) / 4) ** 2);
     const whole = sizes.reduce((a, b) => a + b);
+    const [uastcTime, ...uastc] = ours('uastc', '-', truth, `${name}-uastc.ktx2`);
+    console.log(`  ${name}  kiln, all levels as UASTC HDR: ${uastcTime.toFixed(2)}`);
+    add(`${name} kiln uastc`, 'us/texel', uastcTime);
     readCube(truth).forEach(({ size, faces }, level) => {
         const before = 148 + sizes.slice(0, level).reduce((a, b) => a + b, 0);
         writeLevel('kiln.dds', header, size, faces.map((_, f) =>
@@ -90,11 +114,15 @@ for (const name of NAMES) {
             const made = faces.map((face) => basisFace(face, size));
             writeLevel('basis.dds', header, size, made.map(({ blocks }) => blocks));
             const [theirs, theirEnergy] = measure('basis', truth, level);
+            const uastcEnergy = measureHalfs(faces, made);
+            add(`${name} kiln uastc level ${level}`, 'relative', uastc[2 * level + 1]);
+            add(`${name} basis uastc level ${level}`, 'relative', uastcEnergy);
             const us = made.reduce((sum, { microseconds }) => sum + microseconds, 0) / (6 * size * size);
             add(`${name} basis level ${level}`, 'codes', theirs);
             add(`${name} basis level ${level}`, 'relative', theirEnergy);
             add(`${name} basis level ${level}`, 'us/texel', us);
-            line += `   Basis ${theirs.toFixed(1)} | ${theirEnergy.toExponential(1)} | ${us.toFixed(0)} (WebAssembly)`;
+            line += `   Basis ${theirs.toFixed(1)} | ${theirEnergy.toExponential(1)} | ${us.toFixed(0)} (WebAssembly)` +
+                    `   as UASTC HDR: kiln ${uastc[2 * level + 1].toExponential(1)} Basis ${uastcEnergy.toExponential(1)}`;
         }
         console.log(line);
     });
