@@ -315,6 +315,11 @@ int baker_engine_number(int index, int what)
                        : (int)engine->formats[what < 6 ? what - 2 : 3];
 }
 
+const char *baker_format_name(int format)
+{
+    return kiln_format_names()[format];
+}
+
 bool baker_engine_files(baker *b, int index, int size, int tune, int format, const char *name,
                         const char *lights_name)
 {

@@ -78,6 +78,8 @@ BAKER const char *baker_engine_text(int index, int what);
 /// Returns a number of an engine: its default size (0), 1 if levels are tuned by default (1), and
 /// its formats as kiln_format (2 to 5), with 0 after the last.
 BAKER int baker_engine_number(int index, int what);
+/// Returns the name of a kiln_format; NULL for the number after the last format.
+BAKER const char *baker_format_name(int format);
 /// Bakes the source for an engine as `kiln bake --for` does, and encodes the files. `size` 0 is the
 /// engine's own, `tune` a kiln_tune, `format` a kiln_format of the engine or 0. `name` is the path
 /// of the output; `lights_name` that of the lights' file, or empty. The functions below return the

@@ -1,6 +1,5 @@
 // JavaScript class around baker.h; failures throw an Error with baker_message's text.
 //   const baker = await Baker.make(makeModule, { progress(stage, fraction) {} })
-const FORMAT_NAMES = ['auto', 'rgba16f', 'rgba32f', 'rgb9e5', 'b10g11r11', 'bc6h'];
 const TUNES = ['auto', 'none', 'sharp', 'soft'];
 const SUNS = ['keep', 'extract', 'clamp'];
 export const TABLES = ['e', 'eavg', 'dfg'];
@@ -13,6 +12,9 @@ export class Baker {
         baker.self = baker.module._baker_create();
         if (!baker.self)
             throw new Error('kiln cannot start: there is no memory for it');
+        baker.formats = []; // names of the formats, in the order of kiln_format
+        for (let at; (at = baker.module._baker_format_name(baker.formats.length));)
+            baker.formats.push(baker.module.UTF8ToString(at));
         return baker;
     }
 
@@ -127,7 +129,7 @@ export class Baker {
             const [size, tuned, ...formats] =
                 [0, 1, 2, 3, 4, 5].map((what) => module._baker_engine_number(i, what));
             list.push({ name, title, files, ending, size, tuned: Boolean(tuned),
-                        formats: formats.filter(Boolean).map((format) => FORMAT_NAMES[format]) });
+                        formats: formats.filter(Boolean).map((format) => this.formats[format]) });
         }
         return list;
     }
@@ -135,7 +137,7 @@ export class Baker {
     // The files of an engine, baked with the options: { files: [{ name, bytes }], note }.
     engineFiles({ index, size = 0, tune = 'auto', format = 'auto', name, lightsName = '' }) {
         const { module, self } = this;
-        this.call('baker_engine_files', index, size, TUNES.indexOf(tune), FORMAT_NAMES.indexOf(format), name,
+        this.call('baker_engine_files', index, size, TUNES.indexOf(tune), this.formats.indexOf(format), name,
                   lightsName);
         const note = module._baker_files_note(self);
         return {
@@ -185,14 +187,14 @@ export class Baker {
 
     // Bytes of the baked irradiance cube as a file: .ktx2 or .dds.
     irradiance(name, format = 'rgba16f') {
-        this.call('baker_save_irradiance', `/${name}`, FORMAT_NAMES.indexOf(format));
+        this.call('baker_save_irradiance', `/${name}`, this.formats.indexOf(format));
         return this.written(`/${name}`);
     }
 
     // Bytes of the file that the command would write; the ending of the name selects the kind:
     // .ktx2, .dds, .json, .txt or .h.
     file(name, format = 'rgba16f') {
-        this.call('baker_save', `/${name}`, FORMAT_NAMES.indexOf(format));
+        this.call('baker_save', `/${name}`, this.formats.indexOf(format));
         return this.written(`/${name}`);
     }
 

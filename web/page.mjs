@@ -62,7 +62,7 @@ function kindsOf(scene) {
         clamp: number(0, 0, 65504), // 0: the baker chooses
         engine: word('three', ...engines.map(({ name }) => name)),
         engineSize: number(0, 0, 2048, 0), // 0: the engine's own
-        format: word('auto', 'auto', 'rgba16f', 'rgb9e5', 'b10g11r11', 'bc6h'),
+        format: word('auto', 'auto', ...engines.flatMap(({ formats }) => formats)),
         tune: word('auto', 'auto', 'none', 'sharp', 'soft'),
         // index of the level shown in place of the balls; -1 shows the balls
         shown: number(-1, -1, 15, 0),
