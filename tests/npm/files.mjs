@@ -12,6 +12,7 @@ const CASES = [
     'bake ../../a.exr -o p_%d.hdr --size 16 --shape panorama --lobe charlie --roughness 0.5,1 --up z',
     'bake ../../a.exr -o o.ktx2 --size 16 --sun extract --lights-file l.json --sh s.txt --irradiance d.exr',
     'bake ../../a.exr -o o.ktx2 --size 16 --format bc6h --sun clamp=5 --levels 3',
+    'bake ../../a.exr -o o.ktx2 --size 16 --format uastc',
     'bake ../../a.exr -o o.ktx2 --size 32 --for three',
     'bake ../../a.exr -o o.exr --size 64 --for three-cubeuv',
     'bake ../../a.exr -o o.env --size 32 --for babylon',
