@@ -8,7 +8,7 @@ const words = (value) => (value >= 1e4 || value < 0.01 ? value.toExponential(1).
 // sentence about the picture's range.
 export function showHistogram(canvas, { first, parts, largest }) {
     const style = getComputedStyle(document.documentElement), color = (name) => style.getPropertyValue(name);
-    const scale = Math.min(window.devicePixelRatio || 1, 2), pen = canvas.getContext('2d');
+    const scale = Math.min(window.devicePixelRatio || 1, 2), pen = canvas.getContext('2d', { willReadFrequently: true });
     const width = canvas.clientWidth * scale, height = canvas.clientHeight * scale;
     const clip = Math.log2(CLIP) - first, foot = 2 * scale, head = 18 * scale, step = width / parts.length;
     [canvas.width, canvas.height] = [width, height];

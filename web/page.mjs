@@ -32,6 +32,8 @@ const engine = new Engine({
         say(`${stage[0].toUpperCase()}${stage.slice(1)}, ${Math.round(100 * fraction)} %.`);
     },
 });
+// The browser sets its graphics up for the page's first canvas, and would wait for the stage's shaders later.
+get('histogram').getContext('2d', { willReadFrequently: true }).fillRect(0, 0, 1, 1);
 let onDrawn = () => {}; // set once the view is there
 const [stage, engines] = await Promise.all([
     StageClient.make(canvas, (drawn) => onDrawn(drawn)), engine.engines(),
@@ -296,7 +298,7 @@ function paint({ colours, width, height }) {
         picture.data[4 * i + 3] = 255;
     }
     [flat.width, flat.height] = [width, height];
-    flat.getContext('2d').putImageData(picture, 0, 0);
+    flat.getContext('2d', { willReadFrequently: true }).putImageData(picture, 0, 0);
 }
 
 let stamps = 0;

@@ -27,6 +27,8 @@ export function middleGrey(harmonics) {
     return mean > 0 ? 0.22 / mean : 1;
 }
 
+// Canvases here are the processor's own (willReadFrequently): those of the graphics processor would keep the
+// page waiting while the stage's shaders are compiled.
 export function unroll(level, exposure, canvas, width, height) {
     canvas.width = width;
     canvas.height = height;
@@ -41,5 +43,5 @@ export function unroll(level, exposure, canvas, width, height) {
             picture.data[4 * (j * width + i) + 3] = 255;
         }
     }
-    canvas.getContext('2d').putImageData(picture, 0, 0);
+    canvas.getContext('2d', { willReadFrequently: true }).putImageData(picture, 0, 0);
 }
