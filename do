@@ -140,9 +140,10 @@ panoramas() {
         { $([ "$(id -u)" = 0 ] || echo sudo) apt-get update -q && scripts/panoramas.sh; }
 }
 
-# npm_packages FOLDER...: packages as the folder's lock file names them.
+# npm_packages FOLDER...: packages as the folder's lock file, or its script fetch.sh, names them.
 npm_packages() {
     for folder; do
+        [ ! -e "$folder/fetch.sh" ] || "$folder/fetch.sh"
         [ -e "$folder/package-lock.json" ] || continue
         stamp=$folder/node_modules/.package-lock.json
         [ -e "$stamp" ] && [ -z "$(find "$folder/package-lock.json" -newer "$stamp")" ] && continue
