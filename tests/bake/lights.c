@@ -149,7 +149,7 @@ static kiln_lights extract(kiln_map *map, int count, bool whole_check)
     check_signs(map, &left, &lights);
     check_light_harmonics(context, map, &left, &lights);
     if (whole_check)
-        check_light_irradiance(map, &left, &lights);
+        check_light_irradiance(map, &left, &lights, 1e-3);
     kiln_map_free(&left);
     kiln_map_free(map);
     return lights;

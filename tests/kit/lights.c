@@ -25,9 +25,9 @@ void check_light_harmonics(kiln_context *context, const kiln_map *map, const kil
 
 // --------------------------------------------------------------------------------------- irradiance
 
-// Number of surfaces: one faces the largest light, CUT have the light on their horizon or close to the horizon, and
-// the others face every way.
-enum { CUT = 24, EVERY_WAY = 4, NORMALS = 1 + CUT + EVERY_WAY };
+// Numbers of surfaces: CUT have a light on their horizon or close to the horizon; the others face the largest light and
+// every way.
+enum { CUT = 24, EVERY_WAY = 4, FACING = 1 + EVERY_WAY };
 
 static double dot(const double a[3], const double b[3])
 {
@@ -74,61 +74,65 @@ static void add_disc(const kiln_light *light, const double normal[3], double irr
         irradiance[c] += light->irradiance[c] / (pi * sine * sine) * sum * solid;
 }
 
-static void choose_normals(const kiln_light *light, double normals[NORMALS][3])
+// Returns the greatest irradiance of a surface in each channel, by texels as points.
+static void find_most(const kiln_map *map, const kiln_light *largest, double most[3])
 {
+    double normals[FACING][3], whole[FACING][3] = {{0}};
     uint64_t seed = 4;
-    turn_from(light->direction, 1, 0, normals[0]);
-    for (int i = 0; i < CUT;
-         i++) // the light's centre on the horizon, and half a radius above and below
-        turn_from(light->direction, sin((i % 3 - 1) * light->angular_radius / 2 * pi / 180),
-                  2 * pi * i / CUT, normals[1 + i]);
-    for (int i = 1 + CUT; i < NORMALS; i++)
+    turn_from(largest->direction, 1, 0, normals[0]);
+    for (int i = 1; i < FACING; i++)
         random_direction(&seed, normals[i]);
+    for (size_t i = 0; i < kiln_map_texels(map, 0); i++) {
+        double d[3], solid = ki_texel_solid_angle(map, i);
+        kiln_map_direction(map, 0, i, d);
+        for (int n = 0; n < FACING; n++)
+            for (int c = 0; c < 3; c++)
+                whole[n][c] +=
+                    solid * fmax(0, dot(d, normals[n])) * (double)map->level[0][3 * i + (size_t)c];
+    }
+    for (int c = 0; c < 3; c++)
+        for (int n = 0; n < FACING; n++)
+            most[c] = n && most[c] > whole[n][c] ? most[c] : whole[n][c];
 }
 
-// Adds the irradiance of all surfaces from texel i of the map: exact where the map differs from the map that is left,
-// from the centre of the texel elsewhere. `taken` is the part that is not left.
-static void add_texel(const kiln_map *map, const kiln_map *left, size_t i,
-                      const double normals[NORMALS][3], double whole[NORMALS][3],
-                      double taken[NORMALS][3])
+// Adds to the surfaces' irradiance what was taken out of texel i of the map.
+static void add_taken(const kiln_map *map, const kiln_map *left, size_t i,
+                      const double normals[CUT][3], double taken[CUT][3])
 {
     const float *rgb = map->level[0] + 3 * i, *rest = left->level[0] + 3 * i;
-    ki_texel_nodes nodes = {.count = 1};
-    if (memcmp(rgb, rest, 3 * sizeof *rgb) != 0) {
-        ki_texel_nodes_find(map, i, 4, &nodes);
-    } else {
-        kiln_map_direction(map, 0, i, nodes.direction[0]);
-        nodes.weight[0] = ki_texel_solid_angle(map, i);
-    }
-    for (int n = 0; n < NORMALS; n++) {
+    ki_texel_nodes nodes;
+    if (!memcmp(rgb, rest, 3 * sizeof *rgb))
+        return;
+    ki_texel_nodes_find(map, i, 4, &nodes);
+    for (int n = 0; n < CUT; n++) {
         double weight = 0;
         for (int k = 0; k < nodes.count; k++)
             weight += nodes.weight[k] * fmax(0, dot(nodes.direction[k], normals[n]));
-        for (int c = 0; c < 3; c++) {
-            whole[n][c] += weight * (double)rgb[c];
+        for (int c = 0; c < 3; c++)
             taken[n][c] += weight * ((double)rgb[c] - (double)rest[c]);
-        }
     }
 }
 
-void check_light_irradiance(const kiln_map *map, const kiln_map *left, const kiln_lights *lights)
+void check_light_irradiance(const kiln_map *map, const kiln_map *left, const kiln_lights *lights,
+                            double bound)
 {
-    double normals[NORMALS][3], whole[NORMALS][3] = {{0}}, taken[NORMALS][3] = {{0}}, most[3] = {0};
-    choose_normals(&lights->light[0], normals);
-    for (size_t i = 0; i < kiln_map_texels(map, 0); i++)
-        add_texel(map, left, i, (const double(*)[3])normals, whole, taken);
-    for (int n = 0; n < NORMALS; n++)
-        for (int c = 0; c < 3; c++)
-            most[c] = fmax(most[c], whole[n][c]);
-    for (int n = 0; n < NORMALS; n++) {
-        double discs[3] = {0};
-        for (int i = 0; i < lights->count; i++)
-            add_disc(&lights->light[i], normals[n], discs);
-        for (int c = 0; c < 3; c++) {
-            if (fabs(discs[c] - taken[n][c]) > 5e-4 * most[c])
-                fprintf(stderr, "OFF n %d c %d %.2e radius %g share %g count %d texels %zu\n", n, c,
-                        fabs(discs[c] - taken[n][c]) / most[c], lights->light[0].angular_radius,
-                        lights->light[0].share, lights->count, lights->light[0].texel_count);
+    double most[3];
+    find_most(map, &lights->light[0], most);
+    for (int k = 0; k < lights->count; k++) {
+        double normals[CUT][3], taken[CUT][3] = {{0}};
+        const kiln_light *light = &lights->light[k];
+        for (int n = 0; n < CUT;
+             n++) // its centre on the horizon, and half a radius above and below
+            turn_from(light->direction, sin((n % 3 - 1) * light->angular_radius / 2 * pi / 180),
+                      2 * pi * n / CUT, normals[n]);
+        for (size_t i = 0; i < kiln_map_texels(map, 0); i++)
+            add_taken(map, left, i, (const double(*)[3])normals, taken);
+        for (int n = 0; n < CUT; n++) {
+            double discs[3] = {0};
+            for (int i = 0; i < lights->count; i++)
+                add_disc(&lights->light[i], normals[n], discs);
+            for (int c = 0; c < 3; c++)
+                CHECK_NEAR(discs[c], taken[n][c], bound * most[c]);
         }
     }
 }

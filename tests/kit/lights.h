@@ -9,8 +9,9 @@
 void check_light_harmonics(kiln_context *context, const kiln_map *map, const kiln_map *left,
                            const kiln_lights *lights);
 
-/// Checks the irradiance to a thousandth of the greatest irradiance, channel by channel. Surfaces face the largest
-/// light, have this light on their horizon or close to the horizon, or face every way.
-void check_light_irradiance(const kiln_map *map, const kiln_map *left, const kiln_lights *lights);
+/// Checks the irradiance of surfaces that have a light on their horizon or close to the horizon: what was taken out
+/// and the discs differ by at most `bound`, a part of the greatest irradiance in the map, channel by channel.
+void check_light_irradiance(const kiln_map *map, const kiln_map *left, const kiln_lights *lights,
+                            double bound);
 
 #endif
