@@ -118,7 +118,7 @@ static void write_uastc(void)
 {
     for (int mode = 0; mode <= KI_UASTC_SOLID; mode++) {
         ki_uastc_block b = {.mode = mode, .partition = mode, .solid = {1, 0x3c00, 0x7bff}};
-        uint8_t bytes[KI_UASTC_BYTES];
+        uint8_t bytes[KI_BLOCK_BYTES];
         char name[32];
         for (int i = 0; i < 12 && mode < KI_UASTC_SOLID; i++)
             b.value[i / 6][i % 6] = (uint8_t)ki_uastc_quantize((67 * i + 40 * mode) % 256,

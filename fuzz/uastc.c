@@ -11,7 +11,7 @@
 static void check_block(const uint8_t *bytes)
 {
     ki_uastc_block b;
-    uint8_t again[KI_UASTC_BYTES];
+    uint8_t again[KI_BLOCK_BYTES];
     float rgb[48], back[48];
     bool known = ki_uastc_unpack(bytes, &b);
     ki_uastc_decode(bytes, 4, 4, rgb);
@@ -28,7 +28,7 @@ static void check_block(const uint8_t *bytes)
 static void encode_block(const uint8_t *bytes, size_t size)
 {
     float rgb[48] = {0}, back[48];
-    uint8_t block[KI_UASTC_BYTES];
+    uint8_t block[KI_BLOCK_BYTES];
     ki_floats_from_half_bytes(bytes, size / 2 < 48 ? size / 2 : 48, rgb);
     ki_uastc_row_scalar(rgb, 4, 4, 0, block);
     fuzz_must(ki_uastc_first_unknown(block, 1) == 1);
@@ -37,7 +37,7 @@ static void encode_block(const uint8_t *bytes, size_t size)
 
 void fuzz_uastc(const uint8_t *bytes, size_t size)
 {
-    for (size_t at = 0; at + KI_UASTC_BYTES <= size; at += KI_UASTC_BYTES)
+    for (size_t at = 0; at + KI_BLOCK_BYTES <= size; at += KI_BLOCK_BYTES)
         check_block(bytes + at);
     for (size_t at = 0; at < size; at += 96)
         encode_block(bytes + at, size - at);

@@ -4,9 +4,9 @@
 #ifndef KI_BC6H_H
 #define KI_BC6H_H
 
-#include "base/base.h"
+#include "codec/blocks.h"
 
-enum { KI_BC6H_MODES = 14, KI_BC6H_PARTITIONS = 32, KI_BC6H_BYTES = 16 };
+enum { KI_BC6H_MODES = 14, KI_BC6H_PARTITIONS = 32 };
 
 /// A mode of BC6H, that is, a layout of a block's bits. In a `relative` mode endpoints 1 to 3 are
 /// stored as differences from endpoint 0, in `delta_bits` bits for each channel.
@@ -51,22 +51,17 @@ static inline int ki_bc6h_weight(int index, int subsets)
 
 /// Writes a block's bits. Endpoints stored as differences must fit in the mode's bits, and the
 /// index of each subset's anchor texel must be below half of the index range.
-void ki_bc6h_pack(const ki_bc6h_block *block, uint8_t bytes[KI_BC6H_BYTES]);
+void ki_bc6h_pack(const ki_bc6h_block *block, uint8_t bytes[KI_BLOCK_BYTES]);
 /// Reads a block's bits. Returns false for the four reserved numbers of modes.
-bool ki_bc6h_unpack(const uint8_t bytes[KI_BC6H_BYTES], ki_bc6h_block *block);
+bool ki_bc6h_unpack(const uint8_t bytes[KI_BLOCK_BYTES], ki_bc6h_block *block);
 
-/// Returns the number of bytes of a picture of any size as BC6H blocks, stored row by row of
-/// blocks.
-size_t ki_bc6h_size(int width, int height);
 /// Encodes `picture_count` RGB pictures, stored one after the other, on all threads. Returns false
 /// if a progress report asks to stop.
 bool ki_bc6h_encode(kiln_context *context, const float *rgb, int width, int height,
                     int picture_count, uint8_t *bytes);
 void ki_bc6h_decode(const uint8_t *bytes, int width, int height, float *rgb);
 
-/// Encodes one row of blocks, from the texel rows 4 y to 4 y + 3. Each instruction set has a
-/// variant of the function, and all variants write the same bits.
-typedef void ki_bc6h_row(const float *rgb, int width, int height, int y, uint8_t *bytes);
-extern ki_bc6h_row ki_bc6h_row_scalar, ki_bc6h_row_simd128, ki_bc6h_row_avx2, ki_bc6h_row_avx512;
+/// Each instruction set has a variant of the function, and all variants write the same bits.
+extern ki_block_row ki_bc6h_row_scalar, ki_bc6h_row_simd128, ki_bc6h_row_avx2, ki_bc6h_row_avx512;
 
 #endif

@@ -290,7 +290,7 @@ static void try_modes(const texels *t, const float mask[TEXELS], const lines *en
         }
 }
 
-static void encode(const texels *t, uint8_t bytes[KI_BC6H_BYTES])
+static void encode(const texels *t, uint8_t bytes[KI_BLOCK_BYTES])
 {
     static const uint8_t ones_modes[4] = {13, 12, 11, 10};
     static const uint8_t twos_modes[10] = {2, 3, 4, 0, 5, 6, 7, 8, 1, 9};
@@ -322,7 +322,7 @@ static void encode(const texels *t, uint8_t bytes[KI_BC6H_BYTES])
 
 void KI_BC6H_ROW(const float *rgb, int width, int height, int y, uint8_t *bytes)
 {
-    for (int x = 0; x < width; x += 4, bytes += KI_BC6H_BYTES) {
+    for (int x = 0; x < width; x += 4, bytes += KI_BLOCK_BYTES) {
         uint16_t halfs[VALUES];
         texels t;
         read_block(rgb, width, height, x, y, halfs);

@@ -162,7 +162,7 @@ static int index_bits(const ki_bc6h_mode *mode, int partition, int texel)
     return (mode->subsets == 2 ? 3 : 4) - anchor;
 }
 
-void ki_bc6h_pack(const ki_bc6h_block *block, uint8_t bytes[KI_BC6H_BYTES])
+void ki_bc6h_pack(const ki_bc6h_block *block, uint8_t bytes[KI_BLOCK_BYTES])
 {
     const ki_bc6h_mode *mode = &ki_bc6h_modes[block->mode];
     bits b = {0};
@@ -178,7 +178,7 @@ void ki_bc6h_pack(const ki_bc6h_block *block, uint8_t bytes[KI_BC6H_BYTES])
         put(&b, (uint64_t)block->partition, 5);
     for (int i = 0; i < 16; i++)
         put(&b, (uint64_t)block->index[i], index_bits(mode, block->partition, i));
-    for (int i = 0; i < KI_BC6H_BYTES; i++)
+    for (int i = 0; i < KI_BLOCK_BYTES; i++)
         bytes[i] = (uint8_t)(b.half[i / 8] >> (8 * (i % 8)));
 }
 
@@ -192,10 +192,10 @@ static int find_mode(bits *b)
     return -1;
 }
 
-bool ki_bc6h_unpack(const uint8_t bytes[KI_BC6H_BYTES], ki_bc6h_block *block)
+bool ki_bc6h_unpack(const uint8_t bytes[KI_BLOCK_BYTES], ki_bc6h_block *block)
 {
     bits b = {0};
-    for (int i = 0; i < KI_BC6H_BYTES; i++)
+    for (int i = 0; i < KI_BLOCK_BYTES; i++)
         b.half[i / 8] |= (uint64_t)bytes[i] << (8 * (i % 8));
     *block = (ki_bc6h_block){.mode = find_mode(&b)};
     if (block->mode < 0)

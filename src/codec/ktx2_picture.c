@@ -49,7 +49,7 @@ kiln_result ki_ktx2_check_blocks(const ki_ktx2_source *s, const ki_texels *texel
 {
     if (!texels->pixel || texels->pixel->format != KILN_FORMAT_UASTC)
         return KILN_OK;
-    size_t count = size / KI_UASTC_BYTES, unknown = ki_uastc_first_unknown(plain, count);
+    size_t count = size / KI_BLOCK_BYTES, unknown = ki_uastc_first_unknown(plain, count);
     if (unknown == count)
         return KILN_OK;
     return ki_fail(error, KILN_ERROR_UNSUPPORTED,

@@ -30,11 +30,11 @@ static const ki_pixel_format formats[] = {
     {KILN_FORMAT_RGBA32F, 0, 109, 2, 16, 4, 1, 4, RGB, NULL},
     {KILN_FORMAT_RGB9E5, KI_RGB9E5_MAX, 123, 67, 4, 4, 1, 3, RGB, NULL},
     {KILN_FORMAT_B10G11R11, KI_B10G11R11_MAX, 122, 26, 4, 4, 1, 3, RGB, NULL},
-    {KILN_FORMAT_BC6H, KI_HALF_MAX, 143, 95, KI_BC6H_BYTES, 1, 4, 3, BC6H, NULL},
+    {KILN_FORMAT_BC6H, KI_HALF_MAX, 143, 95, KI_BLOCK_BYTES, 1, 4, 3, BC6H, NULL},
     {KILN_FORMAT_RGBM, KI_RGBM_MAX, 0, 0, 4, 1, 1, 4, RGB, ki_rgbm_from_float},
     {KILN_FORMAT_RGBD, KI_RGBD_MAX, 0, 0, 4, 1, 1, 4, RGB, ki_rgbd_from_float},
     {KILN_FORMAT_RGBP, KI_RGBP_MAX, 0, 0, 4, 1, 1, 4, RGB, ki_rgbp_from_float},
-    {KILN_FORMAT_UASTC, KI_HALF_MAX, 1000066000, 0, KI_UASTC_BYTES, 1, 4, 3, UASTC_HDR, NULL},
+    {KILN_FORMAT_UASTC, KI_HALF_MAX, 1000066000, 0, KI_BLOCK_BYTES, 1, 4, 3, UASTC_HDR, NULL},
 };
 
 enum { FORMATS = sizeof formats / sizeof *formats };

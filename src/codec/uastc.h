@@ -6,10 +6,9 @@
 #ifndef KI_UASTC_H
 #define KI_UASTC_H
 
-#include "base/base.h"
+#include "codec/blocks.h"
 
 enum {
-    KI_UASTC_BYTES = 16,
     KI_UASTC_MODES = 23,      ///< number of modes with lines; the 24th mode is KI_UASTC_SOLID
     KI_UASTC_SOLID = 23,      ///< the mode of a block of one colour
     KI_UASTC_PARTITIONS = 27, ///< partitions of ASTC that BC6H has, too
@@ -79,10 +78,10 @@ void ki_uastc_read_ends(const uint8_t value[6], int ends, int end[2][3]);
 void ki_uastc_write_ends(int mode, float wanted[2][3], uint8_t value[6], int end[2][3]);
 
 /// Writes a block's bits. All values must be in the mode's range of endpoint values.
-void ki_uastc_pack(const ki_uastc_block *block, uint8_t bytes[KI_UASTC_BYTES]);
+void ki_uastc_pack(const ki_uastc_block *block, uint8_t bytes[KI_BLOCK_BYTES]);
 /// Reads a block's bits. Returns false for blocks that are not of the 24 modes, and for blocks with
 /// infinite or negative colours.
-bool ki_uastc_unpack(const uint8_t bytes[KI_UASTC_BYTES], ki_uastc_block *block);
+bool ki_uastc_unpack(const uint8_t bytes[KI_BLOCK_BYTES], ki_uastc_block *block);
 
 /// Returns the half float of a logarithmic number of 16 bits, rounded down.
 static inline int ki_uastc_half(int number)
@@ -94,8 +93,6 @@ static inline int ki_uastc_half(int number)
     return (exponent << 10) + (scaled >> 3);
 }
 
-/// Returns the number of bytes of a picture of any size, stored row by row of blocks.
-size_t ki_uastc_size(int width, int height);
 /// Encodes `picture_count` RGB pictures, stored one after the other, on all threads. Returns false
 /// if a progress report asks to stop.
 bool ki_uastc_encode(kiln_context *context, const float *rgb, int width, int height,
@@ -105,10 +102,8 @@ void ki_uastc_decode(const uint8_t *bytes, int width, int height, float *rgb);
 /// Returns the number of the first of `count` blocks that ki_uastc_unpack refuses, or `count`.
 size_t ki_uastc_first_unknown(const uint8_t *bytes, size_t count);
 
-/// Encodes one row of blocks, from the texel rows 4 y to 4 y + 3. Each instruction set has a
-/// variant of the function, and all variants write the same bits.
-typedef void ki_uastc_row(const float *rgb, int width, int height, int y, uint8_t *bytes);
-extern ki_uastc_row ki_uastc_row_scalar, ki_uastc_row_simd128, ki_uastc_row_avx2,
+/// Each instruction set has a variant of the function, and all variants write the same bits.
+extern ki_block_row ki_uastc_row_scalar, ki_uastc_row_simd128, ki_uastc_row_avx2,
     ki_uastc_row_avx512;
 
 #endif

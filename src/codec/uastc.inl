@@ -246,7 +246,7 @@ static void try_partition(const colors *b, int partition, candidate *best)
     try_mode(b, mask, &ends, SCALES_8, partition, best);
 }
 
-static void encode(const colors *b, uint8_t bytes[KI_UASTC_BYTES])
+static void encode(const colors *b, uint8_t bytes[KI_BLOCK_BYTES])
 {
     candidate best = {.error = INFINITY};
     float none[TEXELS] = {0}, all[TEXELS], left[PARTITIONS];
@@ -262,7 +262,7 @@ static void encode(const colors *b, uint8_t bytes[KI_UASTC_BYTES])
 }
 
 // Returns whether all texels have the same colour, and stores such a block.
-static bool encode_solid(const uint16_t halfs[VALUES], uint8_t bytes[KI_UASTC_BYTES])
+static bool encode_solid(const uint16_t halfs[VALUES], uint8_t bytes[KI_BLOCK_BYTES])
 {
     ki_uastc_block b = {.mode = KI_UASTC_SOLID};
     for (int i = 3; i < VALUES; i++)
@@ -295,7 +295,7 @@ static void read_colors(const uint16_t halfs[VALUES], colors *b)
 
 void KI_UASTC_ROW(const float *rgb, int width, int height, int y, uint8_t *bytes)
 {
-    for (int x = 0; x < width; x += 4, bytes += KI_UASTC_BYTES) {
+    for (int x = 0; x < width; x += 4, bytes += KI_BLOCK_BYTES) {
         uint16_t halfs[VALUES];
         colors b;
         read_block(rgb, width, height, x, y, halfs);

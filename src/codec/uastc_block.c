@@ -206,7 +206,7 @@ static unsigned grid_of(int weights)
     return (r >> 1 & 1) | (r >> 2) << 1 | (r & 1) << 4 | 2 << 5 | high << 9;
 }
 
-void ki_uastc_pack(const ki_uastc_block *block, uint8_t bytes[KI_UASTC_BYTES])
+void ki_uastc_pack(const ki_uastc_block *block, uint8_t bytes[KI_BLOCK_BYTES])
 {
     if (block->mode == KI_UASTC_SOLID) {
         write_half(SOLID_HEAD | SOLID_EXTENT << 12, bytes);
@@ -280,7 +280,7 @@ static bool finite_ends(const ki_uastc_block *block)
     return true;
 }
 
-bool ki_uastc_unpack(const uint8_t bytes[KI_UASTC_BYTES], ki_uastc_block *block)
+bool ki_uastc_unpack(const uint8_t bytes[KI_BLOCK_BYTES], ki_uastc_block *block)
 {
     bits b = {{read_half(bytes), read_half(bytes + 8)}, 0}, backwards = {{0}, 0};
     backwards.half[0] = reverse(b.half[1]);

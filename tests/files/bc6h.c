@@ -243,7 +243,7 @@ static void same_bits_for_every_machine_and_thread_count(void **state)
     static float rgb[3 * WIDTH * HEIGHT * FACES];
     for (int f = 0; f < FACES; f++)
         make_picture(WIDTH, HEIGHT, rgb + (size_t)(3 * WIDTH * HEIGHT * f));
-    size_t size = FACES * ki_bc6h_size(WIDTH, HEIGHT);
+    size_t size = FACES * ki_blocks_size(WIDTH, HEIGHT);
     assert_int_equal(size, FACES * 15 * 9 * 16);
     uint8_t *first = calloc(size, 1), *next = calloc(size, 1);
     for (int cpu = KILN_CPU_SCALAR; cpu <= KILN_CPU_AVX512; cpu++)
@@ -273,7 +273,7 @@ static void any_size_comes_back(void **state)
                     int rise = (c + 1) * (i % width + i / width);
                     rgb[3 * i + c] = 2 + (float)rise / 16;
                 }
-            assert_int_equal(ki_bc6h_size(width, height),
+            assert_int_equal(ki_blocks_size(width, height),
                              (width + 3) / 4 * ((height + 3) / 4) * 16);
             assert_true(ki_bc6h_encode(context, rgb, width, height, 1, bytes));
             ki_bc6h_decode(bytes, width, height, back);
@@ -297,7 +297,7 @@ static void a_sky_errs_little(void **state)
     static const double bounds[4] = {6.5, 14, 21, 38};
     for (int k = 0; k < 4; k++) {
         int n = 64 >> k;
-        size_t texels = kiln_map_texels(&cube, k), face = ki_bc6h_size(n, n);
+        size_t texels = kiln_map_texels(&cube, k), face = ki_blocks_size(n, n);
         uint8_t *bytes = malloc(6 * face);
         float *back = malloc(3 * texels * sizeof *back);
         assert_true(ki_bc6h_encode(context, cube.level[k], n, n, 6, bytes));

@@ -251,7 +251,7 @@ static void same_bits_for_every_machine_and_thread_count(void **state)
     static float rgb[3 * WIDTH * HEIGHT * FACES];
     for (int f = 0; f < FACES; f++)
         make_picture(WIDTH, HEIGHT, rgb + (size_t)(3 * WIDTH * HEIGHT * f));
-    size_t size = FACES * ki_uastc_size(WIDTH, HEIGHT);
+    size_t size = FACES * ki_blocks_size(WIDTH, HEIGHT);
     assert_int_equal(size, FACES * 15 * 9 * 16);
     uint8_t *first = calloc(size, 1), *next = calloc(size, 1);
     for (int cpu = KILN_CPU_SCALAR; cpu <= KILN_CPU_AVX512; cpu++)
@@ -282,7 +282,7 @@ static void any_size_comes_back(void **state)
                     int rise = (c + 1) * (i % width + i / width);
                     rgb[3 * i + c] = 2 + (float)rise / 16;
                 }
-            assert_int_equal(ki_uastc_size(width, height),
+            assert_int_equal(ki_blocks_size(width, height),
                              (width + 3) / 4 * ((height + 3) / 4) * 16);
             assert_true(ki_uastc_encode(context, rgb, width, height, 1, bytes));
             ki_uastc_decode(bytes, width, height, back);
@@ -307,7 +307,7 @@ static void a_sky_errs_little(void **state)
     static const double bounds[4] = {0.036, 0.024, 0.0145, 0.0205};
     for (int k = 0; k < 4; k++) {
         int n = 64 >> k;
-        size_t texels = kiln_map_texels(&cube, k), face = ki_uastc_size(n, n);
+        size_t texels = kiln_map_texels(&cube, k), face = ki_blocks_size(n, n);
         uint8_t *bytes = malloc(6 * face), *others = malloc(6 * face);
         float *back = malloc(3 * texels * sizeof *back), *bc6h = malloc(3 * texels * sizeof *bc6h);
         assert_true(ki_uastc_encode(context, cube.level[k], n, n, 6, bytes));
