@@ -2,6 +2,7 @@
 import { engines } from './engines.mjs';
 
 const SPECIAL = new Set(['name', 'output', 'onProgress', 'signal', 'json']);
+const REFUSED = ['help', 'verbose']; // what these print would take the report's place
 const HARMONICS = 'kiln-harmonics.json'; // where the command writes them, unless an option says where
 
 // ------------------------------------------------------------------------------------------- input
@@ -11,6 +12,8 @@ const isPicture = (input) => ArrayBuffer.isView(input?.data) && 'width' in input
 // A DDS file of a flat picture of floats (DXGI_FORMAT_R32G32B32_FLOAT or R32G32B32A32_FLOAT).
 function ddsOf({ data, width, height }) {
     const channels = data.length / (width * height);
+    if (!(width > 0 && height > 0 && Number.isInteger(width) && Number.isInteger(height)))
+        throw new TypeError(`kiln-ibl: a picture of ${width} x ${height} texels has no texels`);
     if (!(data instanceof Float32Array) || (channels !== 3 && channels !== 4))
         throw new TypeError(`kiln-ibl: a picture of ${width} x ${height} texels needs a Float32Array of ` +
             `${3 * width * height} or ${4 * width * height} numbers`);
@@ -40,7 +43,11 @@ const harmless = (name) => (name.startsWith('-') ? `./${name}` : name);
 
 // The input as files: one, or the six faces of a cube, which name themselves.
 async function filesOf(input, name) {
+    if (name !== undefined && (typeof name !== 'string' || name === ''))
+        throw new TypeError(`kiln-ibl: the option name must be a text that is not empty, not ${JSON.stringify(name)}`);
     const files = Array.isArray(input) ? input : [{ name: name ?? 'input', bytes: input }];
+    if (files.length === 0 || files.some((file) => typeof file?.name !== 'string' || file.name === ''))
+        throw new TypeError('kiln-ibl: an array as the input must hold the six faces of a cube as { name, bytes }');
     return Promise.all(files.map(async (file) => ({ name: harmless(file.name), bytes: await bytesOf(file.bytes) })));
 }
 
@@ -49,7 +56,9 @@ async function filesOf(input, name) {
 const dashed = (name) => name.replace(/[A-Z]/g, (letter) => `-${letter.toLowerCase()}`);
 
 function wordsOf(options) {
-    const words = [];
+    const words = [], refused = REFUSED.find((name) => options[name]);
+    if (refused)
+        throw new TypeError(`kiln-ibl: bake() has no option ${refused}; call kiln(['bake', '--${refused}'])`);
     for (const [name, value] of Object.entries(options)) {
         if (SPECIAL.has(name) || value === undefined || value === null || value === false)
             continue;
@@ -96,7 +105,21 @@ export function makeApi(loadModule, startWorker) {
         return loaded;
     }
 
-    async function kiln(words, { files = [], input, onProgress, signal } = {}) {
+    // Throws a sentence for arguments that would fail later, where nobody could catch the error.
+    function check(words, { files, onProgress, signal }) {
+        if (!Array.isArray(words))
+            throw new TypeError(`kiln-ibl: kiln() takes an array of words, such as ['info', 'city.exr']`);
+        if (!Array.isArray(files))
+            throw new TypeError('kiln-ibl: the option files must be an array of { name, bytes }');
+        if (onProgress && typeof onProgress !== 'function')
+            throw new TypeError('kiln-ibl: the option onProgress must be a function');
+        if (signal && typeof signal.addEventListener !== 'function')
+            throw new TypeError('kiln-ibl: the option signal must be an AbortSignal');
+    }
+
+    async function kiln(words, options) {
+        const { files = [], input, onProgress, signal } = options ?? {};
+        check(words, { files, onProgress, signal });
         if (signal?.aborted)
             throw reasonOf(signal);
         const module = await load();
@@ -117,9 +140,17 @@ export function makeApi(loadModule, startWorker) {
             };
             const stop = () => finish(reject, reasonOf(signal), false);
             signal?.addEventListener('abort', stop);
+            // An error that onProgress throws ends the work, and the promise is rejected with the error.
+            const tell = (progress) => {
+                try {
+                    onProgress?.(...progress);
+                } catch (error) {
+                    finish(reject, error, false);
+                }
+            };
             worker.listen(({ progress, done, error }) => {
                 if (progress)
-                    onProgress?.(...progress);
+                    tell(progress);
                 else if (done)
                     finish(resolve, done, true);
                 else
@@ -129,7 +160,8 @@ export function makeApi(loadModule, startWorker) {
         });
     }
 
-    async function bake(input, options = {}) {
+    async function bake(input, options) {
+        options ??= {};
         const named = await filesOf(input, options.name);
         const output = harmless(options.output ?? outputOf(options.name ?? named[0].name, options.for));
         const words = ['bake', ...named.map(({ name }) => name), '--output', output, ...wordsOf(options), '--json'];
@@ -140,6 +172,10 @@ export function makeApi(loadModule, startWorker) {
             throw failureOf(result);
         const report = JSON.parse(new TextDecoder().decode(result.stdout));
         const text = result.files.find(({ name }) => name === (options.sh ?? HARMONICS));
+        if (!options.sh) { // the caller did not ask for this file
+            delete report.output.sh;
+            report.output.file_count--;
+        }
         return {
             files: result.files.filter(({ name }) => name !== HARMONICS),
             levels: report.output.levels,

@@ -46,6 +46,8 @@ export async function openFile(source, { name, signal } = {}) {
                  bytes: new Uint8Array(source.buffer, source.byteOffset, source.byteLength) };
     if (source instanceof ArrayBuffer)
         return { name: name ?? 'picture', bytes: new Uint8Array(source) };
+    if (typeof source !== 'string' && !(source instanceof URL))
+        throw new TypeError(`kiln-ibl: a file must be an address, a File, a Blob or bytes, not ${JSON.stringify(source)}`);
     const file = await fetchFile(source, signal);
     return { ...file, name: name ?? file.name };
 }

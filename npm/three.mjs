@@ -179,7 +179,10 @@ async function makeTexture(file, renderer, options) {
 
 export async function loadEnvironment(source, renderer, options = {}) {
     checkVersion(renderer);
-    const files = source?.three ?? source?.['three-cubeuv'] ? source : { [engine]: source };
+    if (!source)
+        throw new Error(`kiln-ibl/three: the first argument must be a file of kiln bake --for ${engine}: an address, ` +
+                        'a File, or bytes');
+    const files = source.three ?? source['three-cubeuv'] ? source : { [engine]: source };
     if (!files[engine])
         throw new Error(`kiln-ibl/three: three.js r${REVISION} needs the file of kiln bake --for ${engine}, ` +
                         `and only ${Object.keys(files).join()} is given`);

@@ -99,6 +99,29 @@ const several = await Promise.all([8, 16, 32, 64].map((size) => bake(sky, { name
 assert.deepEqual(several.map(({ levels }) => levels[0].size), [8, 16, 32, 64]);
 
 // The command in memory, with standard input and exit codes.
+// Arguments that no command could understand are errors by a sentence, and a mistake in onProgress rejects the promise.
+const mistake = new Error('mine');
+await assert.rejects(bake(sky, { size: 16, onProgress() { throw mistake; } }), (error) => error === mistake);
+for (const [call, sentence] of [
+    [() => bake(sky, { onProgress: 'x' }), /onProgress must be a function/],
+    [() => bake(sky, { signal: {} }), /signal must be an AbortSignal/],
+    [() => bake(sky, { help: true }), /bake\(\) has no option help/],
+    [() => bake(sky, { verbose: true }), /bake\(\) has no option verbose/],
+    [() => bake(sky, { name: 5 }), /name must be a text that is not empty, not 5/],
+    [() => bake(sky, { name: '' }), /name must be a text that is not empty, not ""/],
+    [() => bake([]), /must hold the six faces/],
+    [() => bake({ data: new Float32Array(24), width: -4, height: -2 }), /-4 x -2 texels has no texels/],
+    [() => bake({ data: new Float32Array(0), width: 0, height: 0 }), /0 x 0 texels has no texels/],
+    [() => kiln(), /takes an array of words/],
+    [() => kiln('info x'), /takes an array of words/],
+    [() => kiln(['info'], { files: {} }), /files must be an array/],
+])
+    await assert.rejects(call, sentence);
+const small = await bake(sky, null);
+assert.equal(small.report.output.file_count, 1);
+assert.equal(small.report.output.sh, undefined);
+assert.equal(small.files.length, 1);
+
 const info = await kiln(['info', '-'], { input: sky });
 assert.equal(info.code, 0);
 assert.match(new TextDecoder().decode(info.stdout), /64 x 32/);
