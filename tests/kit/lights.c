@@ -74,7 +74,7 @@ static void add_disc(const kiln_light *light, const double normal[3], double irr
         irradiance[c] += light->irradiance[c] / (pi * sine * sine) * sum * solid;
 }
 
-// Returns the greatest irradiance of a surface in each channel, by texels as points.
+// Raises `most` to the greatest irradiance of a surface in each channel, by texels as points.
 static void find_most(const kiln_map *map, const kiln_light *largest, double most[3])
 {
     double normals[FACING][3], whole[FACING][3] = {{0}};
@@ -92,7 +92,7 @@ static void find_most(const kiln_map *map, const kiln_light *largest, double mos
     }
     for (int c = 0; c < 3; c++)
         for (int n = 0; n < FACING; n++)
-            most[c] = n && most[c] > whole[n][c] ? most[c] : whole[n][c];
+            most[c] = fmax(most[c], whole[n][c]);
 }
 
 // Adds to the surfaces' irradiance what was taken out of texel i of the map.
@@ -116,7 +116,7 @@ static void add_taken(const kiln_map *map, const kiln_map *left, size_t i,
 void check_light_irradiance(const kiln_map *map, const kiln_map *left, const kiln_lights *lights,
                             double bound)
 {
-    double most[3];
+    double most[3] = {0};
     find_most(map, &lights->light[0], most);
     for (int k = 0; k < lights->count; k++) {
         double normals[CUT][3], taken[CUT][3] = {{0}};
