@@ -232,7 +232,7 @@ static int best_partition(const float left[PARTITIONS])
 static void try_partition(const colors *b, int partition, candidate *best)
 {
     float mask[TEXELS], unmasked[TEXELS];
-    lines ends;
+    lines ends = {0};
     unsigned bits = ki_uastc_mask(partition);
     for (int i = 0; i < TEXELS; i++) {
         mask[i] = (float)(bits >> i & 1);
