@@ -27,7 +27,7 @@ static void decode_block(const uint8_t *bytes, uint16_t halfs[16][3])
     }
     const ki_uastc_mode *mode = &ki_uastc_modes[b.mode];
     unsigned mask = mode->subsets == 2 ? ki_uastc_mask(b.partition) : 0;
-    int end[2][2][3];
+    int end[2][2][3] = {{{0}}};
     for (int s = 0; s < mode->subsets; s++)
         ki_uastc_read_ends(b.value[s], mode->ends, end[s]);
     for (int i = 0; i < 16; i++) {

@@ -61,8 +61,10 @@ static void project(const colors *b, const float mask[TEXELS], const candidate *
         along[i] = 0;
     for (int c = 0; c < 3; c++) {
         float end[4];
-        for (int e = 0; e < 4; e++)
-            end[e] = (float)(16 * k->end[e / 2][e % 2][c]);
+        for (int e = 0; e < 4; e++) {
+            int number = 16 * k->end[e / 2][e % 2][c];
+            end[e] = (float)number;
+        }
         for (int i = 0; i < TEXELS; i++) {
             float from = mask[i] != 0 ? end[2] : end[0];
             float way = mask[i] != 0 ? end[3] - end[2] : end[1] - end[0];
@@ -90,8 +92,10 @@ static void choose_weights(const colors *b, const float mask[TEXELS], candidate 
         weight[i] = (float)ki_uastc_weights[mode->weights][k->block.index[i]];
     for (int c = 0; c < 3; c++) {
         float end[4];
-        for (int e = 0; e < 4; e++)
-            end[e] = (float)(16 * k->end[e / 2][e % 2][c]);
+        for (int e = 0; e < 4; e++) {
+            int number = 16 * k->end[e / 2][e % 2][c];
+            end[e] = (float)number;
+        }
         for (int i = 0; i < TEXELS; i++) {
             float from = mask[i] != 0 ? end[2] : end[0], to = mask[i] != 0 ? end[3] : end[1];
             // Integers below 2^24, which floats represent exactly.

@@ -84,7 +84,8 @@ static void make_taps(void *data, int index)
     size_t edge = (size_t)r->goal->size;
     for (size_t p = (size_t)index * CHUNK; p < chunk_end(index, r->point_count); p++) {
         double s = (2 * (double)(p % edge) + 1) / (double)edge - 1, weights[4];
-        double t = (2 * (double)(p % face / edge) + 1) / (double)edge - 1;
+        size_t row = p % face / edge;
+        double t = (2 * (double)row + 1) / (double)edge - 1;
         size_t texels[4];
         ki_face_taps(size, (int)(p / face), s, t, texels, weights);
         for (int i = 0; i < 4; i++)
