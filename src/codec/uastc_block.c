@@ -299,7 +299,7 @@ bool ki_uastc_unpack(const uint8_t bytes[KI_BLOCK_BYTES], ki_uastc_block *block)
     if (block->mode < 0)
         return false;
     const ki_uastc_mode *mode = &ki_uastc_modes[block->mode];
-    uint8_t stored[16];
+    uint8_t stored[16] = {0};
     int count = values_of_end(mode), all = count * mode->subsets;
     get_numbers(&b, stored, all, ki_uastc_ranges[mode->values]);
     for (int s = 0; s < mode->subsets; s++)

@@ -103,7 +103,7 @@ unsigned ki_uastc_nearest(int value, int number, int kept)
         return found;
     }
     unsigned lowest = (unsigned)value >> 7;
-    int mirrored = lowest ? 255 - value : value, shift = 8 - r.bits;
+    int mirrored = lowest ? 255 - value : value, shift = ki_max(8 - r.bits, 0);
     for (int x = (mirrored >> shift) - 1; x <= (mirrored >> shift) + 1; x++)
         for (unsigned digit = 0; digit < r.base && x >= 0 && x < 128 >> shift; digit++) {
             unsigned stored = digit << r.bits | (unsigned)x << 1 | lowest;

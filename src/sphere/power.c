@@ -63,7 +63,7 @@ static void add_suns(const kiln_spectrum *s, sun_nodes *nodes, int m, int count,
         const ki_sun *sun = &s->suns[i];
         double re, im, light[KI_COMPONENTS], most = 0;
         ki_sincos(-(sun->column + 0.5) * m * step, &im, &re);
-        for (int c = 0; c < 3; c++) {
+        for (size_t c = 0; c < 3; c++) {
             light[2 * c] = re * width * (double)sun->radiance[c];
             light[2 * c + 1] = im * width * (double)sun->radiance[c];
         }
