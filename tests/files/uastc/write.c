@@ -40,7 +40,8 @@ static void encoded_block(uint64_t *seed, int kind, uint8_t *bytes)
     for (int i = 0; i < 16; i++)
         for (int c = 0; c < 3; c++) {
             float noise = 1 + range * (float)(random_bits(seed) % 1000) / 1000;
-            float slope = 1 + range * (float)(i % 4 + i / 4);
+            int steps = i % 4 + i / 4;
+            float slope = 1 + range * (float)steps;
             rgb[i][c] = kind == 0   ? color[0][c] * noise
                         : kind == 1 ? color[0][c] * slope
                                     : color[i % 4 > i / 4][c] * noise;
