@@ -1,7 +1,8 @@
 // The cases tune and lights. In: eight panoramas, in the case lights without their suns and lamps,
-// which are added to both sides of the comparison as analytic discs. Out: the errors of what engines show of exact and of tuned levels. An engine maps the roughness
-// to a fractional level, mixes two levels linearly, and reads each bilinearly. The result is
-// compared with the exact environment at the same roughness.
+// which are added to both sides of the comparison as analytic discs. Out: the errors of what engines
+// show of exact and of tuned levels. An engine maps the roughness to a fractional level, mixes two
+// levels linearly, and reads each bilinearly. The result is compared with the exact environment at the
+// same roughness.
 #include "bench.h"
 
 #include <math.h>

@@ -92,8 +92,8 @@ BAKER const unsigned char *baker_file_bytes(const baker *b, int index);
 BAKER size_t baker_file_size(const baker *b, int index);
 BAKER const char *baker_files_note(baker *b);
 
-/// The histogram has a bin for each stop, the radiances from 2^(k + BAKER_FIRST_STOP) to twice
-/// that. The first bin has all smaller radiances too and the last bin all greater ones.
+/// The histogram's bin k, from 0 to BAKER_STOPS - 1, is for radiances from 2^(k + BAKER_FIRST_STOP) to
+/// 2^(k + 1 + BAKER_FIRST_STOP). Smaller radiances are in the first bin, greater ones in the last.
 enum { BAKER_STOPS = 40, BAKER_FIRST_STOP = -14 };
 /// Returns the part of the source's texels that falls into each bin by its largest channel. Texels
 /// of a panorama count by their solid angle.

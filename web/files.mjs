@@ -1,5 +1,5 @@
-// The panel from which an engine's files are taken: the choice of an engine, the lines of code that load
-// its files, and buttons that bake in a worker of their own and download.
+// The panel for downloads: the user chooses an engine, sees the lines of code that load the engine's files, and
+// presses a button that bakes the files in a worker and downloads them.
 import { Engine } from './engine.mjs';
 import { linesOf, named } from './lines.mjs';
 import { zip } from './zip.mjs';

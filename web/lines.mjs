@@ -12,8 +12,9 @@ function block(text, from, word = '') {
 // Numbered steps, where an engine has no code, without Markdown's marks.
 const steps = (text) => (text.match(/^\d\. .*(\n {3}.*)*/gm) ?? []).join('\n').replace(/[*`]/g, '');
 
-// What the page of documentation `text` says of engine `name`: the name of the output file, whose word
-// `city` stands for the panorama's name, and the lines that load the files and those that add lights.
+// Takes three texts for the engine `name` out of `text`, its page of the documentation: the name of the file that
+// the page's example bakes (the panorama of these examples is called city), the lines of code that load the
+// file, and the lines that add lights. Each is empty if the page does not have it.
 export function linesOf(text, name) {
     const [, output = ''] = text.match(new RegExp(`^    kiln bake \\S+ --for ${name} -o (\\S+)$`, 'm')) ?? [];
     const at = text.search(new RegExp(`^    kiln bake \\S+ --for ${name} -o`, 'm'));

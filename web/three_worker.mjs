@@ -41,7 +41,8 @@ function makeScene({ balls, rotation, background }) {
     return scene;
 }
 
-// The scene of a view, which stays while only the camera moves.
+// The scene that was drawn last. It is used again while only the camera moves, because making a scene takes longer
+// than drawing one.
 let kept = { key: '', scene: new THREE.Scene() };
 function sceneOf({ balls, rotation, background }) {
     const key = JSON.stringify([balls, rotation, background, maps.kiln.id]);

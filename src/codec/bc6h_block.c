@@ -101,31 +101,6 @@ const uint8_t ki_bc6h_anchors[KI_BC6H_PARTITIONS] = {15, 15, 15, 15, 15, 15, 15,
 
 // ------------------------------------------------------------------------------------------- bits
 
-typedef struct bits {
-    uint64_t half[2];
-    int at;
-} bits;
-
-static void put(bits *b, uint64_t value, int count)
-{
-    value &= (UINT64_C(1) << count) - 1;
-    int half = b->at / 64, from = b->at % 64;
-    b->half[half] |= value << from;
-    if (from + count > 64)
-        b->half[half + 1] |= value >> (64 - from);
-    b->at += count;
-}
-
-static int get(bits *b, int count)
-{
-    int half = b->at / 64, from = b->at % 64;
-    uint64_t value = b->half[half] >> from;
-    if (from + count > 64)
-        value |= b->half[half + 1] << (64 - from);
-    b->at += count;
-    return (int)(value & ((UINT64_C(1) << count) - 1));
-}
-
 typedef struct run {
     int channel, end, first, count;
 } run;
@@ -165,27 +140,27 @@ static int index_bits(const ki_bc6h_mode *mode, int partition, int texel)
 void ki_bc6h_pack(const ki_bc6h_block *block, uint8_t bytes[KI_BLOCK_BYTES])
 {
     const ki_bc6h_mode *mode = &ki_bc6h_modes[block->mode];
-    bits b = {0};
-    put(&b, mode->number, number_bits(mode->number));
+    ki_bits b = {0};
+    ki_bits_put(&b, mode->number, number_bits(mode->number));
     run r;
     for (const char *at = mode->runs; next_run(&at, &r);) {
         int value = block->endpoint[r.end / 2][r.end % 2][r.channel];
         if (r.end && mode->relative)
             value -= block->endpoint[0][0][r.channel];
-        put(&b, (uint64_t)(int64_t)value >> r.first, r.count);
+        ki_bits_put(&b, (uint64_t)(int64_t)value >> r.first, r.count);
     }
     if (mode->subsets == 2)
-        put(&b, (uint64_t)block->partition, 5);
+        ki_bits_put(&b, (uint64_t)block->partition, 5);
     for (int i = 0; i < 16; i++)
-        put(&b, (uint64_t)block->index[i], index_bits(mode, block->partition, i));
+        ki_bits_put(&b, (uint64_t)block->index[i], index_bits(mode, block->partition, i));
     for (int i = 0; i < KI_BLOCK_BYTES; i++)
         bytes[i] = (uint8_t)(b.half[i / 8] >> (8 * (i % 8)));
 }
 
-static int find_mode(bits *b)
+static int find_mode(ki_bits *b)
 {
-    int number = get(b, 2);
-    number = number < 2 ? number : number | get(b, 3) << 2;
+    int number = (int)ki_bits_get(b, 2);
+    number = number < 2 ? number : number | (int)ki_bits_get(b, 3) << 2;
     for (int m = 0; m < KI_BC6H_MODES; m++)
         if (ki_bc6h_modes[m].number == number)
             return m;
@@ -194,7 +169,7 @@ static int find_mode(bits *b)
 
 bool ki_bc6h_unpack(const uint8_t bytes[KI_BLOCK_BYTES], ki_bc6h_block *block)
 {
-    bits b = {0};
+    ki_bits b = {0};
     for (int i = 0; i < KI_BLOCK_BYTES; i++)
         b.half[i / 8] |= (uint64_t)bytes[i] << (8 * (i % 8));
     *block = (ki_bc6h_block){.mode = find_mode(&b)};
@@ -203,7 +178,8 @@ bool ki_bc6h_unpack(const uint8_t bytes[KI_BLOCK_BYTES], ki_bc6h_block *block)
     const ki_bc6h_mode *mode = &ki_bc6h_modes[block->mode];
     run r;
     for (const char *at = mode->runs; next_run(&at, &r);)
-        block->endpoint[r.end / 2][r.end % 2][r.channel] |= get(&b, r.count) << r.first;
+        block->endpoint[r.end / 2][r.end % 2][r.channel] |= (int)ki_bits_get(&b, r.count)
+                                                            << r.first;
     for (int end = 1; end < 2 * mode->subsets && mode->relative; end++)
         for (int c = 0; c < 3; c++) {
             int sign = 1 << (mode->delta_bits[c] - 1);
@@ -211,8 +187,8 @@ bool ki_bc6h_unpack(const uint8_t bytes[KI_BLOCK_BYTES], ki_bc6h_block *block)
             *value = (block->endpoint[0][0][c] + delta) & ((1 << mode->bits) - 1);
         }
     if (mode->subsets == 2)
-        block->partition = get(&b, 5);
+        block->partition = (int)ki_bits_get(&b, 5);
     for (int i = 0; i < 16; i++)
-        block->index[i] = get(&b, index_bits(mode, block->partition, i));
+        block->index[i] = (int)ki_bits_get(&b, index_bits(mode, block->partition, i));
     return true;
 }

@@ -20,4 +20,33 @@ bool ki_blocks_encode(kiln_context *context, ki_block_row *row, const float *rgb
 void ki_blocks_decode(ki_block_decoder *decode, const uint8_t *bytes, int width, int height,
                       float *rgb);
 
+/// The 128 bits of a block, of which the next one to be written or read is number `at`.
+typedef struct ki_bits {
+    uint64_t half[2];
+    int at;
+} ki_bits;
+
+/// Writes the lowest `count` bits of `value`, the lowest one first. Bits are written once, to a block of
+/// zeros; `count` is below 64.
+static inline void ki_bits_put(ki_bits *b, uint64_t value, int count)
+{
+    value &= (UINT64_C(1) << count) - 1;
+    int half = b->at / 64, from = b->at % 64;
+    b->half[half] |= value << from;
+    if (from + count > 64)
+        b->half[half + 1] |= value >> (64 - from);
+    b->at += count;
+}
+
+/// Reads `count` bits, at most 32.
+static inline unsigned ki_bits_get(ki_bits *b, int count)
+{
+    int half = b->at / 64, from = b->at % 64;
+    uint64_t value = b->half[half] >> from;
+    if (from + count > 64)
+        value |= b->half[half + 1] << (64 - from);
+    b->at += count;
+    return (unsigned)(value & ((UINT64_C(1) << count) - 1));
+}
+
 #endif

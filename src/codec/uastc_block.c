@@ -17,32 +17,6 @@ static const uint8_t stored_weights[9][16] = {
 
 // ----------------------------------------------------------------------------------------- digits
 
-// The bits of a block, read or written from the first bit on.
-typedef struct bits {
-    uint64_t half[2];
-    int at;
-} bits;
-
-static void put(bits *b, unsigned value, int count)
-{
-    uint64_t v = value & ((1U << count) - 1);
-    int half = b->at / 64, from = b->at % 64;
-    b->half[half] |= v << from;
-    if (from + count > 64)
-        b->half[half + 1] |= v >> (64 - from);
-    b->at += count;
-}
-
-static unsigned get(bits *b, int count)
-{
-    int half = b->at / 64, from = b->at % 64;
-    uint64_t value = b->half[half] >> from;
-    if (from + count > 64)
-        value |= b->half[half + 1] << (64 - from);
-    b->at += count;
-    return (unsigned)(value & ((UINT64_C(1) << count) - 1));
-}
-
 static uint64_t reverse(uint64_t v)
 {
     uint64_t r = 0;
@@ -114,7 +88,7 @@ static const uint8_t trit_bits[5] = {2, 2, 1, 2, 1}, quint_bits[3] = {3, 2, 2};
 
 // Writes `count` numbers of a range. The digits of a last group with fewer numbers are filled up by
 // zeros, and bits that follow missing numbers are left out.
-static void put_numbers(bits *b, const uint8_t *number, int count, ki_uastc_range r)
+static void put_numbers(ki_bits *b, const uint8_t *number, int count, ki_uastc_range r)
 {
     int group = r.base == 3 ? 5 : r.base == 5 ? 3 : 1;
     for (int first = 0; first < count; first += group) {
@@ -125,14 +99,14 @@ static void put_numbers(bits *b, const uint8_t *number, int count, ki_uastc_rang
         unsigned joined = r.base == 3 ? join_trits(digit) : r.base == 5 ? join_quints(digit) : 0;
         for (int i = 0; i < n; i++) {
             int more = r.base == 3 ? trit_bits[i] : r.base == 5 ? quint_bits[i] : 0;
-            put(b, number[first + i], r.bits);
-            put(b, joined, more);
+            ki_bits_put(b, number[first + i], r.bits);
+            ki_bits_put(b, joined, more);
             joined >>= more;
         }
     }
 }
 
-static void get_numbers(bits *b, uint8_t *number, int count, ki_uastc_range r)
+static void get_numbers(ki_bits *b, uint8_t *number, int count, ki_uastc_range r)
 {
     int group = r.base == 3 ? 5 : r.base == 5 ? 3 : 1;
     for (int first = 0; first < count; first += group) {
@@ -140,8 +114,8 @@ static void get_numbers(bits *b, uint8_t *number, int count, ki_uastc_range r)
         int n = ki_min(group, count - first), have = 0;
         for (int i = 0; i < n; i++) {
             int more = r.base == 3 ? trit_bits[i] : r.base == 5 ? quint_bits[i] : 0;
-            low[i] = get(b, r.bits);
-            joined |= get(b, more) << have;
+            low[i] = ki_bits_get(b, r.bits);
+            joined |= ki_bits_get(b, more) << have;
             have += more;
         }
         if (r.base == 3)
@@ -216,14 +190,14 @@ void ki_uastc_pack(const ki_uastc_block *block, uint8_t bytes[KI_BLOCK_BYTES])
         return;
     }
     const ki_uastc_mode *mode = &ki_uastc_modes[block->mode];
-    bits b = {0}, backwards = {0};
-    put(&b, grid_of(mode->weights), HEAD);
-    put(&b, mode->subsets - 1U, 2);
+    ki_bits b = {0}, backwards = {0};
+    ki_bits_put(&b, grid_of(mode->weights), HEAD);
+    ki_bits_put(&b, mode->subsets - 1U, 2);
     if (mode->subsets == 2) {
-        put(&b, ki_uastc_partitions[block->partition].number, 10);
-        put(&b, 0, 2); // both subsets have the same endpoint mode
+        ki_bits_put(&b, ki_uastc_partitions[block->partition].number, 10);
+        ki_bits_put(&b, 0, 2); // both subsets have the same endpoint mode
     }
-    put(&b, mode->ends, 4);
+    ki_bits_put(&b, mode->ends, 4);
     uint8_t stored[16];
     int count = values_of_end(mode), all = count * mode->subsets;
     for (int s = 0; s < mode->subsets; s++)
@@ -237,7 +211,7 @@ void ki_uastc_pack(const ki_uastc_block *block, uint8_t bytes[KI_BLOCK_BYTES])
     write_half(b.half[1] | reverse(backwards.half[0]), bytes + 8);
 }
 
-static bool unpack_solid(const bits *b, ki_uastc_block *block)
+static bool unpack_solid(const ki_bits *b, ki_uastc_block *block)
 {
     block->mode = KI_UASTC_SOLID;
     bool finite = b->half[0] == (SOLID_HEAD | SOLID_EXTENT << 12);
@@ -282,20 +256,20 @@ static bool finite_ends(const ki_uastc_block *block)
 
 bool ki_uastc_unpack(const uint8_t bytes[KI_BLOCK_BYTES], ki_uastc_block *block)
 {
-    bits b = {{read_half(bytes), read_half(bytes + 8)}, 0}, backwards = {{0}, 0};
+    ki_bits b = {{read_half(bytes), read_half(bytes + 8)}, 0}, backwards = {{0}, 0};
     backwards.half[0] = reverse(b.half[1]);
     backwards.half[1] = reverse(b.half[0]);
     *block = (ki_uastc_block){0};
     if ((b.half[0] & 0x1ff) == (SOLID_HEAD & 0x1ff))
         return unpack_solid(&b, block);
-    unsigned grid = get(&b, HEAD);
-    int subsets = (int)get(&b, 2) + 1;
+    unsigned grid = ki_bits_get(&b, HEAD);
+    int subsets = (int)ki_bits_get(&b, 2) + 1;
     if (subsets == 2) {
-        block->partition = find_partition(get(&b, 10));
-        if (block->partition < 0 || get(&b, 2) != 0)
+        block->partition = find_partition(ki_bits_get(&b, 10));
+        if (block->partition < 0 || ki_bits_get(&b, 2) != 0)
             return false;
     }
-    block->mode = find_mode(grid, subsets, get(&b, 4));
+    block->mode = find_mode(grid, subsets, ki_bits_get(&b, 4));
     if (block->mode < 0)
         return false;
     const ki_uastc_mode *mode = &ki_uastc_modes[block->mode];

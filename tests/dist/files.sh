@@ -1,6 +1,6 @@
 #!/bin/sh
-# build/dist has the files that docs/downloads.md lists, their checksums, the licences of every part, and no path of
-# the folder in which they were made.
+# Checks the folder build/dist, which `./do dist` makes: the files are those that docs/downloads.md lists, SHA256SUMS
+# has their checksums, each archive has the licences of what it links, and no program contains a path of this machine.
 #   files.sh SOURCE
 set -eu
 source=$1

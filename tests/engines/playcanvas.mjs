@@ -1,8 +1,9 @@
 // PlayCanvas shows what kiln wrote: StandardMaterial, lit by scene.envAtlas.
 import { playcanvas, playcanvasDds } from './models.mjs';
 
-// The model knows no texels: a mirror of 512 by 256, and 14 by 6 at roughness 1. What is tuned varies more
-// between them than these bounds allow.
+// models.mjs, which says what the engine should draw, takes pictures as continuous. Those of the atlas have
+// 512 x 256 texels for a mirror and 14 x 6 for roughness 1. Bilinear interpolation of so few texels makes the
+// difference that the bounds `real` and `diffuse` allow.
 const bounds = { coded: { axes: 0.01, lod: 0.01 }, white: { rms: 1e-6, most: 1e-6 },
                  real: [{ rows: [0.2, 0.8], rms: 4e-3, most: 0.05 }, { rms: 0.012 }],
                  diffuse: { rms: 4e-3, most: 0.05 } };

@@ -7,7 +7,8 @@ import { CELL, ROUGHNESS, builtPackage, check, dot, folder, kiln, makeFiles, mak
     from './rig.mjs';
 
 const cubes = { coded: { axes: 0.01, lod: 0.01 }, white: { rms: 1e-3, most: 2e-3 }, real: { rms: 1e-3, most: 5e-3 } };
-// The model knows no texels, of which there are 14 across a face from roughness 0.21 on.
+// models.mjs, which says what the engine should draw, takes faces as continuous. In CubeUV layout faces have only 14
+// texels along an edge from roughness 0.21 on, and their interpolation makes the difference that `real` allows.
 const pictures = { coded: { axes: 0.01, lod: 0.01 }, white: { rms: 1e-3, most: 2e-3 },
                    real: [{ rows: [0.45, 1], rms: 5e-3, most: 0.02 }, { rows: [0.1, 0.1], rms: 0.015, most: 0.1 },
                           { rms: 0.05 }] };

@@ -72,7 +72,8 @@ def old_systems(library: str) -> None:
     newest = max(tuple(map(int, v[len("GLIBC_"):].split("."))) for v in versions)
     match = re.search(r"manylinux_(\d+)_(\d+)_", NAME)
     assert match, "%s is for this system only: %s" % (NAME, elf.needed)
-    # 2.17 is of 2012. A newer version here is a call that portable.c does not know yet.
+    # The wheel promises to run with glibc 2.17, of the year 2012. If this fails, the library calls a function of a
+    # newer glibc; python/portable.c must then define that function by older ones.
     assert newest <= (2, 17) and (int(match.group(1)), int(match.group(2))) == (2, 17), versions
     assert elf.needed == {"libc.so.6", "libm.so.6"}, elf.needed
     shown = set(re.findall(r" (?:FUNC|OBJECT) +GLOBAL +DEFAULT +\d+ (\w+)$", symbols, re.M))

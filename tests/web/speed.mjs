@@ -1,7 +1,7 @@
 // How the page feels: no task of the page's main thread takes more than 100 ms, and the first picture is there
 // within 2 s of the bake, with WebGL drawn by the processor:
 //     node speed.mjs KILN SITE FOLDER
-// Times of the processor are compared, which other work on the machine does not lengthen.
+// Both are measured in processor time, so that other programs on the machine do not change the result.
 import fs from 'node:fs';
 import path from 'node:path';
 import { downloaded, drop, idle, withPage } from './browser.mjs';
