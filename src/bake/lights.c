@@ -5,6 +5,7 @@
 
 #include "image/image.h"
 #include "image/light.h"
+#include "math/math.h"
 
 #include <math.h>
 #include <string.h>
@@ -47,11 +48,55 @@ static bool add_mismatch(const ki_region *region, double sum[KI_SH_COUNT][3])
     return true;
 }
 
+// Finds the normals of nine surfaces whose horizons pass through two lights: through the centres, and
+// half a radius above and below. Returns the number of normals, 0 if the lights are too close to each
+// other or opposite.
+static int find_common_horizons(const kiln_light *one, const kiln_light *other,
+                                double normals[9][3])
+{
+    const double *a = one->direction, *b = other->direction;
+    double n[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+    double squares = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
+    double cosine = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    if (squares < 1e-4)
+        return 0;
+    for (int i = 0; i < 9; i++) {
+        // The heights over the horizon are the cosines of the normal with both directions.
+        double x = (i % 3 - 1) * 0.5 * ki_sin(one->angular_radius * (KI_PI / 180));
+        double y = (i / 3 - 1) * 0.5 * ki_sin(other->angular_radius * (KI_PI / 180));
+        double in_a = (x - cosine * y) / squares, in_b = (y - cosine * x) / squares;
+        double flat = x * in_a + y * in_b; // squared length of the part in the plane of a and b
+        double up = sqrt(fmax(0, 1 - flat) / squares);
+        for (int k = 0; k < 3; k++)
+            normals[i][k] = in_a * a[k] + in_b * b[k] + up * n[k];
+    }
+    return 9;
+}
+
+// Returns whether the discs of all chosen lights together replace what is taken out, for surfaces that
+// have the last of these lights and another one on their horizon.
+static bool fits_others(const ki_search *search, const ki_region *const *chosen, int count)
+{
+    const kiln_light *last = &chosen[count - 1]->light;
+    for (int i = 0; i < count - 1; i++) {
+        double normals[9][3], errors[9][3] = {{0}};
+        int found = find_common_horizons(last, &chosen[i]->light, normals);
+        for (int k = 0; k < count && found; k++)
+            ki_region_add_errors(search, chosen[k], (const double(*)[3])normals, found, errors);
+        for (int n = 0; n < found; n++)
+            for (int c = 0; c < 3; c++)
+                if (fabs(errors[n][c]) > ki_light_error)
+                    return false;
+    }
+    return true;
+}
+
 // Chooses the wanted lights, and takes them out of `target` if it is not NULL.
 static void choose(ki_search *search, const kiln_lights_def *def, kiln_map *target,
                    kiln_lights *lights)
 {
     bool seen[KI_MOST_REGIONS] = {false};
+    const ki_region *chosen[KILN_MAX_LIGHTS];
     double sum[KI_SH_COUNT][3] = {{0}};
     int count = def->count ? def->count : def->share != 0 ? KILN_MAX_LIGHTS : 1;
     double share = def->share != 0 ? def->share : 0.01;
@@ -59,12 +104,14 @@ static void choose(ki_search *search, const kiln_lights_def *def, kiln_map *targ
     while (lights->count < count && (region = largest(search, seen)) != NULL &&
            region->light.share >= share) {
         seen[region - search->region] = true;
-        if (!add_mismatch(region, sum))
+        chosen[lights->count] = region;
+        if (ki_region_error(search, region) > ki_light_error ||
+            !fits_others(search, chosen, lights->count + 1) || !add_mismatch(region, sum))
             continue;
-        if (target)
-            ki_region_measure(search, region, target);
         lights->light[lights->count++] = region->light;
     }
+    for (int i = 0; i < lights->count && target; i++)
+        ki_region_measure(search, &search->region[chosen[i] - search->region], target);
 }
 
 static kiln_result run(kiln_context *context, const kiln_map *map, const kiln_lights_def *def,

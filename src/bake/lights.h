@@ -20,6 +20,7 @@ typedef struct ki_region {
     /// Harmonics of what was taken out minus those of the light's disc, relative to the norm of the
     /// map's harmonics.
     double mismatch[KI_SH_COUNT][3];
+    bool negative[3]; ///< channels in which values below zero belong to the light too
 } ki_region;
 
 typedef struct ki_search {
@@ -40,7 +41,8 @@ typedef struct ki_search {
     /// Root of the sum of squares of the map's harmonics in five bands, as the mean of the
     /// channels.
     double norm;
-    ki_region *region; ///< room for KI_MOST_REGIONS
+    double brightest[3]; ///< greatest irradiance of any surface in each channel, within 4 %
+    ki_region *region;   ///< room for KI_MOST_REGIONS
     int region_count;
 } ki_search;
 
@@ -49,6 +51,10 @@ enum { KI_REJECTED = 65535 };
 /// Largest mismatch of one light, and of the sum of all lights that are taken out, so that the
 /// lights and the map that remains have the harmonics of the map to a thousandth.
 extern const double ki_light_mismatch, ki_lights_mismatch;
+/// Largest error of irradiance of one light, and of all lights together, as a part of the greatest
+/// irradiance. The bound is a thousandth less 5 %, because few surfaces are tried and the greatest
+/// irradiance is known within 4 %.
+extern const double ki_light_error;
 
 /// Fails unless the numbers are in the ranges that kiln_lights_def states.
 kiln_result ki_lights_check(const kiln_lights_def *def, kiln_error *error);
@@ -62,6 +68,14 @@ void ki_search_free(ki_search *search);
 /// Measures what a region holds above its surroundings: sets region->light and region->mismatch. If
 /// `target` is not NULL, writes the surroundings to the region's texels in level 0 of `target`.
 void ki_region_measure(const ki_search *search, ki_region *region, kiln_map *target);
+/// Adds to the errors of `count` surfaces, given by their normals, those of a measured region: the
+/// irradiance by what is taken out of the region minus that by the light's disc, channel by channel, as a
+/// part of search->brightest.
+void ki_region_add_errors(const ki_search *search, const ki_region *region,
+                          const double (*normals)[3], int count, double (*errors)[3]);
+/// Returns the largest magnitude of these errors over channels and over surfaces whose horizons pass
+/// through the centre of the light or up to three quarters of its radius above and below.
+double ki_region_error(const ki_search *search, const ki_region *region);
 /// Adds the harmonics of a light's disc to coefficients.
 void ki_light_add_sh(const kiln_light *light, double c[KI_SH_COUNT][3]);
 /// Returns the largest magnitude of a mismatch.

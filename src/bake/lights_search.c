@@ -164,7 +164,8 @@ static bool find_region(ki_search *search, ki_region *region, size_t seed)
     for (; threshold < peak; threshold *= 2) {
         if (grow(search, region, seed, threshold)) {
             ki_region_measure(search, region, NULL);
-            if (ki_mismatch_size((const double(*)[3])region->mismatch) <= ki_light_mismatch)
+            if (ki_mismatch_size((const double(*)[3])region->mismatch) <= ki_light_mismatch &&
+                ki_region_error(search, region) <= ki_light_error)
                 return true;
         }
         set_owner(search, region, 0);
@@ -222,16 +223,30 @@ static bool list_texels(ki_search *search)
     return search->list && search->seed;
 }
 
+// Sets the norm of the map's harmonics and its greatest irradiance, which five bands have within 3 %, at
+// POINTS directions on a spiral of golden angles.
 static kiln_result find_norm(ki_search *search, kiln_error *error)
 {
-    kiln_sh sh;
+    enum { POINTS = 1024 };
+    kiln_sh sh, cosine;
     double squares = 0;
     kiln_result result = kiln_map_sh(search->context, search->map, KILN_MAX_BANDS, 0, &sh, error);
+    if (result == KILN_OK)
+        result = kiln_sh_filter(&sh, KILN_MAX_BANDS, true, 0, &cosine, error);
+    if (result != KILN_OK)
+        return result;
     for (int k = 0; k < KI_SH_COUNT; k++)
         for (int c = 0; c < 3; c++)
             squares += sh.c[k][c] * sh.c[k][c];
     search->norm = sqrt(squares / 3);
-    return result;
+    for (int i = 0; i < POINTS; i++) {
+        double z = (2 * i + 1.0) / POINTS - 1, s, c, value[3], out = sqrt(1 - z * z);
+        ki_sincos(2.39996322972865332 * i, &s, &c);
+        kiln_sh_evaluate(&cosine, (const double[3]){out * c, out * s, z}, value);
+        for (int k = 0; k < 3; k++)
+            search->brightest[k] = fmax(search->brightest[k], value[k]);
+    }
+    return KILN_OK;
 }
 
 kiln_result ki_search_run(kiln_context *context, const kiln_map *map, ki_search *search,

@@ -25,9 +25,8 @@ void check_light_harmonics(kiln_context *context, const kiln_map *map, const kil
 
 // --------------------------------------------------------------------------------------- irradiance
 
-// Numbers of surfaces: CUT have a light on their horizon or close to the horizon; the others face the largest light and
-// every way.
-enum { CUT = 24, EVERY_WAY = 4, FACING = 1 + EVERY_WAY };
+// number of surfaces that have one light on their horizon or close to the horizon
+enum { CUT = 24 };
 
 static double dot(const double a[3], const double b[3])
 {
@@ -74,65 +73,105 @@ static void add_disc(const kiln_light *light, const double normal[3], double irr
         irradiance[c] += light->irradiance[c] / (pi * sine * sine) * sum * solid;
 }
 
-// Raises `most` to the greatest irradiance of a surface in each channel, by texels as points.
-static void find_most(const kiln_map *map, const kiln_light *largest, double most[3])
+// Sets the direction of the surface that is brightest in a channel, by harmonics, among many directions.
+static void find_brightest(const kiln_sh *irradiance, int channel, double d[3])
 {
-    double normals[FACING][3], whole[FACING][3] = {{0}};
+    double most = -1;
     uint64_t seed = 4;
-    turn_from(largest->direction, 1, 0, normals[0]);
-    for (int i = 1; i < FACING; i++)
-        random_direction(&seed, normals[i]);
+    for (int i = 0; i < 4096; i++) {
+        double at[3], value[3];
+        random_direction(&seed, at);
+        kiln_sh_evaluate(irradiance, at, value);
+        if (value[channel] > most) {
+            most = value[channel];
+            memcpy(d, at, sizeof at);
+        }
+    }
+}
+
+// Sets the greatest irradiance of a surface in each channel: that of the surface which harmonics of five bands find,
+// summed over texels as points.
+static void find_most(kiln_context *context, const kiln_map *map, double most[3])
+{
+    kiln_error error;
+    kiln_sh sh, irradiance;
+    double normals[3][3];
+    CHECK_OK(kiln_map_sh(context, map, KILN_MAX_BANDS, 0, &sh, &error));
+    CHECK_OK(kiln_sh_filter(&sh, KILN_MAX_BANDS, true, 0, &irradiance, &error));
+    for (int c = 0; c < 3; c++) {
+        find_brightest(&irradiance, c, normals[c]);
+        most[c] = 0;
+    }
     for (size_t i = 0; i < kiln_map_texels(map, 0); i++) {
         double d[3], solid = ki_texel_solid_angle(map, i);
         kiln_map_direction(map, 0, i, d);
-        for (int n = 0; n < FACING; n++)
-            for (int c = 0; c < 3; c++)
-                whole[n][c] +=
-                    solid * fmax(0, dot(d, normals[n])) * (double)map->level[0][3 * i + (size_t)c];
+        for (int c = 0; c < 3; c++)
+            most[c] +=
+                solid * fmax(0, dot(d, normals[c])) * (double)map->level[0][3 * i + (size_t)c];
     }
-    for (int c = 0; c < 3; c++)
-        for (int n = 0; n < FACING; n++)
-            most[c] = fmax(most[c], whole[n][c]);
 }
 
+typedef struct surface {
+    double normal[3], taken[3]; // taken: irradiance by what was taken out
+} surface;
+
 // Adds to the surfaces' irradiance what was taken out of texel i of the map.
-static void add_taken(const kiln_map *map, const kiln_map *left, size_t i,
-                      const double normals[CUT][3], double taken[CUT][3])
+static void add_taken(const kiln_map *map, const kiln_map *left, size_t i, surface *surfaces,
+                      int count)
 {
     const float *rgb = map->level[0] + 3 * i, *rest = left->level[0] + 3 * i;
     ki_texel_nodes nodes;
     if (!memcmp(rgb, rest, 3 * sizeof *rgb))
         return;
     ki_texel_nodes_find(map, i, 4, &nodes);
-    for (int n = 0; n < CUT; n++) {
+    for (int n = 0; n < count; n++) {
         double weight = 0;
         for (int k = 0; k < nodes.count; k++)
-            weight += nodes.weight[k] * fmax(0, dot(nodes.direction[k], normals[n]));
+            weight += nodes.weight[k] * fmax(0, dot(nodes.direction[k], surfaces[n].normal));
         for (int c = 0; c < 3; c++)
-            taken[n][c] += weight * ((double)rgb[c] - (double)rest[c]);
+            surfaces[n].taken[c] += weight * ((double)rgb[c] - (double)rest[c]);
     }
 }
 
-void check_light_irradiance(const kiln_map *map, const kiln_map *left, const kiln_lights *lights,
-                            double bound)
+// Sets surfaces that have light k on their horizon: CUT whose horizon passes through the light's centre, or half a
+// radius above or below, and for every other light one whose horizon passes through both centres. Returns the number.
+static int place_surfaces(const kiln_lights *lights, int k, surface *surfaces)
 {
-    double most[3] = {0};
-    find_most(map, &lights->light[0], most);
+    const kiln_light *light = &lights->light[k];
+    int count = 0;
+    double radius = light->angular_radius * pi / 180;
+    for (; count < CUT; count++) {
+        surfaces[count] = (surface){0};
+        turn_from(light->direction, sin((count % 3 - 1) * radius / 2), 2 * pi * count / CUT,
+                  surfaces[count].normal);
+    }
+    for (int i = 0; i < lights->count; i++) {
+        const double *a = light->direction, *b = lights->light[i].direction;
+        double n[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
+                       a[0] * b[1] - a[1] * b[0]};
+        double length = sqrt(dot(n, n));
+        if (length > 0.01)
+            surfaces[count++] = (surface){{n[0] / length, n[1] / length, n[2] / length}, {0}};
+    }
+    return count;
+}
+
+void check_light_irradiance(kiln_context *context, const kiln_map *map, const kiln_map *left,
+                            const kiln_lights *lights)
+{
+    double most[3];
+    find_most(context, map, most);
     for (int k = 0; k < lights->count; k++) {
-        double normals[CUT][3], taken[CUT][3] = {{0}};
-        const kiln_light *light = &lights->light[k];
-        for (int n = 0; n < CUT;
-             n++) // its centre on the horizon, and half a radius above and below
-            turn_from(light->direction, sin((n % 3 - 1) * light->angular_radius / 2 * pi / 180),
-                      2 * pi * n / CUT, normals[n]);
+        surface surfaces[CUT + KILN_MAX_LIGHTS];
+        int count = place_surfaces(lights, k, surfaces);
         for (size_t i = 0; i < kiln_map_texels(map, 0); i++)
-            add_taken(map, left, i, (const double(*)[3])normals, taken);
-        for (int n = 0; n < CUT; n++) {
+            add_taken(map, left, i, surfaces, count);
+        for (int n = 0; n < count; n++) {
             double discs[3] = {0};
             for (int i = 0; i < lights->count; i++)
-                add_disc(&lights->light[i], normals[n], discs);
+                add_disc(&lights->light[i], surfaces[n].normal, discs);
             for (int c = 0; c < 3; c++)
-                CHECK_NEAR(discs[c], taken[n][c], bound * most[c]);
+                CHECK_NEAR(discs[c], surfaces[n].taken[c], 1e-3 * most[c]);
         }
     }
 }

@@ -10,8 +10,8 @@ void check_light_harmonics(kiln_context *context, const kiln_map *map, const kil
                            const kiln_lights *lights);
 
 /// Checks the irradiance of surfaces that have a light on their horizon or close to the horizon: what was taken out
-/// and the discs differ by at most `bound`, a part of the greatest irradiance in the map, channel by channel.
-void check_light_irradiance(const kiln_map *map, const kiln_map *left, const kiln_lights *lights,
-                            double bound);
+/// and the discs differ by at most a thousandth of the greatest irradiance in the map, channel by channel.
+void check_light_irradiance(kiln_context *context, const kiln_map *map, const kiln_map *left,
+                            const kiln_lights *lights);
 
 #endif
