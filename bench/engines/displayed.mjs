@@ -3,7 +3,7 @@
 // In: the panoramas NAMES. Out: relative RMS errors, which measure.mjs defines, printed and as rows of CSV.
 import fs from 'node:fs';
 import path from 'node:path';
-import * as models from '../../tests/engines/models.mjs';
+import { current } from '../../tests/engines/models.mjs';
 import { makeSite, openEngine } from '../../tests/engines/rig.mjs';
 import { withPage } from '../../tests/web/browser.mjs';
 import { CELL, ROUGHNESS, VIEWS, errors, overAll, percent, truth } from './measure.mjs';
@@ -21,7 +21,7 @@ console.log('  relative RMS error in % over 192 directions, at roughness 0.1, 0.
             '19 roughnesses, and at the worst');
 await withPage(folder, async (browser, address) => {
     browser.setDefaultTimeout(300000);
-    for (const engine of Object.values(models).filter(({ name }) => !only.length || only.includes(name))) {
+    for (const engine of current.filter(({ name }) => !only.length || only.includes(name))) {
         for (const name of NAMES) {
             const wanted = truth(bin, engine, path.join(folder, `${name}.hdr`));
             for (const { maker, make } of ways(engine)) {

@@ -108,3 +108,6 @@ export const playcanvas = {
     }),
 };
 export const playcanvasDds = { ...playcanvas, name: 'playcanvas-dds', ending: '.dds', loads: '.dds' };
+
+// One model for each way of loading in the current version of each engine.
+export const current = [three, threeCubeUv, babylon, babylonDds, filament, playcanvas, playcanvasDds];
