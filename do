@@ -200,7 +200,7 @@ test)
 test-dist)
     need build render web test python dist docs test-dist
     panoramas
-    npm_packages web npm/codecs tests/web tests/files/assets tests/engines tests/engines/versions tests/engines/cesium
+    npm_packages web npm/codecs tests/web tests/files/assets tests/engines tests/engines/versions tests/engines/cesium tests/engines/galacean
     build wasm
     build_release TESTS GOLDEN EXAMPLES PYTHON
     run_tests release -L dist "$@"
@@ -248,7 +248,7 @@ demo)
     if [ -e "$1" ]; then
         start build_release EXAMPLES
         need demo
-        npm_packages tests/web tests/engines
+        npm_packages tests/web tests/engines tests/engines/cesium tests/engines/galacean
         await
         say "drawing in the engines"
         node examples/gallery.mjs build/release/bin build/gallery build/demo/gallery.part \

@@ -79,7 +79,7 @@ web() {
 # engine_pixels SCRIPT CASE: measures the pixels of engines by bench/engines/SCRIPT.mjs.
 engine_pixels() {
     have chromium || fail "chromium is missing: install Debian's chromium"
-    for folder in tests/web tests/engines; do
+    for folder in tests/web tests/engines tests/engines/cesium tests/engines/galacean; do
         [ -d $folder/node_modules ] || fail "packages are missing: run  npm ci --prefix $folder"
     done
     printf '\n%s: errors of pixels, compared with brute force\n' "$2"

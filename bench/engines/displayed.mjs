@@ -27,7 +27,7 @@ await withPage(folder, async (browser, address) => {
             for (const { maker, make } of ways(engine)) {
                 const file = await make(`${name}.hdr`);
                 const draw = await openEngine(browser, address, engine.page);
-                const rms = errors(await draw(file, VIEWS, ROUGHNESS, CELL), wanted);
+                const rms = errors(await draw(file, VIEWS, ROUGHNESS, CELL, engine.asked), wanted);
                 const all = overAll(rms);
                 const few = [0.1, 0.2, 0.3, 0.5, 0.7, 1].map((r) => rms[ROUGHNESS.indexOf(r)]);
                 console.log(`  ${engine.name.padEnd(14)} ${name.padEnd(9)} ${maker.padEnd(15)}` +

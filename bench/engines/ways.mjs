@@ -1,5 +1,5 @@
-// The ways to light a scene in an engine: the engine's own filter (or cmgen for Filament, which has no filter in
-// the browser), and kiln's file.
+// The ways to light a scene in an engine: the engine's own filter where it has one (or cmgen for Filament, which has
+// no filter in the browser), and kiln's file.
 //   const ways = makeWays(BIN, FOLDER, ['--tune=none']);
 // ways(engine) returns [{ maker, make }] for an engine of models.mjs. make(panorama) writes the file that the
 // engine's page loads into FOLDER, and promises its name.
@@ -23,11 +23,12 @@ export function makeWays(bin, folder, more = []) {
         make: async (panorama) => {
             const name = `${path.parse(panorama).name}-${engine.name}${options.join('').replace(/\W/g, '')}`;
             await run(path.join(bin, 'kiln'), 'bake', panorama, '--for', engine.name, '-q',
-                '-o', `${name}${engine.ending}`, ...options);
+                '-o', `${name}${engine.ending}`, ...options, ...engine.words ?? []);
             return `${name}${engine.loads}`;
         },
     });
-    return (engine) => [engine.name === 'filament' ? cmgen : own, byKiln(engine, 'kiln'), ...more.map((fit) => byKiln(engine, `kiln ${fit}`, fit))];
+    return (engine) => [...engine.name === 'filament' ? [cmgen] : engine.filtersNothing ? [] : [own],
+                        byKiln(engine, 'kiln'), ...more.map((fit) => byKiln(engine, `kiln ${fit}`, fit))];
 }
 
 // Returns kiln's description of an engine.

@@ -18,15 +18,23 @@ static double basis(int i)
     return sqrt(squares[i] / (4 * KI_PI));
 }
 
+void ki_filament_sh_factors(const kiln_sh *sh, double factors[9][3])
+{
+    for (int i = 0; i < 27; i++)
+        factors[i / 3][i % 3] = sh->c[i / 3][i % 3] * cosine[i / 3] * basis(i / 3);
+}
+
 void ki_filament_sh_write(ki_writer *w, const kiln_sh *sh, bool lines)
 {
+    double factors[9][3];
+    ki_filament_sh_factors(sh, factors);
     static const char *const names[9] = {"L00",  "L1-1", "L10", "L11", "L2-2",
                                          "L2-1", "L20",  "L21", "L22"};
     for (int i = 0; i < 9; i++) {
         ki_write_text(w, lines ? "(" : "");
         for (int c = 0; c < 3; c++) {
             ki_write_text(w, "%s", !c ? "" : lines ? ", " : " ");
-            ki_write_number(w, sh->c[i][c] * cosine[i] * basis(i));
+            ki_write_number(w, factors[i][c]);
         }
         if (lines)
             ki_write_text(w, "); // %s, irradiance, pre-scaled base", names[i]);
@@ -34,22 +42,27 @@ void ki_filament_sh_write(ki_writer *w, const kiln_sh *sh, bool lines)
     }
 }
 
+void ki_filament_sh_store(double factors[9][3], kiln_file_info *info)
+{
+    for (int i = 0; i < 27; i++)
+        info->sh[i / 3][i % 3] =
+            ki_info_number(factors[i / 3][i % 3] / (cosine[i / 3] * basis(i / 3)));
+    info->sh_bands = 3;
+    info->sh_irradiance = false;
+}
+
 bool ki_filament_sh_read(const char *text, kiln_file_info *info)
 {
-    float sh[9][3];
+    double factors[9][3];
     for (int i = 0; i < 27; i++) {
-        double value;
         text += strspn(text, " \t\r\n(,");
-        text = ki_parse_number(text, &value);
+        text = ki_parse_number(text, &factors[i / 3][i % 3]);
         if (!text)
             return false;
-        sh[i / 3][i % 3] = ki_info_number(value / (cosine[i / 3] * basis(i / 3)));
         // skips the text after the three numbers of "(0.1, 0.2, 0.3); // L00, irradiance"
         if (i % 3 == 2 && *text == ')')
             text += strcspn(text, "\n");
     }
-    memcpy(info->sh, sh, sizeof sh);
-    info->sh_bands = 3;
-    info->sh_irradiance = false;
+    ki_filament_sh_store(factors, info);
     return true;
 }

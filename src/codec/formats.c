@@ -4,9 +4,11 @@
 #include "codec/formats.h"
 
 #include "base/file.h"
+#include "codec/cesium_sh.h"
 #include "codec/env.h"
 #include "codec/file_info.h"
 #include "codec/foreign.h"
+#include "codec/galacean_env.h"
 #include "codec/gltf.h"
 #include "codec/ktx1.h"
 #include "codec/layout.h"
@@ -157,6 +159,10 @@ static const ki_file_format formats[] = {
      .begins = ki_sh_json_begins,
      .holds = KI_HOLDS_SH,
      .describe = ki_sh_json_describe},
+    {.name = "cesium json",
+     .endings = {".json"},
+     .begins = ki_cesium_sh_begins,
+     .describe = ki_cesium_sh_describe},
     {.name = "text",
      .endings = {".txt"},
      .begins = ki_sh_lines_begin,
@@ -184,6 +190,11 @@ static const ki_file_format formats[] = {
      .holds = KI_HOLDS_TABLE | KI_HOLDS_CODE,
      .table_formats = PLAIN_TABLES,
      .table_format = KILN_TABLE_FORMAT_F32},
+    // Files without magic bytes, which are recognised by their length.
+    {.name = "galacean env",
+     .endings = {".env"},
+     .begins = ki_galacean_env_begins,
+     .describe = ki_galacean_env_describe},
 };
 
 enum { FORMATS = sizeof formats / sizeof *formats };

@@ -62,7 +62,8 @@ double ki_quadratic_roughness(int level, int level_count, int size);
 double ki_quadratic_level(double roughness, int level_count, int size);
 
 extern const ki_recipe ki_three, ki_babylon, ki_babylon_dds, ki_filament, ki_playcanvas,
-    ki_playcanvas_dds, ki_three_cubeuv, ki_gltf, ki_bevy, ki_unity, ki_godot, ki_unreal;
+    ki_playcanvas_dds, ki_three_cubeuv, ki_cesium, ki_galacean, ki_gltf, ki_bevy, ki_unity,
+    ki_godot, ki_unreal;
 
 /// Returns the settings of the engine at an index of the list, NULL after the last engine.
 const ki_recipe *ki_recipe_at(int index);

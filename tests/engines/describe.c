@@ -77,6 +77,12 @@ static const expected table[] = {
      1, 6, 3, ALL_LEVELS, true, false},
     {"playcanvas-dds", 512, 0, "p.dds", "p.dds", "dds", "rgba16f", "atlas", "playcanvas-dds", 512,
      512, 1, 1, 4, NO_LEVELS, true, false},
+    {"cesium", 64, 0, "c", "c.ktx2", "ktx2", "rgba16f", "cube", "", 64, 64, 6, 5, 4, ALL_LEVELS,
+     true, true},
+    {"cesium", 64, 0, "c", "c_sh.json", "json", "text", "harmonics", "cesium", 9, 1, 1, 1, 3,
+     NO_LEVELS, false, true},
+    {"galacean", 32, 0, "n.env", "n.env", "galacean env", "8 bits rgbm", "cube", "galacean", 32, 32,
+     6, 6, 3, ALL_LEVELS, false, true},
     {"gltf", 64, 0, "g.glb", "g.glb", "glb", "rgbd, png", "cube", "gltf", 64, 64, 6, 3, 3,
      ALL_LEVELS, true, true},
     {"bevy", 64, 0, "v", "v_specular.ktx2", "ktx2", "rgb9e5", "cube", "", 64, 64, 6, 3, 3,
@@ -155,6 +161,8 @@ static void what_is_not_read_says_what_it_is(void **state)
     (void)state;
     static const char *const names[][2] = {
         {"a.env", "is a .env file, which kiln writes and describes but does not read"},
+        {"n.env", "is a .env file, which kiln writes and describes but does not read"},
+        {"c_sh.json", "is a .json file, which kiln writes and describes but does not read"},
         {"g.glb", "is a .glb file, which kiln writes and describes but does not read"},
         {"a.exr", "is the atlas of three-cubeuv, which kiln describes but does not read"},
         {"p.png", "is the atlas of playcanvas, which kiln describes but does not read"},

@@ -8,7 +8,9 @@
 //   clamp     the least roughness; bend: how far the reflection is bent towards the normal
 //   harmonics diffuse light is theirs; distance: of the camera, where rays are taken to be parallel but are not
 //   told      the direction as the coarse texels tell it; curve: what becomes of radiance after it is read
-// smallest: the size below which no level goes.
+//   coding    encode(rgb) and decode(rgba) of texels that are interpolated before they are decoded
+// smallest: the size below which no level goes; words: what else `kiln bake` is told; asked: what else the page is told
+// filtersNothing: the engine has no filter of its own
 import { readTable } from './three-table.mjs';
 
 // Panoramas have +X in the centre and +Z to the right, where kiln's have -Z and +X. Fdez-Aguera of white metal:
@@ -109,5 +111,73 @@ export const playcanvas = {
 };
 export const playcanvasDds = { ...playcanvas, name: 'playcanvas-dds', ending: '.dds', loads: '.dds' };
 
+// BrdfLutGeneratorFS.glsl: A + B by 1024 samples, in a table of 256 x 256 pairs of bytes that is read without
+// interpolation.
+const radicalInverse = (i) => {
+    let value = 0;
+    for (let base = 0.5; i; i >>= 1, base /= 2)
+        value += (i & 1) * base;
+    return value;
+};
+function sumSplit(roughness, nov) {
+    const a2 = roughness ** 4, x = Math.sqrt(1 - nov * nov), sums = [0, 0];
+    for (let i = 0; i < 1024; i++) {
+        const angle = 2 * Math.PI * i / 1024, xi = radicalInverse(i);
+        const noh = Math.sqrt((1 - xi) / (1 + (a2 - 1) * xi)), side = Math.sqrt(1 - noh * noh);
+        const voh = x * side * Math.sin(angle) + nov * noh, nol = Math.min(1, 2 * voh * noh - nov);
+        if (nol <= 0)
+            continue;
+        const visible = 0.5 / (nol * Math.sqrt(nov * nov * (1 - a2) + a2) + nov * Math.sqrt(nol * nol * (1 - a2) + a2));
+        const weight = 4 * visible * Math.max(0, voh) * nol / noh / 1024, schlick = (1 - Math.max(0, voh)) ** 5;
+        sums[0] += (1 - schlick) * weight;
+        sums[1] += schlick * weight;
+    }
+    return sums.reduce((sum, value) => sum + Math.round(255 * Math.min(1, value)) / 255, 0);
+}
+const splits = new Map();
+function cesiumAlbedo(nov, roughness) {
+    const [i, j] = [nov, roughness].map((x) => Math.min(255, Math.floor(256 * x)));
+    if (!splits.has(256 * j + i))
+        splits.set(256 * j + i, sumSplit((j + 0.5) / 256, (i + 0.5) / 256));
+    return splits.get(256 * j + i);
+}
+export const cesium = {
+    name: 'cesium', page: 'cesium/cesium.html', ending: '', loads: '', filtersNothing: true,
+    model: (count) => ({
+        toKiln: (way) => way, // east, up and south
+        lod: (r) => (count - 1) * r,
+        shade: (nov, r) => {
+            const albedo = cesiumAlbedo(nov, r);
+            return [albedo, 1 - albedo];
+        },
+        harmonics: true,
+        distance: 5000,
+    }),
+};
+
+// ibl_frag_define: A + B by a closed form, and metal shows no diffuse light. Texels hold radiance 5 a c in bytes. Files
+// are baked 16 times darker, so that they hold radiance up to 80, and the engine multiplies its light by 16.
+const STEP = 16 * 5 / 255;
+const galaceanTexels = {
+    encode: (rgb) => {
+        const a = Math.min(255, Math.max(1, Math.ceil(Math.max(...rgb) / STEP)));
+        return [...rgb].map((x) => Math.round(255 * Math.min(1, Math.max(0, x) / (a * STEP)))).concat(a);
+    },
+    decode: ([r, g, b, a]) => [r, g, b].map((c) => c * a * STEP / 255),
+};
+export const galacean = {
+    name: 'galacean', page: 'galacean/galacean.html', ending: '.env', loads: '.env', filtersNothing: true,
+    words: ['--exposure', '-4'], asked: { intensity: 16 },
+    model: (count) => ({
+        // Its panoramas have -X in the centre and -Z to the right, where kiln's have -Z and +X.
+        toKiln: ([x, y, z]) => [-z, y, x],
+        lod: (r) => (count - 1) * r,
+        shade: (nov, r) => [approximateAlbedo(nov, r), 0],
+        coding: galaceanTexels,
+        harmonics: true,
+    }),
+};
+
 // One model for each way of loading in the current version of each engine.
-export const current = [three, threeCubeUv, babylon, babylonDds, filament, playcanvas, playcanvasDds];
+export const current = [three, threeCubeUv, babylon, babylonDds, filament, playcanvas, playcanvasDds, cesium,
+                        galacean];

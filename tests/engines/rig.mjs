@@ -58,11 +58,12 @@ function faceOf([x, y, z]) {
     return [z > 0 ? 4 : 5, z > 0 ? x / az : -x / az, -y / az];
 }
 
-// A level of a cube, read bilinearly across faces. row(i) has the rgba of row i of all faces' rows.
-export function readLevel({ size, row }, direction) {
+// A level of a cube, read bilinearly across faces. row(i) has the rgba of row i of all faces' rows. Returns the first
+// `channels` numbers.
+export function readLevel({ size, row }, direction, channels = 3) {
     const [face, s, t] = faceOf(direction);
     const u = (s + 1) / 2 * size - 0.5, v = (t + 1) / 2 * size - 0.5;
-    const sum = [0, 0, 0];
+    const sum = Array(channels).fill(0);
     for (let corner = 0; corner < 4; corner++) {
         let x = Math.floor(u) + corner % 2, y = Math.floor(v) + (corner >> 1), f = face;
         const weight = (1 - Math.abs(u - x)) * (1 - Math.abs(v - y));
@@ -73,7 +74,7 @@ export function readLevel({ size, row }, direction) {
             [f, x, y] = [other, place(p), place(q)];
         }
         const texels = row(f * size + y);
-        for (let c = 0; c < 3; c++)
+        for (let c = 0; c < channels; c++)
             sum[c] += weight * texels[4 * x + c];
     }
     return sum;
@@ -115,13 +116,29 @@ const coded = (last, harmonics) => ({
 });
 const white = { radiance: () => [1, 1, 1], irradiance: () => [1, 1, 1] };
 export const baked = (levels) => ({
-    radiance: (d, lod) => {
+    radiance: (d, lod, channels) => {
         const low = Math.min(Math.floor(lod), levels.length - 1);
         const high = Math.min(low + 1, levels.length - 1);
-        return mix(readLevel(levels[low], d), readLevel(levels[high], d), lod - low);
+        return mix(readLevel(levels[low], d, channels), readLevel(levels[high], d, channels), lod - low);
     },
     irradiance: (n) => readLevel(levels.at(-1), n),
 });
+
+// The same for texels of four numbers that are interpolated before they are decoded.
+function bakedInCode(levels, { encode, decode }) {
+    const inCode = ({ size, row }) => {
+        const rows = new Map();
+        return { size, row: (i) => {
+            if (!rows.has(i)) {
+                const texels = row(i);
+                rows.set(i, Array.from({ length: size }, (_, x) => encode(texels.slice(4 * x, 4 * x + 3))).flat());
+            }
+            return rows.get(i);
+        } };
+    };
+    const coded = baked(levels.map(inCode));
+    return { ...baked(levels), radiance: (d, lod) => decode(coded.radiance(d, lod, 4)) };
+}
 
 // What a model of models.mjs shows of an asset, at each normal of a row of patches.
 export function predict(model, asset, { toEye: forward, right, up, normals }, roughness, all = ROUGHNESS) {
@@ -296,11 +313,12 @@ export async function openEngine(browser, address, page) {
 }
 
 // The files of an engine that prove() draws, and the levels that its model reads.
-export async function makeFiles({ name, ending, format, smallest = 0, bounds, model }) {
+// words: what else `kiln bake` is told.
+export async function makeFiles({ name, ending, format, words = [], smallest = 0, bounds, model }) {
     const { size, level_count: count } = await engineOf(name);
     const files = [name, ...(format ? [format[0]] : [])].join('-');
     const bake = async (what, ...more) => JSON.parse(await kiln(
-        'bake', panorama, '--for', name, '-o', `${files}-${what}${ending}`, '--json', ...more,
+        'bake', panorama, '--for', name, '-o', `${files}-${what}${ending}`, '--json', ...words, ...more,
         ...(format ? ['--format', format[0]] : [])));
     for (const what of ['coded', 'white'])
         if (bounds[what])
@@ -311,12 +329,14 @@ export async function makeFiles({ name, ending, format, smallest = 0, bounds, mo
     const levels = await bakePlain(size, roughness.slice(0, roughness.length - small.length));
     for (const r of small)
         levels.push(...await bakePlain(smallest, [r]));
-    let light = baked;
-    if (model(count, size).harmonics) {
+    const { harmonics, coding } = model(count, size);
+    let light = (cube) => (coding ? bakedInCode(cube, coding) : baked(cube));
+    if (harmonics) {
         await kiln('bake', panorama, '-q', '-o', 'plain.hdr', '--size', 8, '--levels', 1, '--sh', 'sh.json',
                    '--sh-irradiance');
         const sh = JSON.parse(readFile('sh.json'));
-        light = (cube) => ({ ...baked(cube), irradiance: (n) => readHarmonics(sh, n) });
+        const levelsAlone = light;
+        light = (cube) => ({ ...levelsAlone(cube), irradiance: (n) => readHarmonics(sh, n) });
     }
     const found = { files, size, count, real: light(levels) };
     if (!bounds.byDefault)

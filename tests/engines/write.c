@@ -1,6 +1,8 @@
 // Writes an engine's file of known content. engine_write ENGINE WHAT SIZE PATH [FORMAT]
 //   coded  level k in direction d has the radiance (1 + k) (2 + d): red has d.x, green d.y, blue d.z
 //   white  1 everywhere
+// Where an engine's files hold less than the coded cube's largest radiance, both are written DIM times darker, and
+// the page lets the engine multiply its light by DIM.
 // engine_write ENGINE default PANORAMA PATH: the levels that kiln bake --for ENGINE makes, as a cube of floats.
 #include <kiln/kiln.h>
 
@@ -8,27 +10,35 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void paint(kiln_map *map, bool coded)
+static const double DIM = 16;
+
+static double scale_for(const kiln_engine *engine, const kiln_map *map)
+{
+    return engine->limit < 3 * map->level_count ? 1 / DIM : 1;
+}
+
+static void paint(kiln_map *map, bool coded, double scale)
 {
     for (int k = 0; k < map->level_count; k++)
         for (size_t i = 0; i < kiln_map_texels(map, k); i++) {
             double d[3];
             kiln_map_direction(map, k, i, d);
             for (int c = 0; c < 3; c++)
-                map->level[k][3 * i + (size_t)c] = coded ? (float)((1 + k) * (2 + d[c])) : 1;
+                map->level[k][3 * i + (size_t)c] =
+                    (float)(scale * (coded ? (1 + k) * (2 + d[c]) : 1));
         }
 }
 
 // Radiance 2 + d in orthonormal harmonics: 1 is sqrt(4 pi) Y0, d.x is sqrt(4 pi / 3) Y1,1.
-static kiln_sh harmonics(bool coded)
+static kiln_sh harmonics(bool coded, double scale)
 {
     const double whole = 3.5449077018110318, part = 2.0466534158929770;
     static const int of_axis[3] = {3, 1, 2}; // the order is y z x
     kiln_sh sh = {.bands = 3};
     for (int c = 0; c < 3; c++) {
-        sh.c[0][c] = (coded ? 2 : 1) * whole;
+        sh.c[0][c] = scale * (coded ? 2 : 1) * whole;
         if (coded)
-            sh.c[of_axis[c]][c] = part;
+            sh.c[of_axis[c]][c] = scale * part;
     }
     return sh;
 }
@@ -62,7 +72,6 @@ static kiln_result save_known(kiln_context *context, const kiln_engine *engine, 
     kiln_plan *plan = NULL; // knows how the levels are laid out, and is quick where all are rough
     kiln_prefilter_def def;
     float roughness[KILN_MAX_LEVELS], rough[KILN_MAX_LEVELS];
-    kiln_sh sh = harmonics(coded);
     kiln_result result = kiln_engine_levels(engine, size, 0, roughness, &def, error);
     for (int k = 0; k < KILN_MAX_LEVELS; k++)
         rough[k] = 1;
@@ -74,7 +83,9 @@ static kiln_result save_known(kiln_context *context, const kiln_engine *engine, 
         result = kiln_plan_environment(plan, &made, error);
     if (!result) {
         memcpy(map->roughness, roughness, (size_t)map->level_count * sizeof *roughness);
-        paint(map, coded);
+        const double scale = scale_for(engine, map);
+        const kiln_sh sh = harmonics(coded, scale);
+        paint(map, coded, scale);
         result = kiln_engine_save(context, engine, map, &sh, format, path, NULL, error);
     }
     kiln_environment_free(&made);
