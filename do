@@ -248,7 +248,7 @@ demo)
     if [ -e "$1" ]; then
         start build_release EXAMPLES
         need demo
-        npm_packages tests/web tests/engines tests/engines/cesium tests/engines/galacean
+        npm_packages tests/web tests/engines
         await
         say "drawing in the engines"
         node examples/gallery.mjs build/release/bin build/gallery build/demo/gallery.part \
@@ -265,7 +265,7 @@ demo)
 bench)
     need build web bench
     panoramas
-    npm_packages web npm/codecs tests/web tests/engines bench/blocks
+    npm_packages web npm/codecs tests/web tests/engines tests/engines/cesium tests/engines/galacean bench/blocks
     build_release BENCH
     build wasm
     bench/run.sh "$@"
