@@ -48,7 +48,7 @@ console.log('  RMS error in % over 19 roughnesses from 0.1 to 1, and at the wors
             'relative to the\n  light that is left');
 await withPage(folder, async (browser, address) => {
     browser.setDefaultTimeout(300000);
-    for (const engine of current.filter(({ name }) => !only.length || only.includes(name))) {
+    for (const engine of current.filter(({ name, lightless }) => !lightless && (!only.length || only.includes(name)))) {
         let calm;
         for (const [name, bar] of Object.entries(NAMES)) {
             const { ofAll, ofRest } = await measure(browser, address, engine, name), lights = lightsOf(name);

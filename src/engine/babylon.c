@@ -42,7 +42,7 @@ static kiln_result write_env(ki_export *to, kiln_error *error)
 
 const ki_recipe ki_babylon = {
     .about = {.name = "babylon",
-              .title = "Babylon.js 9, .env",
+              .title = "Babylon.js 5 to 9, .env",
               .files = "NAME.env",
               .ending = "env",
               .mapping = "r^2 = 2^(k / 0.8) / w - 0.0005, k > 0",
@@ -50,7 +50,7 @@ const ki_recipe ki_babylon = {
               .size = 256,
               .level_count = 9,
               .limit = KI_RGBD_MAX,
-              .proof = "pixels of Babylon.js 9.34.0"},
+              .proof = "pixels of Babylon.js 5.0.0 and 9.34.0"},
     .axes = {{0, 1, 2}, {1, 1, -1}},
     .size_min = 16,
     .size_max = 2048,
@@ -62,7 +62,7 @@ const ki_recipe ki_babylon = {
 
 const ki_recipe ki_babylon_dds = {
     .about = {.name = "babylon-dds",
-              .title = "Babylon.js 9, .dds",
+              .title = "Babylon.js 5 to 9, .dds",
               .files = "NAME.dds",
               .ending = "dds",
               .mapping = "r^2 = 2^(k / 0.8) / w - 0.0005, k > 0",
@@ -70,7 +70,7 @@ const ki_recipe ki_babylon_dds = {
               .size = 256,
               .level_count = 9,
               .limit = KI_HALF_MAX,
-              .proof = "pixels of Babylon.js 9.34.0"},
+              .proof = "pixels of Babylon.js 5.0.0 and 9.34.0"},
     .axes = {{0, 1, 2}, {1, 1, -1}},
     .size_min = 16,
     .size_max = 2048,

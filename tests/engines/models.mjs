@@ -10,7 +10,7 @@
 //   told      the direction as the coarse texels tell it; curve: what becomes of radiance after it is read
 //   coding    encode(rgb) and decode(rgba) of texels that are interpolated before they are decoded
 // smallest: the size below which no level goes; words: what else `kiln bake` is told; asked: what else the page is told
-// filtersNothing: the engine has no filter of its own
+// filtersNothing: the engine has no filter of its own; lightless: its page draws no lights in an environment
 import { readTable } from './three-table.mjs';
 
 // Panoramas have +X in the centre and +Z to the right, where kiln's have -Z and +X. Fdez-Aguera of white metal:
@@ -142,7 +142,7 @@ function cesiumAlbedo(nov, roughness) {
     return splits.get(256 * j + i);
 }
 export const cesium = {
-    name: 'cesium', page: 'cesium/cesium.html', ending: '', loads: '', filtersNothing: true,
+    name: 'cesium', page: 'cesium/cesium.html', ending: '', loads: '', filtersNothing: true, lightless: true,
     model: (count) => ({
         toKiln: (way) => way, // east, up and south
         lod: (r) => (count - 1) * r,
@@ -166,7 +166,7 @@ const galaceanTexels = {
     decode: ([r, g, b, a]) => [r, g, b].map((c) => c * a * STEP / 255),
 };
 export const galacean = {
-    name: 'galacean', page: 'galacean/galacean.html', ending: '.env', loads: '.env', filtersNothing: true,
+    name: 'galacean', page: 'galacean/galacean.html', ending: '.env', loads: '.env', filtersNothing: true, lightless: true,
     words: ['--exposure', '-4'], asked: { intensity: 16 },
     model: (count) => ({
         // Its panoramas have -X in the centre and -Z to the right, where kiln's have -Z and +X.

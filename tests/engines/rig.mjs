@@ -63,20 +63,24 @@ function faceOf([x, y, z]) {
 export function readLevel({ size, row }, direction, channels = 3) {
     const [face, s, t] = faceOf(direction);
     const u = (s + 1) / 2 * size - 0.5, v = (t + 1) / 2 * size - 0.5;
-    const sum = Array(channels).fill(0);
-    for (let corner = 0; corner < 4; corner++) {
+    const corners = [0, 1, 2, 3].map((corner) => {
         let x = Math.floor(u) + corner % 2, y = Math.floor(v) + (corner >> 1), f = face;
         const weight = (1 - Math.abs(u - x)) * (1 - Math.abs(v - y));
-        if (x < 0 || y < 0 || x >= size || y >= size) {
+        const out = [x, y].filter((at) => at < 0 || at >= size).length;
+        if (out === 1) {
             const [other, p, q] = faceOf(FACES[face](2 * (x + 0.5) / size - 1,
                                                      2 * (y + 0.5) / size - 1));
             const place = (w) => Math.min(size - 1, Math.max(0, Math.floor((w + 1) / 2 * size)));
             [f, x, y] = [other, place(p), place(q)];
         }
-        const texels = row(f * size + y);
-        for (let c = 0; c < channels; c++)
-            sum[c] += weight * texels[4 * x + c];
-    }
+        return { weight, texel: out < 2 && row(f * size + y).slice(4 * x, 4 * x + channels) };
+    });
+    // Where three faces meet there is no fourth texel; the mean of the three takes its place.
+    const there = corners.filter(({ texel }) => texel), share = 1 / there.length;
+    const missing = there.length < 4 ? corners.find(({ texel }) => !texel).weight : 0;
+    const sum = Array(channels).fill(0);
+    for (const { weight, texel } of there)
+        texel.forEach((value, c) => { sum[c] += (weight + share * missing) * value; });
     return sum;
 }
 
