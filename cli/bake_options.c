@@ -301,10 +301,10 @@ static void take_stdout(bake *b)
 {
     bool bare = !strcmp(b->output, "-");
     b->to_stdout = bare || !strncmp(b->output, "-.", 2);
-    const kiln_engine *engine = kiln_engine_at(b->engine_index);
+    const char *ending =
+        kiln_engine_ending(kiln_engine_at(b->engine_index), (kiln_format)b->format);
     if (bare)
-        snprintf(b->folder[0], sizeof b->folder[0], "-.%s",
-                 engine && engine->ending[0] ? engine->ending : "ktx2");
+        snprintf(b->folder[0], sizeof b->folder[0], "-.%s", ending && ending[0] ? ending : "ktx2");
     b->output = bare ? b->folder[0] : b->output;
 }
 
@@ -376,20 +376,34 @@ static const char *add_slash(const char *path, char folder[4096])
 
 // ---------------------------------------------------------------------------- options of an engine
 
+// Returns the engine's first format whose files have the ending of `path`, or KILN_FORMAT_AUTO.
+static kiln_format format_of_ending(const kiln_engine *engine, const char *path)
+{
+    for (int k = 0; k < 4 && engine->formats[k]; k++)
+        if (cli_ends_in(path, kiln_engine_ending(engine, engine->formats[k])))
+            return engine->formats[k];
+    return KILN_FORMAT_AUTO;
+}
+
 // Checks that no option is given whose value the engine decides.
 static int check_engine(const bake *b)
 {
     static const int decided[] = {SHAPE, ZSTD, ROUGHNESS, LOBE, METHOD};
-    const char *name = b->engine->name, *ending = b->engine->ending;
+    const char *name = b->engine->name;
+    const char *ending = kiln_engine_ending(b->engine, (kiln_format)b->format);
     for (size_t i = 0; i < sizeof decided / sizeof *decided; i++)
         if (b->arguments.text[decided[i]])
             return cli_wrong(b->arguments.command,
                              "--for %s decides what --%s is, leave one of them out", name,
                              bake_options[decided[i]].name);
-    if (ending[0] && !cli_ends_in(b->output, ending))
-        return cli_wrong(b->arguments.command, "--output %s: --for %s writes .%s", b->output, name,
-                         ending);
-    return CLI_GO;
+    if (!ending[0] || cli_ends_in(b->output, ending))
+        return CLI_GO;
+    kiln_format other = format_of_ending(b->engine, b->output);
+    return other ? cli_wrong(b->arguments.command,
+                             "--output %s: --for %s writes .%s; for this ending add --format %s",
+                             b->output, name, ending, kiln_format_names()[other])
+                 : cli_wrong(b->arguments.command, "--output %s: --for %s writes .%s", b->output,
+                             name, ending);
 }
 
 // Takes the lobe and the roughness of each level from the engine of --for, and checks the format.

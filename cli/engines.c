@@ -36,6 +36,10 @@ static void print_json(json *j, const kiln_engine *engine)
     for (int k = 0; k < 4 && engine->formats[k]; k++)
         json_text(j, NULL, kiln_format_names()[engine->formats[k]]);
     json_end(j);
+    json_array(j, "endings");
+    for (int k = 0; k < 4 && engine->formats[k]; k++)
+        json_text(j, NULL, kiln_engine_ending(engine, engine->formats[k]));
+    json_end(j);
     json_text(j, "tune", engine->tune ? "sharp" : "none");
     json_text(j, "proof", engine->proof);
     json_end(j);

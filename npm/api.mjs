@@ -69,11 +69,11 @@ function wordsOf(options) {
 }
 
 // The output's name where the caller gives none: the input's without its folder and ending, and the ending of the
-// engine's file. An engine of several files has no ending: the command adds to the name.
-function outputOf(name, engineName) {
+// engine's file in this format. An engine of several files has no ending: the command adds to the name.
+function outputOf(name, engineName, format) {
     const engine = engines.find((each) => each.name === engineName);
     const last = name.slice(name.lastIndexOf('/') + 1), dot = last.lastIndexOf('.');
-    const ending = engine ? engine.ending : 'ktx2';
+    const ending = engine ? engine.endings[engine.formats.indexOf(format)] ?? engine.ending : 'ktx2';
     return ((dot > 0 ? last.slice(0, dot) : last) || 'output') + (ending && `.${ending}`);
 }
 
@@ -163,7 +163,7 @@ export function makeApi(loadModule, startWorker) {
     async function bake(input, options) {
         options ??= {};
         const named = await filesOf(input, options.name);
-        const output = harmless(options.output ?? outputOf(options.name ?? named[0].name, options.for));
+        const output = harmless(options.output ?? outputOf(options.name ?? named[0].name, options.for, options.format));
         const words = ['bake', ...named.map(({ name }) => name), '--output', output, ...wordsOf(options), '--json'];
         if (!options.sh)
             words.push('--sh', HARMONICS);

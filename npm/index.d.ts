@@ -145,6 +145,8 @@ export interface Engine {
     /** Greatest radiance that the files hold. */
     limit: number;
     formats: string[];
+    /** The ending of the engine's files in each of these formats. */
+    endings: string[];
     tune: 'none' | 'sharp';
     proof: string;
 }

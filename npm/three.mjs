@@ -9,8 +9,9 @@ import { Color, CompressedTexture, CubeReflectionMapping, DataTexture, Direction
          LinearMipmapLinearFilter, REVISION, RGBAFormat } from 'three';
 import { kindOf, openFile } from './fetch.mjs';
 
-// The first versions that show CubeUV files, CubeUV files in WebGPURenderer, and cubes.
-const OLDEST = 150, OLDEST_GPU = 186, CUBES = 187;
+// The first versions that show CubeUV files, CubeUV files in WebGPURenderer, and cubes; and the first whose KTX2Loader
+// reads UASTC HDR.
+const OLDEST = 150, OLDEST_GPU = 186, CUBES = 187, OLDEST_UASTC = 170;
 const CUBE_UV_MAPPING = 306;     // CubeUVReflectionMapping, which r187 no longer exports
 const revision = parseInt(REVISION, 10);
 
@@ -30,7 +31,7 @@ function checkVersion(renderer) {
 
 // ---------------------------------------------------------------------------------------------- cubes (KTX2)
 
-const RGBA16F = 97, ZSTD = 2; // VkFormat and supercompression scheme of KTX2
+const RGBA16F = 97, UASTC = 1000066000, ZSTD = 2; // two VkFormats and a supercompression scheme of KTX2
 
 // Header, levels and metadata of a KTX2 file. All numbers are little-endian, and those of 64 bits are below 2^53.
 function readKtx2({ name, bytes }) {
@@ -159,6 +160,9 @@ async function makeKtx2(file, renderer, options) {
     if (engine !== 'three-cubeuv')
         throw new Error(`${name}: the KTX2 file holds a flat picture and not a cube; bake it with --for ${engine}`);
     checkCubeUv(name, width, height);
+    if (format === UASTC && revision < OLDEST_UASTC)
+        throw new Error(`${name}: KTX2Loader reads UASTC HDR from r${OLDEST_UASTC} on, and this is r${REVISION}; ` +
+                        `bake an .exr with --for ${engine}`);
     return Object.assign(await readByLoader(file, format, options), CUBE_UV);
 }
 

@@ -51,7 +51,7 @@ export class Files {
         const page = `engines/${this.chosen.name.split('-')[0]}.md`;
         if (!this.pages.has(page))
             this.pages.set(page, await textOf(page));
-        return linesOf(this.pages.get(page), this.chosen.name);
+        return linesOf(this.pages.get(page), this.chosen.name, this.read().format);
     }
 
     // What a bake depends on.

@@ -12,12 +12,15 @@ function block(text, from, word = '') {
 // Numbered steps, where an engine has no code, without Markdown's marks.
 const steps = (text) => (text.match(/^\d\. .*(\n {3}.*)*/gm) ?? []).join('\n').replace(/[*`]/g, '');
 
-// Takes three texts for the engine `name` out of `text`, its page of the documentation: the name of the file that
-// the page's example bakes (the panorama of these examples is called city), the lines of code that load the
-// file, and the lines that add lights. Each is empty if the page does not have it.
-export function linesOf(text, name) {
-    const [, output = ''] = text.match(new RegExp(`^    kiln bake \\S+ --for ${name} -o (\\S+)$`, 'm')) ?? [];
-    const at = text.search(new RegExp(`^    kiln bake \\S+ --for ${name} -o`, 'm'));
+// The example that bakes files in a format for the engine `name`, or else in the default format.
+const example = (text, name, format) => [`${name} --format ${format}`, name]
+    .map((words) => text.match(new RegExp(`^    kiln bake \\S+ --for ${words} -o (\\S+)$`, 'm'))).find(Boolean);
+
+// Takes three texts for the engine `name` and a format out of `text`, the engine's page of the documentation: the name
+// of the file that the page's example bakes (the panorama of these examples is called city), the lines of code that
+// load the file, and the lines that add lights. Each is empty if the page does not have it.
+export function linesOf(text, name, format) {
+    const { 1: output = '', index: at = -1 } = example(text, name, format) ?? {};
     const heading = '\n## Lights that were taken out\n', lights = text.indexOf(heading);
     return {
         output: output.replace(/^.*\//, ''),

@@ -939,8 +939,8 @@ struct kiln_engine {
     const char *name;  ///< short name, for example "three"
     const char *title; ///< full name and version, for example "three.js from r187 on"
     const char *files; ///< names of the written files, for example "NAME.ktx2"
-    /// Ending of the path for kiln_engine_save, for example "ktx2"; "" where the path is the
-    /// beginning of several file names.
+    /// Ending of the path for kiln_engine_save with the default format, for example "ktx2"; "" where
+    /// the path is the beginning of several file names. kiln_engine_ending knows the other formats.
     const char *ending;
     /// Formula for the roughness r of level k of n, w being the size of level 0.
     const char *mapping;
@@ -973,6 +973,9 @@ KILN_API KILN_CHECKED kiln_result kiln_engine_levels(const kiln_engine *engine, 
 /// from. Fails if *format is not a format of the engine.
 KILN_API KILN_CHECKED kiln_result kiln_engine_format(const kiln_engine *engine, kiln_format *format,
                                                      kiln_error *error);
+/// Returns the ending of the path for kiln_engine_save with a format of the engine, as in
+/// kiln_engine.ending. Returns NULL if `engine` is not from kiln's list.
+KILN_API const char *kiln_engine_ending(const kiln_engine *engine, kiln_format format);
 /// Returns the level, with its fraction, that the engine's shader reads for a roughness of 0 to 1.
 /// Returns -1 if `engine` is not from kiln's list or reads no levels, and for a roughness, size or
 /// level_count out of range.

@@ -67,6 +67,10 @@ kiln_result ki_dds_encode(const kiln_map *map, const kiln_save_def *def, ki_writ
 /// four half floats a texel, and the engine's name.
 kiln_result ki_dds_encode_atlas(const kiln_image *image, const char *engine, ki_writer *writer,
                                 kiln_error *error);
+/// Appends a KTX2 file with one flat picture of three channels, whose lowest row is the first of
+/// `image`, as engines store atlases. `engine` is the text of ki_engine_text_write.
+kiln_result ki_ktx2_encode_picture(const kiln_image *image, const kiln_save_def *def,
+                                   const char *engine, ki_writer *writer, kiln_error *error);
 /// Appends a KTX2 file with a table of the reflection model, whose `depth` slices lie one below the
 /// other in `image`. Several slices become a 3-D texture. `text`, the table's description, is
 /// stored in the metadata.

@@ -5,6 +5,7 @@
 #define KI_KTX2_H
 
 #include "codec/codec.h"
+#include "codec/pixel_format.h"
 #include "codec/texels.h"
 
 // ----------------------------------------------------------------------------------------- writing
@@ -38,6 +39,10 @@ typedef struct ki_ktx2_file {
     int sample_count;
     ki_ktx2_sample samples[6];
 } ki_ktx2_file;
+
+/// Returns a description of a file whose texels have a format. Sizes and counts are for the caller
+/// to set, and so is `zstd`.
+ki_ktx2_file ki_ktx2_file_of(const ki_pixel_format *pixel);
 
 typedef struct ki_ktx2_writer {
     ki_writer *w;

@@ -4,6 +4,7 @@
 // or zlib if needed.
 #include "codec/decimal.h"
 #include "codec/deflate.h"
+#include "codec/engine_text.h"
 #include "codec/file_info.h"
 #include "codec/ktx2.h"
 #include "codec/zstd.h"
@@ -17,6 +18,51 @@ static const uint8_t identifier[12] = {0xab, 'K',  'T',  'X',  ' ',  '2',
 enum { INDEX_ENTRY = 24, SCHEME_NONE = 0, SCHEME_BASIS = 1, SCHEME_ZSTD = 2, SCHEME_ZLIB = 3 };
 
 // ----------------------------------------------------------------------------------------- writing
+
+// Sets the samples of the file's data format descriptor, which say where the bits of each channel
+// lie, and returns their number. A shared exponent is a further sample for each of its channels.
+static int find_samples(const ki_pixel_format *pixel, ki_ktx2_sample samples[6])
+{
+    const uint32_t minus_one = 0xbf800000, one = 0x3f800000;
+    switch (pixel->format) {
+    case KILN_FORMAT_RGB9E5:
+        // The lower and upper limits, the last two numbers of a sample, are those of the KTX
+        // specification for VK_FORMAT_E5B9G9R9_UFLOAT_PACK32.
+        for (int c = 0; c < 3; c++) {
+            samples[2 * (size_t)c] = (ki_ktx2_sample){9 * c, 9, c, 0, 8448};
+            samples[2 * (size_t)c + 1] = (ki_ktx2_sample){27, 5, c | KI_KTX2_EXPONENT, 15, 31};
+        }
+        return 6;
+    case KILN_FORMAT_B10G11R11:
+        samples[0] = (ki_ktx2_sample){0, 11, 0 | KI_KTX2_FLOAT, 0, one};
+        samples[1] = (ki_ktx2_sample){11, 11, 1 | KI_KTX2_FLOAT, 0, one};
+        samples[2] = (ki_ktx2_sample){22, 10, 2 | KI_KTX2_FLOAT, 0, one};
+        return 3;
+    case KILN_FORMAT_BC6H:
+    case KILN_FORMAT_UASTC:
+        samples[0] = (ki_ktx2_sample){0, 128, 0 | KI_KTX2_FLOAT, 0, one};
+        return 1;
+    default:
+        break;
+    }
+    int bits = 2 * pixel->bytes;
+    for (int c = 0; c < 4; c++)
+        samples[c] = (ki_ktx2_sample){bits * c, bits,
+                                      (c == 3 ? KI_KTX2_ALPHA : c) | KI_KTX2_FLOAT | KI_KTX2_SIGNED,
+                                      minus_one, one};
+    return 4;
+}
+
+ki_ktx2_file ki_ktx2_file_of(const ki_pixel_format *pixel)
+{
+    ki_ktx2_file file = {.vk = pixel->vk,
+                         .type_size = pixel->type_size,
+                         .texel_size = pixel->bytes,
+                         .block = pixel->block,
+                         .model = pixel->model};
+    file.sample_count = find_samples(pixel, file.samples);
+    return file;
+}
 
 // Writes the data format descriptor: a basic descriptor block of the Khronos Data Format 1.3.
 static void write_format(ki_writer *w, const ki_ktx2_file *file)
@@ -285,6 +331,8 @@ static void read_entry(const char *key, const char *value, kiln_file_info *info)
         read_sh(value, info);
     if (!strcmp(key, "kiln:table"))
         ki_copy_printable(info->table, sizeof info->table, value);
+    if (!strcmp(key, "kiln:engine"))
+        ki_engine_text_read(value, info);
     if (strcmp(key, "kiln:roughness") != 0)
         return;
     for (int k = 0; k < KILN_MAX_LEVELS; k++) {

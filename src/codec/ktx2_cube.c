@@ -2,46 +2,11 @@
 // that is read, the cube.
 #include "codec/decimal.h"
 #include "codec/ktx2.h"
-#include "codec/pixel_format.h"
 
 #include <stdio.h>
 #include <string.h>
 
 // ----------------------------------------------------------------------------------------- writing
-
-// Sets the samples of the file's data format descriptor, which say where the bits of each channel
-// lie, and returns their number. A shared exponent is a further sample for each of its channels.
-static int find_samples(const ki_pixel_format *pixel, ki_ktx2_sample samples[6])
-{
-    const uint32_t minus_one = 0xbf800000, one = 0x3f800000;
-    switch (pixel->format) {
-    case KILN_FORMAT_RGB9E5:
-        // The lower and upper limits, the last two numbers of a sample, are those of the KTX
-        // specification for VK_FORMAT_E5B9G9R9_UFLOAT_PACK32.
-        for (int c = 0; c < 3; c++) {
-            samples[2 * (size_t)c] = (ki_ktx2_sample){9 * c, 9, c, 0, 8448};
-            samples[2 * (size_t)c + 1] = (ki_ktx2_sample){27, 5, c | KI_KTX2_EXPONENT, 15, 31};
-        }
-        return 6;
-    case KILN_FORMAT_B10G11R11:
-        samples[0] = (ki_ktx2_sample){0, 11, 0 | KI_KTX2_FLOAT, 0, one};
-        samples[1] = (ki_ktx2_sample){11, 11, 1 | KI_KTX2_FLOAT, 0, one};
-        samples[2] = (ki_ktx2_sample){22, 10, 2 | KI_KTX2_FLOAT, 0, one};
-        return 3;
-    case KILN_FORMAT_BC6H:
-    case KILN_FORMAT_UASTC:
-        samples[0] = (ki_ktx2_sample){0, 128, 0 | KI_KTX2_FLOAT, 0, one};
-        return 1;
-    default:
-        break;
-    }
-    int bits = 2 * pixel->bytes;
-    for (int c = 0; c < 4; c++)
-        samples[c] = (ki_ktx2_sample){bits * c, bits,
-                                      (c == 3 ? KI_KTX2_ALPHA : c) | KI_KTX2_FLOAT | KI_KTX2_SIGNED,
-                                      minus_one, one};
-    return 4;
-}
 
 // Writes the metadata entries of a cube, in the byte order of their keys.
 static void write_metadata(ki_writer *w, const kiln_map *map, const kiln_save_def *def)
@@ -99,17 +64,11 @@ kiln_result ki_ktx2_encode(const kiln_map *map, const kiln_save_def *def, ki_wri
                        "each level of a KTX2 file has half the size of the previous level, which "
                        "the map's smallest of %d prevents",
                        map->smallest);
-    ki_ktx2_file file = {.vk = pixel->vk,
-                         .type_size = pixel->type_size,
-                         .texel_size = pixel->bytes,
-                         .block = pixel->block,
-                         .model = pixel->model,
-                         .width = map->size,
-                         .height = map->size,
-                         .face_count = 6,
-                         .level_count = map->level_count,
-                         .zstd = def->zstd};
-    file.sample_count = find_samples(pixel, file.samples);
+    ki_ktx2_file file = ki_ktx2_file_of(pixel);
+    file.width = file.height = map->size;
+    file.face_count = 6;
+    file.level_count = map->level_count;
+    file.zstd = def->zstd;
     ki_ktx2_writer k;
     ki_ktx2_begin(writer, &file, &k);
     write_metadata(writer, map, def);

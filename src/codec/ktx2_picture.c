@@ -1,6 +1,7 @@
-// The texels of KTX2 files, whichever program wrote the file. In: an opened file. Out: how its
-// texels are stored, by its vkFormat and its data format descriptor; or a flat picture, level 0 of
-// a 2-D texture.
+// The texels of KTX2 files, whichever program wrote the file, and flat pictures. In: an opened file.
+// Out: how its texels are stored, by its vkFormat and its data format descriptor; or a flat picture,
+// level 0 of a 2-D texture. Also the writing of an engine's flat picture.
+#include "codec/engine_text.h"
 #include "codec/ktx2.h"
 #include "codec/report.h"
 #include "codec/uastc.h"
@@ -88,7 +89,8 @@ static void describe(const ki_ktx2_source *s, const ki_texels *texels, kiln_file
              ki_ktx2_scheme(s));
     info->width = (int)s->width;
     info->height = (int)s->height;
-    info->level_count = (int)s->level_count;
+    if (!ki_is_atlas(info)) // whose metadata state the number of levels in the picture
+        info->level_count = (int)s->level_count;
     info->channel_count = texels->channels;
 }
 
@@ -114,7 +116,7 @@ kiln_result ki_ktx2_decode_picture(kiln_context *context, ki_ktx2_source *s, kil
     int w = info->width, h = info->height;
     result = ki_ktx2_find_level(s, 0, ki_texels_size(&texels, w, h, 1), &level, error);
     if (result == KILN_OK)
-        ki_texels_note(&texels, true, info->level_count, report);
+        ki_texels_note(&texels, true, (int)s->level_count, report);
     if (result != KILN_OK || !image)
         return result;
     result = ki_ktx2_unpack(context, s, 0, &level, &plain, &unpacked, error);
@@ -132,4 +134,40 @@ kiln_result ki_ktx2_decode_picture(kiln_context *context, ki_ktx2_source *s, kil
     if (result != KILN_OK)
         kiln_image_free(image);
     return result;
+}
+
+// ----------------------------------------------------------------------------------------- writing
+
+typedef struct pack_job {
+    const ki_pixel_format *pixel;
+    const kiln_image *image;
+} pack_job;
+
+static bool pack_picture(kiln_context *context, const void *data, int level, uint8_t *bytes)
+{
+    (void)level;
+    const pack_job *job = data;
+    const kiln_image *image = job->image;
+    return ki_pixels_pack(context, job->pixel, image->pixels, image->width, image->height, 1,
+                          bytes);
+}
+
+kiln_result ki_ktx2_encode_picture(const kiln_image *image, const kiln_save_def *def,
+                                   const char *engine, ki_writer *writer, kiln_error *error)
+{
+    pack_job job = {ki_pixel_format_of(def->format), image};
+    ki_ktx2_file file = ki_ktx2_file_of(job.pixel);
+    file.width = image->width;
+    file.height = image->height;
+    file.face_count = file.level_count = 1;
+    file.zstd = def->zstd;
+    ki_ktx2_writer k;
+    ki_ktx2_begin(writer, &file, &k);
+    ki_ktx2_write_common(writer, "ru");
+    size_t entry = ki_ktx2_begin_entry(writer, "kiln:engine");
+    ki_write_text(writer, "%s", engine);
+    ki_ktx2_end_entry(writer, entry);
+    kiln_result result = ki_ktx2_end_metadata(&k, error);
+    size_t size = (size_t)ki_pixels_size(job.pixel, image->width, image->height);
+    return result == KILN_OK ? ki_ktx2_write_level(&k, 0, size, pack_picture, &job, error) : result;
 }

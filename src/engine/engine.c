@@ -229,10 +229,19 @@ kiln_result kiln_engine_show(kiln_context *context, const kiln_engine *engine, c
     return KILN_OK;
 }
 
-// Fails unless a path has the ending of the files that the engine reads.
-static kiln_result check_path(const ki_recipe *recipe, const char *path, kiln_error *error)
+const char *kiln_engine_ending(const kiln_engine *engine, kiln_format format)
 {
-    const char *ending = kiln_path_ending(path), *wanted = recipe->about.ending;
+    const ki_recipe *recipe = ki_recipe_of(engine);
+    bool own = recipe && format == KILN_FORMAT_UASTC && recipe->uastc_ending;
+    return !recipe ? NULL : own ? recipe->uastc_ending : recipe->about.ending;
+}
+
+// Fails unless a path has the ending of the files of a format that the engine reads.
+static kiln_result check_path(const ki_recipe *recipe, kiln_format format, const char *path,
+                              kiln_error *error)
+{
+    const char *ending = kiln_path_ending(path);
+    const char *wanted = kiln_engine_ending(&recipe->about, format);
     bool good = path[0] && (!wanted[0] || (ending[0] == '.' && !strcmp(ending + 1, wanted)));
     return good ? KILN_OK
                 : ki_fail(error, KILN_ERROR_ARGUMENT, "%s: %s's file must end in .%s", path,
@@ -285,9 +294,9 @@ kiln_result ki_engine_write(ki_file_set *set, kiln_context *context, const kiln_
 {
     const ki_recipe *recipe;
     kiln_result result = find_recipe(engine, &recipe, error);
-    if (result != KILN_OK || (result = check_path(recipe, path, error)) != KILN_OK ||
-        (result = check_map(recipe, map, sh, error)) != KILN_OK ||
-        (result = kiln_engine_format(engine, &format, error)) != KILN_OK)
+    if (result != KILN_OK || (result = kiln_engine_format(engine, &format, error)) != KILN_OK ||
+        (result = check_path(recipe, format, path, error)) != KILN_OK ||
+        (result = check_map(recipe, map, sh, error)) != KILN_OK)
         return result;
     if (!ki_progress(context, "writing", 0))
         return ki_fail_cancelled(error, "writing");

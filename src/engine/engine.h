@@ -48,6 +48,8 @@ typedef struct ki_recipe {
     /// levels.
     double (*level)(double roughness, int level_count, int size);
     bool keeps_last; ///< true: the engine uses the last level as its diffuse light
+    /// Ending of the path for files of UASTC HDR; NULL for about.ending.
+    const char *uastc_ending;
     /// True: the engine reads no cube, but flat pictures into which `write` draws the levels.
     bool flat;
     kiln_result (*write)(ki_export *to, kiln_error *error);
@@ -82,6 +84,10 @@ void ki_turn_sh(const kiln_sh *source, const ki_axes *axes, kiln_sh *turned);
 /// Adds a file with the content `bytes` to the files that an export writes.
 kiln_result ki_export_add(ki_export *to, const char *path, const ki_writer *bytes,
                           kiln_error *error);
+
+/// Returns the zstd compression level for an export's file, whose loader reads zstd: 0 for none
+/// where the texels are no blocks or where this build of kiln has no zstd.
+int ki_export_zstd(const ki_export *to);
 
 /// Writes the cube of an export as a single .dds file in the texel format of the export.
 kiln_result ki_export_dds(ki_export *to, kiln_error *error);

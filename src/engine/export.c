@@ -3,6 +3,7 @@
 #include "engine/engine.h"
 
 #include "codec/codec.h"
+#include "codec/zstd.h"
 #include "math/math.h"
 #include "sphere/sh.h"
 
@@ -65,6 +66,12 @@ kiln_result ki_export_add(ki_export *to, const char *path, const ki_writer *byte
         return ki_fail_memory(to->context, error, path, bytes->size);
     to->file_count++;
     return ki_file_set_add(to->set, path, bytes->bytes, bytes->size, error);
+}
+
+int ki_export_zstd(const ki_export *to)
+{
+    enum { LEVEL = 19 };
+    return to->format == KILN_FORMAT_UASTC && ki_zstd_known(to->path, NULL) == KILN_OK ? LEVEL : 0;
 }
 
 kiln_result ki_export_dds(ki_export *to, kiln_error *error)

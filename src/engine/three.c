@@ -7,18 +7,13 @@
 #include "engine/engine.h"
 
 #include "codec/codec.h"
-#include "codec/zstd.h"
 #include "image/pack.h"
-
-enum { ZSTD_LEVEL = 12 };
 
 static kiln_result write_files(ki_export *to, kiln_error *error)
 {
     ki_writer bytes = {.context = to->context};
-    // Blocks are compressed once more, where the build can: KTX2Loader reads zstd.
-    bool packed = to->format == KILN_FORMAT_UASTC && ki_zstd_known(to->path, NULL) == KILN_OK;
     kiln_save_def def = {
-        .format = to->format, .zstd = packed ? ZSTD_LEVEL : 0, .sh = to->sh, .lobe = "ggx"};
+        .format = to->format, .zstd = ki_export_zstd(to), .sh = to->sh, .lobe = "ggx"};
     kiln_result result = ki_ktx2_encode(to->map, &def, &bytes, error);
     if (result == KILN_OK)
         result = ki_export_add(to, to->path, &bytes, error);

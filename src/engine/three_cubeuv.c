@@ -1,5 +1,6 @@
 // three.js r150 to r186 and model-viewer: a cube and its levels go in, an atlas called CubeUV comes
-// out as an EXR picture. cube_uv_reflection_fragment.glsl.js is the shader that reads the atlas.
+// out as an EXR picture, or in blocks of UASTC HDR as a KTX2 picture, which three.js reads from r170
+// on. cube_uv_reflection_fragment.glsl.js is the shader that reads the atlas.
 // Each level ("mip" m of M) has six faces with a border of one texel each: +X +Y +Z in a row, and
 // -X -Y -Z in the row above. Mips M to 4 have faces of 2^m texels and lie 4 (2^M - 2^m) texels
 // above the bottom. Mips 3 to -2 have faces of 16 texels and lie to the right of mip 4. At the base
@@ -10,6 +11,7 @@
 
 #include "codec/codec.h"
 #include "codec/engine_text.h"
+#include "codec/texels.h"
 #include "engine/picture.h"
 #include "image/image.h"
 #include "image/pack.h"
@@ -107,12 +109,39 @@ static bool draw(kiln_context *context, const sheet *s, int level, int index)
     return true;
 }
 
+// Adds the atlas to the files of the export, in the format of the export.
+static kiln_result add_sheet(ki_export *to, const sheet *s, kiln_error *error)
+{
+    ki_writer bytes = {.context = to->context}, text = bytes;
+    ki_engine_text_write(&text, ki_three_cubeuv.about.name, " layout=cubeuv", to->map);
+    const char *engine = (const char *)text.bytes;
+    kiln_result result = KILN_OK;
+    if (text.failed)
+        result = ki_fail_memory(to->context, error, "a picture", text.size);
+    if (result == KILN_OK && to->format == KILN_FORMAT_UASTC) {
+        const kiln_save_def def = {.format = to->format, .zstd = ki_export_zstd(to)};
+        const kiln_image image = {
+            .width = s->width, .height = s->height, .channels = 3, .pixels = s->pixels};
+        // KTX2Loader passes the rows on as the file has them, and WebGL's textures begin below.
+        result = ki_texels_flip(to->context, s->pixels, s->width, s->height, false, true)
+                     ? ki_ktx2_encode_picture(&image, &def, engine, &bytes, error)
+                     : ki_fail_cancelled(error, "writing");
+    } else if (result == KILN_OK) {
+        const ki_exr_options options = {.half = true, .roughness = -1, .engine = engine};
+        result = ki_exr_encode(s->pixels, s->width, s->height, 3, &options, &bytes, error);
+    }
+    if (result == KILN_OK)
+        result = ki_export_add(to, to->path, &bytes, error);
+    ki_writer_free(&text);
+    ki_writer_free(&bytes);
+    return result;
+}
+
 static kiln_result write_files(ki_export *to, kiln_error *error)
 {
     int base = to->map->size / FINER;
     sheet s = {.map = to->map, .width = 3 * ki_max(base, 7 * LAST), .height = 4 * base};
     size_t count = (size_t)s.width * (size_t)s.height, face_count = (size_t)base * (size_t)base;
-    ki_writer bytes = {.context = to->context};
     kiln_result result = KILN_OK;
     s.pixels = ki_alloc(to->context, count, 3 * sizeof *s.pixels);
     s.texels = ki_alloc_raw(to->context, face_count, 3 * sizeof *s.texels);
@@ -126,18 +155,8 @@ static kiln_result write_files(ki_export *to, kiln_error *error)
     for (int i = 0; i < 6 * to->map->level_count && result == KILN_OK; i++)
         if (!draw(to->context, &s, i / 6, i % 6))
             result = ki_fail_cancelled(error, "writing");
-    ki_writer text = {.context = to->context};
-    ki_engine_text_write(&text, ki_three_cubeuv.about.name, " layout=cubeuv", to->map);
-    if (result == KILN_OK && text.failed)
-        result = ki_fail_memory(to->context, error, "a picture", text.size);
-    const ki_exr_options options = {
-        .half = true, .roughness = -1, .engine = (const char *)text.bytes};
     if (result == KILN_OK)
-        result = ki_exr_encode(s.pixels, s.width, s.height, 3, &options, &bytes, error);
-    if (result == KILN_OK)
-        result = ki_export_add(to, to->path, &bytes, error);
-    ki_writer_free(&text);
-    ki_writer_free(&bytes);
+        result = add_sheet(to, &s, error);
     ki_free(s.room);
     ki_free(s.texels);
     ki_free(s.pixels);
@@ -147,19 +166,21 @@ static kiln_result write_files(ki_export *to, kiln_error *error)
 const ki_recipe ki_three_cubeuv = {
     .about = {.name = "three-cubeuv",
               .title = "three.js r150 to r186",
-              .files = "NAME.exr",
+              .files = "NAME.exr, or NAME.ktx2 in uastc",
               .ending = "exr",
               .mapping = "r = 2^(-m / 2) / 1.16, .21 .305 .4 .53 .67 .8 1",
               .tune = true,
               .size = 512,
               .level_count = 11,
               .limit = KI_HALF_MAX,
+              .formats = {KILN_FORMAT_RGBA16F, KILN_FORMAT_UASTC},
               .proof = "pixels of three.js 0.150.1 to 0.186.1"},
     .axes = {{2, 1, 0}, {1, 1, -1}},
     .size_min = 64,
     .size_max = 2048,
     .last_size = FINER * LAST,
     .smallest = FINER * LAST,
+    .uastc_ending = "ktx2",
     .flat = true,
     .extra_levels = EXTRA,
     .roughness = roughness,

@@ -121,6 +121,15 @@ static void what_an_engine_does_not_take_is_said(void **state)
         kiln_engine_save(context, three, &map, &sh, KILN_FORMAT_BC6H, "x.ktx2", NULL, &error),
         KILN_ERROR_ARGUMENT);
     assert_string_equal(error.message, "three: format is bc6h, it must be rgba16f or uastc");
+    const kiln_engine *flat = kiln_engine_find("three-cubeuv");
+    assert_int_equal(
+        kiln_engine_save(context, flat, &map, &sh, KILN_FORMAT_UASTC, "x.exr", NULL, &error),
+        KILN_ERROR_ARGUMENT);
+    assert_string_equal(error.message, "x.exr: three-cubeuv's file must end in .ktx2");
+    assert_string_equal(kiln_engine_ending(flat, KILN_FORMAT_UASTC), "ktx2");
+    assert_string_equal(kiln_engine_ending(flat, KILN_FORMAT_AUTO), "exr");
+    assert_string_equal(kiln_engine_ending(three, KILN_FORMAT_UASTC), "ktx2");
+    assert_null(kiln_engine_ending(&stranger, KILN_FORMAT_AUTO));
     const kiln_engine *filament = kiln_engine_find("filament");
     assert_int_equal(
         kiln_engine_save(context, filament, &map, &sh, KILN_FORMAT_RGB9E5, "x", NULL, &error),

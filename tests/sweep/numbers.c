@@ -204,6 +204,10 @@ static void lobes_weigh_every_angle(void **state)
         }
     assert_non_null(kiln_engine_find("three"));
     assert_null(kiln_engine_find(""));
+    assert_null(kiln_engine_ending(NULL, KILN_FORMAT_AUTO));
+    for (int i = 0; kiln_engine_at(i); i++)
+        EACH_INT (format)
+            assert_non_null(kiln_engine_ending(kiln_engine_at(i), (kiln_format)format));
 }
 
 static void an_engine_reads_a_level_that_exists(void **state)

@@ -8,8 +8,8 @@ from numpy.typing import ArrayLike
 
 from . import _header as c
 from ._each import broadcast, loop
-from ._library import (ArgumentError, Context, Memory, Progress, borrow, call, fill, integer, library, path_bytes,
-                       word)
+from ._library import (ArgumentError, Context, Memory, Progress, borrow, call, fill, integer, library, number,
+                       path_bytes, word)
 from ._maps import (Map, Note, SaveReport, Source, out_path, own_map, read_source, save_report, take_files, warn_of)
 
 # ------------------------------------------------------------------------------------------------------ harmonics
@@ -142,6 +142,11 @@ class Engine:
 
     def __repr__(self) -> str:
         return "<kiln.Engine: %s>" % self.title
+
+    def ending_of(self, format: str) -> str:
+        """The ending of the path to save to with a format, such as "uastc"."""
+        value: bytes = library.kiln_engine_ending(self._pointer, number("kiln_format", format, "format"))
+        return value.decode()
 
     def level(self, roughness: ArrayLike, size: int = 0, level_count: int = 0) -> np.ndarray:
         """The level, with its fraction, that the engine's shader reads for a roughness of 0 to 1. 0 stands for the
