@@ -19,6 +19,13 @@
 
 enum { HELP = -2, UNKNOWN = -1 };
 
+// Where the text of an option is kept: the command whose table has the option, and the texts by the
+// rows of this table.
+typedef struct place {
+    const cli_command *command;
+    const char **text;
+} place;
+
 static int find_name(const cli_command *command, const char *name, size_t length)
 {
     if (length == 4 && !strncmp(name, "help", 4))
@@ -28,6 +35,28 @@ static int find_name(const cli_command *command, const char *name, size_t length
             !strncmp(command->options[i].name, name, length))
             return i;
     return UNKNOWN;
+}
+
+const cli_option *cli_also_option(const cli_command *command, int index)
+{
+    return command->takes(index) ? &command->also->options[index] : NULL;
+}
+
+// Returns the index of a row of the command `also`, or UNKNOWN if the command does not take it.
+static int taken(const cli_command *command, int index)
+{
+    return index >= 0 && !command->takes(index) ? UNKNOWN : index;
+}
+
+// Finds an option by its name among the command's own rows and those of the command `also`.
+static int find_long(cli_arguments *a, const char *name, size_t length, place *at)
+{
+    *at = (place){a->command, a->text};
+    int index = find_name(a->command, name, length);
+    if (index != UNKNOWN || !a->command->also)
+        return index;
+    *at = (place){a->command->also, a->also};
+    return taken(a->command, find_name(a->command->also, name, length));
 }
 
 static int find_letter(const cli_command *command, char letter)
@@ -40,24 +69,48 @@ static int find_letter(const cli_command *command, char letter)
     return UNKNOWN;
 }
 
+// Finds an option by its letter among the command's own rows and those of the command `also`.
+static int find_short(cli_arguments *a, char letter, place *at)
+{
+    *at = (place){a->command, a->text};
+    int index = find_letter(a->command, letter);
+    if (index != UNKNOWN || !a->command->also)
+        return index;
+    *at = (place){a->command->also, a->also};
+    return taken(a->command, find_letter(a->command->also, letter));
+}
+
+static void suggest_option(cli_suggestion *suggestion, const cli_option *option)
+{
+    if (option && !option->hidden && option->kind != CLI_RENAMED)
+        cli_suggest(suggestion, option->name);
+}
+
+static void suggest_options(cli_suggestion *suggestion, const cli_command *command)
+{
+    for (int i = 0; command->options && command->options[i].name; i++)
+        suggest_option(suggestion, &command->options[i]);
+    for (int i = 0; command->also && command->also->options[i].name; i++)
+        suggest_option(suggestion, cli_also_option(command, i));
+}
+
 static int no_such_option(const cli_command *command, const char *word)
 {
     char text[96], name[64];
     snprintf(name, sizeof name, "%.*s", (int)strcspn(word + 2, "="), word + 2);
     cli_suggestion suggestion = {.typed = name};
-    for (int i = 0; word[1] == '-' && command->options && command->options[i].name; i++)
-        if (!command->options[i].hidden && command->options[i].kind != CLI_RENAMED)
-            cli_suggest(&suggestion, command->options[i].name);
+    if (word[1] == '-')
+        suggest_options(&suggestion, command);
     return cli_wrong(command, "%s: no such option%s", word,
                      cli_suggestion_text(&suggestion, ", ", "--", text));
 }
 
 // Takes one option. `value` is the text in the option's own word (after = or the letter), or NULL.
 // If the value is the next word, `*at` is advanced to that word.
-static int take(cli_arguments *a, const cli_call *call, int index, const char *form,
-                const char *value, int *at)
+static int take(cli_arguments *a, const cli_call *call, const place *in, int index,
+                const char *form, const char *value, int *at)
 {
-    const cli_option *option = &a->command->options[index];
+    const cli_option *option = &in->command->options[index];
     if (option->kind == CLI_RENAMED)
         return cli_wrong(a->command, "%s: %s", form, option->help);
     if (option->kind == CLI_FLAG && value)
@@ -70,9 +123,9 @@ static int take(cli_arguments *a, const cli_call *call, int index, const char *f
         value = call->words[++*at];
     if (!value)
         return cli_wrong(a->command, "%s needs a value", form);
-    if (a->text[index])
+    if (in->text[index])
         return cli_wrong(a->command, "--%s is given twice", option->name);
-    a->text[index] = value;
+    in->text[index] = value;
     return CLI_GO;
 }
 
@@ -87,13 +140,14 @@ static int read_long(cli_arguments *a, const cli_call *call, int *at)
     const char *word = call->words[*at], *equals = strchr(word, '=');
     size_t length = equals ? (size_t)(equals - word) : strlen(word);
     char form[64];
-    int index = find_name(a->command, word + 2, length - 2);
+    place in;
+    int index = find_long(a, word + 2, length - 2, &in);
     if (index == HELP && !equals)
         return show_help(a->command);
     if (index < 0)
         return no_such_option(a->command, word);
     snprintf(form, sizeof form, "%.*s", (int)length, word);
-    return take(a, call, index, form, equals ? equals + 1 : NULL, at);
+    return take(a, call, &in, index, form, equals ? equals + 1 : NULL, at);
 }
 
 static int read_letters(cli_arguments *a, const cli_call *call, int *at)
@@ -101,15 +155,16 @@ static int read_letters(cli_arguments *a, const cli_call *call, int *at)
     const char *word = call->words[*at];
     int code = CLI_GO;
     for (int i = 1; word[i] && code == CLI_GO; i++) {
-        int index = find_letter(a->command, word[i]);
+        place in;
+        int index = find_short(a, word[i], &in);
         char form[] = {'-', word[i], 0};
         if (index == HELP)
             return show_help(a->command);
         if (index < 0)
             return no_such_option(a->command, word[2] ? form : word);
-        bool flag = a->command->options[index].kind == CLI_FLAG;
+        bool flag = in.command->options[index].kind == CLI_FLAG;
         const char *rest = word + i + 1;
-        code = take(a, call, index, form, flag || !*rest ? NULL : rest + (*rest == '='), at);
+        code = take(a, call, &in, index, form, flag || !*rest ? NULL : rest + (*rest == '='), at);
         if (!flag)
             break;
     }
@@ -249,6 +304,14 @@ int cli_store_values(const cli_arguments *a, void *values)
     return code;
 }
 
+int cli_fill_values(const cli_arguments *a, void *values)
+{
+    const cli_option *options = a->command->options;
+    for (int i = 0; options && options[i].name; i++)
+        store_default(&options[i], (char *)values + options[i].at);
+    return cli_store_values(a, values);
+}
+
 int cli_integer(const cli_arguments *a, int option, int low, int high, int *value)
 {
     const char *text = a->text[option];
@@ -282,7 +345,5 @@ int cli_read_arguments(cli_arguments *a, const cli_command *command, const cli_c
         if (code != CLI_GO)
             return code;
     }
-    for (int i = 0; command->options && command->options[i].name; i++)
-        store_default(&command->options[i], (char *)values + command->options[i].at);
-    return cli_store_values(a, values);
+    return cli_fill_values(a, values);
 }

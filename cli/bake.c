@@ -41,6 +41,31 @@ static int most_bands(const bake *b)
     return b->engine && b->sh_bands < 3 ? 3 : b->sh_bands;
 }
 
+void bake_plan_free(bake_plan *plan)
+{
+    kiln_plan_destroy(plan->plan);
+    *plan = (bake_plan){0};
+}
+
+// Bakes by a plan, which is made anew if the plan at hand is for other sources or options. The bits
+// are those of kiln_bake.
+static int bake_by_plan(bake *b, const kiln_bake_def *def)
+{
+    bake_plan *p = b->plan;
+    kiln_error *error = &b->work.error;
+    if (!p->plan || p->key != b->plan_key || p->shape != b->source.shape ||
+        p->size != b->source.size) {
+        bake_plan_free(p);
+        *p = (bake_plan){.key = b->plan_key, .shape = b->source.shape, .size = b->source.size};
+        if (kiln_plan_create(b->work.context, p->shape, p->size, def, &p->plan, error))
+            return CLI_FAILED;
+    }
+    if (kiln_plan_environment(p->plan, &b->made, error) ||
+        kiln_plan_execute(p->plan, &b->source, &b->made, error))
+        return CLI_FAILED;
+    return CLI_GO;
+}
+
 static int bake_exactly(bake *b)
 {
     kiln_bake_def def = {
@@ -61,6 +86,8 @@ static int bake_exactly(bake *b)
         .lights = b->lights,
         .clamp = b->clamp,
     };
+    if (b->plan)
+        return bake_by_plan(b, &def);
     return kiln_bake(b->work.context, &b->source, &def, &b->made, &b->work.error) ? CLI_FAILED
                                                                                   : CLI_GO;
 }
@@ -168,7 +195,9 @@ static int save(bake *b)
                                      .irradiance_path = b->irradiance_path,
                                      .sh_path = b->sh_path,
                                      .lights_path = b->lights_path,
-                                     .sh = &sh};
+                                     .sh = &sh,
+                                     .watch = b->watch,
+                                     .watch_user = b->watch_user};
     kiln_map_free(&b->source);
     if (kiln_sh_filter(&b->made.sh, b->sh_bands, b->sh_irradiance, b->sh_window, &sh, error))
         return CLI_FAILED;
@@ -201,17 +230,26 @@ static int bake_all(bake *b)
     if (code != CLI_GO)
         return code;
     next_stage(b);
-    bake_report(b);
+    if (b->report)
+        b->report(b);
+    else
+        bake_report(b);
     return CLI_DONE;
+}
+
+int bake_in_context(bake *b)
+{
+    b->since = os_seconds();
+    int code = bake_all(b);
+    kiln_map_free(&b->source);
+    kiln_environment_free(&b->made);
+    return code;
 }
 
 int bake_run(bake *b)
 {
     int code = cli_begin_work(&b->work, b->threads, b->quiet);
-    b->since = os_seconds();
     if (code == CLI_GO)
-        code = bake_all(b);
-    kiln_map_free(&b->source);
-    kiln_environment_free(&b->made);
+        code = bake_in_context(b);
     return cli_end_work(&b->work, code);
 }

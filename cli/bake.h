@@ -3,12 +3,21 @@
 #ifndef KILN_CLI_BAKE_H
 #define KILN_CLI_BAKE_H
 
+#include "json.h"
 #include "work.h"
 
 /// The stages of a bake whose seconds the report lists.
 typedef enum bake_stage { BAKE_LOAD, BAKE_FILTER, BAKE_SAVE, BAKE_STAGES } bake_stage;
 
 typedef enum bake_tuning { BAKE_EXACT, BAKE_SHARP, BAKE_SOFT } bake_tuning;
+
+/// A plan that bakes of equal options share, one bake after the other.
+typedef struct bake_plan {
+    kiln_plan *plan; ///< NULL before the first bake
+    uint64_t key;    ///< the `plan_key` of the bakes that the plan serves
+    kiln_shape shape;
+    int size; ///< shape and size of the sources that the plan serves
+} bake_plan;
 
 typedef struct bake {
     cli_arguments arguments;
@@ -39,6 +48,16 @@ typedef struct bake {
     kiln_sun sun;
     double clamp; ///< radiance of --clamp; 0 if the library chooses
 
+    // What a batch sets. plan: the plan to use and to replace where it does not fit; NULL to bake
+    // without a plan. plan_key: a number that is equal for bakes whose options give the same plan.
+    bake_plan *plan;
+    uint64_t plan_key;
+    /// called with the path and the bytes of each file that is written; may be NULL
+    void (*watch)(void *user, const char *path, const void *bytes, size_t size);
+    void *watch_user;
+    /// prints the result in place of bake_report; may be NULL
+    void (*report)(struct bake *b);
+
     cli_work work;
     kiln_map source;
     kiln_environment made;
@@ -56,6 +75,11 @@ extern const char *const bake_lobes[], *const bake_shapes[], *const bake_methods
 /// Parses the command line and checks all that can be checked before the work. Returns CLI_GO or an
 /// exit code.
 int bake_read_options(bake *b, const cli_command *command, const cli_call *call);
+/// Checks the values of all options, which b->arguments and the fields of `b` hold already. Returns
+/// CLI_GO or an exit code.
+int bake_check_options(bake *b);
+/// Returns whether the option in this row of bake_options decides what the written files hold.
+bool bake_changes_files(int option);
 /// Sets sun and clamp from --sun and --clamp, and checks the options of lights. Returns CLI_GO or
 /// an exit code.
 int bake_read_sun(bake *b, bool has_lights, bool has_share);
@@ -65,11 +89,21 @@ int bake_sun_of_source(bake *b);
 void bake_say_sun(bake *b);
 /// Does the work of one input with checked options. Returns the exit code.
 int bake_run(bake *b);
+/// The same with the context of b->work, which the caller has created and destroys. Leaves the
+/// error in b->work.error.
+int bake_in_context(bake *b);
+/// Frees a plan. The object can be used again.
+void bake_plan_free(bake_plan *plan);
 /// Prints the result of the bake, in words or as JSON.
 void bake_report(bake *b);
+/// Writes the result as members of the JSON object that is open.
+void bake_report_members(const bake *b, json *j);
 
 /// Returns whether an output path holds {name}: each input is then an environment of its own.
 bool bake_is_for_several(const bake *b);
+/// Returns a copy of `path` with the name of `input` in place of each {name}; NULL if memory runs
+/// out. The name is the last part of the input's path without its ending.
+char *bake_name_path(const char *path, const char *input);
 /// Bakes each input. Returns the exit code: of a failure if an input failed.
 int bake_run_several(const bake *b);
 

@@ -542,16 +542,14 @@ static int check_combinations(const bake *b)
     return check_harmonics(b);
 }
 
-int bake_read_options(bake *b, const cli_command *command, const cli_call *call)
+int bake_check_options(bake *b)
 {
     cli_arguments *a = &b->arguments;
-    int code = cli_read_arguments(a, command, call, b);
-    if (code == CLI_GO)
-        code = bake_read_sun(b, a->text[LIGHTS] != NULL, a->text[LIGHTS_SHARE] != NULL);
+    int code = bake_read_sun(b, a->text[LIGHTS] != NULL, a->text[LIGHTS_SHARE] != NULL);
     b->shape += KILN_SHAPE_PANORAMA; // word 0 of --shape is `panorama`, enumerator 1
     bool several = code == CLI_GO && bake_is_for_several(b) && a->rest_count > 0;
     if (code == CLI_GO && !several)
-        code = cli_check_input(command, a->rest, a->rest_count);
+        code = cli_check_input(a->command, a->rest, a->rest_count);
     if (code != CLI_GO)
         return code;
     if (!b->output)
@@ -569,4 +567,15 @@ int bake_read_options(bake *b, const cli_command *command, const cli_call *call)
         b->level_count = 1;
     code = check_stdout(b);
     return code == CLI_GO ? check_paths(b) : code;
+}
+
+int bake_read_options(bake *b, const cli_command *command, const cli_call *call)
+{
+    int code = cli_read_arguments(&b->arguments, command, call, b);
+    return code == CLI_GO ? bake_check_options(b) : code;
+}
+
+bool bake_changes_files(int option)
+{
+    return option < THREADS;
 }

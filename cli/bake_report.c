@@ -106,29 +106,34 @@ static void report_seconds(const bake *b, json *j)
     json_end(j);
 }
 
+void bake_report_members(const bake *b, json *j)
+{
+    json_text(j, "kiln", kiln_version());
+    report_input(b, j);
+    report_output(b, j);
+    report_losses(b, j);
+    report_sun(b, j);
+    json_text(j, "method", bake_methods[b->textbook]);
+    json_text(j, "lobe", bake_lobes[b->lobe]);
+    if (b->engine)
+        json_text(j, "tune", bake_tunings[b->tuning]);
+    if (b->made.degree)
+        json_number(j, "degree", b->made.degree);
+    json_text(j, "cpu", kiln_context_cpu(b->work.context));
+    report_seconds(b, j);
+    size_t now, peak;
+    kiln_context_memory(b->work.context, &now, &peak);
+    json_object(j, "peak_memory");
+    json_number(j, "kiln", (double)peak);
+    json_number(j, "process", os_peak_memory());
+    json_end(j);
+}
+
 static void report_json(const bake *b)
 {
     json j = {0};
     json_object(&j, NULL);
-    json_text(&j, "kiln", kiln_version());
-    report_input(b, &j);
-    report_output(b, &j);
-    report_losses(b, &j);
-    report_sun(b, &j);
-    json_text(&j, "method", bake_methods[b->textbook]);
-    json_text(&j, "lobe", bake_lobes[b->lobe]);
-    if (b->engine)
-        json_text(&j, "tune", bake_tunings[b->tuning]);
-    if (b->made.degree)
-        json_number(&j, "degree", b->made.degree);
-    json_text(&j, "cpu", kiln_context_cpu(b->work.context));
-    report_seconds(b, &j);
-    size_t now, peak;
-    kiln_context_memory(b->work.context, &now, &peak);
-    json_object(&j, "peak_memory");
-    json_number(&j, "kiln", (double)peak);
-    json_number(&j, "process", os_peak_memory());
-    json_end(&j);
+    bake_report_members(b, &j);
     json_end(&j);
 }
 
@@ -168,11 +173,12 @@ static void print_details(const bake *b)
 
 void bake_report(bake *b)
 {
-    cli_clear_progress(&b->work);
+    cli_hold_output(&b->work, true);
     if (b->json)
         report_json(b);
     else if (!b->quiet && !b->to_stdout)
         print_summary(b);
     if (b->verbose)
         print_details(b);
+    cli_hold_output(&b->work, false);
 }

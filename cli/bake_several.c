@@ -65,14 +65,19 @@ static char *insert(const char *path, const char *name, size_t length)
     return made;
 }
 
+char *bake_name_path(const char *path, const char *input)
+{
+    size_t length;
+    const char *name = name_of(input, &length);
+    return insert(path, name, length);
+}
+
 static bool make_job(const bake *b, const char *input, job *made)
 {
     const char *paths[PATHS] = {b->output, b->irradiance_path, b->sh_path, b->lights_path};
-    size_t length;
-    const char *name = name_of(input, &length);
     made->input = input;
     for (int i = 0; i < PATHS; i++) {
-        made->path[i] = paths[i] ? insert(paths[i], name, length) : NULL;
+        made->path[i] = paths[i] ? bake_name_path(paths[i], input) : NULL;
         if (paths[i] && !made->path[i])
             return false;
     }

@@ -57,11 +57,17 @@ struct cli_command {
     const char *more;            ///< further paragraphs that only the manual shows; may be NULL
     const cli_example *examples; ///< array that ends in {NULL, NULL}
     const cli_option *options;   ///< rows of the options except --help; may be NULL
+    /// command whose options may be given too, and which of its rows; NULL for none
+    const cli_command *also;
+    bool (*takes)(int option);
+    /// Where the options stand if not on the command line, such as "list.jsonl, line 3", for error
+    /// messages; NULL for the command line.
+    const char *place;
     int (*run)(const cli_call *call);
 };
 
-extern const cli_command cli_bake, cli_engines, cli_eval, cli_fit, cli_info, cli_lights, cli_sky,
-    cli_tables;
+extern const cli_command cli_bake, cli_batch, cli_engines, cli_eval, cli_fit, cli_info, cli_lights,
+    cli_sky, cli_tables;
 extern const cli_command cli_completions, cli_help;
 // commands that only builds with the CMake option KILN_VIEWER have
 extern const cli_command cli_assignment, cli_render, cli_view;
@@ -74,7 +80,8 @@ typedef struct cli_arguments {
     const cli_command *command;
     /// text of each option by its row's index: NULL for an absent option, "" for a flag
     const char *text[CLI_MAX_OPTIONS];
-    const char **rest; ///< words of the command line that are not options
+    const char *also[CLI_MAX_OPTIONS]; ///< the same for the options of command->also
+    const char **rest;                 ///< words of the command line that are not options
     int rest_count;
 } cli_arguments;
 
@@ -83,6 +90,12 @@ typedef struct cli_arguments {
 /// printed the help or an error message. The words must outlive `arguments` and `values`.
 int cli_read_arguments(cli_arguments *arguments, const cli_command *command, const cli_call *call,
                        void *values);
+/// Returns a row of the options that the command takes of the command `also`, or NULL if it does
+/// not take the option. The rows end where the options of `also` end.
+const cli_option *cli_also_option(const cli_command *command, int index);
+/// Writes defaults and values of all options into `values` by the texts in `arguments`, which need
+/// not come from a command line. Returns CLI_GO or CLI_WRONG.
+int cli_fill_values(const cli_arguments *arguments, void *values);
 /// Writes the values of the options that the command line gives into `values` once more, for
 /// commands that have changed the values of absent options after cli_read_arguments.
 int cli_store_values(const cli_arguments *arguments, void *values);
@@ -101,7 +114,8 @@ int cli_find_word(const cli_command *command, const char *what, const char *text
 
 // ---------------------------------------------------------------------------------------- messages
 
-/// Prints "kiln: MESSAGE" and a hint to --help; returns CLI_WRONG. `command` may be NULL.
+/// Prints "kiln: MESSAGE" and a hint to --help; returns CLI_WRONG. `command` may be NULL. If the
+/// command has a place, prints "kiln: PLACE: MESSAGE" without a hint.
 int cli_wrong(const cli_command *command, const char *format, ...) CLI_PRINTF(2, 3);
 /// Prints "kiln: MESSAGE"; returns CLI_FAILED.
 int cli_fail(const char *format, ...) CLI_PRINTF(1, 2);

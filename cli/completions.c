@@ -57,29 +57,49 @@ static void print_bash_names(const cli_option *option)
     fputs(") ", stdout);
 }
 
+// Calls print(command, ROW) for each option that the command shows, with those that it takes of
+// another command.
+static void for_each_option(const cli_command *command,
+                            void (*print)(const cli_command *command, const cli_option *option))
+{
+    for (int i = 0; command->options && command->options[i].name; i++)
+        if (is_shown(&command->options[i]))
+            print(command, &command->options[i]);
+    for (int i = 0; command->also && command->also->options[i].name; i++) {
+        const cli_option *option = cli_also_option(command, i);
+        if (option && is_shown(option))
+            print(command, option);
+    }
+}
+
+static void print_bash_values(const cli_command *command, const cli_option *option)
+{
+    (void)command;
+    if (option->kind == CLI_FLAG || option->alone)
+        // an option without a value, or with a value only after =, takes no value from the next word
+        return;
+    print_bash_names(option);
+    if (option->kind == CLI_CHOICE) {
+        fputs("words='", stdout);
+        print_words(option->word, option->words);
+        puts("' ;;");
+    } else {
+        puts(option->kind == CLI_FILE ? "return ;;" : "compopt +o default 2>/dev/null; return ;;");
+    }
+}
+
+static void print_bash_option(const cli_command *command, const cli_option *option)
+{
+    (void)command;
+    printf(" --%s", option->name);
+}
+
 static void print_bash_command(const cli_command *command)
 {
-    const cli_option *options = command->options;
     printf("    %s)\n        case $before in\n", command->name);
-    for (int i = 0; options && options[i].name; i++) {
-        if (!is_shown(&options[i]) || options[i].kind == CLI_FLAG || options[i].alone)
-            // an option without a value, or with a value only after =, takes no value from the next
-            // word
-            continue;
-        print_bash_names(&options[i]);
-        if (options[i].kind == CLI_CHOICE) {
-            fputs("words='", stdout);
-            print_words(options[i].word, options[i].words);
-            puts("' ;;");
-        } else {
-            puts(options[i].kind == CLI_FILE ? "return ;;"
-                                             : "compopt +o default 2>/dev/null; return ;;");
-        }
-    }
+    for_each_option(command, print_bash_values);
     fputs("        *)\n            case $current in\n            -*) words='--help", stdout);
-    for (int i = 0; options && options[i].name; i++)
-        if (is_shown(&options[i]))
-            printf(" --%s", options[i].name);
+    for_each_option(command, print_bash_option);
     puts("' ;;");
     if (command->word) {
         fputs("            *) words='", stdout);
@@ -120,8 +140,9 @@ static void print_bash(const cli_call *call)
 // --------------------------------------------------------------------------------------------- zsh
 
 // Prints an option in zsh's form: '(-o --output)'{-o+,--output=}'[what to write]:OUT:_files'
-static void print_zsh_option(const cli_option *option)
+static void print_zsh_option(const cli_command *command, const cli_option *option)
 {
+    (void)command;
     char text[SUMMARY];
     bool flag = option->kind == CLI_FLAG;
     const char *equals = flag ? "" : option->alone ? "=-" : "=";
@@ -147,9 +168,7 @@ static void print_zsh_option(const cli_option *option)
 static void print_zsh_command(const cli_command *command)
 {
     printf("    %s)\n        _arguments -s -S \\\n", command->name);
-    for (int k = 0; command->options && command->options[k].name; k++)
-        if (is_shown(&command->options[k]))
-            print_zsh_option(&command->options[k]);
+    for_each_option(command, print_zsh_option);
     fputs("            '(-h --help)'{-h,--help}'[print the help]' '", stdout);
     if (command->word) {
         fputs("1:argument:(", stdout);
@@ -218,9 +237,7 @@ static void print_fish(const cli_call *call)
         char text[SUMMARY];
         printf("complete -c kiln -f -n __fish_use_subcommand -a %s -d '%s'\n", command->name,
                summary(command->summary, text));
-        for (int k = 0; command->options && command->options[k].name; k++)
-            if (is_shown(&command->options[k]))
-                print_fish_option(command, &command->options[k]);
+        for_each_option(command, print_fish_option);
         if (command->word) {
             printf("complete -c kiln -f -n '__fish_seen_subcommand_from %s' -a '", command->name);
             print_words(command->word, NULL);

@@ -109,6 +109,9 @@ void cli_print_help(const cli_command *command)
     printf("%s\n\n", command->summary);
     print_usage(command, width);
     print_options(command->options, width);
+    if (command->also)
+        printf("\nFurther options are those of kiln %s: see 'kiln help %s'.\n", command->also->name,
+               command->also->name);
     if (command->about[0]) {
         putchar('\n');
         cli_print_wrapped(command->about, 0, 0, width);

@@ -9,9 +9,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void indent(int depth)
+static void break_line(const json *j)
 {
-    for (int i = 0; i < depth; i++)
+    if (j->line)
+        return;
+    putchar('\n');
+    for (int i = 0; i < j->depth; i++)
         putchar('\t');
 }
 
@@ -23,14 +26,13 @@ static void begin(json *j, const char *key)
 {
     bool array = j->array[j->depth];
     if (j->filled[j->depth])
-        fputs(array ? ", " : ",", stdout);
+        fputs(array || j->line ? ", " : ",", stdout);
     j->filled[j->depth] = true;
     if (!key || !j->depth || array)
         return;
-    putchar('\n');
-    indent(j->depth);
+    break_line(j);
     print_text(key);
-    fputs(":\t", stdout);
+    fputs(j->line ? ": " : ":\t", stdout);
 }
 
 static void open_container(json *j, const char *key, bool array)
@@ -56,10 +58,8 @@ void json_end(json *j)
 {
     bool array = j->array[j->depth];
     j->depth--;
-    if (!array) {
-        putchar('\n');
-        indent(j->depth);
-    }
+    if (!array)
+        break_line(j);
     putchar(array ? ']' : '}');
     if (!j->depth)
         putchar('\n');

@@ -1,4 +1,4 @@
-// Writes JSON to standard output piece by piece, indented by tabs. Numbers have a decimal point in
+// Writes JSON to standard output piece by piece, indented by tabs or on one line. Numbers have a decimal point in
 // every locale. Bytes of text that are not UTF-8 are replaced, so the output is always valid.
 #ifndef KILN_CLI_JSON_H
 #define KILN_CLI_JSON_H
@@ -10,6 +10,7 @@
 enum { JSON_DEPTH = 16 };
 
 typedef struct json {
+    bool line; ///< true: everything on one line, without tabs and line breaks between values
     int depth;
     /// array: whether an array is open at each depth; filled: whether that array or object has a
     /// member

@@ -10,9 +10,13 @@
 #include <string.h>
 
 static const cli_command *const commands[] = {
-    &cli_bake,   &cli_lights,      &cli_engines,
-    &cli_info,   &cli_sky,         &cli_tables,
-    &cli_eval,   &cli_fit,
+    &cli_bake,
+#ifndef __EMSCRIPTEN__ // a batch needs threads
+    &cli_batch,
+#endif
+    &cli_lights, &cli_engines,     &cli_info,
+    &cli_sky,    &cli_tables,      &cli_eval,
+    &cli_fit,
 #ifdef KILN_VIEWER
     &cli_render, &cli_view,        &cli_assignment,
 #endif

@@ -176,6 +176,8 @@ static void print_command(const cli_command *command)
         puts(".Pp\nOptions:");
     if (command->options)
         print_options(command->options);
+    if (command->also)
+        printf(".Pp\nFurther options are those of\n.Nm kiln Cm %s .\n", command->also->name);
 }
 
 static void print_examples(const cli_command *command, bool *first)

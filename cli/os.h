@@ -6,6 +6,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 #include <stdio.h>
 
 /// Prepares the process, and must be called first. On Windows it converts the arguments to UTF-8,
@@ -19,6 +20,10 @@ typedef enum os_stream { OS_INPUT, OS_OUTPUT, OS_ERRORS } os_stream;
 bool os_is_terminal(os_stream stream);
 /// Characters in a line of standard output's terminal; 0 if standard output is no terminal.
 int os_columns(void);
+
+/// Turns the system's other separators of paths into slashes, in place: on Windows backslashes,
+/// unless the path begins with \\?\. os_begin has done so for the arguments.
+void os_use_slashes(char *path);
 
 /// A monotonic clock in seconds since an arbitrary moment.
 double os_seconds(void);
@@ -40,6 +45,9 @@ int os_reader_gone(int error);
 /// stage. Does nothing on other systems.
 void os_tell_progress(const char *stage, double fraction);
 
+/// Seconds of processor time that the process has used, in its own code and in the system's.
+double os_cpu_seconds(void);
+
 /// Physical memory of the machine in bytes; 0 if unknown.
 size_t os_physical_memory(void);
 /// Peak memory of this process in bytes; 0 if unknown.
@@ -51,6 +59,26 @@ typedef enum os_kind { OS_NOTHING, OS_FILE, OS_FOLDER, OS_UNREACHABLE } os_kind;
 os_kind os_kind_of(const char *path);
 /// Returns whether files can be created in a folder.
 bool os_is_writable(const char *folder);
+/// Calls name(user, NAME) for each entry of a folder, in no particular order. Returns false and
+/// sets errno if the folder cannot be read.
+bool os_list_folder(const char *path, void (*name)(void *user, const char *name), void *user);
+
+/// What tells a changed file from an unchanged one without reading the file.
+typedef struct os_stamp {
+    uint64_t size;     ///< size in bytes
+    int64_t modified;  ///< time of the last change of the content, in nanoseconds
+    int64_t changed;   ///< time of the last change of content or status, which no program can set
+    uint64_t identity; ///< number of the file in its file system
+    /// True if a file with an equal stamp has equal content: the system has all these numbers, and
+    /// the last change is so long ago that a further change would have another time.
+    bool is_settled;
+} os_stamp;
+
+/// Describes a regular file; returns false and sets errno if there is none.
+bool os_stamp_of(const char *path, os_stamp *stamp);
+/// Opens a file for reading; returns NULL and sets errno on failure.
+FILE *os_open_file(const char *path);
+
 /// Creates a folder; returns false and sets errno on failure.
 bool os_make_folder(const char *path);
 /// Removes a folder if it is empty.

@@ -2,6 +2,7 @@
 #define _DEFAULT_SOURCE // makes <sys/ioctl.h> declare TIOCGWINSZ
 #include "os.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <poll.h>
 #include <signal.h>
@@ -17,6 +18,11 @@ bool os_begin(int *argc, char ***argv)
     (void)argc;
     (void)argv;
     return true;
+}
+
+void os_use_slashes(char *path)
+{
+    (void)path;
 }
 
 bool os_is_terminal(os_stream stream)
@@ -36,6 +42,14 @@ double os_seconds(void)
     struct timespec now;
     clock_gettime(CLOCK_MONOTONIC, &now);
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+double os_cpu_seconds(void)
+{
+    struct rusage usage = {0};
+    getrusage(RUSAGE_SELF, &usage);
+    return (double)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
+           1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
 }
 
 void os_tell_progress(const char *stage, double fraction)
@@ -128,6 +142,55 @@ os_kind os_kind_of(const char *path)
 bool os_is_writable(const char *folder)
 {
     return access(folder, W_OK | X_OK) == 0;
+}
+
+bool os_list_folder(const char *path, void (*name)(void *user, const char *name), void *user)
+{
+    DIR *folder = opendir(path);
+    if (!folder)
+        return false;
+    for (struct dirent *entry; (entry = readdir(folder));)
+        name(user, entry->d_name);
+    closedir(folder);
+    return true;
+}
+
+static int64_t nanoseconds(struct timespec time)
+{
+    return (int64_t)time.tv_sec * 1000000000 + time.tv_nsec;
+}
+
+// Two changes within one tick of the file system's clock have one time. Ticks are two seconds long
+// at most.
+bool os_stamp_of(const char *path, os_stamp *stamp)
+{
+    static const int64_t longest_tick = 2000000000;
+    struct stat status;
+    struct timespec now;
+    *stamp = (os_stamp){0};
+    if (stat(path, &status) != 0)
+        return false;
+    if (!S_ISREG(status.st_mode)) {
+        errno = S_ISDIR(status.st_mode) ? EISDIR : EINVAL;
+        return false;
+    }
+    clock_gettime(CLOCK_REALTIME, &now);
+#ifdef __APPLE__
+    struct timespec modified = status.st_mtimespec, changed = status.st_ctimespec;
+#else
+    struct timespec modified = status.st_mtim, changed = status.st_ctim;
+#endif
+    *stamp = (os_stamp){.size = (uint64_t)status.st_size,
+                        .modified = nanoseconds(modified),
+                        .changed = nanoseconds(changed),
+                        .identity = (uint64_t)status.st_ino,
+                        .is_settled = nanoseconds(now) - nanoseconds(changed) > longest_tick};
+    return true;
+}
+
+FILE *os_open_file(const char *path)
+{
+    return fopen(path, "rb");
 }
 
 bool os_make_folder(const char *path)

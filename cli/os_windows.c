@@ -26,6 +26,14 @@ static bool widen(const char *path, wchar_t wide[ROOM])
 
 // --------------------------------------------------------------------------------------- arguments
 
+void os_use_slashes(char *path)
+{
+    bool verbatim = path[0] == '\\' && path[1] == '\\' && path[2] == '?';
+    for (char *c = path; *c && !verbatim; c++)
+        if (*c == '\\')
+            *c = '/';
+}
+
 // Converts an argument to UTF-8 and its backslashes to slashes, which Windows accepts too: the
 // command then knows one separator. Names that begin with \\?\ do not work in this form.
 static char *narrow(const wchar_t *wide)
@@ -36,10 +44,7 @@ static char *narrow(const wchar_t *wide)
         free(text);
         return NULL;
     }
-    bool verbatim = text[0] == '\\' && text[1] == '\\' && text[2] == '?';
-    for (char *c = text; *c && !verbatim; c++)
-        if (*c == '\\')
-            *c = '/';
+    os_use_slashes(text);
     return text;
 }
 
@@ -91,6 +96,15 @@ double os_seconds(void)
     QueryPerformanceCounter(&now);
     QueryPerformanceFrequency(&frequency);
     return (double)now.QuadPart / (double)frequency.QuadPart;
+}
+
+double os_cpu_seconds(void)
+{
+    FILETIME created, ended, system, user;
+    if (!GetProcessTimes(GetCurrentProcess(), &created, &ended, &system, &user))
+        return 0;
+    return 1e-7 * (4294967296.0 * ((double)system.dwHighDateTime + user.dwHighDateTime) +
+                   (double)system.dwLowDateTime + user.dwLowDateTime);
 }
 
 void os_tell_progress(const char *stage, double fraction)
@@ -188,6 +202,56 @@ os_kind os_kind_of(const char *path)
 bool os_is_writable(const char *folder)
 {
     return os_kind_of(folder) == OS_FOLDER;
+}
+
+bool os_list_folder(const char *path, void (*name)(void *user, const char *name), void *user)
+{
+    char pattern[ROOM];
+    wchar_t wide[ROOM];
+    WIN32_FIND_DATAW entry;
+    if (snprintf(pattern, sizeof pattern, "%s/*", path) >= ROOM) {
+        errno = ENAMETOOLONG;
+        return false;
+    }
+    if (!widen(pattern, wide))
+        return false;
+    HANDLE search = FindFirstFileW(wide, &entry);
+    if (search == INVALID_HANDLE_VALUE)
+        return failed();
+    do {
+        char utf8[4 * MAX_PATH];
+        if (WideCharToMultiByte(CP_UTF8, 0, entry.cFileName, -1, utf8, sizeof utf8, NULL, NULL))
+            name(user, utf8);
+    } while (FindNextFileW(search, &entry));
+    FindClose(search);
+    return true;
+}
+
+// Programs can set every time that Windows keeps of a file, so that only the content tells whether
+// the file is unchanged.
+bool os_stamp_of(const char *path, os_stamp *stamp)
+{
+    wchar_t wide[ROOM];
+    WIN32_FILE_ATTRIBUTE_DATA data;
+    *stamp = (os_stamp){0};
+    if (!widen(path, wide))
+        return false;
+    if (!GetFileAttributesExW(wide, GetFileExInfoStandard, &data))
+        return failed();
+    if (data.dwFileAttributes & FILE_ATTRIBUTE_DIRECTORY) {
+        errno = EISDIR;
+        return false;
+    }
+    stamp->size = (uint64_t)data.nFileSizeHigh << 32 | data.nFileSizeLow;
+    stamp->modified = (int64_t)((uint64_t)data.ftLastWriteTime.dwHighDateTime << 32 |
+                                data.ftLastWriteTime.dwLowDateTime);
+    return true;
+}
+
+FILE *os_open_file(const char *path)
+{
+    wchar_t wide[ROOM];
+    return widen(path, wide) ? _wfopen(wide, L"rb") : NULL;
 }
 
 bool os_make_folder(const char *path)

@@ -26,9 +26,14 @@ cli_shown cli_show(const char *text)
 int cli_wrong(const cli_command *command, const char *format, ...)
 {
     va_list list;
+    char opening[4096 + 16] = "kiln: ";
+    if (command && command->place)
+        snprintf(opening, sizeof opening, "kiln: %s: ", cli_show(command->place).text);
     va_start(list, format);
-    cli_say("kiln: ", format, list);
+    cli_say(opening, format, list);
     va_end(list);
+    if (command && command->place)
+        return CLI_WRONG;
     fprintf(stderr, "Try 'kiln %s%s--help'.\n", command ? command->name : "", command ? " " : "");
     return CLI_WRONG;
 }

@@ -26,6 +26,14 @@ void cli_clear_progress(cli_work *work)
     work->drawn = 0;
 }
 
+void cli_hold_output(cli_work *work, bool begins)
+{
+    if (begins)
+        cli_clear_progress(work);
+    if (work->hold)
+        work->hold(work->hold_user, begins);
+}
+
 bool cli_progress(void *user, const char *stage, double fraction)
 {
     cli_work *work = user;
@@ -47,7 +55,7 @@ bool cli_progress(void *user, const char *stage, double fraction)
 
 // A bake that needs more than the memory of the machine, or than the control group of the process
 // may use, fails with an error message. Without a limit the system would kill the bake.
-static size_t memory_limit(void)
+size_t cli_memory_limit(void)
 {
     size_t physical = os_physical_memory(), group = cgroup_memory_limit("");
     return group && (!physical || group < physical) ? group : physical;
@@ -60,7 +68,7 @@ static void create_context(void *user)
         .thread_count = work->threads,
         .progress = cli_progress,
         .progress_user = work,
-        .memory_limit = memory_limit(),
+        .memory_limit = cli_memory_limit(),
     };
     work->error.result = kiln_context_create(&def, &work->context, &work->error);
 }
@@ -94,9 +102,10 @@ int cli_end_work(cli_work *work, int code)
 
 void cli_note(cli_work *work, bool warning, const char *format, ...)
 {
-    cli_clear_progress(work);
     va_list list;
+    cli_hold_output(work, true);
     va_start(list, format);
     cli_say(warning ? "kiln: warning: " : "kiln: note: ", format, list);
     va_end(list);
+    cli_hold_output(work, false);
 }

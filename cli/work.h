@@ -15,8 +15,12 @@ typedef struct cli_work {
     bool quiet; ///< true: nothing but errors is printed
     /// true: progress is drawn, because standard error is a terminal and --quiet is absent
     bool on_terminal;
-    const char *stage;       ///< name of the last reported stage, a string constant
-    double furthest;         ///< largest fraction reported of the stage, 0 to 1
+    const char *stage; ///< name of the last reported stage, a string constant
+    double furthest;   ///< largest fraction reported of the stage, 0 to 1
+    /// Called with true before something is printed and with false afterwards, where several works
+    /// share the terminal; may be NULL.
+    void (*hold)(void *user, bool begins);
+    void *hold_user;
     kiln_load_report loaded; ///< counts of what cli_load found and changed in the input file
 } cli_work;
 
@@ -31,6 +35,12 @@ double cli_elapsed(const cli_work *work);
 /// Returns whether a signal has asked the process to stop.
 bool cli_interrupted(void);
 void cli_clear_progress(cli_work *work);
+/// Begins and ends the printing of what must not be mixed with the progress line or with the output
+/// of works in other threads.
+void cli_hold_output(cli_work *work, bool begins);
+/// Returns the bytes that the process may use: the memory of the machine, or of its control group;
+/// 0 if unknown.
+size_t cli_memory_limit(void);
 /// Progress callback: draws the progress line of `user`, a cli_work. Returns false if a signal has
 /// asked the process to stop.
 bool cli_progress(void *user, const char *stage, double fraction);

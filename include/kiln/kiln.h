@@ -1021,6 +1021,10 @@ typedef struct kiln_environment_save_def {
     const kiln_sh *sh;
     /// Path of the lights (.json), as for kiln_lights_save; NULL for no file of lights.
     const char *lights_path;
+    /// Called with the path and the bytes of each file before the file is written, for example to
+    /// keep a checksum. May be NULL.
+    void (*watch)(void *user, const char *path, const void *bytes, size_t size);
+    void *watch_user;
 } kiln_environment_save_def;
 
 typedef struct kiln_environment_report {

@@ -106,6 +106,8 @@ typedef struct set_entry {
 struct ki_file_set {
     kiln_context *context;
     bool in_memory;
+    void (*watch)(void *user, const char *path, const void *bytes, size_t size);
+    void *watch_user;
     set_entry *first, **last;
 };
 
@@ -241,9 +243,19 @@ static void remove_temporary(const set_entry *entry)
     ki_os_remove(entry->temporary);
 }
 
+void ki_file_set_watch(ki_file_set *set,
+                       void (*watch)(void *user, const char *path, const void *bytes, size_t size),
+                       void *user)
+{
+    set->watch = watch;
+    set->watch_user = user;
+}
+
 kiln_result ki_file_set_add(ki_file_set *set, const char *path, const void *bytes, size_t size,
                             kiln_error *error)
 {
+    if (set->watch)
+        set->watch(set->watch_user, path, bytes, size);
     if (set->in_memory)
         return add_in_memory(set, path, bytes, size, error);
     set_entry *entry = NULL;

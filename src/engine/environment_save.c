@@ -65,6 +65,7 @@ static kiln_result add_files(ki_file_set *set, void *data, kiln_error *error)
     const kiln_environment *environment = e->environment;
     const kiln_environment_save_def *def = e->def ? e->def : &defaults;
     kiln_environment_report *report = &e->report;
+    ki_file_set_watch(set, def->watch, def->watch_user);
     kiln_result result =
         write_levels(set, e->context, environment, e->path, def, &report->levels, error);
     if (result == KILN_OK && def->irradiance_path)

@@ -62,7 +62,7 @@ BASH
         got=$(bash log/complete.bash "$@")
         [ "$got" = "$want" ] || die "bash completes '$*' with '$got', not '$want'"
     }
-    completes bake b
+    completes "bake batch" b
     completes "engines eval" e
     completes "--size" bake in.exr --siz
     completes "--sh-bands --sh-radiance --sh-irradiance --sh-window" bake --sh-
@@ -75,9 +75,12 @@ BASH
     completes "babylon filament" tables --for ""
     completes "schlick schlick-avg" eval schl
     completes "babylon babylon-dds" engines bab
-    completes "bake" help ba
+    completes "bake" help bak
     completes "zsh" completions z
     completes "--mirror" bake --zstd --mi
+    completes "--shard" batch --shar
+    completes "three three-cubeuv" batch in.exr --for th
+    completes "--memory --method --mirror" batch --m
 fi
 # The other shells' are read by those shells, where they are.
 for shell in bash zsh fish; do

@@ -26,6 +26,13 @@ grep -q 'würfel 立方.ktx2' told
 # Six faces in a folder that is searched, written and read.
 kiln bake sky.exr -q -o 'Höhle 洞/sides/' --size 16 --levels 1
 kiln bake 'Höhle 洞/sides' -q -o again.ktx2 --size 16
+# A batch: the same bytes, by a manifest with the system's own separators, and kept the second time.
+printf '%s\n' '{"input": "sky.exr", "output": "H\u00f6hle 洞\\{name}.ktx2", "size": 16}' >list.jsonl
+kiln batch list.jsonl >told
+[ "$(cksum <'Höhle 洞/sky.ktx2')" = "$first" ]
+kiln batch list.jsonl | grep -q '^1 environment: 0 baked, 1 kept;'
+kiln batch 'Höhle 洞' -o 'x{name}.ktx2' --size 8 2>said && exit 1
+grep -q 'there is no picture in this folder' said
 # Nothing of a temporary name is left, and a failure says why.
 [ -z "$(find . -name '*.tmp')" ]
 if kiln bake missing.exr -q -o x.ktx2 2>said; then exit 1; fi

@@ -1,0 +1,122 @@
+// One environment of a batch. In: a job and a thread with its context. Out: the files of the job,
+// by the function that kiln bake runs, and their record; or nothing, if the files are what this
+// bake would write.
+#include "batch.h"
+
+#include "batch_run.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+// Joins the paths of files for batch_job.read and .written; NULL if memory runs out.
+static const char *keep_paths(batch *all, const batch_files *files)
+{
+    size_t size = 1;
+    for (int i = 0; i < files->count; i++)
+        size += strlen(files->file[i].path) + 1;
+    os_lock(&all->output);
+    char *paths = batch_keep(&all->store, size), *at = paths;
+    os_unlock(&all->output);
+    for (int i = 0; paths && i < files->count; i++) {
+        size_t length = strlen(files->file[i].path) + 1;
+        memcpy(at, files->file[i].path, length);
+        at += length;
+    }
+    if (paths)
+        *at = 0;
+    return paths;
+}
+
+// The size of an input, and a guess from above at the memory that its bake needs: the texels as
+// floats and once more for what is made of them, the file, and the levels with the spectrum behind
+// them.
+static size_t guess_need(batch_worker *worker, const batch_record *record, const bake *b,
+                         int *width, int *height)
+{
+    kiln_file_info *info = calloc(1, sizeof *info);
+    kiln_error error;
+    double bytes = 96e6 + 600.0 * b->size * b->size, files = 0;
+    *width = *height = 0;
+    for (int i = 0; i < record->in.count; i++)
+        files += (double)record->in.file[i].stamp.size;
+    if (info && record->in.count &&
+        kiln_file_describe(worker->context, record->in.file[0].path, info, &error) == KILN_OK) {
+        *width = info->width;
+        *height = info->height;
+        bytes += 40.0 * info->width * info->height * record->in.count;
+    } else {
+        bytes += 8 * files;
+    }
+    free(info);
+    bytes += files;
+    return bytes < (double)(SIZE_MAX / 2) ? (size_t)bytes : SIZE_MAX / 2;
+}
+
+// Bakes with the share of the memory that the bake may need, or, if it needs more and `alone`, with
+// all of it.
+static int bake_once(batch_worker *worker, const batch_job *job, batch_record *record, bake *b,
+                     bool alone)
+{
+    batch *all = worker->batch;
+    int width, height, code = batch_job_bake(job, b);
+    if (code != CLI_GO)
+        return code;
+    size_t guess = guess_need(worker, record, b, &width, &height);
+    b->plan_key = batch_plan_key(job);
+    size_t bytes = alone ? all->limit : batch_pool_need(all, b->plan_key, width, height, guess);
+    batch_pool_enter(worker, bytes, alone);
+    b->work = (cli_work){
+        .context = worker->context, .quiet = all->quiet, .hold = batch_hold, .hold_user = all};
+    b->quiet = all->quiet;
+    b->plan = &worker->plan;
+    b->watch = batch_record_watch;
+    b->watch_user = record;
+    b->report = all->json ? batch_report_bake : NULL;
+    // What the thread keeps from bakes of another kind is of no use to this one.
+    if (worker->plan.key != b->plan_key) {
+        bake_plan_free(&worker->plan);
+        batch_heap_trim(&worker->heap);
+    }
+    batch_heap_mark(&worker->heap);
+    record->out.count = 0;
+    code = cli_interrupted() ? CLI_FAILED : bake_in_context(b);
+    if (code == CLI_DONE)
+        batch_pool_needed(all, b->plan_key, width, height, worker->heap.peak);
+    batch_pool_leave(worker, bytes, alone);
+    return code;
+}
+
+static void bake_job(batch_worker *worker, batch_job *job, batch_record *record, bake *b)
+{
+    batch_record_inputs(record);
+    int code = bake_once(worker, job, record, b, false);
+    if (code == CLI_FAILED && b->work.error.result == KILN_ERROR_MEMORY && !cli_interrupted())
+        code = bake_once(worker, job, record, b, true);
+    if (code == CLI_DONE)
+        batch_record_write(record);
+    if (code == CLI_DONE || !cli_interrupted())
+        job->outcome = code == CLI_DONE ? BATCH_BAKED : BATCH_FAILED;
+}
+
+void batch_run_job(batch_worker *worker, batch_job *job)
+{
+    batch *all = worker->batch;
+    batch_record record;
+    bake *b = calloc(1, sizeof *b);
+    batch_record_begin(&record, job);
+    batch_reason reason = all->force ? BATCH_ALWAYS : batch_record_compare(&record, all->dry_run);
+    if (!b)
+        job->outcome = BATCH_FAILED;
+    else if (reason == BATCH_UNCHANGED)
+        job->outcome = BATCH_KEPT;
+    else if (all->dry_run)
+        job->outcome = BATCH_DUE;
+    else
+        bake_job(worker, job, &record, b);
+    job->read = keep_paths(all, &record.in);
+    job->written = keep_paths(all, &record.out);
+    batch_report_job(all, job, reason,
+                     b && b->work.error.message[0] ? b->work.error.message : "out of memory");
+    batch_record_free(&record);
+    free(b);
+}
