@@ -16,22 +16,36 @@ static void next_stage(bake *b)
     b->since = now;
 }
 
+static kiln_load_def load_def(const bake *b)
+{
+    return (kiln_load_def){.layout = (kiln_layout)b->layout,
+                           .negative = (kiln_negative)b->negative,
+                           .layer = b->layer};
+}
+
+static void keep_extent(bake *b, kiln_extent source)
+{
+    b->source_shape = source.shape;
+    b->source_height = source.size;
+    b->source_width = source.shape == KILN_SHAPE_PANORAMA ? 2 * source.size : source.size;
+}
+
 static int load(bake *b)
 {
-    const kiln_load_def def = {.layout = (kiln_layout)b->layout,
-                               .negative = (kiln_negative)b->negative,
-                               .layer = b->layer};
+    const kiln_load_def def = load_def(b);
     int code = cli_load(&b->work, b->arguments.rest, b->arguments.rest_count, &def, &b->source);
     if (code != CLI_GO)
         return code;
-    b->source_shape = b->source.shape;
-    b->source_height = b->source.size;
-    b->source_width = b->source.shape == KILN_SHAPE_PANORAMA ? 2 * b->source.size : b->source.size;
+    keep_extent(b, (kiln_extent){b->source.shape, b->source.size});
+    return CLI_GO;
+}
+
+static void change_source(bake *b)
+{
     if (b->mirror)
         kiln_map_mirror(&b->source);
     if (b->exposure != 0)
         kiln_map_expose(&b->source, b->exposure);
-    return CLI_GO;
 }
 
 // Returns the number of bands of harmonics to compute: enough for the output file's metadata
@@ -66,6 +80,27 @@ static int bake_by_plan(bake *b, const kiln_bake_def *def)
     return CLI_GO;
 }
 
+// Bakes a file, whose rows pass by where this is possible.
+static kiln_result bake_file(bake *b, const kiln_bake_def *unchanged)
+{
+    kiln_bake_def def = *unchanged;
+    kiln_load_def load = load_def(b);
+    kiln_extent source;
+    load.report = &b->work.loaded;
+    def.mirror = b->mirror;
+    def.exposure = b->exposure;
+    kiln_result result = kiln_bake_file(b->work.context, b->arguments.rest[0], &load, &def, &source,
+                                        &b->made, &b->work.error);
+    if (source.size)
+        keep_extent(b, source);
+    if (b->work.loaded.texel_count)
+        cli_say_report(&b->work, b->arguments.rest[0]);
+    b->seconds[BAKE_LOAD] = b->work.reading_seconds;
+    b->since += b->work.reading_seconds;
+    b->stage = BAKE_FILTER;
+    return result;
+}
+
 static int bake_exactly(bake *b)
 {
     kiln_bake_def def = {
@@ -86,6 +121,13 @@ static int bake_exactly(bake *b)
         .lights = b->lights,
         .clamp = b->clamp,
     };
+    if (b->arguments.rest_count == 1 && !b->plan)
+        return bake_file(b, &def) ? CLI_FAILED : CLI_GO;
+    int code = load(b);
+    if (code != CLI_GO)
+        return code;
+    change_source(b);
+    next_stage(b);
     if (b->plan)
         return bake_by_plan(b, &def);
     return kiln_bake(b->work.context, &b->source, &def, &b->made, &b->work.error) ? CLI_FAILED
@@ -120,6 +162,11 @@ static int bake_by_textbook(bake *b)
         .theta_count = b->theta_steps,
         .sample_count = b->samples,
     };
+    int code = load(b);
+    if (code != CLI_GO)
+        return code;
+    change_source(b);
+    next_stage(b);
     if (make_panorama(b) != CLI_GO || bake_sun_of_source(b) != CLI_GO)
         return CLI_FAILED;
     b->made.lobe = (kiln_lobe_kind)b->lobe;
@@ -218,11 +265,7 @@ static int save(bake *b)
 
 static int bake_all(bake *b)
 {
-    int code = load(b);
-    if (code != CLI_GO)
-        return code;
-    next_stage(b);
-    code = b->textbook ? bake_by_textbook(b) : bake_exactly(b);
+    int code = b->textbook ? bake_by_textbook(b) : bake_exactly(b);
     if (code != CLI_GO)
         return code;
     next_stage(b);

@@ -29,11 +29,10 @@ int cli_check_input(const cli_command *command, const char **names, int count)
     return CLI_GO;
 }
 
-// Says on standard error what the loader found and changed in the input.
-static void say_report(cli_work *work, const char *name, const kiln_load_report *report)
+void cli_say_report(cli_work *work, const char *name)
 {
     kiln_note note;
-    for (int i = 0; kiln_load_report_note(report, i, &note) && !work->quiet; i++)
+    for (int i = 0; kiln_load_report_note(&work->loaded, i, &note) && !work->quiet; i++)
         cli_note(work, note.warning, "%s: %s", name, note.text);
 }
 
@@ -46,6 +45,6 @@ int cli_load(cli_work *work, const char **names, int count, const kiln_load_def 
                              : kiln_map_load(work->context, names[0], &full, map, &work->error);
     if (result != KILN_OK)
         return CLI_FAILED;
-    say_report(work, names[0], &work->loaded);
+    cli_say_report(work, names[0]);
     return CLI_GO;
 }

@@ -38,8 +38,13 @@ bool cli_progress(void *user, const char *stage, double fraction)
 {
     cli_work *work = user;
     double now = os_seconds();
+    bool other = !work->stage || strcmp(stage, work->stage) != 0;
+    if (other && work->stage && !strcmp(work->stage, "reading"))
+        work->reading_seconds += now - work->stage_began;
+    if (other)
+        work->stage_began = now;
     // The progress line never goes backwards within a stage.
-    if (!work->stage || strcmp(stage, work->stage) != 0 || fraction > work->furthest)
+    if (other || fraction > work->furthest)
         work->furthest = fraction;
     work->stage = stage;
     os_tell_progress(stage, work->furthest);

@@ -15,8 +15,10 @@ typedef struct cli_work {
     bool quiet; ///< true: nothing but errors is printed
     /// true: progress is drawn, because standard error is a terminal and --quiet is absent
     bool on_terminal;
-    const char *stage; ///< name of the last reported stage, a string constant
-    double furthest;   ///< largest fraction reported of the stage, 0 to 1
+    const char *stage;      ///< name of the last reported stage, a string constant
+    double stage_began;     ///< time at which that stage was first reported, by os_seconds
+    double reading_seconds; ///< seconds of all stages called "reading" that have ended
+    double furthest;        ///< largest fraction reported of the stage, 0 to 1
     /// Called with true before something is printed and with false afterwards, where several works
     /// share the terminal; may be NULL.
     void (*hold)(void *user, bool begins);
@@ -54,6 +56,9 @@ void cli_note(cli_work *work, bool warning, const char *format, ...) CLI_PRINTF(
 /// told on standard error and stays in work->loaded. Returns CLI_GO or CLI_FAILED.
 int cli_load(cli_work *work, const char **names, int count, const kiln_load_def *def,
              kiln_map *map);
+/// Says on standard error what the loader found and changed in the input `name`, as it stands in
+/// work->loaded.
+void cli_say_report(cli_work *work, const char *name);
 /// Checks the number and form of the names. Returns CLI_GO, or CLI_WRONG if the names cannot be an
 /// input.
 int cli_check_input(const cli_command *command, const char **names, int count);

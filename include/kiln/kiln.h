@@ -769,6 +769,48 @@ typedef struct kiln_bake_def {
 KILN_API KILN_CHECKED kiln_result kiln_bake(kiln_context *context, const kiln_map *source,
                                             const kiln_bake_def *def, kiln_environment *environment,
                                             kiln_error *error);
+
+/// A panorama whose rows are decoded or made while it is baked, so that only a few of them are in
+/// memory at a time.
+typedef struct kiln_rows {
+    int size; ///< number of rows, each of 2 * size texels; 1 to KILN_MAX_SIZE / 2
+    /// Writes the rows first .. first + count - 1, counted from the north, to `rgb`: count * 2 *
+    /// size RGB texels, whose values must be finite. Another result than KILN_OK ends the bake with
+    /// this result and the message that the function has written to `error`. The function is called
+    /// on several threads at the same time, for rows in an order that suits the bake, and for some
+    /// rows more than once.
+    kiln_result (*read)(void *user, int first, int count, float *rgb, kiln_error *error);
+    void *user;
+    /// Rows are read in whole blocks of `block` rows where this is possible: each block begins at
+    /// row `phase` plus a multiple of `block`. 0 stands for blocks of one row.
+    int block, phase;
+} kiln_rows;
+
+/// Computes an environment as kiln_bake does, with the same bits, from rows that are read when the
+/// bake needs them, from both poles to the equator. Rows around a sun, a single texel with a
+/// thousandth of all light, are read twice. All rows are in memory at the same time only if lights
+/// are taken out or clamped, if a mirror level is turned by pitch, roll or up, or if a level has a
+/// lobe that is too narrow for the spectrum (roughness above 0 and below about 0.07).
+KILN_API KILN_CHECKED kiln_result kiln_bake_rows(kiln_context *context, const kiln_rows *rows,
+                                                 const kiln_bake_def *def,
+                                                 kiln_environment *environment, kiln_error *error);
+/// The shape and the size of a source: rows of a panorama, or texels along a side of a cube face or
+/// an octahedron.
+typedef struct kiln_extent {
+    kiln_shape shape;
+    int size;
+} kiln_extent;
+
+/// Computes an environment from a file, with the same bits as kiln_map_load and kiln_bake. A
+/// panorama in an EXR or HDR file is baked while it is read, as by kiln_bake_rows, so that neither
+/// the file nor the picture is in memory as a whole. The whole picture is loaded from other files,
+/// for the bakes that need all rows (see kiln_bake_rows), and if values are not a number or chroma
+/// is subsampled. `load` and `def` may be NULL. `source`, which may be NULL, receives the shape and
+/// size of what was loaded.
+KILN_API KILN_CHECKED kiln_result kiln_bake_file(kiln_context *context, const char *path,
+                                                 const kiln_load_def *load,
+                                                 const kiln_bake_def *def, kiln_extent *source,
+                                                 kiln_environment *environment, kiln_error *error);
 /// Frees the maps of an environment. `environment` may be NULL.
 KILN_API void kiln_environment_free(kiln_environment *environment);
 

@@ -18,6 +18,7 @@
 
 #include "bake/lights.h"
 #include "bake/low_analysis.h"
+#include "bake/rows.h"
 #include "image/light.h"
 #include "math/math.h"
 #include "sphere/grid.h"
@@ -57,6 +58,7 @@ struct kiln_plan {
     kiln_sun sun;
     kiln_lights_def lights;
     double clamp;
+    bool rows; // true: the plan is made to be executed row by row
     // Size of the irradiance map, or 0 for no such map; number of bands of harmonics, or 0 for no
     // harmonics.
     int irradiance_size, sh_bands;
@@ -74,13 +76,15 @@ struct kiln_plan {
 // ---------------------------------------------------------------------------------------- analysis
 
 // Returns the spectrum that `analysis`, to a low degree, computes from the panorama, or the
-// spectrum of the prefiltered levels if `analysis` is NULL.
+// spectrum of the prefiltered levels if `analysis` is NULL. If `panorama` is NULL, the rows have
+// passed by and the spectrum is in the workspace already.
 static const kiln_spectrum *find_spectrum(const plan_workspace *w, const ki_analysis *analysis,
                                           const ki_low_workspace *low, const kiln_map *panorama)
 {
     if (!analysis)
         return w->prefilter.spectrum;
-    ki_analysis_execute(analysis, low->analysis, panorama->level[0], low->spectrum);
+    if (panorama)
+        ki_analysis_execute(analysis, low->analysis, panorama->level[0], low->spectrum);
     return low->spectrum;
 }
 
@@ -119,7 +123,7 @@ static kiln_result plan_source(kiln_plan *p, kiln_error *error)
 {
     kiln_result result = KILN_OK;
     plan_workspace *w = &p->workspace;
-    if (p->mirror || p->exposure != 0 || p->sun != KILN_SUN_KEEP) {
+    if (!p->rows && (p->mirror || p->exposure != 0 || p->sun != KILN_SUN_KEEP)) {
         w->changed = (kiln_map){.shape = p->source_shape, .size = p->source_size, .level_count = 1};
         result = ki_map_allocate(p->context, &w->changed, error);
     }
@@ -195,7 +199,8 @@ kiln_result ki_plan_create(kiln_context *context, const ki_plan_def *def, kiln_p
                      .sh_bands = def->sh_bands,
                      .sun = def->sun,
                      .lights = def->lights,
-                     .clamp = def->clamp};
+                     .clamp = def->clamp,
+                     .rows = def->rows};
     int rows = ki_panorama_rows(def->source_shape, def->source_size);
     result = plan_source(p, error);
     if (result == KILN_OK)
@@ -353,15 +358,13 @@ static kiln_result take_source(const kiln_plan *p, plan_workspace *w, const kiln
                : ki_fail_cancelled(error, range.name);
 }
 
-static kiln_result execute_all(const kiln_plan *p, plan_workspace *w, const kiln_map *source,
-                               bool rehearses, kiln_environment *environment, kiln_error *error)
+// Computes harmonics and irradiance after the levels, and removes values below zero. `panorama` is
+// NULL if its rows have passed by.
+static kiln_result finish(const kiln_plan *p, plan_workspace *w, const kiln_map *panorama,
+                          kiln_environment *environment, kiln_error *error)
 {
-    const kiln_map *panorama;
-    kiln_result result = take_source(p, w, &source, &panorama, environment, error);
-    if (result == KILN_OK)
-        result = ki_prefilter_execute(p->prefilter, &w->prefilter, panorama, source, rehearses,
-                                      &environment->levels, error);
-    if (result == KILN_OK && p->sh_bands)
+    kiln_result result = KILN_OK;
+    if (p->sh_bands)
         result = ki_sh_project(find_spectrum(w, p->for_sh, &w->for_sh, panorama), p->sh_bands,
                                &p->prefilter->tilt, p->rotation, &environment->sh, error);
     if (result == KILN_OK && p->irradiance_size)
@@ -377,16 +380,33 @@ static kiln_result execute_all(const kiln_plan *p, plan_workspace *w, const kiln
     return result;
 }
 
-// Executes a plan for a source and an environment whose sizes have been checked. Memory that the
-// execution allocates comes from the workspace's scratch, if the workspace has one.
-static kiln_result execute(const kiln_plan *p, plan_workspace *w, const kiln_map *source,
-                           bool rehearses, kiln_environment *environment, kiln_error *error)
+static kiln_result execute_all(const kiln_plan *p, plan_workspace *w, const kiln_map *source,
+                               bool rehearses, kiln_environment *environment, kiln_error *error)
+{
+    const kiln_map *panorama;
+    kiln_result result = take_source(p, w, &source, &panorama, environment, error);
+    if (result == KILN_OK)
+        result = ki_prefilter_execute(p->prefilter, &w->prefilter, panorama, source, rehearses,
+                                      &environment->levels, error);
+    return result == KILN_OK ? finish(p, w, panorama, environment, error) : result;
+}
+
+// Empties what an execution reports in the environment, and says how the environment was computed.
+static void begin_environment(const kiln_plan *p, kiln_environment *environment)
 {
     environment->lights.count = 0;
     environment->clamped = (kiln_clamp){0};
     environment->lobe = p->prefilter->def.lobe;
     environment->degree = p->prefilter->analysis->degree;
     environment->irradiance.roughness[0] = p->irradiance_size ? 1 : 0;
+}
+
+// Executes a plan for a source and an environment whose sizes have been checked. Memory that the
+// execution allocates comes from the workspace's scratch, if the workspace has one.
+static kiln_result execute(const kiln_plan *p, plan_workspace *w, const kiln_map *source,
+                           bool rehearses, kiln_environment *environment, kiln_error *error)
+{
+    begin_environment(p, environment);
     if (w->has_scratch)
         ki_scratch_begin(p->context, &w->scratch);
     kiln_result result = execute_all(p, w, source, rehearses, environment, error);
@@ -409,6 +429,55 @@ kiln_result kiln_plan_execute(kiln_plan *plan, const kiln_map *source,
     if (result != KILN_OK)
         return result;
     return execute(plan, &plan->workspace, source, false, environment, error);
+}
+
+// --------------------------------------------------------------------------------- rows that pass
+
+bool ki_plan_takes_rows(const kiln_plan *p)
+{
+    return p->rows && p->source_shape == KILN_SHAPE_PANORAMA && p->sun == KILN_SUN_KEEP &&
+           ki_prefilter_takes_rows(p->prefilter);
+}
+
+// Lists what the rows of the source become: the spectra of the levels and of the irradiance, and
+// the mirror levels, for each of which a buffer is reserved.
+static kiln_result list_work(const kiln_plan *p, plan_workspace *w, ki_row_work *work,
+                             kiln_environment *environment, kiln_error *error)
+{
+    const ki_prefilter *levels = p->prefilter;
+    kiln_result result = KILN_OK;
+    *work = (ki_row_work){.mirror = p->mirror, .exposure = p->exposure, .analysis_count = 1};
+    work->analysis[0] =
+        (ki_row_analysis){levels->analysis, w->prefilter.analysis, w->prefilter.spectrum};
+    if (p->for_irradiance)
+        work->analysis[work->analysis_count++] = (ki_row_analysis){
+            p->for_irradiance, w->for_irradiance.analysis, w->for_irradiance.spectrum};
+    for (int i = 0; i < levels->def.level_count && result == KILN_OK; i++) {
+        if (!levels->mirrors[i])
+            continue;
+        ki_row_mirror *mirror = &work->mirrors[work->mirror_count++];
+        *mirror =
+            (ki_row_mirror){.plan = levels->mirrors[i], .target = environment->levels.level[i]};
+        result = ki_resample_reserve(p->context, mirror->plan, &mirror->buffer, error);
+    }
+    return result;
+}
+
+kiln_result ki_plan_execute_rows(kiln_plan *p, const kiln_rows *rows, kiln_environment *environment,
+                                 kiln_error *error)
+{
+    plan_workspace *w = &p->workspace;
+    ki_row_work work;
+    begin_environment(p, environment);
+    kiln_result result = list_work(p, w, &work, environment, error);
+    if (result == KILN_OK)
+        result = ki_rows_pass(p->context, rows, &work, error);
+    for (int i = 0; i < work.mirror_count; i++)
+        ki_buffer_free(&work.mirrors[i].buffer);
+    if (result == KILN_OK)
+        result = ki_prefilter_levels(p->prefilter, &w->prefilter, NULL, NULL, false,
+                                     &environment->levels, error);
+    return result == KILN_OK ? finish(p, w, NULL, environment, error) : result;
 }
 
 // ----------------------------------------------------------------------------------------- scratch

@@ -142,7 +142,7 @@ kiln_result ki_prefilter_create(kiln_context *context, int panorama_size, const 
                                 const kiln_prefilter_def *def, const ki_reading *reading,
                                 ki_prefilter **plan, kiln_error *error)
 {
-    static const char stage[] = "planning";
+    static const char planning[] = "planning";
     kiln_result result = KILN_OK;
     kiln_lobe lobes[KILN_MAX_LEVELS];
     ki_zonal zonals[KILN_MAX_LEVELS];
@@ -186,8 +186,8 @@ kiln_result ki_prefilter_create(kiln_context *context, int panorama_size, const 
     result = ki_analysis_create(context, panorama_size, degree, density, &p->analysis, error);
     for (int i = 0; i < p->def.level_count && result == KILN_OK; i++) {
         int size = ki_max(ki_max(1, p->def.smallest), p->def.size >> i);
-        if (!ki_progress(context, stage, (double)i / p->def.level_count))
-            result = ki_fail_cancelled(error, stage);
+        if (!ki_progress(context, planning, (double)i / p->def.level_count))
+            result = ki_fail_cancelled(error, planning);
         else if (ki_is_mirror(&lobes[i]))
             result = plan_mirror(context, p, i, source, error);
         else if (!is_tuned(p, i))
@@ -238,7 +238,7 @@ static kiln_result execute_level(const ki_prefilter *p, ki_prefilter_workspace *
                                  const kiln_map *panorama, const kiln_map *source, int index,
                                  const ki_progress_range *range, kiln_map *map, kiln_error *error)
 {
-    const ki_resample_plan *mirror = p->mirrors[index];
+    const ki_resample_plan *mirror = panorama ? p->mirrors[index] : NULL;
     if (p->levels[index])
         return ki_level_execute(p->levels[index], &w->levels, w->spectrum, panorama,
                                 p->def.rotation, map, index, range, error);
@@ -249,15 +249,32 @@ static kiln_result execute_level(const ki_prefilter *p, ki_prefilter_workspace *
     return KILN_OK;
 }
 
+static const char stage[] = "filtering"; // name of this work in progress reports
+
 kiln_result ki_prefilter_execute(const ki_prefilter *p, ki_prefilter_workspace *w,
                                  const kiln_map *panorama, const kiln_map *source, bool rehearses,
                                  kiln_map *map, kiln_error *error)
 {
-    static const char stage[] = "filtering";
-    kiln_result result = KILN_OK;
     if (!ki_progress(w->context, stage, 0))
         return ki_fail_cancelled(error, stage);
     ki_analysis_execute(p->analysis, w->analysis, panorama->level[0], w->spectrum);
+    return ki_prefilter_levels(p, w, panorama, source, rehearses, map, error);
+}
+
+bool ki_prefilter_takes_rows(const ki_prefilter *p)
+{
+    for (int i = 0; i < p->def.level_count; i++)
+        if ((p->mirrors[i] && (p->direct[i] || !ki_resample_has_bands(p->mirrors[i]))) ||
+            (p->levels[i] && ki_level_needs_panorama(p->levels[i])))
+            return false;
+    return true;
+}
+
+kiln_result ki_prefilter_levels(const ki_prefilter *p, ki_prefilter_workspace *w,
+                                const kiln_map *panorama, const kiln_map *source, bool rehearses,
+                                kiln_map *map, kiln_error *error)
+{
+    kiln_result result = KILN_OK;
     // The analysis counts as a quarter of the progress, and each level as half of the progress that
     // remains, because levels get smaller.
     double done = 0.25;

@@ -65,6 +65,15 @@ void ki_prefilter_workspace_free(ki_prefilter_workspace *workspace);
 kiln_result ki_prefilter_execute(const ki_prefilter *prefilter, ki_prefilter_workspace *workspace,
                                  const kiln_map *panorama, const kiln_map *source, bool rehearses,
                                  kiln_map *map, kiln_error *error);
+/// Computes the levels of `map` as ki_prefilter_execute does, from the spectrum that is already in
+/// the workspace. `panorama` and `source` may be NULL if the mirror levels are already in `map` and
+/// no level needs the panorama.
+kiln_result ki_prefilter_levels(const ki_prefilter *prefilter, ki_prefilter_workspace *workspace,
+                                const kiln_map *panorama, const kiln_map *source, bool rehearses,
+                                kiln_map *map, kiln_error *error);
+/// Returns whether the levels can be computed while the rows of a panorama pass by: each mirror
+/// level is resampled row by row, and no other level needs the panorama.
+bool ki_prefilter_takes_rows(const ki_prefilter *prefilter);
 /// Returns the greatest number of bytes that an execution allocates for `count` suns, bright texels
 /// that are kept out of the spectrum.
 size_t ki_prefilter_suns_size(const ki_prefilter *prefilter, size_t count);

@@ -88,6 +88,39 @@ done:
     return result;
 }
 
+bool ki_file_open(const char *path, ki_open_file *file)
+{
+    uint8_t first;
+    bool regular = strcmp(path, "-") != 0 && ki_os_kind_of(path) == KI_OS_FILE;
+    *file = (ki_open_file){.descriptor = regular ? ki_os_open(path) : -1};
+    if (file->descriptor < 0)
+        return false;
+    file->size = ki_os_size(file->descriptor);
+    if (file->size && ki_file_read_at(file, 0, &first, 1))
+        return true;
+    ki_file_close(file);
+    return false;
+}
+
+bool ki_file_read_at(const ki_open_file *file, uint64_t at, void *bytes, size_t size)
+{
+    for (size_t done = 0; done < size;) {
+        ptrdiff_t got =
+            ki_os_read_at(file->descriptor, (uint8_t *)bytes + done, size - done, at + done);
+        if (got <= 0 && !(got < 0 && errno == EINTR))
+            return false;
+        done += got > 0 ? (size_t)got : 0;
+    }
+    return true;
+}
+
+void ki_file_close(ki_open_file *file)
+{
+    if (file->descriptor >= 0)
+        ki_os_close(file->descriptor);
+    file->descriptor = -1;
+}
+
 // A member of a set of files that appear together: a file under its temporary name, a folder that
 // was created, or a file in memory.
 typedef struct set_entry {

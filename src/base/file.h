@@ -12,6 +12,21 @@ bool ki_ends_with(const char *path, const char *ending);
 /// `bytes`.
 kiln_result ki_file_read(kiln_context *context, const char *path, uint8_t **bytes, size_t *size,
                          kiln_error *error);
+
+/// A file that is open for reading at any place.
+typedef struct ki_open_file {
+    int descriptor;
+    uint64_t size; ///< size of the file in bytes when it was opened
+} ki_open_file;
+
+/// Opens a file for reading at any place. Returns false for standard input, for what is no regular
+/// file, and where the system can only read files from the beginning to the end.
+bool ki_file_open(const char *path, ki_open_file *file);
+/// Reads exactly `size` bytes from byte `at` on, on any thread. Returns false if the file ends
+/// before or cannot be read.
+bool ki_file_read_at(const ki_open_file *file, uint64_t at, void *bytes, size_t size);
+void ki_file_close(ki_open_file *file);
+
 /// Writes a file that appears completely or not at all: writes a temporary file in the folder of
 /// `path`, synchronises it to disk and renames it. A file that is replaced hands on its
 /// permissions. A symbolic link stays, and the file to which the link leads is replaced. On failure

@@ -92,6 +92,13 @@ ptrdiff_t ki_os_read(int file, void *bytes, size_t size)
     return value(host_read(file, bytes, size));
 }
 
+ptrdiff_t ki_os_read_at(int file, void *bytes, size_t size, uint64_t at)
+{
+    (void)file, (void)bytes, (void)size, (void)at;
+    errno = ENOTSUP;
+    return -1;
+}
+
 ptrdiff_t ki_os_write(int file, const void *bytes, size_t size)
 {
     return value(host_write(file, bytes, size));

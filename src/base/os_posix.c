@@ -99,6 +99,11 @@ ptrdiff_t ki_os_read(int file, void *bytes, size_t size)
     return read(file, bytes, size);
 }
 
+ptrdiff_t ki_os_read_at(int file, void *bytes, size_t size, uint64_t at)
+{
+    return pread(file, bytes, size, (off_t)at);
+}
+
 ptrdiff_t ki_os_write(int file, const void *bytes, size_t size)
 {
     return write(file, bytes, size);

@@ -173,6 +173,18 @@ ptrdiff_t ki_os_read(int file, void *bytes, size_t size)
     return _read(file, bytes, at_once(size));
 }
 
+ptrdiff_t ki_os_read_at(int file, void *bytes, size_t size, uint64_t at)
+{
+    DWORD got = 0;
+    OVERLAPPED place = {.Offset = (DWORD)at, .OffsetHigh = (DWORD)(at >> 32)};
+    if (ReadFile((HANDLE)_get_osfhandle(file), bytes, at_once(size), &got, &place))
+        return (ptrdiff_t)got;
+    if (GetLastError() == ERROR_HANDLE_EOF)
+        return 0;
+    failed();
+    return -1;
+}
+
 ptrdiff_t ki_os_write(int file, const void *bytes, size_t size)
 {
     return _write(file, bytes, at_once(size));

@@ -6,41 +6,22 @@
 //
 // The picture is the display window; pixels outside the data window are 0. Of a part with several
 // levels, level 0 is read.
-#include "codec/exr.h"
 #include "codec/codec.h"
 #include "codec/engine_text.h"
+#include "codec/exr_file.h"
 #include "codec/file_info.h"
 #include "codec/report.h"
 
 #include <stdio.h>
 #include <string.h>
 
-enum { TASKS = 1024 };
-
-typedef struct exr_file {
-    kiln_context *context;
-    const char *name;
-    ki_exr_header header;
-    ki_exr_layers layers;
-    ki_exr_layer layer;      // the layer that is read
-    bool chosen;             // false: no layer is the picture, and `layer` is only described
-    const ki_exr_part *part; // the part of the layer
-    int sampling;            // 2 if chroma has a sample in every second column and line, else 1
-    ki_exr_color color;
-    ki_exr_picture picture;
-    ki_exr_chunk *chunks;
-    int chunk_count;
-    uint16_t *dwa_table;
-    int task_count;
-    uint8_t results[TASKS]; // the kiln_result of each task that decodes chunks
-    int damaged[TASKS];     // index of the chunk at which each task failed
-} exr_file;
+enum { TASKS = KI_EXR_TASKS };
 
 // ---------------------------------------------------------------------------------------- channels
 
 // Chooses the layer that becomes the picture. If the caller wants a description alone, a file in
 // which no layer can be chosen is described by its first layer.
-static kiln_result choose(exr_file *f, const char *wanted, bool describe_only, kiln_error *error)
+static kiln_result choose(ki_exr_file *f, const char *wanted, bool describe_only, kiln_error *error)
 {
     kiln_result result =
         ki_exr_choose_layer(&f->header, &f->layers, wanted, f->name, &f->layer, error);
@@ -61,7 +42,7 @@ static kiln_result choose(exr_file *f, const char *wanted, bool describe_only, k
 
 // Returns 2 if chroma has one sample for 2 x 2 pixels of the data window, as OpenEXR writes it,
 // else 1.
-static int find_sampling(const exr_file *f)
+static int find_sampling(const ki_exr_file *f)
 {
     const ki_exr_window *w = &f->part->data;
     const int *source = f->picture.source;
@@ -73,7 +54,7 @@ static int find_sampling(const exr_file *f)
 }
 
 // Fails unless the samples of the chosen channels lie where the picture is read from.
-static kiln_result check_channels(exr_file *f, kiln_error *error)
+static kiln_result check_channels(ki_exr_file *f, kiln_error *error)
 {
     f->sampling = find_sampling(f);
     for (int k = 0; k < 3; k++) {
@@ -93,7 +74,7 @@ static kiln_result check_channels(exr_file *f, kiln_error *error)
     return KILN_OK;
 }
 
-static kiln_result check_window(const exr_file *f, const char *what, const ki_exr_window *w,
+static kiln_result check_window(const ki_exr_file *f, const char *what, const ki_exr_window *w,
                                 kiln_error *error)
 {
     int64_t width = (int64_t)w->right - w->left + 1, height = (int64_t)w->bottom - w->top + 1;
@@ -109,8 +90,8 @@ static kiln_result check_window(const exr_file *f, const char *what, const ki_ex
     return KILN_OK;
 }
 
-static kiln_result open_file(exr_file *f, const uint8_t *bytes, size_t size, const char *wanted,
-                             bool describe_only, kiln_error *error)
+kiln_result ki_exr_open(ki_exr_file *f, const uint8_t *bytes, size_t size, const char *wanted,
+                        bool describe_only, kiln_error *error)
 {
     kiln_result result = ki_exr_read_header(f->context, bytes, size, f->name, &f->header, error);
     if (result == KILN_OK)
@@ -153,7 +134,7 @@ static void read_string(const ki_exr_part *p, const char *name, char *text, size
 }
 
 // Fills in `info` from kiln's own attributes: the shape, the roughness, the engine or the table.
-static void describe_attributes(const exr_file *f, kiln_file_info *info)
+static void describe_attributes(const ki_exr_file *f, kiln_file_info *info)
 {
     char text[sizeof info->table];
     read_string(f->part, "software", text, sizeof info->writer);
@@ -184,7 +165,7 @@ static void describe_attributes(const exr_file *f, kiln_file_info *info)
         info->roughness[0] = roughness;
 }
 
-static void describe(const exr_file *f, kiln_file_info *info)
+void ki_exr_describe(const ki_exr_file *f, kiln_file_info *info)
 {
     static const char *const types[KI_EXR_TYPES] = {"uint", "half", "float"};
     static const char *const kinds[] = {[KI_EXR_NO_PICTURE] = "data",
@@ -217,7 +198,7 @@ static void describe(const exr_file *f, kiln_file_info *info)
 // for the largest of its chunks.
 static void decode_chunks(void *data, int task)
 {
-    exr_file *f = data;
+    ki_exr_file *f = data;
     int begin = (int)((int64_t)f->chunk_count * task / f->task_count);
     int end = (int)((int64_t)f->chunk_count * (task + 1) / f->task_count);
     size_t most = 0;
@@ -238,32 +219,41 @@ static void decode_chunks(void *data, int task)
     f->results[task] = (uint8_t)result;
 }
 
-static kiln_result say_damaged(const exr_file *f, int task, kiln_error *error)
+kiln_result ki_exr_say_damaged(const ki_exr_file *f, int index, kiln_result result,
+                               kiln_error *error)
 {
-    const ki_exr_chunk *chunk = &f->chunks[f->damaged[task]];
-    if (f->results[task] == KILN_ERROR_MEMORY)
+    const ki_exr_chunk *chunk = &f->chunks[index];
+    if (result == KILN_ERROR_MEMORY)
         return ki_fail_memory(f->context, error, f->name, 2 * chunk->size);
     return ki_fail(error, KILN_ERROR_FORMAT, "%s: chunk %d of %d (%s, %zu bytes) is damaged",
-                   f->name, f->damaged[task], f->chunk_count,
-                   ki_exr_compression_name(f->part->compression), chunk->packed_size);
+                   f->name, index, f->chunk_count, ki_exr_compression_name(f->part->compression),
+                   chunk->packed_size);
 }
 
-static kiln_result decode_all(exr_file *f, kiln_error *error)
+kiln_result ki_exr_prepare(ki_exr_file *f, kiln_error *error)
+{
+    if (f->part->compression != KI_EXR_DWAA && f->part->compression != KI_EXR_DWAB)
+        return KILN_OK;
+    f->dwa_table = ki_alloc_raw(f->context, 65536, sizeof *f->dwa_table);
+    if (!f->dwa_table)
+        return ki_fail_memory(f->context, error, f->name, 65536 * sizeof *f->dwa_table);
+    ki_exr_dwa_table(f->context, f->dwa_table);
+    return KILN_OK;
+}
+
+static kiln_result decode_all(ki_exr_file *f, kiln_error *error)
 {
     f->task_count = ki_min(TASKS, f->chunk_count);
-    if (f->part->compression == KI_EXR_DWAA || f->part->compression == KI_EXR_DWAB) {
-        f->dwa_table = ki_alloc_raw(f->context, 65536, sizeof *f->dwa_table);
-        if (!f->dwa_table)
-            return ki_fail_memory(f->context, error, f->name, 65536 * sizeof *f->dwa_table);
-        ki_exr_dwa_table(f->context, f->dwa_table);
-    }
     static const ki_progress_range all = {"reading", 0, 1};
+    kiln_result result = ki_exr_prepare(f, error);
+    if (result != KILN_OK)
+        return result;
     if (!ki_progress(f->context, "reading", 0) ||
         !ki_parallel_steps(f->context, &all, f->task_count, decode_chunks, f))
         return ki_fail_cancelled(error, "reading");
     for (int t = 0; t < f->task_count; t++)
         if (f->results[t] != KILN_OK)
-            return say_damaged(f, t, error);
+            return ki_exr_say_damaged(f, f->damaged[t], f->results[t], error);
     return KILN_OK;
 }
 
@@ -272,18 +262,18 @@ static size_t area(const ki_exr_window *w)
     return (size_t)(w->right - w->left + 1) * (size_t)(w->bottom - w->top + 1);
 }
 
-// Returns the number of pixels that lie in both the data window and the display window.
-static size_t count_common(const ki_exr_window *data, const ki_exr_window *display)
+size_t ki_exr_common(const ki_exr_file *f)
 {
+    const ki_exr_window *data = &f->part->data, *display = &f->part->display;
     const ki_exr_window common = {
         ki_max(data->left, display->left), ki_max(data->top, display->top),
         ki_min(data->right, display->right), ki_min(data->bottom, display->bottom)};
     return common.left <= common.right && common.top <= common.bottom ? area(&common) : 0;
 }
 
-// Fails if the display window is nearly empty. The file's size bounds the data window, and this
-// rule the display window, so that a short file cannot ask for a large picture.
-static kiln_result check_common(const exr_file *f, size_t common, kiln_error *error)
+// The file's size bounds the data window, and this rule the display window, so that a short file
+// cannot ask for a large picture.
+kiln_result ki_exr_check_common(const ki_exr_file *f, size_t common, kiln_error *error)
 {
     enum { SMALL = 1 << 20, MOST_EMPTY = 64 };
     size_t pixels = area(&f->part->display);
@@ -300,7 +290,7 @@ static kiln_result check_common(const exr_file *f, size_t common, kiln_error *er
     return KILN_OK;
 }
 
-static kiln_result allocate(const exr_file *f, size_t pixels, float **memory, kiln_error *error)
+static kiln_result allocate(const ki_exr_file *f, size_t pixels, float **memory, kiln_error *error)
 {
     *memory = ki_alloc(f->context, pixels, 3 * sizeof(float));
     return *memory ? KILN_OK
@@ -325,7 +315,7 @@ static void copy_common(const ki_exr_picture *data, const ki_exr_picture *displa
 
 // Reads luminance and chroma over the data window, whose border the interpolation of chroma needs,
 // and replaces them by colours over the display window.
-static kiln_result read_chroma(exr_file *f, kiln_error *error)
+static kiln_result read_chroma(ki_exr_file *f, kiln_error *error)
 {
     const ki_exr_picture display = f->picture;
     const ki_exr_window *w = &f->part->data;
@@ -356,7 +346,7 @@ static kiln_result read_chroma(exr_file *f, kiln_error *error)
     return result;
 }
 
-static kiln_result read_colors(exr_file *f, size_t common, kiln_error *error)
+static kiln_result read_colors(ki_exr_file *f, size_t common, kiln_error *error)
 {
     size_t pixels = area(&f->part->display);
     f->picture.pixels = common == pixels ? ki_alloc_raw(f->context, pixels, 3 * sizeof(float))
@@ -366,10 +356,9 @@ static kiln_result read_colors(exr_file *f, size_t common, kiln_error *error)
     return decode_all(f, error);
 }
 
-// Notes what is read and how.
-static void note_all(const exr_file *f, kiln_load_report *report)
+void ki_exr_note_all(const ki_exr_file *f, kiln_load_report *report)
 {
-    size_t common = count_common(&f->part->data, &f->part->display);
+    size_t common = ki_exr_common(f);
     size_t outside = area(&f->part->data) - common;
     ki_exr_note_layer(&f->header, &f->layers, &f->layer, report);
     if (outside)
@@ -380,12 +369,17 @@ static void note_all(const exr_file *f, kiln_load_report *report)
     ki_exr_note_color(&f->color, f->layer.kind, report);
 }
 
-static kiln_result read_pixels(exr_file *f, kiln_image *image, kiln_load_report *report,
+bool ki_exr_converts(const ki_exr_file *f)
+{
+    return f->layer.kind != KI_EXR_GREY && f->color.converts;
+}
+
+static kiln_result read_pixels(ki_exr_file *f, kiln_image *image, kiln_load_report *report,
                                kiln_error *error)
 {
     ki_exr_picture *p = &f->picture;
-    size_t common = count_common(&f->part->data, &f->part->display);
-    kiln_result result = check_common(f, common, error);
+    size_t common = ki_exr_common(f);
+    kiln_result result = ki_exr_check_common(f, common, error);
     if (result == KILN_OK)
         result = ki_exr_find_chunks(f->context, &f->header, f->layer.part, f->name, &f->chunks,
                                     &f->chunk_count, error);
@@ -396,8 +390,7 @@ static kiln_result read_pixels(exr_file *f, kiln_image *image, kiln_load_report 
         return result;
     *image = (kiln_image){p->width, p->height, 3, p->pixels, p->pixels};
     p->pixels = NULL;
-    if (f->layer.kind != KI_EXR_GREY && f->color.converts &&
-        !ki_image_transform(f->context, &f->color.matrix, image)) {
+    if (ki_exr_converts(f) && !ki_image_transform(f->context, &f->color.matrix, image)) {
         kiln_image_free(image);
         return ki_fail_cancelled(error, "reading");
     }
@@ -406,31 +399,36 @@ static kiln_result read_pixels(exr_file *f, kiln_image *image, kiln_load_report 
     return KILN_OK;
 }
 
-kiln_result ki_exr_decode(kiln_context *context, const uint8_t *bytes, size_t size,
-                          const char *name, const char *layer, kiln_image *image,
-                          kiln_file_info *info, kiln_load_report *report, kiln_error *error)
+void ki_exr_close(ki_exr_file *f)
 {
-    if (image)
-        *image = (kiln_image){0};
-    exr_file *f = ki_alloc(context, 1, sizeof *f);
-    if (!f)
-        return ki_fail_memory(context, error, name, sizeof *f);
-    f->context = context;
-    f->name = name;
-    kiln_result result = open_file(f, bytes, size, layer, !image, error);
-    if (result == KILN_OK && f->chosen)
-        result = ki_exr_read_color(f->part, name, &f->color, error);
-    if (result == KILN_OK && f->chosen)
-        note_all(f, report);
-    if (result == KILN_OK && info)
-        describe(f, info);
-    if (result == KILN_OK && image)
-        result = read_pixels(f, image, report, error);
     ki_free(f->picture.pixels);
     ki_free(f->chunks);
     ki_free(f->dwa_table);
     ki_free(f->layers.layer);
     ki_exr_header_free(&f->header);
     ki_free(f);
+}
+
+kiln_result ki_exr_decode(kiln_context *context, const uint8_t *bytes, size_t size,
+                          const char *name, const char *layer, kiln_image *image,
+                          kiln_file_info *info, kiln_load_report *report, kiln_error *error)
+{
+    if (image)
+        *image = (kiln_image){0};
+    ki_exr_file *f = ki_alloc(context, 1, sizeof *f);
+    if (!f)
+        return ki_fail_memory(context, error, name, sizeof *f);
+    f->context = context;
+    f->name = name;
+    kiln_result result = ki_exr_open(f, bytes, size, layer, !image, error);
+    if (result == KILN_OK && f->chosen)
+        result = ki_exr_read_color(f->part, name, &f->color, error);
+    if (result == KILN_OK && f->chosen)
+        ki_exr_note_all(f, report);
+    if (result == KILN_OK && info)
+        ki_exr_describe(f, info);
+    if (result == KILN_OK && image)
+        result = read_pixels(f, image, report, error);
+    ki_exr_close(f);
     return result;
 }

@@ -4,6 +4,7 @@
 #define KI_EXR_H
 
 #include "base/base.h"
+#include "base/file.h"
 #include "image/color.h"
 
 #include <kiln/kiln.h>
@@ -66,8 +67,13 @@ typedef struct ki_exr_part {
 } ki_exr_part;
 
 typedef struct ki_exr_header {
-    const uint8_t *bytes; // bytes of the whole file, into which names and attributes point
-    size_t size;
+    // The bytes of the file from its beginning, into which names and attributes point, and their
+    // number `held`: all `size` bytes of the file, or at least the headers and the tables of chunk
+    // offsets, if `file` is set.
+    const uint8_t *bytes;
+    size_t held;
+    uint64_t size;
+    const ki_open_file *file; // the file from which chunks are read; NULL if all bytes are held
     bool multipart;
     // Position in the file of the first part's table of chunk offsets. The tables of the other
     // parts follow.
@@ -226,10 +232,14 @@ kiln_result ki_exr_unpack_huffman(kiln_context *context, const uint8_t *packed, 
 
 typedef struct ki_exr_chunk {
     ki_exr_box box;
-    const uint8_t *packed;
+    uint64_t at;              // position in the file of the packed chunk
+    const uint8_t *packed;    // the packed chunk; NULL if the file's bytes are not held
     size_t packed_size, size; // size in bytes of the packed chunk, and of the samples in its box
 } ki_exr_chunk;
 
+/// Returns how many lines of pixels the chunks of a part share: the height of its tiles, or the
+/// number of lines that its compression method packs together.
+int ki_exr_chunk_height(const ki_exr_part *part);
 /// Returns the name of a compression method that kiln knows, for example "zip".
 const char *ki_exr_compression_name(int compression);
 

@@ -4,6 +4,8 @@
 #include "base/bytes.h"
 #include "codec/exr.h"
 
+#include <string.h>
+
 typedef struct method {
     const char *name;
     int lines; // number of scan lines in a chunk
@@ -62,6 +64,13 @@ static grid make_grid(const ki_exr_part *p)
     return g;
 }
 
+int ki_exr_chunk_height(const ki_exr_part *part)
+{
+    return part->tiled
+               ? (int)(part->tile_height < KILN_MAX_SIZE ? part->tile_height : KILN_MAX_SIZE)
+               : chunk_lines(part->compression);
+}
+
 // Returns the number of entries in a part's table of chunk offsets. In a part with mip levels only
 // the entries of level 0 count, which come first. Returns 0 if the header is wrong.
 static int32_t chunk_count(const ki_exr_part *part)
@@ -85,24 +94,43 @@ typedef struct search {
     int part_index, entry_count;
     grid grid;
     uint64_t table; // position in the file of the part's table of chunk offsets
-    size_t left;    // bytes of the file that belong to no chunk so far
+    uint64_t left;  // bytes of the file that belong to no chunk so far
 } search;
 
+// Greatest number of bytes before a packed chunk: its part, for a tile four numbers, and its size.
+enum { HEAD = 24 };
+
+// Reads what stands before the packed bytes of a chunk at `offset` into `head`. Returns a reader of
+// these bytes, which has failed if the file cannot be read.
+static ki_reader read_head(const search *s, uint64_t offset, uint8_t head[HEAD])
+{
+    const ki_exr_header *h = s->header;
+    size_t size = h->size - offset < HEAD ? (size_t)(h->size - offset) : HEAD;
+    ki_reader r = ki_reader_make(head, size);
+    if (!h->file)
+        memcpy(head, h->bytes + offset, size);
+    else
+        r.failed = !ki_file_read_at(h->file, offset, head, size);
+    return r;
+}
+
 // Returns a reader of the chunk that entry `index` of the offset table points to, after the numbers
-// that identify the chunk. The reader has failed if the table is too short, or the chunk does not
-// identify itself as that at tile or line group (`column`, `row`).
-static ki_reader open_chunk(const search *s, int64_t index, int column, int row)
+// that identify the chunk. *offset is the position of the chunk in the file. The reader has failed
+// if the table is too short, or the chunk does not identify itself as that at tile or line group
+// (`column`, `row`).
+static ki_reader open_chunk(const search *s, int64_t index, int column, int row, uint64_t *offset,
+                            uint8_t head[HEAD])
 {
     const ki_exr_header *h = s->header;
     ki_reader nowhere = {.failed = true};
     uint64_t entry = s->table + 8 * (uint64_t)index;
-    if (index >= s->entry_count || entry > h->size || h->size - entry < 8)
+    if (index >= s->entry_count || entry > h->held || h->held - entry < 8)
         return nowhere;
     ki_reader r = ki_reader_make(h->bytes + entry, 8);
-    uint64_t offset = ki_read_u64(&r);
-    if (offset >= h->size)
+    *offset = ki_read_u64(&r);
+    if (*offset >= h->size)
         return nowhere;
-    r = ki_reader_make(h->bytes + offset, h->size - (size_t)offset);
+    r = read_head(s, *offset, head);
     bool same = !h->multipart || ki_read_u32(&r) == (uint32_t)s->part_index;
     // a tile's chunk begins with its column, its row, and its mip level in x and y
     if (s->part->tiled) {
@@ -119,18 +147,22 @@ static kiln_result find_chunk(search *s, const char *name, int column, int row, 
                               kiln_error *error)
 {
     const grid *g = &s->grid;
+    const ki_exr_header *h = s->header;
     int64_t index = row * g->across + column;
     int64_t x = column * g->chunk_width, y = row * g->chunk_height;
     int width = (int)(g->width - x < g->chunk_width ? g->width - x : g->chunk_width);
     int height = (int)(g->height - y < g->chunk_height ? g->height - y : g->chunk_height);
-    ki_reader r = open_chunk(s, index, column, row);
+    uint64_t offset = 0;
+    uint8_t head[HEAD];
+    ki_reader r = open_chunk(s, index, column, row, &offset, head);
     c->packed_size = ki_read_u32(&r);
-    c->packed = ki_read_bytes(&r, c->packed_size);
+    c->at = r.failed ? h->size : offset + (uint64_t)(r.at - head);
     // Each byte of the file belongs to one chunk at most: a chunk larger than what the chunks
     // before it have left shows that chunks overlap.
-    if (!c->packed || c->packed_size > s->left)
+    if (r.failed || c->packed_size > h->size - c->at || c->packed_size > s->left)
         return ki_fail(error, KILN_ERROR_FORMAT, "%s: chunk %lld is missing or damaged", name,
                        (long long)index);
+    c->packed = h->file ? NULL : h->bytes + c->at;
     s->left -= c->packed_size;
     c->box = (ki_exr_box){s->part->data.left + (int)x, s->part->data.top + (int)y, width, height,
                           s->part->channels,           s->part->channel_count};
@@ -154,11 +186,11 @@ kiln_result ki_exr_find_chunks(kiln_context *context, const ki_exr_header *heade
     *chunks = NULL;
     *count = 0;
     int64_t needed = s.grid.across * s.grid.down;
-    if (needed < 1 || s.entry_count < needed || (size_t)s.entry_count > header->size / 8)
+    if (needed < 1 || s.entry_count < needed || (uint64_t)s.entry_count > header->size / 8)
         return ki_fail(error, KILN_ERROR_FORMAT,
-                       "%s: its table of %d chunks does not fit into the file's %zu bytes or is "
+                       "%s: its table of %d chunks does not fit into the file's %llu bytes or is "
                        "shorter than the %lld chunks of the picture",
-                       name, s.entry_count, header->size, (long long)needed);
+                       name, s.entry_count, (unsigned long long)header->size, (long long)needed);
     ki_exr_chunk *found = ki_alloc(context, (size_t)needed, sizeof *found);
     if (!found)
         return ki_fail_memory(context, error, name, (size_t)needed * sizeof *found);

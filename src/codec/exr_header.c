@@ -229,7 +229,7 @@ static bool grow(kiln_context *context, ki_exr_header *h)
 
 static const char *read_parts(kiln_context *context, ki_exr_header *h, stop *stopped)
 {
-    ki_reader r = ki_reader_make(h->bytes, h->size);
+    ki_reader r = ki_reader_make(h->bytes, h->held);
     ki_read_u32(&r); // the magic number, which is already checked
     uint32_t version = ki_read_u32(&r);
     if (r.failed || (version & 0xff) != 2)
@@ -250,14 +250,14 @@ static const char *read_parts(kiln_context *context, ki_exr_header *h, stop *sto
     } while (h->multipart && ki_reader_left(&r) && *r.at);
     if (h->multipart)
         ki_read_u8(&r);
-    h->tables = h->size - ki_reader_left(&r);
+    h->tables = h->held - ki_reader_left(&r);
     return r.failed ? "it ends too early" : NULL;
 }
 
 kiln_result ki_exr_read_header(kiln_context *context, const uint8_t *bytes, size_t size,
                                const char *name, ki_exr_header *header, kiln_error *error)
 {
-    *header = (ki_exr_header){.bytes = bytes, .size = size};
+    *header = (ki_exr_header){.bytes = bytes, .held = size, .size = size};
     stop stopped = GO_ON;
     const char *wrong = read_parts(context, header, &stopped);
     if (stopped == CANCELLED)

@@ -15,46 +15,21 @@
 #include <stdio.h>
 #include <string.h>
 
-// How the bytes of a file's lines are encoded, by which the ends of the lines are found.
-typedef enum hdr_coding {
-    // each line by Radiance's rules: its first texel says whether it has run-lengths of the new
-    // kind
-    CODING_BY_START,
-    CODING_FLAT, // four bytes for each texel, whatever their values
-    // every line has run-lengths of the new kind, although Radiance's rules forbid them for its
-    // length
-    CODING_NEW_RUNS,
-} hdr_coding;
-
-typedef struct hdr_file {
-    kiln_context *context;
-    const char *name;
-    const uint8_t *bytes;
-    size_t size;
-    ki_hdr_header head;
-    hdr_coding coding;
-    size_t *line_start;
-    int task_count;
-    uint8_t *texels; // memory for the texels of one line, for each task
-    float *pixels;
-    float scale[3][256];
-} hdr_file;
-
 // ------------------------------------------------------------------------------------------ lines
 
-static bool has_new_runs(const hdr_file *f, const uint8_t *at, size_t left)
+static bool has_new_runs(const ki_hdr_file *f, const uint8_t *at, size_t left)
 {
     int length = f->head.line_length;
-    bool allowed = f->coding == CODING_BY_START
+    bool allowed = f->coding == KI_HDR_BY_START
                        ? length >= KI_HDR_RUNS_LEAST && length <= KI_HDR_RUNS_MOST
-                       : f->coding == CODING_NEW_RUNS;
+                       : f->coding == KI_HDR_NEW_RUNS;
     return allowed && left >= 4 && at[0] == 2 && at[1] == 2 && (at[2] << 8 | at[3]) == length;
 }
 
 // Decodes a line with run-lengths of the new kind, or only finds its end if `texels` is NULL. The
 // line's `line_length` texels become four bytes each. Returns the number of bytes read, 0 if the
 // data are damaged.
-static size_t read_new_runs(const hdr_file *f, const uint8_t *at, size_t left, uint8_t *texels)
+static size_t read_new_runs(const ki_hdr_file *f, const uint8_t *at, size_t left, uint8_t *texels)
 {
     size_t in = 4;
     for (int c = 0; c < 4; c++) {
@@ -78,7 +53,7 @@ static size_t read_new_runs(const hdr_file *f, const uint8_t *at, size_t left, u
 // Decodes a line with run-lengths of the old kind, four bytes for each texel. A texel (1, 1, 1, n)
 // repeats the previous texel n times. If several such texels follow one another, the second counts
 // n * 256 times, the third n * 65536 times, and so on.
-static size_t read_old_runs(const hdr_file *f, const uint8_t *at, size_t left, uint8_t *texels)
+static size_t read_old_runs(const ki_hdr_file *f, const uint8_t *at, size_t left, uint8_t *texels)
 {
     size_t in = 0;
     int shift = 0;
@@ -105,7 +80,7 @@ static size_t read_old_runs(const hdr_file *f, const uint8_t *at, size_t left, u
     return in;
 }
 
-static size_t read_flat(const hdr_file *f, const uint8_t *at, size_t left, uint8_t *texels)
+static size_t read_flat(const ki_hdr_file *f, const uint8_t *at, size_t left, uint8_t *texels)
 {
     size_t size = 4 * (size_t)f->head.line_length;
     if (left < size)
@@ -115,20 +90,24 @@ static size_t read_flat(const hdr_file *f, const uint8_t *at, size_t left, uint8
     return size;
 }
 
-static size_t read_line(const hdr_file *f, size_t start, uint8_t *texels)
+// Decodes the line that begins at byte `start` of the file, or only finds its end if `texels` is NULL.
+// Returns the number of bytes read, 0 if the data are damaged or the held bytes end before.
+static size_t read_line(const ki_hdr_file *f, uint64_t start, uint8_t *texels)
 {
-    const uint8_t *at = f->bytes + start;
-    size_t left = f->size - start;
+    if (start < f->first || start - f->first > f->held)
+        return 0;
+    const uint8_t *at = f->bytes + (size_t)(start - f->first);
+    size_t left = f->held - (size_t)(start - f->first);
     if (has_new_runs(f, at, left))
         return read_new_runs(f, at, left, texels);
-    return f->coding == CODING_FLAT       ? read_flat(f, at, left, texels)
-           : f->coding == CODING_BY_START ? read_old_runs(f, at, left, texels)
+    return f->coding == KI_HDR_FLAT       ? read_flat(f, at, left, texels)
+           : f->coding == KI_HDR_BY_START ? read_old_runs(f, at, left, texels)
                                           : 0;
 }
 
 // Finds where each line begins if the lines are encoded by `coding`, and sets *end to where the
 // last line ends. `start` is where line 0 begins.
-static kiln_result find_lines(hdr_file *f, hdr_coding coding, size_t start, size_t *end,
+static kiln_result find_lines(ki_hdr_file *f, ki_hdr_coding coding, uint64_t start, uint64_t *end,
                               kiln_error *error)
 {
     f->coding = coding;
@@ -136,25 +115,28 @@ static kiln_result find_lines(hdr_file *f, hdr_coding coding, size_t start, size
         if (y % 64 == 0 && !ki_go_on(f->context))
             return ki_fail_cancelled(error, "reading");
         f->line_start[y] = start;
+        if (f->advance && !f->advance(f, start))
+            return KILN_ERROR_IO;
         size_t taken = read_line(f, start, NULL);
         if (!taken)
-            return ki_fail(error, KILN_ERROR_FORMAT, "%s: line %d of %d is damaged, at byte %zu",
-                           f->name, y, f->head.line_count, start);
+            return ki_fail(error, KILN_ERROR_FORMAT, "%s: line %d of %d is damaged, at byte %llu",
+                           f->name, y, f->head.line_count, (unsigned long long)start);
         start += taken;
     }
-    *end = start;
+    f->line_start[f->head.line_count] = *end = start;
     return KILN_OK;
 }
 
-// Finds how the lines are encoded and where they begin. Radiance's rules are tried first. If the
-// lines then do not end where the file ends, the file may be flat with texels that look like
-// run-lengths, or have run-lengths of the new kind in lines of a length that does not allow them.
-// One of these encodings is accepted if the lines then end where the file ends.
-static kiln_result find_coding(hdr_file *f, size_t start, kiln_load_report *report,
-                               kiln_error *error)
+// Radiance's rules are tried first. If the lines then do not end where the file ends, the file may
+// be flat with texels that look like run-lengths, or have run-lengths of the new kind in lines of a
+// length that does not allow them. One of these encodings is accepted if the lines then end where
+// the file ends.
+kiln_result ki_hdr_find_lines(ki_hdr_file *f, uint64_t start, kiln_load_report *report,
+                              kiln_error *error)
 {
-    size_t end = 0, flat = 4 * (size_t)f->head.width * (size_t)f->head.height;
-    kiln_result result = find_lines(f, CODING_BY_START, start, &end, error);
+    uint64_t end = 0;
+    size_t flat = 4 * (size_t)f->head.width * (size_t)f->head.height;
+    kiln_result result = find_lines(f, KI_HDR_BY_START, start, &end, error);
     if (result == KILN_ERROR_CANCELLED || (result == KILN_OK && end == f->size))
         return result;
     if (f->size - start == flat) {
@@ -162,28 +144,24 @@ static kiln_result find_coding(hdr_file *f, size_t start, kiln_load_report *repo
                 "texels that look like run-lengths were read as texels, because the file has the "
                 "%zu bytes of a flat picture",
                 flat);
-        return find_lines(f, CODING_FLAT, start, &end, error);
+        return find_lines(f, KI_HDR_FLAT, start, &end, error);
     }
-    if (find_lines(f, CODING_NEW_RUNS, start, &end, error) == KILN_OK && end == f->size) {
+    if (find_lines(f, KI_HDR_NEW_RUNS, start, &end, error) == KILN_OK && end == f->size) {
         ki_note(report, KILN_NOTE_CHOICE, false,
                 "lines of %d texels were read as run-lengths, which lines of %d to %d texels have",
                 f->head.line_length, KI_HDR_RUNS_LEAST, KI_HDR_RUNS_MOST);
         return KILN_OK;
     }
-    return find_lines(f, CODING_BY_START, start, &end, error);
+    return find_lines(f, KI_HDR_BY_START, start, &end, error);
 }
 
 // ----------------------------------------------------------------------------------------- texels
 
-static void decode_line(const hdr_file *f, int index, uint8_t *texels)
+void ki_hdr_decode_line(const ki_hdr_file *f, int index, uint8_t *texels, float *to, ptrdiff_t step)
 {
     const ki_hdr_header *h = &f->head;
     memset(texels, 0, 4 * (size_t)h->line_length);
     read_line(f, f->line_start[index], texels);
-    int order = h->flip_order ? h->line_count - 1 - index : index;
-    ptrdiff_t step = h->columns ? 3 * (ptrdiff_t)h->width : 3;
-    float *to = f->pixels +
-                (h->columns ? 3 * (ptrdiff_t)order : 3 * (ptrdiff_t)order * (ptrdiff_t)h->width);
     if (h->flip_line) {
         to += step * (h->line_length - 1);
         step = -step;
@@ -197,18 +175,28 @@ static void decode_line(const hdr_file *f, int index, uint8_t *texels)
     }
 }
 
+// Decodes a line to its place in the picture.
+static void put_line(const ki_hdr_file *f, int index, uint8_t *texels)
+{
+    const ki_hdr_header *h = &f->head;
+    ptrdiff_t order = h->flip_order ? h->line_count - 1 - index : index;
+    ptrdiff_t step = h->columns ? 3 * (ptrdiff_t)h->width : 3;
+    ki_hdr_decode_line(f, index, texels,
+                       f->pixels + 3 * order * (h->columns ? 1 : (ptrdiff_t)h->width), step);
+}
+
 // Task of one thread: decodes a share of the lines. The task has its own memory for the texels of a
 // line, because a line of 32767 texels would not fit on the stack of a WebAssembly thread.
 static void decode_lines(void *data, int task)
 {
-    const hdr_file *f = data;
+    const ki_hdr_file *f = data;
     uint8_t *texels = f->texels + 4 * (size_t)f->head.line_length * (size_t)task;
     int end = (int)((int64_t)f->head.line_count * (task + 1) / f->task_count);
     for (int i = (int)((int64_t)f->head.line_count * task / f->task_count); i < end; i++)
-        decode_line(f, i, texels);
+        put_line(f, i, texels);
 }
 
-static void fill_scales(hdr_file *f)
+void ki_hdr_fill_scales(ki_hdr_file *f)
 {
     for (int c = 0; c < 3; c++)
         for (int e = 1; e < 256; e++) {
@@ -217,7 +205,7 @@ static void fill_scales(hdr_file *f)
         }
 }
 
-static kiln_result decode_all(hdr_file *f, kiln_image *image, kiln_error *error)
+static kiln_result decode_all(ki_hdr_file *f, kiln_image *image, kiln_error *error)
 {
     enum { TASKS = 64 };
     const ki_hdr_header *h = &f->head;
@@ -227,7 +215,7 @@ static kiln_result decode_all(hdr_file *f, kiln_image *image, kiln_error *error)
     f->pixels = ki_alloc_raw(f->context, count, sizeof(float));
     if (!f->texels || !f->pixels)
         return ki_fail_memory(f->context, error, f->name, count * sizeof(float));
-    fill_scales(f);
+    ki_hdr_fill_scales(f);
     if (!ki_parallel_steps(f->context, NULL, f->task_count, decode_lines, f))
         return ki_fail_cancelled(error, "reading");
     *image = (kiln_image){h->width, h->height, 3, f->pixels, f->pixels};
@@ -238,7 +226,7 @@ static kiln_result decode_all(hdr_file *f, kiln_image *image, kiln_error *error)
     return ki_fail_cancelled(error, "reading");
 }
 
-static void describe(const hdr_file *f, size_t start, kiln_file_info *info)
+static void describe(const ki_hdr_file *f, size_t start, kiln_file_info *info)
 {
     const ki_hdr_header *h = &f->head;
     bool runs = has_new_runs(f, f->bytes + start, f->size - start);
@@ -260,17 +248,17 @@ kiln_result ki_hdr_decode(kiln_context *context, const uint8_t *bytes, size_t si
 {
     if (image)
         *image = (kiln_image){0};
-    hdr_file f = {.context = context, .name = name, .bytes = bytes, .size = size};
+    ki_hdr_file f = {.context = context, .name = name, .bytes = bytes, .held = size, .size = size};
     ki_reader r = ki_reader_make(bytes, size);
     kiln_result result = ki_hdr_read_header(context, &r, name, &f.head, info, report, error);
     if (result != KILN_OK)
         return result;
     size_t start = (size_t)(r.at - bytes);
-    f.line_start = ki_alloc_raw(context, (size_t)f.head.line_count, sizeof *f.line_start);
+    f.line_start = ki_alloc_raw(context, (size_t)f.head.line_count + 1, sizeof *f.line_start);
     if (!f.line_start)
         return ki_fail_memory(context, error, name,
                               (size_t)f.head.line_count * sizeof *f.line_start);
-    result = find_coding(&f, start, report, error);
+    result = ki_hdr_find_lines(&f, start, report, error);
     if (info)
         describe(&f, start, info);
     if (result == KILN_OK && image)

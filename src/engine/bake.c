@@ -3,6 +3,7 @@
 // for whose shader levels are tuned, and pass the description of that shader to src/bake, which
 // does the work.
 #include "bake/environment.h"
+#include "codec/row_file.h"
 #include "engine/engine.h"
 #include "image/image.h"
 
@@ -63,8 +64,10 @@ static kiln_result find_levels(const kiln_bake_def *def, float roughness[KILN_MA
     return KILN_OK;
 }
 
+// Creates the plan of a bake, to be executed row by row if `rows` is true.
 static kiln_result create_plan(kiln_context *context, kiln_shape source_shape, int source_size,
-                               const kiln_bake_def *def, kiln_plan **plan, kiln_error *error)
+                               const kiln_bake_def *def, bool rows, kiln_plan **plan,
+                               kiln_error *error)
 {
     static const kiln_bake_def defaults = {0};
     float roughness[KILN_MAX_LEVELS];
@@ -91,7 +94,8 @@ static kiln_result create_plan(kiln_context *context, kiln_shape source_shape, i
                         .sh_bands = def->sh_bands ? def->sh_bands : 3,
                         .sun = def->sun,
                         .lights = def->lights,
-                        .clamp = def->clamp};
+                        .clamp = def->clamp,
+                        .rows = rows};
     if (def->irradiance_size == KILN_NO_IRRADIANCE)
         full.irradiance_size = 0;
     return ki_plan_create(context, &full, plan, error);
@@ -100,7 +104,7 @@ static kiln_result create_plan(kiln_context *context, kiln_shape source_shape, i
 kiln_result kiln_plan_create(kiln_context *context, kiln_shape source_shape, int source_size,
                              const kiln_bake_def *def, kiln_plan **plan, kiln_error *error)
 {
-    kiln_result result = create_plan(context, source_shape, source_size, def, plan, error);
+    kiln_result result = create_plan(context, source_shape, source_size, def, false, plan, error);
     if (result == KILN_OK)
         result = ki_plan_reserve(*plan, error);
     if (result != KILN_OK) {
@@ -129,11 +133,120 @@ kiln_result kiln_bake(kiln_context *context, const kiln_map *source, const kiln_
     *environment = (kiln_environment){0};
     kiln_result result = ki_map_check(source, error);
     if (result == KILN_OK)
-        result = create_plan(context, source->shape, source->size, def, &plan, error);
+        result = create_plan(context, source->shape, source->size, def, false, &plan, error);
     if (result == KILN_OK)
         result = execute_once(plan, source, environment, error);
     kiln_plan_destroy(plan);
     return result;
+}
+
+// Bakes a panorama whose rows are all read first.
+static kiln_result bake_whole(kiln_context *context, const kiln_rows *rows,
+                              const kiln_bake_def *def, kiln_environment *environment,
+                              kiln_error *error)
+{
+    kiln_map map = {.shape = KILN_SHAPE_PANORAMA, .size = rows->size, .level_count = 1};
+    kiln_result result = ki_map_allocate(context, &map, error);
+    if (result == KILN_OK)
+        result = rows->read(rows->user, 0, rows->size, map.level[0], error);
+    if (result == KILN_OK)
+        result = kiln_bake(context, &map, def, environment, error);
+    kiln_map_free(&map);
+    return result;
+}
+
+// Bakes while rows pass by, if the bake needs no more than a few rows at a time, and sets *passes
+// to whether this is so.
+static kiln_result bake_passing(kiln_context *context, const kiln_rows *rows,
+                                const kiln_bake_def *def, bool *passes,
+                                kiln_environment *environment, kiln_error *error)
+{
+    kiln_plan *plan = NULL;
+    kiln_result result =
+        create_plan(context, KILN_SHAPE_PANORAMA, rows->size, def, true, &plan, error);
+    *passes = result == KILN_OK && ki_plan_takes_rows(plan);
+    if (*passes)
+        result = kiln_plan_environment(plan, environment, error);
+    if (*passes && result == KILN_OK)
+        result = ki_plan_execute_rows(plan, rows, environment, error);
+    if (result != KILN_OK)
+        kiln_environment_free(environment);
+    kiln_plan_destroy(plan);
+    return result;
+}
+
+kiln_result kiln_bake_rows(kiln_context *context, const kiln_rows *rows, const kiln_bake_def *def,
+                           kiln_environment *environment, kiln_error *error)
+{
+    bool passes;
+    *environment = (kiln_environment){0};
+    if (rows->size < 1 || rows->size > KILN_MAX_SIZE / 2 || rows->block < 0)
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "the panorama has %d rows in blocks of %d, it must have 1 to %d, in blocks "
+                       "of 0 or more",
+                       rows->size, rows->block, KILN_MAX_SIZE / 2);
+    kiln_result result = bake_passing(context, rows, def, &passes, environment, error);
+    return passes || result != KILN_OK ? result
+                                       : bake_whole(context, rows, def, environment, error);
+}
+
+// Loads a file as a whole and bakes it.
+static kiln_result bake_loaded(kiln_context *context, const char *path, const kiln_load_def *load,
+                               const kiln_bake_def *def, kiln_extent *source,
+                               kiln_environment *environment, kiln_error *error)
+{
+    kiln_map map;
+    kiln_result result = kiln_map_load(context, path, load, &map, error);
+    *source = (kiln_extent){map.shape, map.size};
+    if (result == KILN_OK)
+        result = kiln_bake(context, &map, def, environment, error);
+    kiln_map_free(&map);
+    return result;
+}
+
+// Bakes a file while its rows pass by. *done is false if only the whole picture can be baked.
+static kiln_result bake_passing_file(kiln_context *context, const char *path,
+                                     const kiln_load_def *load, const kiln_bake_def *def,
+                                     kiln_extent *source, bool *done, kiln_environment *environment,
+                                     kiln_error *error)
+{
+    ki_row_file *file = NULL;
+    kiln_rows rows;
+    kiln_result result = ki_row_file_open(context, path, load, &file, &rows, error);
+    *done = file || result != KILN_OK;
+    if (!file)
+        return result;
+    *source = (kiln_extent){KILN_SHAPE_PANORAMA, rows.size};
+    result = bake_passing(context, &rows, def, done, environment, error);
+    *done = *done || result != KILN_OK;
+    if (*done && result == KILN_OK)
+        result = ki_row_file_finish(file, error);
+    if (ki_row_file_needs_whole(file))
+        *done = false;
+    if (!*done || result != KILN_OK)
+        kiln_environment_free(environment);
+    ki_row_file_close(file);
+    return result;
+}
+
+kiln_result kiln_bake_file(kiln_context *context, const char *path, const kiln_load_def *load,
+                           const kiln_bake_def *def, kiln_extent *source,
+                           kiln_environment *environment, kiln_error *error)
+{
+    static const kiln_load_def defaults = {0};
+    kiln_extent unused;
+    bool done;
+    load = load ? load : &defaults;
+    source = source ? source : &unused;
+    *source = (kiln_extent){0};
+    *environment = (kiln_environment){0};
+    if (load->report)
+        *load->report = (kiln_load_report){0};
+    if (!ki_progress(context, "reading", 0))
+        return ki_fail_cancelled(error, "reading");
+    kiln_result result =
+        bake_passing_file(context, path, load, def, source, &done, environment, error);
+    return done ? result : bake_loaded(context, path, load, def, source, environment, error);
 }
 
 kiln_result kiln_prefilter(kiln_context *context, const kiln_map *source,

@@ -233,19 +233,23 @@ static bool transform_stretch(const ki_matrix3 *matrix, float *rgb)
     return !rare;
 }
 
+void ki_row_transform(const ki_matrix3 *matrix, float *rgb, int width)
+{
+    for (int x = 0, end; x < width; x = end) {
+        end = ki_min(x + STRETCH, width);
+        if (end - x == STRETCH && transform_stretch(matrix, rgb + 3 * (size_t)x))
+            continue;
+        for (int i = x; i < end; i++)
+            transform_texel(matrix, rgb + 3 * (size_t)i);
+    }
+}
+
 // Task of one thread: multiplies the colours of one row by the matrix.
 static void transform_row(void *data, int row)
 {
     const transform_job *job = data;
     int width = job->image->width;
-    float *rgb = job->image->pixels + 3 * (size_t)width * (size_t)row;
-    for (int x = 0, end; x < width; x = end) {
-        end = ki_min(x + STRETCH, width);
-        if (end - x == STRETCH && transform_stretch(job->matrix, rgb + 3 * (size_t)x))
-            continue;
-        for (int i = x; i < end; i++)
-            transform_texel(job->matrix, rgb + 3 * (size_t)i);
-    }
+    ki_row_transform(job->matrix, job->image->pixels + 3 * (size_t)width * (size_t)row, width);
 }
 
 bool ki_image_transform(kiln_context *context, const ki_matrix3 *matrix, kiln_image *image)

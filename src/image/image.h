@@ -72,6 +72,17 @@ void ki_face_taps(int size, int face, double s, double t, size_t texels[4], doub
 /// Reads a level of a cube in a direction, with the texels and weights of ki_cube_taps.
 void ki_cube_read(const kiln_map *cube, int level, const double direction[3], double rgb[3]);
 
+/// Mirrors a row of a panorama left to right.
+void ki_mirror_row(float *rgb, int width);
+/// Multiplies values by 2^stops, as kiln_map_expose does.
+void ki_expose_values(float *value, size_t count, double stops);
+
+/// Rows of a panorama in memory, one after the other from north to south.
+typedef struct ki_rows {
+    const float *rgb; ///< RGB texels of row `first`, which the texels of the other rows follow
+    int first, count; ///< number of the first row, and number of rows
+} ki_rows;
+
 /// Resamples a map by area as kiln_map_convert does, into level `level` of `target`, which is
 /// allocated.
 kiln_result ki_map_resample(kiln_context *context, const kiln_map *source, double rotation,

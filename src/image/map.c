@@ -224,6 +224,12 @@ static void swap_texels(float *a, float *b)
     }
 }
 
+void ki_mirror_row(float *rgb, int width)
+{
+    for (int x = 0; x < width / 2; x++)
+        swap_texels(rgb + (size_t)x * 3, rgb + (size_t)(width - 1 - x) * 3);
+}
+
 void kiln_map_mirror(kiln_map *map)
 {
     for (int level = 0; level < map->level_count; level++) {
@@ -242,13 +248,11 @@ void kiln_map_mirror(kiln_map *map)
             done = 2 * n;
         }
         for (int y = done; y < height; y++)
-            for (int x = 0; x < width / 2; x++)
-                swap_texels(texel + (size_t)y * row + (size_t)x * 3,
-                            texel + (size_t)y * row + (size_t)(width - 1 - x) * 3);
+            ki_mirror_row(texel + (size_t)y * row, width);
     }
 }
 
-void kiln_map_expose(kiln_map *map, double stops)
+void ki_expose_values(float *value, size_t count, double stops)
 {
     if (stops == 0 || !isfinite(stops))
         return;
@@ -256,11 +260,12 @@ void kiln_map_expose(kiln_map *map, double stops)
     // become the largest float.
     double whole = floor(ki_clamp(stops, -600, 600)), part = ki_clamp(stops - whole, 0, 1);
     double factor = ldexp(ki_exp(part * 0.69314718055994530942), (int)whole);
-    for (int level = 0; level < map->level_count; level++) {
-        size_t count = kiln_map_texels(map, level) * 3;
-        float *value = map->level[level];
-        for (size_t i = 0; i < count; i++)
-            value[i] =
-                (float)ki_clamp((double)value[i] * factor, -(double)FLT_MAX, (double)FLT_MAX);
-    }
+    for (size_t i = 0; i < count; i++)
+        value[i] = (float)ki_clamp((double)value[i] * factor, -(double)FLT_MAX, (double)FLT_MAX);
+}
+
+void kiln_map_expose(kiln_map *map, double stops)
+{
+    for (int level = 0; level < map->level_count; level++)
+        ki_expose_values(map->level[level], kiln_map_texels(map, level) * 3, stops);
 }

@@ -82,18 +82,22 @@ static void survey_texel(float rgb[3], counts *found)
     found->bad += infinite || nan;
 }
 
+// Counts the texels of a row and replaces infinite values.
+static void survey_row(float *rgb, int width, counts *found)
+{
+    if (is_plain(rgb, 3 * (size_t)width))
+        return;
+    for (int x = 0; x < width; x++)
+        survey_texel(rgb + 3 * (size_t)x, found);
+}
+
 // Task of one thread: counts the texels of a strip and replaces infinite values.
 static void survey_strip(void *data, int index)
 {
     survey *s = data;
     counts found = {0};
-    for (int row = first_row(s, index); row < first_row(s, index + 1); row++) {
-        float *rgb = row_of(s, row);
-        if (is_plain(rgb, 3 * (size_t)s->plane.width))
-            continue;
-        for (int x = 0; x < s->plane.width; x++)
-            survey_texel(rgb + 3 * (size_t)x, &found);
-    }
+    for (int row = first_row(s, index); row < first_row(s, index + 1); row++)
+        survey_row(row_of(s, row), s->plane.width, &found);
     s->counts[index] = found;
 }
 
@@ -222,18 +226,27 @@ done:
 
 // --------------------------------------------------------------------------------- negative values
 
-// Task of one thread: sums the light of a strip of rows. If `negative` is KILN_NEGATIVE_ZERO, then
-// sets its values below zero to 0.
+// Sums the light of a row. If `negative` is KILN_NEGATIVE_ZERO, then sets its values below zero to
+// 0.
+static ki_light weigh_row(const plane *p, int row, kiln_negative negative, float *rgb)
+{
+    ki_light light = {0};
+    ki_add_light(p->shape, p->size, row, p->width, rgb, (double)INFINITY, &light);
+    for (int i = 0; i < 3 * p->width && negative == KILN_NEGATIVE_ZERO; i++)
+        rgb[i] = rgb[i] < 0 ? 0 : rgb[i];
+    return light;
+}
+
+// Task of one thread: sums the light of a strip of rows, each by weigh_row.
 static void weigh_strip(void *data, int index)
 {
     survey *s = data;
-    s->light[index] = (ki_light){0};
+    ki_light *sum = &s->light[index];
+    *sum = (ki_light){0};
     for (int row = first_row(s, index); row < first_row(s, index + 1); row++) {
-        float *rgb = row_of(s, row);
-        ki_add_light(s->plane.shape, s->plane.size, row, s->plane.width, rgb, (double)INFINITY,
-                     &s->light[index]);
-        for (int i = 0; i < 3 * s->plane.width && s->negative == KILN_NEGATIVE_ZERO; i++)
-            rgb[i] = rgb[i] < 0 ? 0 : rgb[i];
+        ki_light light = weigh_row(&s->plane, row, s->negative, row_of(s, row));
+        sum->above_zero += light.above_zero;
+        sum->below_zero += light.below_zero;
     }
 }
 
@@ -249,6 +262,12 @@ static counts add_counts(const survey *s)
         sum.bad += s->counts[i].bad;
     }
     return sum;
+}
+
+static kiln_result fail_bad(const char *name, size_t texels, kiln_error *error)
+{
+    return ki_fail(error, KILN_ERROR_FORMAT,
+                   "%s: all of its %zu texels are infinite or not a number", name, texels);
 }
 
 // Mends a level or a picture, here called plane. Adds what was replaced to the counts of *report,
@@ -267,8 +286,7 @@ static kiln_result mend_plane(kiln_context *context, const char *name, const pla
     report->nan_count += sum.nan;
     report->negative_count += sum.negative;
     if (sum.bad == texels)
-        return ki_fail(error, KILN_ERROR_FORMAT,
-                       "%s: all of its %zu texels are infinite or not a number", name, texels);
+        return fail_bad(name, texels, error);
     kiln_result result = sum.nan ? fill_holes(context, p, sum.nan, error) : KILN_OK;
     if (result != KILN_OK || !sum.negative)
         return result;
@@ -309,4 +327,48 @@ kiln_result ki_image_mend(kiln_context *context, const char *name, kiln_image *i
         report->nan_count += found.nan_count;
     }
     return result;
+}
+
+// -------------------------------------------------------------------------------- rows that pass by
+
+void ki_row_mend(int size, int row, kiln_negative negative, bool weigh, float *rgb,
+                 ki_row_finds *finds)
+{
+    counts found = {0};
+    const plane p = {.shape = KILN_SHAPE_PANORAMA, .size = size, .width = 2 * size};
+    survey_row(rgb, p.width, &found);
+    *finds = (ki_row_finds){.infinite_count = (int)found.infinite,
+                            .nan_count = (int)found.nan,
+                            .negative_count = (int)found.negative,
+                            .weighed = weigh || found.negative};
+    if (!finds->weighed)
+        return;
+    ki_light light = weigh_row(&p, row, negative, rgb);
+    finds->above_zero = light.above_zero;
+    finds->below_zero = light.below_zero;
+}
+
+kiln_result ki_rows_report(const char *name, int size, kiln_negative negative,
+                           const ki_row_finds *finds, kiln_load_report *report, kiln_error *error)
+{
+    const survey s = {.plane = {.shape = KILN_SHAPE_PANORAMA, .size = size, .height = size}};
+    size_t texels = 2 * (size_t)size * (size_t)size, infinite = 0, below = 0;
+    ki_light light = {0};
+    for (int strip = 0; strip < STRIPS; strip++) {
+        ki_light sum = {0};
+        for (int row = first_row(&s, strip); row < first_row(&s, strip + 1); row++) {
+            infinite += (size_t)finds[row].infinite_count;
+            below += (size_t)finds[row].negative_count;
+            sum.above_zero += finds[row].above_zero;
+            sum.below_zero += finds[row].below_zero;
+        }
+        light.above_zero += sum.above_zero;
+        light.below_zero += sum.below_zero;
+    }
+    report->texel_count += texels;
+    report->infinite_count += infinite;
+    report->negative_count += below;
+    report->negative = negative;
+    report->negative_share = below ? ki_share_below(&light) : 0;
+    return infinite == texels ? fail_bad(name, texels, error) : KILN_OK;
 }

@@ -111,15 +111,27 @@ kiln_result ki_resample_reserve(kiln_context *context, const ki_resample_plan *p
     return ki_fail_memory(context, error, "resampling", fits ? bytes : SIZE_MAX);
 }
 
+// Returns the number of tasks of the method gather: chunks of stencils.
+static int count_chunks(const ki_resample_plan *plan)
+{
+    int count = 0;
+    for (int k = 0; k < plan->grid_count; k++)
+        count += plan->grid[k].chunk_count;
+    return count;
+}
+
+// Returns the number of rows of the target, those of all faces.
+static int count_rows(const ki_resample_plan *plan)
+{
+    return plan->size * (plan->shape == KILN_SHAPE_CUBE ? 6 : 1);
+}
+
 // Computes each texel of a cube or octahedron from the panorama texels under it: directly, or on a
 // map with `factor` times as many texels along a side, whose texels are then averaged.
 static bool gather(kiln_context *context, ki_resample_run *r, int rows,
                    const ki_progress_range *range)
 {
-    int count = 0;
-    for (int k = 0; k < r->plan->grid_count; k++)
-        count += r->plan->grid[k].chunk_count;
-    if (!ki_parallel_steps(context, range, count, ki_resample_gather, r))
+    if (!ki_parallel_steps(context, range, count_chunks(r->plan), ki_resample_gather, r))
         return false;
     if (r->fine != r->target)
         ki_parallel_for(context, rows, ki_resample_coarsen, r);
@@ -138,7 +150,7 @@ bool ki_resample_execute(kiln_context *context, const ki_resample_plan *plan, ki
                          const float *source, float *target, const ki_progress_range *range)
 {
     ki_resample_run r = {.plan = plan, .source = source, .target = target};
-    int rows = plan->size * (plan->shape == KILN_SHAPE_CUBE ? 6 : 1);
+    int rows = count_rows(plan);
     switch (plan->method) {
     case KI_RESAMPLE_GATHER:
         r.fine = plan->factor > 1 ? buffer->memory : target;
@@ -153,6 +165,45 @@ bool ki_resample_execute(kiln_context *context, const ki_resample_plan *plan, ki
     default:
         return ki_parallel_steps(context, range, rows, ki_resample_subsample, &r);
     }
+}
+
+bool ki_resample_has_bands(const ki_resample_plan *plan)
+{
+    return plan->method == KI_RESAMPLE_GATHER || plan->method == KI_RESAMPLE_SEPARABLE;
+}
+
+int ki_resample_reach(const ki_resample_plan *plan)
+{
+    int most = 1;
+    if (plan->method == KI_RESAMPLE_GATHER)
+        return ki_resample_gather_reach(plan);
+    for (int y = 0; y < plan->size; y++)
+        most = ki_max(most, plan->rows[y].count);
+    return most;
+}
+
+void ki_resample_band(kiln_context *context, const ki_resample_plan *plan, ki_buffer *buffer,
+                      const ki_rows rows[2], int from, int to, float *target)
+{
+    bool gathers = plan->method == KI_RESAMPLE_GATHER;
+    ki_resample_run r = {.plan = plan,
+                         .target = target,
+                         .fine = gathers && plan->factor > 1 ? buffer->memory : target,
+                         .rows = {rows[0], rows[1]},
+                         .from = from,
+                         .to = to};
+    if (gathers)
+        ki_parallel_for(context, count_chunks(plan), ki_resample_gather, &r);
+    else
+        ki_parallel_for(context, plan->size, ki_resample_separable, &r);
+}
+
+void ki_resample_end_bands(kiln_context *context, const ki_resample_plan *plan, ki_buffer *buffer,
+                           float *target)
+{
+    ki_resample_run r = {.plan = plan, .target = target, .fine = buffer->memory};
+    if (plan->method == KI_RESAMPLE_GATHER && plan->factor > 1)
+        ki_parallel_for(context, count_rows(plan), ki_resample_coarsen, &r);
 }
 
 void ki_resample_plan_destroy(ki_resample_plan *plan)

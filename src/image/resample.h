@@ -23,6 +23,26 @@ kiln_result ki_resample_reserve(kiln_context *context, const ki_resample_plan *p
 /// ki_parallel_steps.
 bool ki_resample_execute(kiln_context *context, const ki_resample_plan *plan, ki_buffer *buffer,
                          const float *source, float *target, const ki_progress_range *range);
+
+// Resampling of a panorama whose rows come from both poles to the equator. A texel of the target
+// belongs to the hemisphere in which the middle of its source rows lies. The depth of a row is its
+// distance in rows from the pole of that hemisphere: row r has the depth r from the north pole and
+// rows - 1 - r from the south pole.
+
+/// Returns whether a plan can be executed by ki_resample_band: from a panorama, without a turn that
+/// takes rows to other places than rows.
+bool ki_resample_has_bands(const ki_resample_plan *plan);
+/// Returns the greatest number of source rows from which a texel of the target is computed.
+int ki_resample_reach(const ki_resample_plan *plan);
+/// Computes all texels whose last source row has a depth from `from` to `to` - 1, with the same bits
+/// as ki_resample_execute. rows[0] holds the rows from the north pole, rows[1] those from the south
+/// pole, as many of them up to this depth as ki_resample_reach says. `buffer` was reserved for the
+/// plan and keeps its content from the first band to ki_resample_end_bands.
+void ki_resample_band(kiln_context *context, const ki_resample_plan *plan, ki_buffer *buffer,
+                      const ki_rows rows[2], int from, int to, float *target);
+/// Completes the target after all bands.
+void ki_resample_end_bands(kiln_context *context, const ki_resample_plan *plan, ki_buffer *buffer,
+                           float *target);
 /// Frees a plan. `plan` may be NULL.
 void ki_resample_plan_destroy(ki_resample_plan *plan);
 

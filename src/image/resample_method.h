@@ -71,8 +71,12 @@ struct ki_resample_plan {
 /// The data of one execution, which all its tasks share.
 typedef struct ki_resample_run {
     const ki_resample_plan *plan;
-    const float *source;
+    const float *source; ///< all texels of the source; NULL in an execution by bands
     float *target;
+    /// Execution by bands: the rows in memory from the north and from the south pole. The texels
+    /// whose last row has a depth from `from` to `to` - 1 are computed, see ki_resample_band.
+    ki_rows rows[2];
+    int from, to;
     float *fine;    ///< gather: texels of the map before averaging; `target` if none is averaged
     double *bands;  ///< scatter: light of each texel of KI_RESAMPLE_BANDS bands of panorama rows
     int first_band; ///< scatter: index of the first of these bands, from the panorama's top
@@ -100,6 +104,23 @@ static inline bool ki_is_whole(double x)
 kiln_result ki_resample_plan_stencils(kiln_context *context, ki_resample_plan *plan,
                                       kiln_shape shape, int n, int height, double rotation,
                                       kiln_error *error);
+/// Returns the greatest number of panorama rows that a stencil of the method gather covers.
+int ki_resample_gather_reach(const ki_resample_plan *plan);
+/// Returns where the rows first .. first + count - 1 of the source begin, or NULL if they belong to
+/// another band of an execution by bands.
+static inline const float *ki_resample_rows(const ki_resample_run *run, int first, int count)
+{
+    int size = run->plan->source_size;
+    size_t line = 6 * (size_t)size;
+    if (run->source)
+        return run->source + line * (size_t)first;
+    bool south = 2 * first + count > size;
+    int depth = south ? size - 1 - first : first + count - 1;
+    if (depth < run->from || depth >= run->to)
+        return NULL;
+    const ki_rows *rows = &run->rows[south];
+    return rows->rgb + line * (size_t)(first - rows->first);
+}
 /// Sets `fine_area`, the solid angles by which the method gather averages a finer map.
 kiln_result ki_resample_plan_fine(kiln_context *context, ki_resample_plan *plan, kiln_error *error);
 /// Sets the number of samples of the method subsample and, if the source is a panorama, the

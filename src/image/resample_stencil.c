@@ -314,6 +314,30 @@ ALWAYS_INLINE void prefetch(const ki_stencil_grid *grid, const ki_stencil_place 
             __builtin_prefetch(texels + (ptrdiff_t)12 * k);
 }
 
+// Sums one stencil. `line` is the panorama row in which the stencil's first row of weights lies, and
+// `stride` the distance from there to the next row.
+ALWAYS_INLINE void gather_texel(const ki_stencil *s, const float *weights, const float *line,
+                                ptrdiff_t stride, int width, int column, bool mirror, float *out)
+{
+    int blocks = s->blocks, rows = s->rows;
+    if (rows * blocks <= FLUSH && column + 4 * blocks <= width) {
+        const float *texels = line + 3 * (ptrdiff_t)column;
+        ptrdiff_t step = (ptrdiff_t)4 * blocks;
+        sums sum = {0};
+        for (int r = 0; r < rows; r++, texels += stride, weights += step)
+            add_blocks(&sum, texels, weights, blocks, mirror);
+        lanes rgb = total(&sum);
+        out[0] = rgb[0];
+        out[1] = rgb[1];
+        out[2] = rgb[2];
+    } else {
+        double rgb[3] = {0, 0, 0};
+        gather_slowly(line, width, stride, s, weights, column, mirror, rgb);
+        for (int k = 0; k < 3; k++)
+            out[k] = (float)rgb[k];
+    }
+}
+
 ALWAYS_INLINE void gather_place(const ki_stencil_grid *grid, int chunk,
                                 const ki_stencil_place *place, bool mirror, const float *source,
                                 float *target)
@@ -326,27 +350,54 @@ ALWAYS_INLINE void gather_place(const ki_stencil_grid *grid, int chunk,
         const ki_stencil *s = c.stencil;
         if (last - s >= AHEAD)
             prefetch(grid, place, s + AHEAD, source);
-        int column = first_column(s, place, width), blocks = s->blocks, rows = s->rows;
+        int column = first_column(s, place, width);
         int row = place->flip ? height - 1 - s->row : s->row;
-        const float *line = source + (ptrdiff_t)3 * width * row;
-        float *out = target + 3 * c.texel;
-        if (rows * blocks <= FLUSH && column + 4 * blocks <= width) {
-            const float *texels = line + 3 * (ptrdiff_t)column, *weights = c.weights;
-            ptrdiff_t step = (ptrdiff_t)4 * blocks;
-            sums sum = {0};
-            for (int r = 0; r < rows; r++, texels += stride, weights += step)
-                add_blocks(&sum, texels, weights, blocks, mirror);
-            lanes rgb = total(&sum);
-            out[0] = rgb[0];
-            out[1] = rgb[1];
-            out[2] = rgb[2];
-        } else {
-            double rgb[3] = {0, 0, 0};
-            gather_slowly(line, width, stride, s, c.weights, column, mirror, rgb);
-            for (int k = 0; k < 3; k++)
-                out[k] = (float)rgb[k];
-        }
+        gather_texel(s, c.weights, source + (ptrdiff_t)3 * width * row, stride, width, column,
+                     mirror, target + 3 * c.texel);
     } while (cursor_next(&c));
+}
+
+// Returns whether some rows from `low` to `high` - 1 have a depth in the band of a run, measured
+// from any pole.
+static bool meets_band(const ki_resample_run *run, int low, int high)
+{
+    int size = run->plan->source_size;
+    return (low < run->to && high > run->from) || (size - high < run->to && size - low > run->from);
+}
+
+// Sums the stencils of a chunk, at one place of the map, that belong to the band of the run.
+static void gather_band(const ki_resample_run *run, const ki_stencil_grid *grid, int chunk,
+                        const ki_stencil_place *place)
+{
+    const ki_stencil_chunk *stencils = &grid->chunks[chunk];
+    int height = grid->height, width = 2 * height;
+    ptrdiff_t line = 3 * (ptrdiff_t)width;
+    int low = place->flip ? height - stencils->end_row : stencils->first_row;
+    if (!meets_band(run, low, low + stencils->end_row - stencils->first_row))
+        return;
+    cursor c = cursor_start(grid, chunk, place);
+    do {
+        const ki_stencil *s = c.stencil;
+        int row = place->flip ? height - s->row - s->rows : s->row;
+        const float *source = ki_resample_rows(run, row, s->rows);
+        if (!source)
+            continue;
+        source += place->flip ? line * (s->rows - 1) : 0;
+        gather_texel(s, c.weights, source, place->flip ? -line : line, width,
+                     first_column(s, place, width), place->mirror, run->fine + 3 * c.texel);
+    } while (cursor_next(&c));
+}
+
+int ki_resample_gather_reach(const ki_resample_plan *plan)
+{
+    int most = 1;
+    for (int k = 0; k < plan->grid_count; k++)
+        for (int q = 0; q < plan->grid[k].chunk_count; q++) {
+            const ki_stencil_chunk *chunk = &plan->grid[k].chunks[q];
+            for (size_t i = 0; i < chunk->stencil_count; i++)
+                most = ki_max(most, chunk->stencils[i].rows);
+        }
+    return most;
 }
 
 // Task of one thread: computes the texels of one chunk of a grid at all places of the map where the
@@ -360,7 +411,9 @@ void ki_resample_gather(void *data, int index)
         index -= (grid++)->chunk_count;
     for (int k = 0; k < grid->place_count; k++) {
         const ki_stencil_place *place = &grid->place[k];
-        if (place->mirror)
+        if (!run->source)
+            gather_band(run, grid, index, place);
+        else if (place->mirror)
             gather_place(grid, index, place, true, run->source, run->fine);
         else
             gather_place(grid, index, place, false, run->source, run->fine);

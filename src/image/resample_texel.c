@@ -19,13 +19,16 @@ void ki_resample_separable(void *data, int y)
     int width = 2 * plan->size, source_width = 2 * plan->source_size;
     ki_resample_span row = plan->rows[y];
     const float *row_weights = plan->weights + row.weight;
+    const float *source = ki_resample_rows(run, row.first, row.count);
+    if (!source)
+        return;
     float *out = run->target + 3 * (size_t)y * (size_t)width;
     for (int x = 0; x < width; x++) {
         ki_resample_span column = plan->columns[x];
         const float *weights = plan->weights + column.weight;
         double rgb[3] = {0, 0, 0};
         for (int j = 0; j < row.count; j++) {
-            const float *line = run->source + 3 * (size_t)(row.first + j) * (size_t)source_width;
+            const float *line = source + 3 * (size_t)j * (size_t)source_width;
             double sum[3] = {0, 0, 0};
             for (int i = 0, at = column.first; i < column.count; i++) {
                 for (int c = 0; c < 3; c++)

@@ -577,6 +577,11 @@ kiln_result ki_level_execute(const ki_level *level, const ki_level_workspace *wo
     return result;
 }
 
+bool ki_level_needs_panorama(const ki_level *level)
+{
+    return level->zonal.outer > 0;
+}
+
 size_t ki_level_suns_size(const ki_level *level, int source_size, size_t count)
 {
     return ki_points_size(&level->zonal, source_size, count);

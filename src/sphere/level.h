@@ -42,6 +42,9 @@ kiln_result ki_level_execute(const ki_level *level, const ki_level_workspace *wo
                              double rotation, kiln_map *map, int index,
                              const ki_progress_range *range, kiln_error *error);
 
+/// Returns whether executions of a level need the panorama.
+bool ki_level_needs_panorama(const ki_level *level);
+
 /// Returns the number of bytes that an execution allocates for `count` suns of a panorama of
 /// `source_size` rows.
 size_t ki_level_suns_size(const ki_level *level, int source_size, size_t count);

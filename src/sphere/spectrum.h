@@ -9,6 +9,7 @@
 #ifndef KI_SPECTRUM_H
 #define KI_SPECTRUM_H
 
+#include "image/image.h"
 #include "sphere/fft.h"
 #include "sphere/legendre.h"
 
@@ -17,6 +18,10 @@ typedef struct ki_sun {
     int row, column;
     float radiance[3];
 } ki_sun;
+
+/// Greatest number of texels that may be suns at a time. In one channel no more than 1000 texels can
+/// hold a thousandth of the light each.
+enum { KI_MAX_SUNS = 4096 };
 
 struct kiln_spectrum {
     kiln_context *context;
@@ -90,6 +95,44 @@ kiln_result ki_analysis_add_rows(const ki_analysis *analysis, ki_analysis_worksp
 /// Writes the spectrum of a panorama after all its rows have been added. Fails if rows are missing.
 kiln_result ki_analysis_finish(const ki_analysis *analysis, ki_analysis_workspace *workspace,
                                kiln_spectrum *spectrum, kiln_error *error);
+
+// Analysis of rows that come from both poles to the equator, which needs few rows in memory at a
+// time. The depth of a row is its distance in rows from the pole of its hemisphere: row r has the
+// depth r from the north pole and size - 1 - r from the south pole. The workspace is made for whole
+// panoramas. The calls are, in this order:
+//
+//   ki_analysis_begin         once
+//   ki_analysis_see_rows      once for each row, in any order
+//   ki_analysis_add_band      once for each depth, from 0 on
+//   ki_analysis_choose_suns   once
+//   ki_analysis_next_sun,
+//   ki_analysis_add_vector    again for the vectors of rings that contain suns
+//   ki_analysis_sum_orders    once
+
+/// Returns the number of rows, up to a depth, that must be in memory on each side to add the rings
+/// that are complete at this depth.
+int ki_analysis_reach(const ki_analysis *analysis);
+void ki_analysis_begin(ki_analysis_workspace *workspace, kiln_spectrum *spectrum);
+/// Sums the light of rows, and finds texels among them that may be suns.
+void ki_analysis_see_rows(const ki_analysis *analysis, ki_analysis_workspace *workspace,
+                          const ki_rows *rows);
+/// Adds all vectors of rings whose last row has a depth from `from` to `to` - 1. rows[0] holds the
+/// rows from the north pole, rows[1] those from the south pole, as far as the reach says.
+void ki_analysis_add_band(const ki_analysis *analysis, ki_analysis_workspace *workspace,
+                          const ki_rows rows[2], int from, int to, kiln_spectrum *spectrum);
+/// Decides which texels are suns, after all rows were seen.
+void ki_analysis_choose_suns(ki_analysis_workspace *workspace, kiln_spectrum *spectrum);
+/// Finds the first vector of rings from *vector on to which a sun contributes: sets *vector, and
+/// `first` and `count` of the rows from which its northern and its southern rings are summed.
+/// Returns false if there is none.
+bool ki_analysis_next_sun(const ki_analysis *analysis, const kiln_spectrum *spectrum, int *vector,
+                          ki_rows rows[2]);
+/// Adds one vector of rings, without the suns, in place of what was added for it before.
+void ki_analysis_add_vector(const ki_analysis *analysis, ki_analysis_workspace *workspace,
+                            const ki_rows rows[2], int vector, kiln_spectrum *spectrum);
+/// Writes the coefficients of the spectrum, after all rings were added.
+void ki_analysis_sum_orders(const ki_analysis *analysis, ki_analysis_workspace *workspace,
+                            kiln_spectrum *spectrum);
 
 /// Adds the harmonics of the suns (bright texels kept out of the spectrum) up to `degree` to the
 /// coefficients `a`, whose rows are laid out for that degree.
