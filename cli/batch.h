@@ -79,9 +79,16 @@ typedef struct batch_job {
     const char *read, *written;
 } batch_job;
 
+/// A folder whose pictures are inputs: a picture that is added to the folder becomes a job.
+typedef struct batch_folder {
+    struct batch_folder *below;
+    const char *path;
+} batch_folder;
+
 typedef struct batch_jobs {
     batch_job *job;
     size_t count, room;
+    batch_folder *folder; ///< folders that were listed, linked
 } batch_jobs;
 
 /// Makes jobs of lines: folders and patterns of names become one job for each picture. Returns

@@ -143,8 +143,20 @@ static size_t folder_length(const char *path)
     return slash ? (size_t)(slash + 1 - path) : 0;
 }
 
+static bool keep_folder(batch_store *store, const char *path, size_t length, batch_jobs *jobs)
+{
+    batch_folder *folder = batch_keep(store, sizeof *folder);
+    char *kept = folder ? batch_keep_text(store, path, length) : NULL;
+    if (!kept)
+        return false;
+    *folder = (batch_folder){jobs->folder, kept};
+    jobs->folder = folder;
+    return true;
+}
+
 // Expands one input to names: a pattern to the files that match, a folder to its pictures.
-static int expand(const batch_line *line, const char *input, names *list)
+static int expand(batch_store *store, const batch_line *line, const char *input, names *list,
+                  batch_jobs *jobs)
 {
     int before = list->count;
     bool folder = os_kind_of(input) == OS_FOLDER;
@@ -171,6 +183,8 @@ static int expand(const batch_line *line, const char *input, names *list)
     }
     if (!list_folder(&l))
         return cli_wrong(&line->command, "%s: cannot be listed: %s", input, strerror(errno));
+    if (!keep_folder(store, l.length ? l.folder : ".", l.length ? l.length : 1, jobs))
+        return cli_fail("out of memory");
     if (list->count == before && !list->failed)
         return cli_wrong(&line->command,
                          folder ? "%s: there is no picture in this folder"
@@ -241,7 +255,7 @@ static int make_several(batch_store *store, const batch_line *line, batch_jobs *
     names list = {0};
     int code = CLI_GO;
     for (int i = 0; i < line->input_count && code == CLI_GO; i++)
-        code = expand(line, line->input[i], &list);
+        code = expand(store, line, line->input[i], &list, jobs);
     if (code == CLI_GO && list.failed)
         code = cli_fail("out of memory");
     const char **input =

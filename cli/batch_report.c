@@ -209,12 +209,16 @@ static void write_path(FILE *file, const char *path)
     }
 }
 
+static void write_next(FILE *file, const char *path)
+{
+    fputs(" \\\n  ", file);
+    write_path(file, path);
+}
+
 static void write_files(FILE *file, const char *files)
 {
-    for (const char *at = files; at && *at; at += strlen(at) + 1) {
-        fputs(" \\\n  ", file);
-        write_path(file, at);
-    }
+    for (const char *at = files; at && *at; at += strlen(at) + 1)
+        write_next(file, at);
 }
 
 static int cannot_write(const char *path)
@@ -222,7 +226,8 @@ static int cannot_write(const char *path)
     return cli_fail("%s: cannot be written: %s", path, strerror(errno));
 }
 
-// The target is the file of --stamp, else every file that was written.
+// The target is the file of --stamp, else every file that was written. With a stamp, which is newer
+// than what the batch wrote, the target also depends on folders whose pictures are inputs.
 static int write_rule(const batch *all)
 {
     FILE *file = os_create_file(all->depfile);
@@ -234,10 +239,10 @@ static int write_rule(const batch *all)
         write_files(file, all->jobs.job[i].written);
     fputs(":", file);
     for (int i = 0; i < all->arguments.rest_count; i++)
-        if (os_kind_of(all->arguments.rest[i]) == OS_FILE) {
-            fputs(" \\\n  ", file);
-            write_path(file, all->arguments.rest[i]);
-        }
+        if (os_kind_of(all->arguments.rest[i]) == OS_FILE)
+            write_next(file, all->arguments.rest[i]);
+    for (const batch_folder *f = all->stamp ? all->jobs.folder : NULL; f; f = f->below)
+        write_next(file, f->path);
     for (size_t i = 0; i < all->jobs.count; i++)
         write_files(file, all->jobs.job[i].read);
     putc('\n', file);

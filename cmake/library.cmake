@@ -46,10 +46,11 @@ install(FILES include/kiln/kiln.h include/kiln/brdf.h include/kiln/course.h
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/kiln)
 install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 configure_package_config_file(cmake/kiln-config.cmake.in kiln-config.cmake
-                              INSTALL_DESTINATION ${KILN_CMAKE_DIR})
+                              INSTALL_DESTINATION ${KILN_CMAKE_DIR} PATH_VARS CMAKE_INSTALL_BINDIR)
 write_basic_package_version_file(kiln-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/kiln-config.cmake
-              ${CMAKE_CURRENT_BINARY_DIR}/kiln-config-version.cmake DESTINATION ${KILN_CMAKE_DIR})
+              ${CMAKE_CURRENT_BINARY_DIR}/kiln-config-version.cmake
+              cmake/kiln-bake.cmake DESTINATION ${KILN_CMAKE_DIR})
 # The way from kiln.pc up to the prefix keeps it valid wherever the tree is moved.
 file(RELATIVE_PATH KILN_PC_PREFIX /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 configure_file(cmake/kiln.pc.in kiln.pc @ONLY)
