@@ -66,8 +66,8 @@ struct cli_command {
     int (*run)(const cli_call *call);
 };
 
-extern const cli_command cli_bake, cli_batch, cli_engines, cli_eval, cli_fit, cli_info, cli_lights,
-    cli_sky, cli_tables;
+extern const cli_command cli_bake, cli_batch, cli_check, cli_engines, cli_eval, cli_fit, cli_info,
+    cli_lights, cli_sky, cli_tables;
 extern const cli_command cli_completions, cli_help;
 // commands that only builds with the CMake option KILN_VIEWER have
 extern const cli_command cli_assignment, cli_render, cli_view;

@@ -15,8 +15,8 @@ static const cli_command *const commands[] = {
     &cli_batch,
 #endif
     &cli_lights, &cli_engines,     &cli_info,
-    &cli_sky,    &cli_tables,      &cli_eval,
-    &cli_fit,
+    &cli_check,  &cli_sky,         &cli_tables,
+    &cli_eval,   &cli_fit,
 #ifdef KILN_VIEWER
     &cli_render, &cli_view,        &cli_assignment,
 #endif

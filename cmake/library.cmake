@@ -42,7 +42,7 @@ foreach(kind static shared)
     install(EXPORT kiln-${kind} NAMESPACE kiln:: DESTINATION ${KILN_CMAKE_DIR})
 endforeach()
 
-install(FILES include/kiln/kiln.h include/kiln/brdf.h include/kiln/course.h
+install(FILES include/kiln/kiln.h include/kiln/brdf.h include/kiln/course.h include/kiln/check.h
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/kiln)
 install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 configure_package_config_file(cmake/kiln-config.cmake.in kiln-config.cmake

@@ -16,6 +16,7 @@ status=$(
         public["kiln/kiln.h"]
         public["kiln/brdf.h"]
         public["kiln/course.h"]
+        public["kiln/check.h"]
     }
     /^[ \t]*#[ \t]*include/ {
         name = $0

@@ -4,7 +4,8 @@
 //   context -> maps -> load -> sky -> lobe -> spectrum -> prefilter -> spherical harmonics.
 // After these come reference values by brute force, the writing of files, and the engines that read
 // the files. <kiln/brdf.h> has what surfaces do to light: reflection models, and tables and closed
-// forms of their integrals. <kiln/course.h> has the methods that courses teach.
+// forms of their integrals. <kiln/course.h> has the methods that courses teach, and <kiln/check.h>
+// tells whether files of other tools are right.
 //
 // These conventions hold in every function and in every file that kiln writes
 // (docs/conventions.md):

@@ -1,6 +1,6 @@
 // KTX version 1. In: a cube to be stored as halves or as floats of 11, 11 and 10 bits. Out: bytes
-// of a file; or of a file that is read, level 0 of its cube or picture, and the engine, roughness
-// and harmonics in its key-value pairs. A file is a header of 64 bytes, pairs of text, and the
+// of a file; or of a file that is read, all levels of its cube or level 0 of its picture, and the
+// engine, roughness and harmonics in its key-value pairs. A file is a header of 64 bytes, pairs of text, and the
 // levels, largest first.
 #include "codec/ktx1.h"
 
@@ -112,7 +112,9 @@ kiln_result ki_ktx1_encode(const kiln_map *map, const kiln_sh *sh, const char *e
 typedef struct header {
     ki_texels texels;
     uint32_t width, height, face_count, level_count, pair_bytes;
-    int align;     // rows of level 0 end at multiples of so many bytes
+    // texels of each level in the file, and the multiple of bytes at which their rows end
+    const uint8_t *level[KILN_MAX_LEVELS];
+    int align[KILN_MAX_LEVELS];
     bool by_cmgen; // true: the header has the unusual values that Filament's cmgen writes
 } header;
 
@@ -255,10 +257,10 @@ static uint64_t level_bytes(const header *h, uint32_t k, int align)
     return ki_texels_size(&h->texels, width, height, align);
 }
 
-// Checks that all levels are in the file, and sets *first to the texels of level 0. The stated size
+// Finds the texels of all levels in the file. Returns false if they are not all there. The stated size
 // is that of a face; some programs state the size of all six. Rows end at multiples of 4 bytes by
 // the KTX specification; Filament's mipgen writes them without such an end, as the size shows.
-static bool has_levels(ki_reader *r, header *h, const uint8_t **first)
+static bool find_levels(ki_reader *r, header *h)
 {
     for (uint32_t k = 0; k < h->level_count; k++) {
         uint64_t stated = ki_read_u32(r), tight = level_bytes(h, k, 1);
@@ -267,9 +269,8 @@ static bool has_levels(ki_reader *r, header *h, const uint8_t **first)
         // Six faces may have more bytes than a size_t of 32 bits counts.
         if ((stated != size && stated != all) || all > ki_reader_left(r))
             return false;
-        h->align = k ? h->align : align;
-        const uint8_t *at = ki_read_bytes(r, (size_t)all);
-        *first = k ? *first : at;
+        h->align[k] = align;
+        h->level[k] = ki_read_bytes(r, (size_t)all);
     }
     return true;
 }
@@ -298,34 +299,50 @@ static void note(const header *h, const kiln_file_info *info, kiln_load_report *
                 "by 180 degrees gives the axes of kiln");
 }
 
-// Reads level 0 of six faces, or of a picture.
-static kiln_result read_texels(kiln_context *context, const header *h, const uint8_t *from,
-                               const kiln_file_info *info, ki_decoded *decoded, kiln_error *error)
+// Reads level `k` of six faces, or of a picture.
+static bool read_level(kiln_context *context, const header *h, int k, const kiln_file_info *info,
+                       float *rgb)
 {
-    int w = (int)h->width, height = (int)h->height;
-    bool cube = h->face_count == 6;
-    decoded->map = (kiln_map){.shape = KILN_SHAPE_CUBE, .size = w, .level_count = 1};
-    decoded->image = (kiln_image){.width = w, .height = height, .channels = 3};
-    kiln_result result = cube ? ki_map_allocate(context, &decoded->map, error)
-                              : ki_image_allocate(context, &decoded->image, error);
-    float *rgb = cube ? decoded->map.level[0] : decoded->image.pixels;
+    int w = ki_max(1, (int)(h->width >> k)), height = ki_max(1, (int)(h->height >> k));
     bool up = strstr(info->orientation, "T=u") != NULL,
          left = strstr(info->orientation, "S=l") != NULL;
-    for (size_t face = 0; face < h->face_count && result == KILN_OK; face++) {
+    size_t bytes = (size_t)level_bytes(h, (uint32_t)k, h->align[k]);
+    for (size_t face = 0; face < h->face_count; face++) {
         float *to = rgb + 3 * face * (size_t)w * (size_t)height;
-        if (!ki_texels_read(context, &h->texels, from + face * (size_t)level_bytes(h, 0, h->align),
-                            w, height, h->align, to) ||
+        if (!ki_texels_read(context, &h->texels, h->level[k] + face * bytes, w, height, h->align[k],
+                            to) ||
             !ki_texels_flip(context, to, w, height, left, up))
+            return false;
+    }
+    return true;
+}
+
+// Reads all levels of six faces, or level 0 of a picture.
+static kiln_result read_texels(kiln_context *context, const header *h, const kiln_file_info *info,
+                               ki_decoded *decoded, kiln_error *error)
+{
+    bool cube = h->face_count == 6;
+    int count = cube ? (int)h->level_count : 1;
+    kiln_map *map = &decoded->map;
+    kiln_image *image = &decoded->image;
+    *map = (kiln_map){.shape = KILN_SHAPE_CUBE, .size = (int)h->width, .level_count = count};
+    *image = (kiln_image){.width = (int)h->width, .height = (int)h->height, .channels = 3};
+    kiln_result result =
+        cube ? ki_map_allocate(context, map, error) : ki_image_allocate(context, image, error);
+    for (int k = 0; k < count && result == KILN_OK; k++) {
+        float linear = count > 1 ? (float)k / (float)(count - 1) : 0;
+        map->roughness[k] = info->roughness[k] >= 0 ? info->roughness[k] : linear;
+        if (!read_level(context, h, k, info, cube ? map->level[k] : image->pixels))
             result = ki_fail_cancelled(error, "reading");
     }
-    if (result == KILN_OK && (up || left))
+    if (result == KILN_OK && (strstr(info->orientation, "T=u") || strstr(info->orientation, "S=l")))
         ki_note(&decoded->report, KILN_NOTE_CONVERSION, false,
                 "the orientation \"%s\" was turned to rows from the top and columns from the left",
                 info->orientation);
     if (result != KILN_OK || !cube)
-        kiln_map_free(&decoded->map);
+        kiln_map_free(map);
     if (result != KILN_OK || cube)
-        kiln_image_free(&decoded->image);
+        kiln_image_free(image);
     return result;
 }
 
@@ -335,7 +352,6 @@ kiln_result ki_ktx1_decode(kiln_context *context, const uint8_t *bytes, size_t s
 {
     ki_reader r = ki_reader_make(bytes, size);
     header h = {0};
-    const uint8_t *first = NULL;
     kiln_result result = read_header(&r, name, &h, error);
     if (result != KILN_OK)
         return result;
@@ -347,12 +363,12 @@ kiln_result ki_ktx1_decode(kiln_context *context, const uint8_t *bytes, size_t s
     if (!good)
         return ki_fail(error, KILN_ERROR_FORMAT, "%s: its %u bytes of key-value pairs are damaged",
                        name, h.pair_bytes);
-    if (!has_levels(&r, &h, &first))
+    if (!find_levels(&r, &h))
         return ki_fail(error, KILN_ERROR_FORMAT, "%s: its %u levels are cut off or damaged", name,
                        h.level_count);
     describe(&h, info);
     note(&h, info, decoded ? &decoded->report : &info->report);
     if (!decoded)
         return KILN_OK;
-    return read_texels(context, &h, first, info, decoded, error);
+    return read_texels(context, &h, info, decoded, error);
 }

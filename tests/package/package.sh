@@ -69,7 +69,7 @@ compile() {
         { say "kiln/$header.h in .$language: ${call%%(*} is not a C function"; exit 1; }
 }
 headers=$(cd "$prefix/include/kiln" && echo *.h)
-[ "$headers" = "brdf.h course.h kiln.h" ] || { say "installed headers: $headers"; exit 1; }
+[ "$headers" = "brdf.h check.h course.h kiln.h" ] || { say "installed headers: $headers"; exit 1; }
 languages=c
 if command -v c++ >/dev/null; then languages="c cpp"; fi
 for language in $languages; do

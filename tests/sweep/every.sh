@@ -4,7 +4,7 @@
 #   every.sh HEADERS
 set -eu
 sweep=$(dirname "$0")
-names=$(cat "$1/kiln.h" "$1/brdf.h" "$1/course.h" | tr '\n' ' ' |
+names=$(cat "$1/kiln.h" "$1/brdf.h" "$1/course.h" "$1/check.h" | tr '\n' ' ' |
     grep -o 'KILN_API [^;(]*kiln_[a-z0-9_]*(' | grep -o 'kiln_[a-z0-9_]*($' | sort -u)
 count=0
 missing=

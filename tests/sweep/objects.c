@@ -2,6 +2,7 @@
 // argument and each field of a definition takes every number in turn, the others keep their defaults.
 #include "sweep.h"
 
+#include <kiln/check.h>
 #include <kiln/course.h>
 
 // Sizes and numbers of samples for the methods of courses: large valid ones take long, because these methods
@@ -338,6 +339,30 @@ static void lights(void **state)
     }
 }
 
+static void checks(void **state)
+{
+    (void)state;
+    kiln_check_levels_report report;
+    kiln_map rest;
+    INT_FIELD(kiln_check_levels_def, lobe,
+              kiln_check_levels(c, &panorama, &cube, &def, &report, &rest, &e),
+              !report.level_count && !rest.level_count, kiln_map_free(&rest));
+    kiln_map wrong = cube;
+    EACH_REAL (x) {
+        const kiln_check_levels_def def = {.stated = true};
+        wrong.roughness[1] = (float)x;
+        SWEEP(kiln_check_levels(c, &panorama, &wrong, &def, &report, NULL, &e),
+              !report.level_count);
+    }
+    EACH_INT (n) {
+        wrong = cube;
+        wrong.level_count = n > KILN_MAX_LEVELS || n < 4 ? n : 4;
+        SWEEP(kiln_check_levels(c, &panorama, &wrong, NULL, &report, NULL, &e),
+              !report.level_count);
+    }
+    SWEEP(kiln_levels_load(c, "none.ktx2", NULL, &rest, &e), !rest.level_count);
+}
+
 static void saves(void **state)
 {
     (void)state;
@@ -534,8 +559,9 @@ int main(void)
 {
 #define SWEPT(test) cmocka_unit_test_setup_teardown(test, begin, finish)
     const struct CMUnitTest tests[] = {
-        SWEPT(contexts), SWEPT(maps),  SWEPT(loads),   SWEPT(spectra), SWEPT(bakes),
-        SWEPT(lights),   SWEPT(saves), SWEPT(engines), SWEPT(tables),  SWEPT(courses),
+        SWEPT(contexts), SWEPT(maps),   SWEPT(loads),   SWEPT(spectra),
+        SWEPT(bakes),    SWEPT(lights), SWEPT(checks),  SWEPT(saves),
+        SWEPT(engines),  SWEPT(tables), SWEPT(courses),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,244 @@
+// kiln check. In: a panorama, and files that any tool made from it. Out: what is right and what is
+// wrong with the files, as text or JSON. The exit code is 1 if a file is wrong.
+#include "json.h"
+#include "work.h"
+
+#include <kiln/check.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { FOR, TOLERANCE, PICTURE, LAYER, NEGATIVE, JSON, QUIET, THREADS, OPTIONS };
+
+typedef struct check_values {
+    int engine, negative, threads;
+    double tolerance;
+    const char *picture, *layer;
+    bool json, quiet;
+} check_values;
+
+#define AT(field) offsetof(check_values, field)
+
+static const char *engine_word(int index)
+{
+    const kiln_engine *engine = kiln_engine_at(index);
+    return engine ? engine->name : NULL;
+}
+
+static const cli_option options[OPTIONS + 1] = {
+    [FOR] = {"for", CLI_CHOICE, AT(engine), .initial = -1, .value = "ENGINE", .word = engine_word,
+             .help = "the engine that the files are for, whose axes and roughnesses they must have",
+             .unset = "axes and roughnesses are found out"},
+    [TOLERANCE] = {"tolerance", CLI_NUMBER, AT(tolerance), 0, 1, 0.01, "E",
+                   .help = "largest relative root mean square error of a level for which the exit "
+                           "code is 0"},
+    [PICTURE] = {"picture", CLI_FILE, AT(picture), .value = "FILE.png",
+                 .help = "write a picture of the errors: blue is too dark, red is too bright"},
+    [LAYER] = CLI_LAYER_ROW(check_values),
+    [NEGATIVE] = CLI_NEGATIVE_ROW(check_values),
+    [JSON] = {"json", CLI_FLAG, AT(json),
+              .help = "print an array with one JSON object for each file"},
+    [QUIET] = CLI_QUIET_ROW(check_values),
+    [THREADS] = CLI_THREADS_ROW(check_values),
+};
+
+// The work of the command: the panorama, and how files are judged.
+typedef struct checker {
+    cli_work *work;
+    const check_values *values;
+    const kiln_engine *engine;
+    kiln_map panorama;
+    json *json;
+    bool good; ///< false: a file was wrong
+} checker;
+
+// ------------------------------------------------------------------------------------------ levels
+
+static void print_findings(const kiln_findings *findings)
+{
+    for (int i = 0; i < findings->count; i++)
+        printf("  %-5s  %s\n", findings->finding[i].fault ? "WRONG" : "note",
+               findings->finding[i].text);
+}
+
+static void print_levels(const kiln_check_levels_report *report)
+{
+    printf("  level  size  roughness  like     rms   largest      bias   energy    seam\n");
+    for (int k = 0; k < report->level_count; k++) {
+        const kiln_check_level *l = &report->level[k];
+        char found[16] = "-";
+        if (l->found >= 0)
+            snprintf(found, sizeof found, "%.3f", l->found);
+        printf("  %5d %5d %10.4f %5s %6.3g %% %6.3g %% %+6.2g %% %8.4f %5.2g %%\n", k, l->size,
+               l->roughness, found, 100 * l->rms, 100 * l->largest, 100 * l->bias, l->energy,
+               100 * l->seam);
+    }
+}
+
+static void print_findings_json(json *j, const kiln_findings *findings)
+{
+    json_array(j, "findings");
+    for (int i = 0; i < findings->count; i++) {
+        json_object(j, NULL);
+        json_bool(j, "fault", findings->finding[i].fault);
+        json_text(j, "text", findings->finding[i].text);
+        json_end(j);
+    }
+    json_end(j);
+}
+
+static void print_levels_json(json *j, const kiln_check_levels_report *report)
+{
+    json_rounded(j, "worst", report->worst, 6);
+    json_rounded(j, "brightness", report->brightness, 6);
+    json_array(j, "levels");
+    for (int k = 0; k < report->level_count; k++) {
+        const kiln_check_level *l = &report->level[k];
+        json_object(j, NULL);
+        json_number(j, "size", l->size);
+        json_rounded(j, "roughness", l->roughness, 9);
+        json_rounded(j, "found_roughness", l->found, 4);
+        json_rounded(j, "rms", l->rms, 6);
+        json_rounded(j, "largest", l->largest, 6);
+        json_rounded(j, "bias", l->bias, 6);
+        json_rounded(j, "energy", l->energy, 9);
+        json_rounded(j, "seam", l->seam, 6);
+        json_number(j, "fireflies", (double)l->firefly_count);
+        json_number(j, "negative", (double)l->negative_count);
+        json_rounded(j, "proof", l->proof, 3);
+        json_number(j, "proof_texels", l->proof_count);
+        json_end(j);
+    }
+    json_end(j);
+}
+
+// Adds to the findings what the loader had to replace.
+static void add_replaced(const kiln_load_report *loaded, kiln_findings *findings)
+{
+    size_t count = loaded->infinite_count + loaded->nan_count;
+    if (!count || findings->count >= KILN_MAX_FINDINGS)
+        return;
+    kiln_finding *finding = &findings->finding[findings->count++];
+    *finding = (kiln_finding){.kind = KILN_FINDING_NEGATIVE, .fault = true};
+    findings->fault_count++;
+    snprintf(finding->text, sizeof finding->text, "%zu texels are infinite or not a number", count);
+}
+
+static int check_levels(checker *c, const char *path)
+{
+    kiln_map levels = {0}, difference = {0};
+    kiln_load_report loaded;
+    kiln_check_levels_report report;
+    kiln_context *context = c->work->context;
+    kiln_check_levels_def def = {.engine = c->engine};
+    kiln_result result = kiln_levels_load(context, path, &loaded, &levels, &c->work->error);
+    if (result == KILN_OK) {
+        def.stated = !def.engine && levels.roughness[0] >= 0;
+        result = kiln_check_levels(context, &c->panorama, &levels, &def, &report, &difference,
+                                   &c->work->error);
+    }
+    if (result == KILN_OK) {
+        add_replaced(&loaded, &report.findings);
+        bool good = !report.findings.fault_count && report.worst <= c->values->tolerance;
+        c->good &= good;
+        cli_clear_progress(c->work);
+        if (c->json) {
+            json_text(c->json, "kind", "levels");
+            json_bool(c->json, "right", good);
+            print_levels_json(c->json, &report);
+            print_findings_json(c->json, &report.findings);
+        } else if (!c->values->quiet) {
+            printf("%s: %s, the largest error of a level is %.3g %%\n", cli_show(path).text,
+                   good ? "right" : "WRONG", 100 * report.worst);
+            print_levels(&report);
+            print_findings(&report.findings);
+        }
+    }
+    kiln_map_free(&difference);
+    kiln_map_free(&levels);
+    return result == KILN_OK ? CLI_DONE : CLI_FAILED;
+}
+
+// ------------------------------------------------------------------------------------------- files
+
+static int check_file(checker *c, const char *path)
+{
+    if (c->json) {
+        json_object(c->json, NULL);
+        json_text(c->json, "path", path);
+    }
+    int code = check_levels(c, path);
+    if (code == CLI_FAILED && c->json) {
+        json_bool(c->json, "right", false);
+        json_text(c->json, "error", c->work->error.message);
+    }
+    if (c->json)
+        json_end(c->json);
+    if (code == CLI_FAILED && !cli_interrupted()) {
+        cli_clear_progress(c->work);
+        cli_fail("%s", c->work->error.message);
+        c->work->error.message[0] = 0; // keeps cli_end_work from printing the message again
+        c->good = false;
+    }
+    return code;
+}
+
+static int check_files(const cli_arguments *a, const check_values *v, cli_work *work)
+{
+    json j = {0};
+    checker c = {.work = work, .values = v, .good = true, .json = v->json ? &j : NULL};
+    const kiln_load_def load = {.negative = (kiln_negative)v->negative, .layer = v->layer};
+    c.engine = v->engine >= 0 ? kiln_engine_at(v->engine) : NULL;
+    int code = cli_load(work, a->rest, 1, &load, &c.panorama);
+    if (code != CLI_GO)
+        return code;
+    if (c.json)
+        json_array(c.json, NULL);
+    for (int i = 1; i < a->rest_count && !cli_interrupted(); i++)
+        check_file(&c, a->rest[i]);
+    if (c.json)
+        json_end(c.json);
+    kiln_map_free(&c.panorama);
+    return c.good && !cli_interrupted() ? CLI_DONE : CLI_FAILED;
+}
+
+static int run(const cli_call *call)
+{
+    cli_arguments a;
+    cli_work work;
+    check_values values;
+    int code = cli_read_arguments(&a, &cli_check, call, &values);
+    if (code != CLI_GO)
+        return code;
+    if (a.rest_count < 2)
+        return cli_wrong(&cli_check, "%s, name the panorama and then the files to check",
+                         a.rest_count ? "no file to check is named" : "no input is named");
+    code = cli_begin_work(&work, values.threads, values.quiet);
+    if (code == CLI_GO)
+        code = check_files(&a, &values, &work);
+    return cli_end_work(&work, code);
+}
+
+static const cli_example examples[] = {
+    {"kiln check city.exr city.ktx2", "compares the levels of a file with exact ones"},
+    {"kiln check city.exr cmgen/city/", "the same for the faces that Filament's cmgen wrote"},
+    {"kiln check city.exr city.ktx2 --for three --tolerance 0.001",
+     "fails unless three.js shows the file in place and within 0.1 %"},
+    {NULL, NULL}};
+
+const cli_command cli_check = {
+    .name = "check",
+    .arguments = "PANORAMA FILE... [OPTION...]",
+    .summary = "Says whether files that any tool baked from a panorama are right.",
+    .about =
+        "For levels kiln finds the axes and the roughness of each level, computes the exact "
+        "levels, "
+        "and prints the errors of each level: relative root mean square, largest, mean and at the "
+        "edges of faces. Faults that kiln recognises are said in words, such as a mirrored "
+        "environment or levels of the wrong roughness. The exit code is 1 if a fault was found or "
+        "an error is above --tolerance.",
+    .examples = examples,
+    .options = options,
+    .run = run,
+};

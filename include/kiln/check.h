@@ -1,0 +1,124 @@
+// kiln/check.h: is this bake right? Prefiltered levels, spherical harmonics and tables of any tool
+// are compared with exact values, and what is wrong with them is said in words.
+//
+// The conventions are those of <kiln/kiln.h>. A check never fails because the file is wrong: the
+// report says what was found. docs/check.md explains the numbers and how each fault is recognised.
+// SPDX-License-Identifier: MIT
+#ifndef KILN_PUBLIC_CHECK_H
+#define KILN_PUBLIC_CHECK_H
+
+#include <kiln/brdf.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// ---------------------------------------------------------------------------------------- findings
+
+/// What a check recognised.
+typedef enum kiln_finding_kind {
+    KILN_FINDING_AXES = 0,   ///< the axes of the file: as expected, turned or mirrored
+    KILN_FINDING_MAPPING,    ///< which roughness the levels have
+    KILN_FINDING_BRIGHTNESS, ///< all values are multiplied by one factor
+    KILN_FINDING_SHIFT,   ///< texels lie beside their places, or the environment is turned a little
+    KILN_FINDING_CLAMPED, ///< bright light is missing
+    KILN_FINDING_SEAM,    ///< errors jump at the edges of cube faces
+    KILN_FINDING_FIREFLY, ///< single texels are far too bright
+    KILN_FINDING_NEGATIVE, ///< texels are below zero
+    KILN_FINDING_BASIS,    ///< signs or constants of spherical harmonics
+    KILN_FINDING_WEIGHT,   ///< factors of the bands of spherical harmonics: radiance, irradiance
+    KILN_FINDING_WINDOW,   ///< a window that reduces ringing
+    KILN_FINDING_ORDER,    ///< rows and columns of a table: flipped or transposed
+    KILN_FINDING_ENCODING, ///< numbers of a table are stored by a gamma curve
+    KILN_FINDING_CONTENT   ///< which functions the channels of a table hold
+} kiln_finding_kind;
+
+enum { KILN_MAX_FINDINGS = 24 };
+
+typedef struct kiln_finding {
+    kiln_finding_kind kind;
+    bool fault; ///< true: something is wrong; false: something to know
+    /// A sentence without a capital and a full stop, for example "left and right are swapped".
+    char text[KILN_NOTE_TEXT];
+} kiln_finding;
+
+typedef struct kiln_findings {
+    int count;       ///< number of findings, at most KILN_MAX_FINDINGS
+    int fault_count; ///< number of findings that are faults
+    kiln_finding finding[KILN_MAX_FINDINGS];
+} kiln_findings;
+
+// ------------------------------------------------------------------------------------------ levels
+
+/// Loads all levels of a prefiltered environment, whoever wrote it, in the axes of the file: a cube
+/// in a KTX, KTX2 or DDS file; any file or set of faces that kiln_map_load reads, where `{level}` or
+/// `%d` in the path stands for the level; or a folder with the faces that Filament's cmgen writes,
+/// m0_px.exr, ... `report` may be NULL. The roughness of a level is -1 where the file does not state
+/// the roughness.
+KILN_API KILN_CHECKED kiln_result kiln_levels_load(kiln_context *context, const char *path,
+                                                   kiln_load_report *report, kiln_map *map,
+                                                   kiln_error *error);
+
+/// How levels are checked. {0} finds out axes and roughness.
+typedef struct kiln_check_levels_def {
+    /// Engine that the levels are for, whose axes and roughness they should have. NULL: the axes are
+    /// found, and the roughness is that of the levels or found.
+    const kiln_engine *engine;
+    /// True: `roughness` of the map is what each level should be filtered for, unless `engine` says
+    /// so. False: the mapping that fits best is found.
+    bool stated;
+    kiln_lobe_kind lobe; ///< lobe of the levels; KILN_LOBE_GGX by default
+} kiln_check_levels_def;
+
+/// What is wrong with one level. Errors are relative, so that 0.01 is one per cent.
+typedef struct kiln_check_level {
+    int size;         ///< texels along the level's short side
+    double roughness; ///< roughness with whose exact level this level was compared
+    /// Roughness whose exact level is most like this level; -1 where the level is too small or too
+    /// uniform to tell.
+    double found;
+    /// Root mean square over the sphere of the difference to the exact level, divided by the root
+    /// mean square of the exact level.
+    double rms;
+    double largest; ///< largest difference, divided by the root mean square of the exact level
+    double bias;    ///< mean difference, divided by the mean of the exact level
+    double energy;  ///< root mean square of the level, divided by that of the exact level
+    /// Root mean square of the jumps of the difference at edges of cube faces, as `rms`; 0 for maps
+    /// without faces.
+    double seam;
+    double within;         ///< as `seam`, between neighbouring texels within faces
+    size_t firefly_count;  ///< texels more than twice as bright as anything exact near them
+    size_t negative_count; ///< texels with a channel below zero
+    /// Root mean square difference of the exact level from brute force, at `proof_count` texels,
+    /// divided by the root mean square of these. Level 0 of roughness 0 has means over texels and
+    /// no proof.
+    double proof;
+    int proof_count;
+} kiln_check_level;
+
+typedef struct kiln_check_levels_report {
+    int level_count;
+    kiln_check_level level[KILN_MAX_LEVELS];
+    double worst; ///< largest `rms` of the levels
+    /// The file shows in direction e the light from the panorama's direction d, where d[i] = sign[i]
+    /// e[axis[i]].
+    int axis[3], sign[3];
+    /// Factor by which all values of the file are too bright; errors are measured after a division
+    /// by this factor, which is 1 if it is within 2 % of 1.
+    double brightness;
+    kiln_findings findings;
+} kiln_check_levels_report;
+
+/// Compares levels with exactly filtered levels of `source`, a map of any shape. `levels` has the
+/// axes of the file, as kiln_levels_load returns them. If `difference` is not NULL, it receives the
+/// levels minus the exact levels, in the panorama's directions. `def` may be NULL.
+KILN_API KILN_CHECKED kiln_result kiln_check_levels(kiln_context *context, const kiln_map *source,
+                                                    const kiln_map *levels,
+                                                    const kiln_check_levels_def *def,
+                                                    kiln_check_levels_report *report,
+                                                    kiln_map *difference, kiln_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

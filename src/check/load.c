@@ -1,0 +1,155 @@
+// kiln_levels_load. In: a path to a file with levels, a pattern for one file or set of faces for
+// each level, or a folder. Out: a map with all levels in the axes of the file.
+#include "check/check.h"
+
+#include "base/os.h"
+#include "image/image.h"
+
+#include <stdio.h>
+#include <string.h>
+
+// Writes the path of one level: the pattern with the number in place of {level} or %d.
+static bool expand(const char *pattern, int level, char path[KI_OS_PATH])
+{
+    const char *braces = strstr(pattern, "{level}"), *at = braces ? braces : strstr(pattern, "%d");
+    if (!at)
+        return false;
+    int length = ki_print(path, KI_OS_PATH, "%.*s%d%s", (int)(at - pattern), pattern, level,
+                          at + (braces ? 7 : 2));
+    return length > 0 && length < KI_OS_PATH;
+}
+
+// Writes the path of a file of a level: the path itself, or that of the face px.
+static void find_file(const char *path, char file[KI_OS_PATH])
+{
+    const char *braces = strstr(path, "{face}"), *at = braces ? braces : strstr(path, "%s");
+    if (at)
+        ki_print(file, KI_OS_PATH, "%.*spx%s", (int)(at - path), path, at + (braces ? 6 : 2));
+    else
+        ki_print(file, KI_OS_PATH, "%s", path);
+}
+
+// Returns whether the file of a level, or the first of its six faces, exists.
+static bool exists(const char *path)
+{
+    char file[KI_OS_PATH];
+    find_file(path, file);
+    return ki_os_kind_of(file) != KI_OS_NOTHING;
+}
+
+// Sets the roughness of the levels to what the file states, or to -1.
+static kiln_result state_roughness(kiln_context *context, const char *path, float *roughness,
+                                   int count, kiln_error *error)
+{
+    char file[KI_OS_PATH];
+    kiln_file_info info = {.roughness = {-1}};
+    kiln_result result = KILN_OK;
+    find_file(path, file);
+    if (ki_os_kind_of(file) == KI_OS_FILE)
+        result = kiln_file_describe(context, file, &info, error);
+    for (int k = 0; k < count; k++)
+        roughness[k] = info.roughness[0] < 0 ? -1 : info.roughness[k];
+    return result;
+}
+
+// Sets `pattern` to that of the files in a folder, if these have names that cmgen or kiln gives.
+static bool find_pattern(const char *folder, char pattern[KI_OS_PATH])
+{
+    static const char *const names[] = {"m{level}_{face}", "{face}_{level}", "{level}_{face}"};
+    static const char *const endings[] = {"exr", "hdr", "png", "rgb32f", "dds"};
+    char path[KI_OS_PATH];
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        for (size_t k = 0; k < sizeof endings / sizeof *endings; k++) {
+            ki_print(pattern, KI_OS_PATH, "%s/%s.%s", folder, names[i], endings[k]);
+            if (expand(pattern, 0, path) && exists(path))
+                return true;
+        }
+    return false;
+}
+
+// Copies level 0 of a map that was loaded to level `k` of the map with all levels.
+static kiln_result take_level(const char *path, kiln_map *one, int k, int count,
+                              kiln_context *context, kiln_map *map, kiln_error *error)
+{
+    if (k == 0) {
+        *map = (kiln_map){.shape = one->shape, .size = one->size, .level_count = count};
+        kiln_result result = ki_map_allocate(context, map, error);
+        if (result != KILN_OK)
+            return result;
+    }
+    if (one->shape != map->shape || one->size != kiln_map_level_size(map, k))
+        return ki_fail(error, KILN_ERROR_FORMAT,
+                       "%s: has texels of %d along a side, level %d of a map of size %d has %d",
+                       path, one->size, k, map->size, kiln_map_level_size(map, k));
+    memcpy(map->level[k], one->level[0], 3 * sizeof(float) * kiln_map_texels(map, k));
+    return state_roughness(context, path, &map->roughness[k], 1, error);
+}
+
+static void add_report(kiln_load_report *all, const kiln_load_report *one)
+{
+    all->texel_count += one->texel_count;
+    all->infinite_count += one->infinite_count;
+    all->nan_count += one->nan_count;
+    all->negative_count += one->negative_count;
+    all->missing_count += one->missing_count;
+    all->negative_share =
+        one->negative_share > all->negative_share ? one->negative_share : all->negative_share;
+}
+
+static kiln_result load_pattern(kiln_context *context, const char *pattern,
+                                kiln_load_report *report, kiln_map *map, kiln_error *error)
+{
+    char path[KI_OS_PATH];
+    int count = 0;
+    while (count < KILN_MAX_LEVELS && expand(pattern, count, path) && exists(path))
+        count++;
+    if (!count)
+        return ki_fail(error, KILN_ERROR_IO, "%s: there is no file of level 0", pattern);
+    kiln_result result = KILN_OK;
+    for (int k = 0; k < count && result == KILN_OK; k++) {
+        kiln_map one = {0};
+        kiln_load_report found;
+        expand(pattern, k, path);
+        result = kiln_map_load(context, path, &(kiln_load_def){.report = &found}, &one, error);
+        if (result == KILN_OK)
+            result = take_level(path, &one, k, count, context, map, error);
+        if (result == KILN_OK && k)
+            add_report(report, &found);
+        else if (result == KILN_OK)
+            *report = found;
+        kiln_map_free(&one);
+    }
+    return result;
+}
+
+// Loads one file. Levels whose roughness the file does not state have the roughness -1.
+static kiln_result load_file(kiln_context *context, const char *path, kiln_load_report *report,
+                             kiln_map *map, kiln_error *error)
+{
+    kiln_result result =
+        kiln_map_load(context, path, &(kiln_load_def){.report = report}, map, error);
+    return result == KILN_OK
+               ? state_roughness(context, path, map->roughness, map->level_count, error)
+               : result;
+}
+
+kiln_result kiln_levels_load(kiln_context *context, const char *path, kiln_load_report *report,
+                             kiln_map *map, kiln_error *error)
+{
+    char pattern[KI_OS_PATH];
+    kiln_load_report unused;
+    report = report ? report : &unused;
+    *map = (kiln_map){0};
+    *report = (kiln_load_report){0};
+    bool folder = ki_os_kind_of(path) == KI_OS_FOLDER && find_pattern(path, pattern);
+    kiln_result result;
+    if (folder)
+        result = load_pattern(context, pattern, report, map, error);
+    else if (strstr(path, "{level}") || strstr(path, "%d"))
+        result = load_pattern(context, path, report, map, error);
+    else
+        result = load_file(context, path, report, map, error);
+    if (result != KILN_OK)
+        kiln_map_free(map);
+    return result;
+}
