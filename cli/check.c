@@ -125,6 +125,19 @@ static void add_replaced(const kiln_load_report *loaded, kiln_findings *findings
     snprintf(finding->text, sizeof finding->text, "%zu texels are infinite or not a number", count);
 }
 
+// Counts a report as good or not, and opens its object in JSON. Returns whether the report is good.
+static bool judge(checker *c, const char *kind, const kiln_findings *findings, double error)
+{
+    bool good = !findings->fault_count && error <= c->values->tolerance;
+    c->good &= good;
+    cli_clear_progress(c->work);
+    if (c->json) {
+        json_object(c->json, kind);
+        json_bool(c->json, "right", good);
+    }
+    return good;
+}
+
 static int check_levels(checker *c, const char *path)
 {
     kiln_map levels = {0}, difference = {0};
@@ -140,14 +153,11 @@ static int check_levels(checker *c, const char *path)
     }
     if (result == KILN_OK) {
         add_replaced(&loaded, &report.findings);
-        bool good = !report.findings.fault_count && report.worst <= c->values->tolerance;
-        c->good &= good;
-        cli_clear_progress(c->work);
+        bool good = judge(c, "levels", &report.findings, report.worst);
         if (c->json) {
-            json_text(c->json, "kind", "levels");
-            json_bool(c->json, "right", good);
             print_levels_json(c->json, &report);
             print_findings_json(c->json, &report.findings);
+            json_end(c->json);
         } else if (!c->values->quiet) {
             printf("%s: %s, the largest error of a level is %.3g %%\n", cli_show(path).text,
                    good ? "right" : "WRONG", 100 * report.worst);
@@ -160,7 +170,65 @@ static int check_levels(checker *c, const char *path)
     return result == KILN_OK ? CLI_DONE : CLI_FAILED;
 }
 
+// --------------------------------------------------------------------------------------- harmonics
+
+static void print_bands(const checker *c, const kiln_check_sh_report *report)
+{
+    if (!c->json)
+        printf("  factor of each band:");
+    else
+        json_array(c->json, "bands");
+    for (int l = 0; l < report->bands; l++)
+        if (c->json)
+            json_rounded(c->json, NULL, report->band[l], 6);
+        else
+            printf(" %.4f", report->band[l]);
+    if (c->json)
+        json_end(c->json);
+    else
+        putchar('\n');
+}
+
+static int check_harmonics(checker *c, const char *path, const kiln_file_info *info)
+{
+    kiln_check_sh_report report;
+    kiln_sh sh = {.bands = info->sh_bands, .irradiance = info->sh_irradiance};
+    for (int i = 0; i < sh.bands * sh.bands; i++)
+        for (int k = 0; k < 3; k++)
+            sh.c[i][k] = (double)info->sh[i][k];
+    if (kiln_check_sh(c->work->context, &c->panorama, &sh, c->engine, &report, &c->work->error))
+        return CLI_FAILED;
+    bool good = judge(c, "harmonics", &report.findings, report.rms);
+    if (c->json)
+        json_rounded(c->json, "rms", report.rms, 6);
+    else if (!c->values->quiet)
+        printf("%s: %s, %d bands of harmonics with an error of %.3g %%\n", cli_show(path).text,
+               good ? "right" : "WRONG", report.bands, 100 * report.rms);
+    if (c->json || !c->values->quiet)
+        print_bands(c, &report);
+    if (c->json) {
+        print_findings_json(c->json, &report.findings);
+        json_end(c->json);
+    } else if (!c->values->quiet) {
+        print_findings(&report.findings);
+    }
+    return CLI_DONE;
+}
+
 // ------------------------------------------------------------------------------------------- files
+
+// Checks what a file holds: levels, harmonics, or both.
+static int check_content(checker *c, const char *path)
+{
+    kiln_file_info info = {0};
+    bool one_file = !strchr(path, '{') && !strchr(path, '%') && !cli_ends_in(path, "/");
+    if (one_file && kiln_file_describe(c->work->context, path, &info, &c->work->error))
+        return CLI_FAILED;
+    int code = strcmp(info.layout, "harmonics") != 0 ? check_levels(c, path) : CLI_DONE;
+    if (code == CLI_DONE && info.sh_bands)
+        code = check_harmonics(c, path, &info);
+    return code;
+}
 
 static int check_file(checker *c, const char *path)
 {
@@ -168,9 +236,8 @@ static int check_file(checker *c, const char *path)
         json_object(c->json, NULL);
         json_text(c->json, "path", path);
     }
-    int code = check_levels(c, path);
+    int code = check_content(c, path);
     if (code == CLI_FAILED && c->json) {
-        json_bool(c->json, "right", false);
         json_text(c->json, "error", c->work->error.message);
     }
     if (c->json)

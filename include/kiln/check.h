@@ -118,6 +118,28 @@ KILN_API KILN_CHECKED kiln_result kiln_check_levels(kiln_context *context, const
                                                     kiln_check_levels_report *report,
                                                     kiln_map *difference, kiln_error *error);
 
+// --------------------------------------------------------------------------------------- harmonics
+
+/// What is wrong with spherical harmonics.
+typedef struct kiln_check_sh_report {
+    int bands;
+    /// Factor of each band between the file and the exact coefficients of what the file claims to
+    /// hold, radiance or irradiance. All factors of a right file are 1.
+    double band[KILN_MAX_BANDS];
+    /// Norm of the difference from the exact coefficients, divided by the norm of these, in the axes
+    /// that were found.
+    double rms;
+    int axis[3], sign[3]; ///< axes of the file, as in kiln_check_levels_report
+    kiln_findings findings;
+} kiln_check_sh_report;
+
+/// Compares spherical harmonics, in the axes of their file, with those of `source`, a map of any
+/// shape. `sh->irradiance` and `sh->window` say what the file claims to hold. `engine`, which may be
+/// NULL, is the engine whose axes are expected.
+KILN_API KILN_CHECKED kiln_result kiln_check_sh(kiln_context *context, const kiln_map *source,
+                                                const kiln_sh *sh, const kiln_engine *engine,
+                                                kiln_check_sh_report *report, kiln_error *error);
+
 #ifdef __cplusplus
 }
 #endif

@@ -37,8 +37,17 @@ bool ki_axes_equal(const ki_axes *a, const ki_axes *b)
     return !memcmp(a, b, sizeof *a);
 }
 
-// Returns number `index` of the 48 signed permutations, of which 0 turns nothing.
-static ki_axes numbered(int index)
+ki_axes ki_axes_shown(const ki_axes *found, const ki_axes *expected)
+{
+    ki_axes shown, inverse = ki_axes_inverse(expected);
+    for (int i = 0; i < 3; i++) {
+        shown.axis[i] = inverse.axis[found->axis[i]];
+        shown.sign[i] = found->sign[i] * inverse.sign[found->axis[i]];
+    }
+    return shown;
+}
+
+ki_axes ki_axes_numbered(int index)
 {
     static const int orders[6][3] = {{0, 1, 2}, {2, 1, 0}, {1, 0, 2},
                                      {0, 2, 1}, {1, 2, 0}, {2, 0, 1}};
@@ -144,7 +153,7 @@ kiln_result ki_find_axes(kiln_context *context, const kiln_map *source, const ki
     *axes = *expected;
     double best = correlate(&from, &to, expected) + margin;
     for (int i = 0; i < WAYS; i++) {
-        ki_axes tried = numbered(i);
+        ki_axes tried = ki_axes_numbered(i);
         if (map->shape != KILN_SHAPE_CUBE && (tried.axis[1] != 1 || tried.sign[1] < 0))
             continue;
         double like = correlate(&from, &to, &tried) + (is_of_engine(&tried) ? margin / 2 : 0);

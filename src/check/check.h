@@ -21,6 +21,10 @@ void ki_axes_apply(const ki_axes *axes, const double direction[3], double turned
 /// Returns the axes that undo a turn by `axes`.
 ki_axes ki_axes_inverse(const ki_axes *axes);
 bool ki_axes_equal(const ki_axes *a, const ki_axes *b);
+/// Returns number `index`, 0 to 47, of the signed permutations, of which 0 turns nothing.
+ki_axes ki_axes_numbered(int index);
+/// Returns how a file with the axes `found` is turned where axes `expected` are wanted.
+ki_axes ki_axes_shown(const ki_axes *found, const ki_axes *expected);
 /// Finds under which of the 48 axes a map is most like `source`. Of axes that are equally good,
 /// `expected` is preferred, then those of engines.
 kiln_result ki_find_axes(kiln_context *context, const kiln_map *source, const kiln_map *map,

@@ -98,14 +98,7 @@ static kiln_result turn(check *c, const kiln_map *levels, kiln_error *error)
     memcpy(c->report->axis, found.axis, sizeof found.axis);
     memcpy(c->report->sign, found.sign, sizeof found.sign);
     // What an engine's file shows is said in the directions in which the engine shows it.
-    ki_axes shown = found;
-    if (expected) {
-        ki_axes inverse = ki_axes_inverse(expected);
-        for (int i = 0; i < 3; i++) {
-            shown.axis[i] = inverse.axis[found.axis[i]];
-            shown.sign[i] = found.sign[i] * inverse.sign[found.axis[i]];
-        }
-    }
+    ki_axes shown = expected ? ki_axes_shown(&found, expected) : found;
     ki_say_axes(&shown, expected ? &ki_axes_none : NULL, &c->report->findings);
     return ki_map_unturn(c->context, levels, &found, &c->levels, error);
 }

@@ -361,6 +361,20 @@ static void checks(void **state)
               !report.level_count);
     }
     SWEEP(kiln_levels_load(c, "none.ktx2", NULL, &rest, &e), !rest.level_count);
+    kiln_check_sh_report bands;
+    kiln_sh sh = {.bands = 3};
+    EACH_REAL (x) {
+        sh.c[2][1] = x;
+        SWEEP(kiln_check_sh(c, &panorama, &sh, NULL, &bands, &e), !bands.bands);
+        sh.c[2][1] = 1;
+        sh.window = x;
+        SWEEP(kiln_check_sh(c, &panorama, &sh, NULL, &bands, &e), !bands.bands);
+        sh.window = 0;
+    }
+    EACH_INT (n) {
+        sh.bands = n;
+        SWEEP(kiln_check_sh(c, &panorama, &sh, NULL, &bands, &e), !bands.bands);
+    }
 }
 
 static void saves(void **state)
