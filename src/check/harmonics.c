@@ -171,12 +171,19 @@ static shape find_shape(const match *m, int bands, weight claimed)
     }
     for (int w = 0; w < WEIGHTS && best.error > good; w++)
         for (int kind = HANNING; kind < WINDOWS && bands > 1; kind++)
-            for (int i = 0; i < 1600; i++) {
-                shape tried = {(weight)w, (window)kind, 1.5 * ki_exp(0.0025 * i), 0};
+            for (int i = 0; i < 400; i++) {
+                shape tried = {(weight)w, (window)kind, 1.5 * ki_exp(0.01 * i), 0};
                 tried.error = shape_error(m, bands, &tried);
                 if (tried.error < best.error - 1e-6)
                     best = tried;
             }
+    for (double step = 0.01; step > 1e-6 && best.window != NO_WINDOW; step /= 2)
+        for (int side = -1; side <= 1; side += 2) {
+            shape tried = best;
+            tried.width *= 1 + side * step;
+            tried.error = shape_error(m, bands, &tried);
+            best = tried.error < best.error ? tried : best;
+        }
     return best;
 }
 
