@@ -8,6 +8,7 @@ usage() {
 ./do build     builds the command: build/release/bin/kiln
 ./do test      builds and runs every test but those of ./do test-dist
 ./do test-dist builds and runs the tests of what is handed out, which take long
+./do test-cluster   bakes on a Slurm cluster of two nodes on this machine, one of which dies
 ./do demo      bakes a sky and a real panorama into a page: build/demo/index.html
 ./do web [N]   builds the page that bakes in the browser, serves it on loopback (port N, else 8420)
 ./do web --build DIR   builds this page as static files in the folder DIR, for any web server
@@ -206,6 +207,11 @@ test-dist)
     run_tests release -L dist "$@"
     printf '\n%d passed, %d failed\n' "$passed" "$failed"
     [ "$failed" = 0 ]
+    ;;
+test-cluster)
+    need build cluster
+    build_release
+    tests/cluster/cluster.sh "$PWD/build/release/bin/kiln"
     ;;
 python)
     need build python

@@ -29,6 +29,7 @@ void batch_hold(void *user, bool begins)
 {
     batch *all = user;
     if (!begins) {
+        fflush(stdout); // a batch that is killed has reported what it has baked
         os_unlock(&all->output);
         return;
     }
