@@ -9,13 +9,13 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { FOR, TOLERANCE, PICTURE, LAYER, NEGATIVE, JSON, QUIET, THREADS, OPTIONS };
+enum { FOR, TABLE, TOLERANCE, PICTURE, LAYER, NEGATIVE, JSON, QUIET, THREADS, OPTIONS };
 
 typedef struct check_values {
     int engine, negative, threads;
     double tolerance;
     const char *picture, *layer;
-    bool json, quiet;
+    bool table, json, quiet;
 } check_values;
 
 #define AT(field) offsetof(check_values, field)
@@ -30,6 +30,8 @@ static const cli_option options[OPTIONS + 1] = {
     [FOR] = {"for", CLI_CHOICE, AT(engine), .initial = -1, .value = "ENGINE", .word = engine_word,
              .help = "the engine that the files are for, whose axes and roughnesses they must have",
              .unset = "axes and roughnesses are found out"},
+    [TABLE] = {"table", CLI_FLAG, AT(table),
+               .help = "the files are tables of reflection models; no panorama is named"},
     [TOLERANCE] = {"tolerance", CLI_NUMBER, AT(tolerance), 0, 1, 0.01, "E",
                    .help = "largest relative root mean square error of a level for which the exit "
                            "code is 0"},
@@ -215,12 +217,43 @@ static int check_harmonics(checker *c, const char *path, const kiln_file_info *i
     return CLI_DONE;
 }
 
+// ------------------------------------------------------------------------------------------ tables
+
+static int check_table(checker *c, const char *path)
+{
+    kiln_image image = {0};
+    kiln_check_table_report report;
+    bool flip;
+    kiln_context *context = c->work->context;
+    kiln_result result = kiln_table_numbers_load(context, path, &image, &flip, &c->work->error);
+    if (result == KILN_OK)
+        result = kiln_check_table(context, &image, flip, &report, &c->work->error);
+    if (result == KILN_OK) {
+        bool good = judge(c, "table", &report.findings, report.rms);
+        if (c->json) {
+            json_rounded(c->json, "rms", report.rms, 6);
+            json_rounded(c->json, "largest", report.largest, 6);
+            print_findings_json(c->json, &report.findings);
+            json_end(c->json);
+        } else if (!c->values->quiet) {
+            printf("%s: %s, %d x %d texels with a root mean square error of %.3g, at most %.3g\n",
+                   cli_show(path).text, good ? "right" : "WRONG", image.width, image.height,
+                   report.rms, report.largest);
+            print_findings(&report.findings);
+        }
+    }
+    kiln_image_free(&image);
+    return result == KILN_OK ? CLI_DONE : CLI_FAILED;
+}
+
 // ------------------------------------------------------------------------------------------- files
 
 // Checks what a file holds: levels, harmonics, or both.
 static int check_content(checker *c, const char *path)
 {
     kiln_file_info info = {0};
+    if (c->values->table)
+        return check_table(c, path);
     bool one_file = !strchr(path, '{') && !strchr(path, '%') && !cli_ends_in(path, "/");
     if (one_file && kiln_file_describe(c->work->context, path, &info, &c->work->error))
         return CLI_FAILED;
@@ -257,12 +290,12 @@ static int check_files(const cli_arguments *a, const check_values *v, cli_work *
     checker c = {.work = work, .values = v, .good = true, .json = v->json ? &j : NULL};
     const kiln_load_def load = {.negative = (kiln_negative)v->negative, .layer = v->layer};
     c.engine = v->engine >= 0 ? kiln_engine_at(v->engine) : NULL;
-    int code = cli_load(work, a->rest, 1, &load, &c.panorama);
+    int code = v->table ? CLI_GO : cli_load(work, a->rest, 1, &load, &c.panorama);
     if (code != CLI_GO)
         return code;
     if (c.json)
         json_array(c.json, NULL);
-    for (int i = 1; i < a->rest_count && !cli_interrupted(); i++)
+    for (int i = !v->table; i < a->rest_count && !cli_interrupted(); i++)
         check_file(&c, a->rest[i]);
     if (c.json)
         json_end(c.json);
@@ -278,7 +311,11 @@ static int run(const cli_call *call)
     int code = cli_read_arguments(&a, &cli_check, call, &values);
     if (code != CLI_GO)
         return code;
-    if (a.rest_count < 2)
+    if (values.table && !a.rest_count)
+        return cli_wrong(&cli_check, "no table is named, name the tables to check");
+    if (values.table && (values.engine >= 0 || values.picture))
+        return cli_wrong(&cli_check, "--table takes neither --for nor --picture");
+    if (a.rest_count < 2 && !values.table)
         return cli_wrong(&cli_check, "%s, name the panorama and then the files to check",
                          a.rest_count ? "no file to check is named" : "no input is named");
     code = cli_begin_work(&work, values.threads, values.quiet);
@@ -292,11 +329,12 @@ static const cli_example examples[] = {
     {"kiln check city.exr cmgen/city/", "the same for the faces that Filament's cmgen wrote"},
     {"kiln check city.exr city.ktx2 --for three --tolerance 0.001",
      "fails unless three.js shows the file in place and within 0.1 %"},
+    {"kiln check --table dfg.png", "says what a table holds and what is wrong with it"},
     {NULL, NULL}};
 
 const cli_command cli_check = {
     .name = "check",
-    .arguments = "PANORAMA FILE... [OPTION...]",
+    .arguments = "PANORAMA FILE... [OPTION...]|--table FILE... [OPTION...]",
     .summary = "Says whether files that any tool baked from a panorama are right.",
     .about =
         "For levels kiln finds the axes and the roughness of each level, computes the exact "

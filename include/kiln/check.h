@@ -140,6 +140,47 @@ KILN_API KILN_CHECKED kiln_result kiln_check_sh(kiln_context *context, const kil
                                                 const kiln_sh *sh, const kiln_engine *engine,
                                                 kiln_check_sh_report *report, kiln_error *error);
 
+// ------------------------------------------------------------------------------------------ tables
+
+/// The function that a channel of a table holds.
+typedef enum kiln_table_content {
+    KILN_HOLDS_UNKNOWN = 0,
+    KILN_HOLDS_A,          ///< A of the split sum
+    KILN_HOLDS_B,          ///< B of the split sum
+    KILN_HOLDS_E,          ///< A + B, the albedo for F = 1
+    KILN_HOLDS_COMPLEMENT, ///< 1 - (A + B)
+    KILN_HOLDS_SHEEN,      ///< the albedo of Charlie sheen with KILN_SHEEN_ASHIKHMIN
+    KILN_HOLDS_ZERO,       ///< 0 everywhere
+    KILN_HOLDS_ONE         ///< 1 everywhere
+} kiln_table_content;
+
+/// What is wrong with a table.
+typedef struct kiln_check_table_report {
+    int channels;
+    kiln_table_content content[4]; ///< what each channel holds
+    kiln_model model;
+    kiln_axis axis; ///< axis of n.v
+    bool corners;   ///< true: texel i of n lies at i / (n - 1); false: at (i + 1/2) / n
+    /// Root mean square and largest difference from the exact values, absolute, after rows and
+    /// columns were put in order and a gamma curve was undone, but with texels where they are.
+    /// The mean leaves channels out that hold a constant.
+    double rms, largest;
+    kiln_findings findings;
+} kiln_check_table_report;
+
+/// Compares a table of any tool with exact integrals, and finds out what the table holds and how it
+/// is stored. The order that is expected is that of kiln_table: n.v grows along rows and roughness
+/// along columns, or falls if `flip`. `image` has 1 to 4 channels, at least 12 x 12 texels, and
+/// finite numbers.
+KILN_API KILN_CHECKED kiln_result kiln_check_table(kiln_context *context, const kiln_image *image,
+                                                   bool flip, kiln_check_table_report *report,
+                                                   kiln_error *error);
+/// Loads the numbers of a table as a file stores them: kiln_image_load, with the sRGB curve of a PNG
+/// file left out. *flip says whether a file that kiln wrote states that row 0 holds roughness 1.
+KILN_API KILN_CHECKED kiln_result kiln_table_numbers_load(kiln_context *context, const char *path,
+                                                          kiln_image *image, bool *flip,
+                                                          kiln_error *error);
+
 #ifdef __cplusplus
 }
 #endif

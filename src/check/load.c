@@ -1,9 +1,10 @@
-// kiln_levels_load. In: a path to a file with levels, a pattern for one file or set of faces for
+// kiln_levels_load and kiln_table_numbers_load. In: a path to a file with levels, a pattern for one file or set of faces for
 // each level, or a folder. Out: a map with all levels in the axes of the file.
 #include "check/check.h"
 
 #include "base/os.h"
 #include "image/image.h"
+#include "image/pack.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -152,4 +153,23 @@ kiln_result kiln_levels_load(kiln_context *context, const char *path, kiln_load_
     if (result != KILN_OK)
         kiln_map_free(map);
     return result;
+}
+
+kiln_result kiln_table_numbers_load(kiln_context *context, const char *path, kiln_image *image,
+                                    bool *flip, kiln_error *error)
+{
+    kiln_file_info info;
+    *image = (kiln_image){0};
+    *flip = false;
+    kiln_result result = kiln_file_describe(context, path, &info, error);
+    if (result == KILN_OK)
+        result = kiln_image_load(context, path, image, error);
+    if (result != KILN_OK)
+        return result;
+    *flip = strstr(info.table, "flip=1") != NULL;
+    size_t count = (size_t)image->width * (size_t)image->height * (size_t)image->channels;
+    for (size_t i = 0; i < count && !strcmp(info.format, "png") && strstr(info.encoding, "srgb");
+         i++)
+        image->pixels[i] = ki_srgb_from_linear(image->pixels[i]);
+    return KILN_OK;
 }

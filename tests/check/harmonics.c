@@ -136,7 +136,7 @@ static void windows_are_named(void **state)
         expect(&report,
                "band 1 is reduced by 14.6 % and band 2 by 50 %, as by a Hanning window of width 4",
                false);
-        CHECK_BELOW(0.05, report.rms);
+        CHECK_BELOW(0.03, report.rms);
     }
     // cmgen's window, sinc^4 of width 6.
     kiln_sh sh = made(3, false, 0);

@@ -361,6 +361,25 @@ static void checks(void **state)
               !report.level_count);
     }
     SWEEP(kiln_levels_load(c, "none.ktx2", NULL, &rest, &e), !rest.level_count);
+    kiln_check_table_report table;
+    kiln_image image, numbers;
+    bool flip;
+    kiln_error error;
+    CHECK_OK(kiln_image_create(c, 16, 16, 1, &image, &error));
+    EACH_REAL (x) {
+        image.pixels[3] = (float)x;
+        SWEEP(kiln_check_table(c, &image, false, &table, &e), !table.channels);
+    }
+    EACH_INT (n) {
+        kiln_image odd = image;
+        odd.width = n < 16 ? n : 16;
+        SWEEP(kiln_check_table(c, &odd, true, &table, &e), !table.channels);
+        odd = image;
+        odd.channels = n > 1 && n < 5 ? 1 : n;
+        SWEEP(kiln_check_table(c, &odd, true, &table, &e), !table.channels);
+    }
+    kiln_image_free(&image);
+    SWEEP(kiln_table_numbers_load(c, "none.png", &numbers, &flip, &e), !numbers.pixels);
     kiln_check_sh_report bands;
     kiln_sh sh = {.bands = 3};
     EACH_REAL (x) {
