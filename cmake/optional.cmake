@@ -1,5 +1,6 @@
 # Libraries that kiln can do without. zstd: KTX2 files compressed by it are written and read.
-# libdeflate: PNG and EXR files are read faster. libjpeg: JPEG files are read. Files that kiln writes are the same bytes either way.
+# libdeflate: PNG and EXR files are read faster. libjpeg: JPEG files are read, and written for --for model-viewer. Files of
+# other formats are the same bytes either way.
 #   kiln_optional(NAME MODULE WHAT): the option KILN_NAME, by default whether pkg-config knows MODULE,
 #   and the target PkgConfig::NAME.
 find_package(PkgConfig QUIET)

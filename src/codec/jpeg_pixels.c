@@ -1,6 +1,6 @@
-// Decoding of JPEG pictures by libjpeg-turbo. In: the bytes of a picture. Out: 8-bit samples.
-// libjpeg's errors end the decoding by longjmp. Data that end too early or are damaged fail,
-// because libjpeg would fill the rest with grey.
+// Decoding and encoding of JPEG pictures by libjpeg-turbo. In: the bytes of a picture, or 8-bit
+// samples. Out: the samples, or the bytes. libjpeg's errors end the work by longjmp. Data that end
+// too early or are damaged fail, because libjpeg would fill the rest with grey.
 #include "codec/jpeg_pixels.h"
 
 #include "codec/file_info.h"
@@ -135,5 +135,112 @@ kiln_result ki_jpeg_samples(kiln_context *context, ki_span picture, const ki_jpe
         *samples = NULL;
     }
     ki_free(d);
+    return result;
+}
+
+// ----------------------------------------------------------------------------------------- writing
+
+enum { ROOM = 16384 }; // bytes that libjpeg makes before they are appended to the writer
+
+typedef struct encoder {
+    struct jpeg_compress_struct jpeg;
+    struct jpeg_error_mgr errors;
+    struct jpeg_destination_mgr destination;
+    jmp_buf stop;
+    ki_writer *writer;
+    bool cancelled;
+    char fault[JMSG_LENGTH_MAX];
+    uint8_t room[ROOM];
+} encoder;
+
+static _Noreturn void stop_writing(j_common_ptr jpeg)
+{
+    encoder *e = jpeg->client_data;
+    char text[JMSG_LENGTH_MAX];
+    jpeg->err->format_message(jpeg, text);
+    ki_copy_printable(e->fault, sizeof e->fault, text);
+    longjmp(e->stop, 1);
+}
+
+static void offer_room(j_compress_ptr jpeg)
+{
+    encoder *e = jpeg->client_data;
+    e->destination.next_output_byte = e->room;
+    e->destination.free_in_buffer = ROOM;
+}
+
+static boolean append_room(j_compress_ptr jpeg)
+{
+    encoder *e = jpeg->client_data;
+    ki_write(e->writer, e->room, ROOM);
+    offer_room(jpeg);
+    return TRUE;
+}
+
+static void append_rest(j_compress_ptr jpeg)
+{
+    encoder *e = jpeg->client_data;
+    ki_write(e->writer, e->room, ROOM - e->destination.free_in_buffer);
+}
+
+static void set_up(encoder *e, int width, int height, int channels, int quality)
+{
+    struct jpeg_compress_struct *jpeg = &e->jpeg;
+    jpeg_create_compress(jpeg);
+    jpeg->client_data = e;
+    e->destination.init_destination = offer_room;
+    e->destination.empty_output_buffer = append_room;
+    e->destination.term_destination = append_rest;
+    jpeg->dest = &e->destination;
+    jpeg->image_width = (JDIMENSION)width;
+    jpeg->image_height = (JDIMENSION)height;
+    jpeg->input_components = channels;
+    jpeg->in_color_space = channels == 1 ? JCS_GRAYSCALE : JCS_RGB;
+    jpeg_set_defaults(jpeg);
+    jpeg_set_quality(jpeg, quality, TRUE);
+    jpeg->dct_method = JDCT_ISLOW; // gives the same bits on every processor
+    jpeg->comp_info[0].h_samp_factor = jpeg->comp_info[0].v_samp_factor = 1;
+}
+
+// Encodes a picture. Returns false if libjpeg stopped with an error, or the caller asks to stop.
+static bool encode(encoder *e, const uint8_t *samples, int width, int height, int channels,
+                   int quality)
+{
+    struct jpeg_compress_struct *jpeg = &e->jpeg;
+    if (setjmp(e->stop))
+        return false;
+    set_up(e, width, height, channels, quality);
+    jpeg_start_compress(jpeg, TRUE);
+    while (jpeg->next_scanline < jpeg->image_height) {
+        size_t line = (size_t)width * (size_t)channels * jpeg->next_scanline;
+        JSAMPROW row = (JSAMPROW)(samples + line);
+        e->cancelled = !ki_go_on(e->writer->context);
+        if (e->cancelled)
+            return false;
+        jpeg_write_scanlines(jpeg, &row, 1);
+    }
+    jpeg_finish_compress(jpeg);
+    return true;
+}
+
+kiln_result ki_jpeg_write(const uint8_t *samples, int width, int height, int channels, int quality,
+                          const char *name, ki_writer *writer, kiln_error *error)
+{
+    encoder *e = ki_alloc(writer->context, 1, sizeof *e);
+    if (!e)
+        return ki_fail_memory(writer->context, error, name, sizeof *e);
+    e->writer = writer;
+    e->jpeg.err = jpeg_std_error(&e->errors);
+    e->errors.error_exit = stop_writing;
+    e->jpeg.client_data = e;
+    kiln_result result = KILN_OK;
+    if (!encode(e, samples, width, height, channels, quality) && e->cancelled)
+        result = ki_fail_cancelled(error, "writing");
+    else if (e->fault[0])
+        result = ki_fail(error, KILN_ERROR_ARGUMENT, "%s: libjpeg says: %s", name, e->fault);
+    else if (writer->failed)
+        result = ki_fail_memory(writer->context, error, name, writer->size);
+    jpeg_destroy_compress(&e->jpeg);
+    ki_free(e);
     return result;
 }

@@ -14,11 +14,11 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { RECIPES = 14 };
+enum { RECIPES = 15 };
 static const ki_recipe *const recipes[RECIPES] = {
-    &ki_three,      &ki_three_cubeuv,   &ki_babylon, &ki_babylon_dds, &ki_filament,
-    &ki_playcanvas, &ki_playcanvas_dds, &ki_cesium,  &ki_galacean,    &ki_gltf,
-    &ki_bevy,       &ki_unity,          &ki_godot,   &ki_unreal,
+    &ki_three,      &ki_three_cubeuv,   &ki_babylon,      &ki_babylon_dds, &ki_filament,
+    &ki_playcanvas, &ki_playcanvas_dds, &ki_cesium,       &ki_galacean,    &ki_gltf,
+    &ki_bevy,       &ki_unity,          &ki_model_viewer, &ki_godot,       &ki_unreal,
 };
 
 const ki_recipe *ki_recipe_at(int index)

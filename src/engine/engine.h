@@ -65,7 +65,7 @@ double ki_quadratic_level(double roughness, int level_count, int size);
 
 extern const ki_recipe ki_three, ki_babylon, ki_babylon_dds, ki_filament, ki_playcanvas,
     ki_playcanvas_dds, ki_three_cubeuv, ki_cesium, ki_galacean, ki_gltf, ki_bevy, ki_unity,
-    ki_godot, ki_unreal;
+    ki_godot, ki_model_viewer, ki_unreal;
 
 /// Returns the settings of the engine at an index of the list, NULL after the last engine.
 const ki_recipe *ki_recipe_at(int index);

@@ -1,9 +1,10 @@
-// Engines that load only a panorama and filter it themselves: Godot's PanoramaSkyMaterial and
-// Unreal's sky light. A cube of w texels becomes a panorama of 4w x 2w in kiln's own directions,
+// Engines that load only a panorama and filter it themselves: Godot's PanoramaSkyMaterial, Unreal's
+// sky light, and <model-viewer> and drei's <Environment>, which load JPEG files with gain maps. A cube of w texels becomes a panorama of 4w x 2w in kiln's own directions,
 // which is the orientation of the panorama that kiln read.
 #include "engine/engine.h"
 
 #include "codec/codec.h"
+#include "codec/ultra_hdr.h"
 #include "image/image.h"
 #include "image/pack.h"
 
@@ -15,20 +16,32 @@ static double roughness(int level, int level_count, int size)
     return 0;
 }
 
-static kiln_result write_exr(const kiln_map *p, ki_writer *bytes, kiln_error *error)
+static kiln_result write_exr(const kiln_map *p, const char *path, ki_writer *bytes,
+                             kiln_error *error)
 {
+    (void)path;
     ki_exr_options options = {.half = true, .panorama = true, .roughness = -1};
     return ki_exr_encode(p->level[0], 2 * p->size, p->size, 3, &options, bytes, error);
 }
 
-static kiln_result write_hdr(const kiln_map *p, ki_writer *bytes, kiln_error *error)
+static kiln_result write_hdr(const kiln_map *p, const char *path, ki_writer *bytes,
+                             kiln_error *error)
 {
+    (void)path;
     return ki_hdr_encode(p->level[0], 2 * p->size, p->size, bytes, error);
 }
 
-static kiln_result
-write_panorama(ki_export *to, kiln_result (*encode)(const kiln_map *, ki_writer *, kiln_error *),
-               kiln_error *error)
+static kiln_result write_jpeg(const kiln_map *p, const char *path, ki_writer *bytes,
+                              kiln_error *error)
+{
+    const kiln_image image = {2 * p->size, p->size, 3, p->level[0], NULL};
+    return ki_ultra_hdr_encode(&image, path, bytes, error);
+}
+
+static kiln_result write_panorama(ki_export *to,
+                                  kiln_result (*encode)(const kiln_map *, const char *, ki_writer *,
+                                                        kiln_error *),
+                                  kiln_error *error)
 {
     ki_writer bytes = {.context = to->context};
     kiln_map panorama = {.shape = KILN_SHAPE_PANORAMA, .size = 2 * to->map->size, .level_count = 1};
@@ -36,7 +49,7 @@ write_panorama(ki_export *to, kiln_result (*encode)(const kiln_map *, ki_writer 
     if (result == KILN_OK)
         result = ki_map_resample(to->context, to->map, 0, &panorama, 0, error);
     if (result == KILN_OK)
-        result = encode(&panorama, &bytes, error);
+        result = encode(&panorama, to->path, &bytes, error);
     if (result == KILN_OK)
         result = ki_export_add(to, to->path, &bytes, error);
     ki_writer_free(&bytes);
@@ -52,6 +65,11 @@ static kiln_result write_godot(ki_export *to, kiln_error *error)
 static kiln_result write_unreal(ki_export *to, kiln_error *error)
 {
     return write_panorama(to, write_hdr, error);
+}
+
+static kiln_result write_model_viewer(ki_export *to, kiln_error *error)
+{
+    return write_panorama(to, write_jpeg, error);
 }
 
 const ki_recipe ki_godot = {
@@ -90,4 +108,23 @@ const ki_recipe ki_unreal = {
     .level_count_max = 1,
     .roughness = roughness,
     .write = write_unreal,
+};
+
+const ki_recipe ki_model_viewer = {
+    .about = {.name = "model-viewer",
+              .title = "<model-viewer> and drei, which filter by themselves",
+              .files = "NAME.jpg, a panorama with a gain map",
+              .ending = "jpg",
+              .mapping = "r = 0, unfiltered",
+              .size = 512,
+              .level_count = 1,
+              .limit = KI_HALF_MAX,
+              .proof = "pixels of <model-viewer> 4.4.0"},
+    .axes = {{0, 1, 2}, {1, 1, 1}},
+    .size_min = 32,
+    .size_max = 4096,
+    .last_size = 1,
+    .level_count_max = 1,
+    .roughness = roughness,
+    .write = write_model_viewer,
 };

@@ -34,7 +34,8 @@ expect 2 "7 inputs" bake 1 2 3 4 5 6 7 -o out.ktx2
 expect 2 "do not tell which face each is" bake a b c d e f_px.exr -o out.ktx2
 expect 2 "standard input" bake a b c d e - -o out.ktx2
 expect 2 "must end in" bake in.exr -o out
-expect 2 "must end in" bake in.exr -o out.jpg
+expect 2 "must end in" bake in.exr -o out.gif
+expect 2 "out.jpg: .jpg is a file for <model-viewer> and drei, which filter by themselves, add --for model-viewer" bake in.exr -o out.jpg
 expect 2 "must end in" bake in.exr -o .exr
 expect 2 "standard output holds one file, and this environment takes several" bake in.exr -o -.exr
 expect 2 "standard output holds one file, and this environment takes several" bake in.exr -o - --for filament

@@ -98,7 +98,7 @@ done
 # A picture without a command, and a file of an engine without its name.
 expect 2 "x.hdr: no such command, use 'kiln bake x.hdr -o OUT'" x.hdr
 expect 2 "sky.exr: no such command, use 'kiln bake sky.exr -o OUT'" sky.exr
-expect 2 "output x.env: .env is a file for Babylon.js 9, .env, add --for babylon$" bake sky.exr -o x.env
+expect 2 "output x.env: .env is a file for Babylon.js 5 to 9, .env, add --for babylon$" bake sky.exr -o x.env
 expect 2 "output x.glb: .glb is a file for glTF .*, add --for gltf$" bake sky.exr -o x.glb
 expect 2 "irradiance x.env: must end in" bake sky.exr -o x.ktx2 --irradiance x.env
 

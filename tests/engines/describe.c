@@ -99,6 +99,8 @@ static const expected table[] = {
      3, LAST_LEVEL, true, false},
     {"unity", 64, 0, "u.dds", "u.dds", "dds", "rgba16f", "cube", "", 64, 64, 6, 7, 4, NO_LEVELS,
      false, false},
+    {"model-viewer", 32, 0, "m.jpg", "m.jpg", "jpeg", "8 bits rgb, srgb, gain map", "panorama", "",
+     128, 64, 1, 1, 3, NO_LEVELS, false, false},
     {"godot", 32, 0, "d.exr", "d.exr", "exr", "half rgb, zip", "panorama", "", 128, 64, 1, 1, 3,
      NO_LEVELS, true, false},
     {"unreal", 32, 0, "r.hdr", "r.hdr", "hdr", "rgbe, rle", "panorama", "", 128, 64, 1, 1, 3,
@@ -141,7 +143,8 @@ static void every_engines_files_are_described(void **state)
     (void)state;
     enum { ROWS = sizeof table / sizeof *table };
     for (int i = 0; i < ROWS; i++)
-        check(&table[i]);
+        if (engine_is_written(kiln_engine_find(table[i].engine)))
+            check(&table[i]);
     for (int i = 0; kiln_engine_at(i); i++) {
         bool found = false;
         for (int k = 0; k < ROWS; k++)

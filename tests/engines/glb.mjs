@@ -32,7 +32,11 @@ export function makeGlb(view, roughness, makeMaterial) {
         json.nodes.push({ mesh: row });
         json.scenes[0].nodes.push(row);
     });
-    const text = new TextEncoder().encode(JSON.stringify(json).padEnd(65536));
+    return join(new TextEncoder().encode(JSON.stringify(json).padEnd(65536)), numbers);
+}
+
+// The bytes of a GLB with JSON, whose length is a multiple of four, and a buffer.
+function join(text, numbers) {
     const bytes = new Uint8Array(28 + text.length + numbers.byteLength);
     const words = new DataView(bytes.buffer);
     [0x46546c67, 2, bytes.length, text.length, 0x4e4f534a].forEach((w, i) => words.setUint32(4 * i, w, true));
@@ -41,4 +45,25 @@ export function makeGlb(view, roughness, makeMaterial) {
     words.setUint32(24 + text.length, 0x004e4942, true);
     bytes.set(new Uint8Array(numbers.buffer), 28 + text.length);
     return bytes;
+}
+
+// Returns the bytes of a GLB with a ball of radius 1, whose positions are its normals.
+export function makeBall(material) {
+    const rings = 32, columns = 64, normals = [];
+    const at = (i, j) => {
+        const down = Math.PI * i / rings, around = 2 * Math.PI * j / columns;
+        return [Math.sin(down) * Math.cos(around), Math.cos(down), -Math.sin(down) * Math.sin(around)];
+    };
+    for (let i = 0; i < rings; i++)
+        for (let j = 0; j < columns; j++)
+            for (const [y, x] of [[0, 0], [1, 0], [1, 1], [0, 0], [1, 1], [0, 1]])
+                normals.push(...at(i + y, j + x));
+    const numbers = new Float32Array(normals), count = normals.length / 3;
+    const accessor = { bufferView: 0, componentType: 5126, count, type: 'VEC3', min: [-1, -1, -1], max: [1, 1, 1] };
+    const text = new TextEncoder().encode(JSON.stringify({
+        asset: { version: '2.0' }, scene: 0, scenes: [{ nodes: [0] }], nodes: [{ mesh: 0 }], materials: [material],
+        meshes: [{ primitives: [{ material: 0, attributes: { POSITION: 0, NORMAL: 0 } }] }], accessors: [accessor],
+        bufferViews: [{ buffer: 0, byteLength: numbers.byteLength }], buffers: [{ byteLength: numbers.byteLength }],
+    }).padEnd(2048));
+    return join(text, numbers);
 }

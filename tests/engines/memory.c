@@ -27,6 +27,8 @@ static void memory_that_runs_out_leaves_no_file(void **state)
     const kiln_sh sh = {.bands = 3, .c = {{1, 1, 1}}};
     for (int e = 0; kiln_engine_at(e); e++) {
         const kiln_engine *engine = kiln_engine_at(e);
+        if (!engine_is_written(engine))
+            continue;
         failing f;
         kiln_context *own = failing_context(&f);
         kiln_map map = smallest_cube(own, engine);

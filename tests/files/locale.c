@@ -56,6 +56,8 @@ static void save_all(const char *folder)
     }
     for (int i = 0; kiln_engine_at(i); i++) {
         const kiln_engine *engine = kiln_engine_at(i);
+        if (!engine_is_written(engine))
+            continue;
         kiln_map source;
         kiln_environment own;
         kiln_bake_def bake = {.engine = engine, .tune = KILN_TUNE_NONE, .irradiance_size = 4};

@@ -53,6 +53,8 @@ static void engines_files_are_encoded_alike(void **state)
     CHECK_OK(kiln_map_create(context, KILN_SHAPE_PANORAMA, 8, 1, &white, &error));
     for (int i = 0; kiln_engine_at(i); i++) {
         const kiln_engine *engine = kiln_engine_at(i);
+        if (!engine_is_written(engine))
+            continue;
         kiln_bake_def def = {.engine = engine,
                              .levels = {.size = engine->size < 64 ? engine->size : 64},
                              .tune = KILN_TUNE_NONE,

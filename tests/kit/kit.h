@@ -4,6 +4,7 @@
 #define KILN_KIT_H
 
 #include "check.h"
+#include "engines.h"
 #include "failing.h"
 #include "folder.h"
 #include "maps.h"
