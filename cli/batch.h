@@ -144,6 +144,8 @@ void batch_record_begin(batch_record *record, const batch_job *job);
 /// Compares the record on disk with the options and with the files as they are now, and rewrites it
 /// where only the files' times changed, unless `only_look`. On BATCH_UNCHANGED `out` is filled in.
 batch_reason batch_record_compare(batch_record *record, bool only_look);
+/// Forgets the outputs, before they are baked.
+void batch_record_restart(batch_record *record);
 /// Computes the checksums of the inputs, before they are baked.
 void batch_record_inputs(batch_record *record);
 /// Adds a file that the bake writes; `user` is the record (bake.watch).
@@ -181,6 +183,7 @@ typedef struct batch_worker {
     os_thread thread;
     batch_heap heap;
     kiln_context *context;
+    cli_work *work; ///< work of the bake in progress, or NULL
     bake_plan plan;
     bool keeps; ///< the plan and free blocks of the last bake are kept for the next one
 } batch_worker;

@@ -218,10 +218,8 @@ static void work(void *data)
 
 static bool go_on(void *user, const char *stage, double fraction)
 {
-    (void)user;
-    (void)stage;
-    (void)fraction;
-    return !cli_interrupted();
+    const batch_worker *worker = user;
+    return worker->work ? cli_progress(worker->work, stage, fraction) : !cli_interrupted();
 }
 
 static bool begin_worker(batch_worker *worker, batch *all, kiln_error *error)
@@ -237,6 +235,7 @@ static bool begin_worker(batch_worker *worker, batch *all, kiln_error *error)
         .parallel_for = run_loop,
         .parallel_user = all,
         .progress = go_on,
+        .progress_user = worker,
     };
     return kiln_context_create(&def, &worker->context, error) == KILN_OK;
 }

@@ -314,6 +314,11 @@ void batch_record_inputs(batch_record *r)
             r->in.failed = true;
 }
 
+void batch_record_restart(batch_record *r)
+{
+    free_files(&r->out);
+}
+
 void batch_record_watch(void *user, const char *path, const void *bytes, size_t size)
 {
     batch_record *r = user;
