@@ -1,5 +1,6 @@
 // kiln check. In: a panorama, and files that any tool made from it. Out: what is right and what is
 // wrong with the files, as text or JSON. The exit code is 1 if a file is wrong.
+#include "check.h"
 #include "json.h"
 #include "work.h"
 
@@ -36,7 +37,10 @@ static const cli_option options[OPTIONS + 1] = {
                    .help = "largest relative root mean square error of a level for which the exit "
                            "code is 0"},
     [PICTURE] = {"picture", CLI_FILE, AT(picture), .value = "FILE.png",
-                 .help = "write a picture of the errors: blue is too dark, red is too bright"},
+                 .help =
+                     "write a picture of the errors of the levels of one file: panoramas from the "
+                     "first level down, blue where a level is too dark, red where it is too "
+                     "bright, and full colours for three times its rms"},
     [LAYER] = CLI_LAYER_ROW(check_values),
     [NEGATIVE] = CLI_NEGATIVE_ROW(check_values),
     [JSON] = {"json", CLI_FLAG, AT(json),
@@ -52,7 +56,9 @@ typedef struct checker {
     const kiln_engine *engine;
     kiln_map panorama;
     json *json;
-    bool good; ///< false: a file was wrong
+    int wrong;   ///< number of files that are wrong
+    bool failed; ///< true: a file could not be read
+    bool good;   ///< false: what was judged of the present file is wrong
 } checker;
 
 // ------------------------------------------------------------------------------------------ levels
@@ -153,6 +159,8 @@ static int check_levels(checker *c, const char *path)
         result = kiln_check_levels(context, &c->panorama, &levels, &def, &report, &difference,
                                    &c->work->error);
     }
+    if (result == KILN_OK && c->values->picture)
+        result = check_draw(context, &difference, c->values->picture, &c->work->error);
     if (result == KILN_OK) {
         add_replaced(&loaded, &report.findings);
         bool good = judge(c, "levels", &report.findings, report.worst);
@@ -269,7 +277,9 @@ static int check_file(checker *c, const char *path)
         json_object(c->json, NULL);
         json_text(c->json, "path", path);
     }
+    c->good = true;
     int code = check_content(c, path);
+    c->wrong += !c->good;
     if (code == CLI_FAILED && c->json) {
         json_text(c->json, "error", c->work->error.message);
     }
@@ -279,7 +289,7 @@ static int check_file(checker *c, const char *path)
         cli_clear_progress(c->work);
         cli_fail("%s", c->work->error.message);
         c->work->error.message[0] = 0; // keeps cli_end_work from printing the message again
-        c->good = false;
+        c->failed = true;
     }
     return code;
 }
@@ -287,7 +297,7 @@ static int check_file(checker *c, const char *path)
 static int check_files(const cli_arguments *a, const check_values *v, cli_work *work)
 {
     json j = {0};
-    checker c = {.work = work, .values = v, .good = true, .json = v->json ? &j : NULL};
+    checker c = {.work = work, .values = v, .json = v->json ? &j : NULL};
     const kiln_load_def load = {.negative = (kiln_negative)v->negative, .layer = v->layer};
     c.engine = v->engine >= 0 ? kiln_engine_at(v->engine) : NULL;
     int code = v->table ? CLI_GO : cli_load(work, a->rest, 1, &load, &c.panorama);
@@ -300,7 +310,11 @@ static int check_files(const cli_arguments *a, const check_values *v, cli_work *
     if (c.json)
         json_end(c.json);
     kiln_map_free(&c.panorama);
-    return c.good && !cli_interrupted() ? CLI_DONE : CLI_FAILED;
+    int count = a->rest_count - !v->table;
+    if (c.wrong && !cli_interrupted())
+        cli_fail("%d of %d file%s %s wrong", c.wrong, count, count == 1 ? "" : "s",
+                 c.wrong == 1 ? "is" : "are");
+    return c.wrong || c.failed || cli_interrupted() ? CLI_FAILED : CLI_DONE;
 }
 
 static int run(const cli_call *call)
@@ -315,9 +329,16 @@ static int run(const cli_call *call)
         return cli_wrong(&cli_check, "no table is named, name the tables to check");
     if (values.table && (values.engine >= 0 || values.picture))
         return cli_wrong(&cli_check, "--table takes neither --for nor --picture");
+    if (values.picture && !cli_ends_in(values.picture, "png"))
+        return cli_wrong(&cli_check, "--picture %s: must end in .png", values.picture);
+    if (values.picture && a.rest_count > 2)
+        return cli_wrong(&cli_check, "--picture takes one file to check, %d are named",
+                         a.rest_count - 1);
     if (a.rest_count < 2 && !values.table)
         return cli_wrong(&cli_check, "%s, name the panorama and then the files to check",
                          a.rest_count ? "no file to check is named" : "no input is named");
+    if (values.picture && cli_check_folder(values.picture) != CLI_GO)
+        return CLI_FAILED;
     code = cli_begin_work(&work, values.threads, values.quiet);
     if (code == CLI_GO)
         code = check_files(&a, &values, &work);
