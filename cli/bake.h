@@ -104,6 +104,8 @@ bool bake_is_for_several(const bake *b);
 /// Returns a copy of `path` with the name of `input` in place of each {name}; NULL if memory runs
 /// out. The name is the last part of the input's path without its ending.
 char *bake_name_path(const char *path, const char *input);
+/// Returns CLI_GO, or says that an input such as . or .. has no name and returns CLI_WRONG.
+int bake_check_name(const cli_command *command, const char *input);
 /// Bakes each input. Returns the exit code: of a failure if an input failed.
 int bake_run_several(const bake *b);
 

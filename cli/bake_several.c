@@ -72,6 +72,16 @@ char *bake_name_path(const char *path, const char *input)
     return insert(path, name, length);
 }
 
+int bake_check_name(const cli_command *command, const char *input)
+{
+    size_t length;
+    const char *name = name_of(input, &length);
+    if (length && strspn(name, "./") < length)
+        return CLI_GO;
+    return cli_wrong(command, "%s has no name that could take the place of {name}; name the folder",
+                     input);
+}
+
 static bool make_job(const bake *b, const char *input, job *made)
 {
     const char *paths[PATHS] = {b->output, b->irradiance_path, b->sh_path, b->lights_path};
@@ -122,6 +132,8 @@ int bake_run_several(const bake *b)
     for (int i = 0; jobs && i < count && code == CLI_GO; i++)
         if (!make_job(b, b->arguments.rest[i], &jobs[i]))
             code = cli_fail("out of memory");
+        else
+            code = bake_check_name(b->arguments.command, b->arguments.rest[i]);
     if (!jobs)
         return cli_fail("out of memory");
     if (code == CLI_GO)

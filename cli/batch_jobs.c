@@ -264,8 +264,10 @@ static int make_several(batch_store *store, const batch_line *line, batch_jobs *
         code = cli_fail("out of memory");
     for (int i = 0; i < list.count && code == CLI_GO; i++) {
         input[i] = batch_keep_text(store, list.name[i], strlen(list.name[i]));
-        code = input[i] ? make_job(store, line, &input[i], 1, input[i], jobs)
-                        : cli_fail("out of memory");
+        code = bake_check_name(&line->command, list.name[i]);
+        if (code == CLI_GO)
+            code = input[i] ? make_job(store, line, &input[i], 1, input[i], jobs)
+                            : cli_fail("out of memory");
     }
     free_names(&list);
     return code;

@@ -243,7 +243,8 @@ const cli_command cli_info = {
         "For each file kiln prints the format, encoding, layout, size, the roughness of the "
         "levels, the spherical harmonics, the layers of an EXR file, the engine that the file "
         "is for, and what kiln chooses, converts and assumes when the file is read. Files that "
-        "kiln writes only, such as .env and .glb, are described too.",
+        "kiln writes only, such as .env and .glb, are described too. A folder with six faces, or a "
+        "pattern such as city_{face}.exr, is described as a cube.",
     .examples = examples,
     .options = options,
     .run = run,

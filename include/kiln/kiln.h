@@ -429,7 +429,8 @@ typedef struct kiln_file_info {
     kiln_layer_info layer[KILN_MAX_LAYERS];
 } kiln_file_info;
 
-/// Describes any file that kiln can read. Of the files that kiln only writes, describes .env
+/// Describes any file that kiln can read, and a folder or a pattern of six faces (see kiln_map_load) as
+/// a cube with the bytes of all faces. Of the files that kiln only writes, describes .env
 /// (Babylon.js), .glb with EXT_lights_image_based, atlases, and spherical harmonics as text.
 KILN_API KILN_CHECKED kiln_result kiln_file_describe(kiln_context *context, const char *path,
                                                      kiln_file_info *info, kiln_error *error);

@@ -12,6 +12,7 @@
 #include "codec/report.h"
 #include "image/mend.h"
 
+#include <stdio.h>
 #include <string.h>
 
 // -------------------------------------------------------------------------------------- one file
@@ -160,41 +161,29 @@ kiln_result kiln_image_load(kiln_context *context, const char *path, kiln_image 
     return result;
 }
 
-kiln_result kiln_file_describe(kiln_context *context, const char *path, kiln_file_info *info,
-                               kiln_error *error)
-{
-    memset(info, 0, sizeof *info);
-    kiln_result result = ki_decode_file(context, path, NULL, NULL, info, error);
-    if (result == KILN_OK)
-        note_envmap(info, &info->report);
-    char *const texts[] = {info->format, info->encoding,    info->layout, info->engine,
-                           info->writer, info->orientation, info->table};
-    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
-        kiln_text_clean(texts[i]);
-    for (int i = 0; i < KILN_MAX_LAYERS; i++) {
-        kiln_text_clean(info->layer[i].part);
-        kiln_text_clean(info->layer[i].name);
-        kiln_text_clean(info->layer[i].channels);
-    }
-    return result;
-}
-
 // -------------------------------------------------------------------------------------- six files
 
-// Fails where a picture cannot be a face of the cube `map`. The first face gives the cube its size.
+// Fails where a picture cannot be a face: all faces are squares of `size` texels, which is 0 for the
+// first face.
+static kiln_result check_face_size(const char *path, int width, int height, int size,
+                                   kiln_error *error)
+{
+    if (width != height)
+        return ki_fail(error, KILN_ERROR_FORMAT, "%s: is %d x %d pixels, a face must be square",
+                       path, width, height);
+    if (size && width != size)
+        return ki_fail(error, KILN_ERROR_FORMAT,
+                       "%s: is %d x %d pixels, but the first face is %d x %d", path, width, height,
+                       size, size);
+    return KILN_OK;
+}
+
 static kiln_result check_face(const char *path, const kiln_image *image, const kiln_map *map,
                               kiln_error *error)
 {
     if (image->channels != 3)
         return ki_fail(error, KILN_ERROR_UNSUPPORTED, "%s: holds a table, not a face", path);
-    if (image->width != image->height)
-        return ki_fail(error, KILN_ERROR_FORMAT, "%s: is %d x %d pixels, a face must be square",
-                       path, image->width, image->height);
-    if (map->size && image->width != map->size)
-        return ki_fail(error, KILN_ERROR_FORMAT,
-                       "%s: is %d x %d pixels, but the first face is %d x %d", path, image->width,
-                       image->height, map->size, map->size);
-    return KILN_OK;
+    return check_face_size(path, image->width, image->height, map->size, error);
 }
 
 static kiln_result load_face(kiln_context *context, const ki_face_files *files, int face,
@@ -246,6 +235,22 @@ kiln_result kiln_map_load_faces(kiln_context *context, const char *const paths[6
     return result == KILN_OK ? load_faces(context, &files, def, map, error) : result;
 }
 
+// Finds six files if the path is that of a folder or a pattern. Sets *found to false, and `files` to
+// nothing, if the path is that of one file.
+static kiln_result find_faces(kiln_context *context, const char *path, ki_face_files *files,
+                              bool *found, kiln_error *error)
+{
+    const char *braces = strstr(path, "{face}"), *percent = strstr(path, "%s");
+    bool folder = ki_os_kind_of(path) == KI_OS_FOLDER;
+    *files = (ki_face_files){0};
+    *found = braces || percent || folder;
+    if (folder)
+        return ki_faces_in_folder(context, path, files, error);
+    return *found ? ki_faces_of_pattern(context, path, braces ? braces : percent, braces ? 6 : 2,
+                                        files, error)
+                  : KILN_OK;
+}
+
 kiln_result kiln_map_load(kiln_context *context, const char *path, const kiln_load_def *def,
                           kiln_map *map, kiln_error *error)
 {
@@ -253,22 +258,76 @@ kiln_result kiln_map_load(kiln_context *context, const char *path, const kiln_lo
     if (result != KILN_OK)
         return result;
 
-    const char *braces = strstr(path, "{face}"), *percent = strstr(path, "%s");
-    bool folder = ki_os_kind_of(path) == KI_OS_FOLDER;
-    if (braces || percent || folder) {
-        ki_face_files files;
-        result = folder ? ki_faces_in_folder(context, path, &files, error)
-                        : ki_faces_of_pattern(context, path, braces ? braces : percent,
-                                              braces ? 6 : 2, &files, error);
-        if (result == KILN_OK)
-            result = load_faces(context, &files, def, map, error);
-        ki_face_files_free(&files);
+    ki_face_files files;
+    bool faces;
+    result = find_faces(context, path, &files, &faces, error);
+    if (result == KILN_OK && faces)
+        result = load_faces(context, &files, def, map, error);
+    ki_face_files_free(&files);
+    if (result != KILN_OK || faces)
         return result;
-    }
     kiln_file_info info;
     ki_decoded decoded;
     result = ki_decode_file(context, path, layer_of(def), &decoded, &info, error);
     if (result == KILN_OK)
         result = take_map(context, &decoded, &info, path, def, map, error);
+    return result;
+}
+
+// ------------------------------------------------------------------------------------ descriptions
+
+static kiln_result describe_file(kiln_context *context, const char *path, kiln_file_info *info,
+                                 kiln_error *error)
+{
+    memset(info, 0, sizeof *info);
+    kiln_result result = ki_decode_file(context, path, NULL, NULL, info, error);
+    if (result == KILN_OK)
+        note_envmap(info, &info->report);
+    return result;
+}
+
+// Describes six files of faces as a cube: the first face with the number of bytes of all faces, which
+// must be squares of the same size.
+static kiln_result describe_faces(kiln_context *context, const ki_face_files *files,
+                                  kiln_file_info *info, kiln_error *error)
+{
+    kiln_file_info other;
+    kiln_result result = describe_file(context, files->path[0], info, error);
+    if (result == KILN_OK)
+        ki_faces_note(files->set, &info->report);
+    for (int face = 0; face < 6 && result == KILN_OK; face++) {
+        result = describe_file(context, files->path[face], &other, error);
+        if (result == KILN_OK)
+            result =
+                check_face_size(files->path[face], other.width, other.height, info->width, error);
+        info->byte_count += result == KILN_OK && face ? other.byte_count : 0;
+    }
+    if (result != KILN_OK)
+        return result;
+    info->face_count = 6;
+    snprintf(info->layout, sizeof info->layout, "cube");
+    return KILN_OK;
+}
+
+kiln_result kiln_file_describe(kiln_context *context, const char *path, kiln_file_info *info,
+                               kiln_error *error)
+{
+    ki_face_files files;
+    bool faces;
+    memset(info, 0, sizeof *info);
+    kiln_result result = find_faces(context, path, &files, &faces, error);
+    if (result == KILN_OK)
+        result = faces ? describe_faces(context, &files, info, error)
+                       : describe_file(context, path, info, error);
+    ki_face_files_free(&files);
+    char *const texts[] = {info->format, info->encoding,    info->layout, info->engine,
+                           info->writer, info->orientation, info->table};
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
+        kiln_text_clean(texts[i]);
+    for (int i = 0; i < KILN_MAX_LAYERS; i++) {
+        kiln_text_clean(info->layer[i].part);
+        kiln_text_clean(info->layer[i].name);
+        kiln_text_clean(info->layer[i].channels);
+    }
     return result;
 }

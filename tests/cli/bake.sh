@@ -183,6 +183,18 @@ expect 0 "" bake sky.exr -o in/hall/ --size 8 --levels 1
 expect 0 "" bake sky.exr -o 'in/yard_%s.exr' --size 8 --levels 1
 expect 0 "" bake in/hall 'in/yard_{face}.exr' -o 'out/{name}.ktx2' --size 8
 same out/hall.ktx2 out/yard.ktx2
+for nameless in . .. in/..; do
+    expect 2 "^kiln: $nameless has no name that could take the place of {name}" \
+        bake "$nameless" -o 'out/{name}.ktx2'
+done
+# Folders and patterns of faces are described as cubes.
+for faces in in/hall 'in/yard_{face}.exr'; do
+    expect 0 "" info "$faces"
+    grep -q '^  layout       cube, 8 x 8, 6 faces, 3 channels$' log/out || die "$faces: layout"
+    expect 0 "" info --json "$faces"
+    grep -q "\"byte_count\":[[:space:]]$(cat in/hall/*.exr | wc -c)," log/out || die "$faces: bytes"
+done
+expect 1 "^kiln: log: holds no six faces" info log
 rm -r in out ./*.ktx2 ./*.dds ./*.hdr
 
 expect 0 "" tables --method textbook -o t.exr --size 16 --samples 16
