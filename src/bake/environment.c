@@ -471,6 +471,8 @@ kiln_result ki_plan_execute_rows(kiln_plan *p, const kiln_rows *rows, kiln_envir
     begin_environment(p, environment);
     kiln_result result = list_work(p, w, &work, environment, error);
     if (result == KILN_OK)
+        result = ki_prefilter_begin(p->prefilter, &w->prefilter, error);
+    if (result == KILN_OK)
         result = ki_rows_pass(p->context, rows, &work, error);
     for (int i = 0; i < work.mirror_count; i++)
         ki_buffer_free(&work.mirrors[i].buffer);

@@ -218,9 +218,16 @@ kiln_result ki_prefilter_workspace_create(kiln_context *context, const ki_prefil
             result = ki_level_reserve(context, p->levels[i], &workspace->levels, error);
         else if (p->mirrors[i])
             result = ki_resample_reserve(context, p->mirrors[i], &workspace->resampling, error);
+    if (result == KILN_OK)
+        result = ki_prefilter_begin(p, workspace, error);
     if (result != KILN_OK)
         ki_prefilter_workspace_free(workspace);
     return result;
+}
+
+kiln_result ki_prefilter_begin(const ki_prefilter *p, ki_prefilter_workspace *w, kiln_error *error)
+{
+    return ki_analysis_borrow(p->analysis, w->analysis, &w->levels.grid, error);
 }
 
 void ki_prefilter_workspace_free(ki_prefilter_workspace *workspace)
@@ -257,6 +264,9 @@ kiln_result ki_prefilter_execute(const ki_prefilter *p, ki_prefilter_workspace *
 {
     if (!ki_progress(w->context, stage, 0))
         return ki_fail_cancelled(error, stage);
+    kiln_result result = ki_prefilter_begin(p, w, error);
+    if (result != KILN_OK)
+        return result;
     ki_analysis_execute(p->analysis, w->analysis, panorama->level[0], w->spectrum);
     return ki_prefilter_levels(p, w, panorama, source, rehearses, map, error);
 }

@@ -229,7 +229,7 @@ static kiln_result decode_all(ki_hdr_file *f, kiln_image *image, kiln_error *err
 static void describe(const ki_hdr_file *f, size_t start, kiln_file_info *info)
 {
     const ki_hdr_header *h = &f->head;
-    bool runs = has_new_runs(f, f->bytes + start, f->size - start);
+    bool runs = has_new_runs(f, f->bytes + start, f->held - start);
     bool flat = f->size - start == 4 * (size_t)h->width * (size_t)h->height;
     snprintf(info->format, sizeof info->format, "hdr");
     snprintf(info->encoding, sizeof info->encoding, "%s, %s", h->xyz ? "xyze" : "rgbe",

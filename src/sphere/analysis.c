@@ -39,6 +39,7 @@ struct ki_analysis_workspace {
     // The twelve are the real and imaginary parts of r, g, b: first of the part that is even about
     // the equator, then of the odd part.
     double *orders;
+    bool borrows; // true: `orders` is memory of a buffer elsewhere, see ki_analysis_borrow
     // Scratch memory of each worker: two FFT buffers and 16 latitude rings, or the state of the
     // Legendre recurrence.
     double *scratch;
@@ -92,6 +93,20 @@ kiln_result ki_analysis_workspace_create(kiln_context *context, const ki_analysi
     return ki_fail_memory(context, error, "the rings of an analysis", whole ? row : ring_bytes);
 }
 
+kiln_result ki_analysis_borrow(const ki_analysis *analysis, ki_analysis_workspace *workspace,
+                               ki_buffer *memory, kiln_error *error)
+{
+    size_t count = ((size_t)analysis->degree + 1) * (size_t)analysis->rings.vector_count;
+    if (!ki_buffer_reserve(workspace->context, memory, count, 96 * sizeof(double)))
+        return ki_fail_memory(workspace->context, error, "an analysis",
+                              count * 96 * sizeof(double));
+    if (!workspace->borrows)
+        ki_free(workspace->orders);
+    workspace->borrows = true;
+    workspace->orders = memory->memory;
+    return KILN_OK;
+}
+
 void ki_analysis_workspace_destroy(ki_analysis_workspace *workspace)
 {
     if (!workspace)
@@ -100,7 +115,8 @@ void ki_analysis_workspace_destroy(ki_analysis_workspace *workspace)
     ki_free(workspace->row_sums);
     ki_free(workspace->row_peaks);
     ki_free(workspace->candidates);
-    ki_free(workspace->orders);
+    if (!workspace->borrows)
+        ki_free(workspace->orders);
     ki_free(workspace->scratch);
     ki_free(workspace);
 }
