@@ -24,6 +24,8 @@ static const bench_case cases[] = {
      bench_scaling, false},
     {"peer", "time of the whole command, compared with Filament's cmgen", bench_peer, false},
     {"memory", "peak memory of baking a panorama of 8192 x 4096", bench_memory, false},
+    {"stream", "time and peak memory of panoramas of 16384 x 8192 and 32768 x 16384", bench_stream,
+     true},
     {"tables", "tables of E compared with 1024 importance samples for each texel, on one thread",
      bench_tables, false},
     {"tune", "errors of what engines show of exact and tuned levels against brute force",

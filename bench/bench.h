@@ -36,6 +36,7 @@ bool bench_instructions(bench *b);
 bool bench_fixed(bench *b);
 bool bench_peer(bench *b);
 bool bench_memory(bench *b);
+bool bench_stream(bench *b);
 bool bench_tables(bench *b);
 bool bench_tune(bench *b);
 bool bench_lights(bench *b);

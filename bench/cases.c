@@ -188,8 +188,8 @@ static double read_all(const kiln_map *map)
 
 bool bench_files(bench *b)
 {
-    enum { READ, BAKE, WRITE, STAGES };
-    static const char *const names[STAGES] = {"read", "bake", "write"};
+    enum { READ, BAKE, WRITE, PASS, STAGES };
+    static const char *const names[STAGES] = {"read", "bake", "write", "bake while reading"};
     double times[STAGES][BENCH_MAX_RUNS], floor_time = 0;
     char path[1024], output[1024];
     kiln_context *context = NULL;
@@ -210,6 +210,10 @@ bool bench_files(bench *b)
         kiln_save_def def = {.sh = &made.sh};
         done = done && !kiln_map_save(context, &made.levels, output, &def, NULL, &b->error);
         t[3] = bench_cpu();
+        kiln_environment passed = {0};
+        done = done && !kiln_bake_file(context, path, NULL, NULL, NULL, &passed, &b->error);
+        t[4] = bench_cpu();
+        kiln_environment_free(&passed);
         for (int k = 0; k < STAGES && done; k++)
             times[k][i] = t[k + 1] - t[k];
         if (done && i == 0)
@@ -230,9 +234,9 @@ bool bench_files(bench *b)
                "reading every texel from memory once", 1e3 * floor_time,
                sums[BAKE].median / floor_time);
         bench_value(b, "floor", "s", floor_time);
-        double ratio = (files + sums[BAKE].median) / files;
+        double ratio = (sums[PASS].median + sums[WRITE].median) / files;
         bench_value(b, "whole over files", "ratio", ratio);
-        bench_aim("(read + bake + write) / (read + write)", ratio, "", 1.5);
+        bench_aim("(bake while reading + write) / (read + write)", ratio, "", 1.5);
     }
     kiln_context_destroy(context);
     return done;

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Makes the inputs of the benchmarks and runs cases: bench/run.sh [--update] [CASE...]
 # Results go to bench/results/MACHINE/CASE.csv. Further cases than those of `bench --list` are:
+#   stream   measures the bakes of panoramas of 16384 x 8192 and 32768 x 16384, whose files take 3 GB on the disk
 #   count    counts the instructions of a fixed bake; --update makes the new count the reference
 #   web      compares kiln and three.js in a page of a browser
 #   engines  compares the pixels of engines with kiln's files and with the engines' own bakes
@@ -35,6 +36,16 @@ picture() {
     oiiotool build/data/blender/city.exr --resize "$2" -d half --compression zip \
         -o "$inputs/part.exr"
     mv "$inputs/part.exr" "$inputs/$1.exr"
+}
+
+# enlarged NAME WIDTHxHEIGHT OPTIONS...: makes NAME from the panorama city by oiiotool with these options.
+enlarged() {
+    file=$1 size=$2
+    shift 2
+    [ ! -s "$inputs/$file" ] || return 0
+    have oiiotool || fail "oiiotool is missing: install Debian's openimageio-tools"
+    oiiotool build/data/blender/city.exr --resize "$size" "$@" -o "$inputs/part.${file##*.}"
+    mv "$inputs/part.${file##*.}" "$inputs/$file"
 }
 
 # Instructions executed by `bench fixed`, which are the same in every run of the same build.
@@ -131,6 +142,14 @@ for name; do
         ;;
     files) picture city2k 2048x1024 ;;
     memory) picture city8k 8192x4096 ;;
+    stream)
+        # Noise keeps the files from being as small as those of an enlarged picture. The largest takes 10 GB of memory.
+        noise="--noise:type=uniform:min=0:max=0.02"
+        enlarged city16k.exr 16384x8192 "$noise" -d float --compression zip
+        enlarged city16k_piz.exr 16384x8192 "$noise" -d half --compression piz
+        enlarged city16k.hdr 16384x8192 "$noise"
+        enlarged city32k.exr 32768x16384 -d half --compression zip
+        ;;
     esac
     $bin/bench --results $results --inputs $inputs --kiln $bin/kiln "$name" || status=1
 done

@@ -126,3 +126,73 @@ bool bench_memory(bench *b)
     bench_bar(b, "peak memory of the process", u.peak / 1048576, "MiB", 700, false);
     return true;
 }
+
+// ------------------------------------------------------------------------------------------ stream
+
+// What a child process does alone: loads a whole panorama and forgets it.
+static int load_alone(const char *path)
+{
+    kiln_context *context = NULL;
+    kiln_map map = {0};
+    if (kiln_context_create(NULL, &context, NULL))
+        return 1;
+    int code = kiln_map_load(context, path, NULL, &map, NULL) != KILN_OK;
+    kiln_map_free(&map);
+    kiln_context_destroy(context);
+    return code;
+}
+
+// Measures a process that only loads a file.
+static bool measure_load(bench *b, const char *path, usage *u)
+{
+    double start = bench_wall();
+    int status = 0;
+    struct rusage r;
+    pid_t child = fork();
+    if (child == 0)
+        _exit(load_alone(path));
+    if (child < 0 || wait4(child, &status, 0, &r) != child || status)
+        return bench_fail(b, "%s could not be loaded", path);
+    *u = (usage){timeval_seconds(r.ru_utime), timeval_seconds(r.ru_stime), bench_wall() - start,
+                 1024.0 * (double)r.ru_maxrss};
+    return true;
+}
+
+// Measures the bake of one large file, and the loading of it if `loads`.
+static bool stream_file(bench *b, const char *name, bool loads, double bound)
+{
+    char input[1024], output[1024], text[128];
+    snprintf(input, sizeof input, "%s/%s", b->inputs, name);
+    snprintf(output, sizeof output, "%s/stream.ktx2", b->inputs);
+    const char *const command[] = {b->kiln,  "bake", input,     "-o", output,
+                                   "--size", "512",  "--quiet", NULL};
+    usage bake, load = {0};
+    if (access(input, R_OK) != 0) {
+        printf("  %-46s %10s\n", name, "is not there");
+        return true;
+    }
+    if ((loads && !measure_load(b, input, &load)) || !run_command(b, command, &bake))
+        return false;
+    remove(output);
+    printf("  %-30s bake  %7.2f s, %6.2f s of CPU time with the system's, %6.0f MiB\n", name,
+           bake.wall, bake.user + bake.system, bake.peak / 1048576);
+    if (loads)
+        printf("  %-30s load  %7.2f s, %6.2f s of CPU time with the system's, %6.0f MiB\n", "",
+               load.wall, load.user + load.system, load.peak / 1048576);
+    snprintf(text, sizeof text, "%s: peak", name);
+    bench_value(b, text, "bytes", bake.peak);
+    bench_bar(b, text, bake.peak / 1048576, "MiB", bound, false);
+    if (!loads)
+        return true;
+    double ratio = (bake.user + bake.system) / (load.user + load.system);
+    snprintf(text, sizeof text, "%s: CPU time of the bake / of loading", name);
+    bench_value(b, text, "ratio", ratio);
+    return true;
+}
+
+bool bench_stream(bench *b)
+{
+    return stream_file(b, "city16k.exr", true, 400) &&
+           stream_file(b, "city16k_piz.exr", true, 400) &&
+           stream_file(b, "city16k.hdr", true, 400) && stream_file(b, "city32k.exr", false, 800);
+}

@@ -524,8 +524,10 @@ kiln_result ki_plan_reserve(kiln_plan *p, kiln_error *error)
     if (p->prefilter->tune) {
         result = rehearse(p, error);
     } else if (p->sh_bands) {
+        kiln_spectrum *spectrum = w->prefilter.spectrum; // which no execution has written yet
+        memset(spectrum->a, 0, ki_coefficient_count(spectrum->degree) * sizeof *spectrum->a);
         ki_scratch_begin(p->context, &w->scratch);
-        result = ki_sh_project(w->prefilter.spectrum, p->sh_bands, NULL, 0, &sh, error);
+        result = ki_sh_project(spectrum, p->sh_bands, NULL, 0, &sh, error);
         ki_scratch_end(p->context);
     }
     if (result != KILN_OK)

@@ -227,7 +227,7 @@ kiln_result ki_prefilter_workspace_create(kiln_context *context, const ki_prefil
 
 kiln_result ki_prefilter_begin(const ki_prefilter *p, ki_prefilter_workspace *w, kiln_error *error)
 {
-    return ki_analysis_borrow(p->analysis, w->analysis, &w->levels.grid, error);
+    return ki_analysis_borrow(p->analysis, w->analysis, &w->levels.grid, &w->levels.scratch, error);
 }
 
 void ki_prefilter_workspace_free(ki_prefilter_workspace *workspace)

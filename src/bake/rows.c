@@ -242,14 +242,14 @@ static kiln_result pass_and_finish(pass *p, kiln_error *error)
 
 // ------------------------------------------------------------------------------------------ memory
 
-// Returns the number of rows that are read at a time on each side. Twice the reach keeps the copies
-// of old rows small, and some rows for each thread keep the threads busy. Rows of large panoramas
-// are read in steps of limited memory.
+// Returns the number of rows that are read at a time on each side. As many rows as the reach keep
+// the copies of old rows small, and some rows for each thread keep the threads busy. Rows of large
+// panoramas are read in steps of limited memory.
 static int find_step(const pass *p)
 {
     const size_t most_bytes = 32 << 20;
     size_t most = most_bytes / (line_floats(p) * sizeof(float)) + 1;
-    int wanted = ki_max(2 * p->reach, 32 * ki_context_threads(p->context));
+    int wanted = ki_max(p->reach, 16 * ki_context_threads(p->context));
     return (size_t)wanted < most ? wanted : (int)most;
 }
 

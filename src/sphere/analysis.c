@@ -39,7 +39,7 @@ struct ki_analysis_workspace {
     // The twelve are the real and imaginary parts of r, g, b: first of the part that is even about
     // the equator, then of the odd part.
     double *orders;
-    bool borrows; // true: `orders` is memory of a buffer elsewhere, see ki_analysis_borrow
+    bool borrows; // true: `orders` and `scratch` are those of ki_analysis_borrow
     // Scratch memory of each worker: two FFT buffers and 16 latitude rings, or the state of the
     // Legendre recurrence.
     double *scratch;
@@ -93,17 +93,28 @@ kiln_result ki_analysis_workspace_create(kiln_context *context, const ki_analysi
     return ki_fail_memory(context, error, "the rings of an analysis", whole ? row : ring_bytes);
 }
 
-kiln_result ki_analysis_borrow(const ki_analysis *analysis, ki_analysis_workspace *workspace,
-                               ki_buffer *memory, kiln_error *error)
+// Frees the memory that a workspace may borrow, unless the memory is borrowed.
+static void free_own(ki_analysis_workspace *w)
 {
+    if (w->borrows)
+        return;
+    ki_free(w->orders);
+    ki_free(w->scratch);
+}
+
+kiln_result ki_analysis_borrow(const ki_analysis *analysis, ki_analysis_workspace *workspace,
+                               ki_buffer *orders, ki_buffer *scratch, kiln_error *error)
+{
+    ki_analysis_workspace *w = workspace;
     size_t count = ((size_t)analysis->degree + 1) * (size_t)analysis->rings.vector_count;
-    if (!ki_buffer_reserve(workspace->context, memory, count, 96 * sizeof(double)))
-        return ki_fail_memory(workspace->context, error, "an analysis",
-                              count * 96 * sizeof(double));
-    if (!workspace->borrows)
-        ki_free(workspace->orders);
-    workspace->borrows = true;
-    workspace->orders = memory->memory;
+    size_t threads = (size_t)ki_context_threads(w->context);
+    if (!ki_buffer_reserve(w->context, orders, count, 96 * sizeof(double)) ||
+        !ki_buffer_reserve(w->context, scratch, threads * w->scratch_size, sizeof(double)))
+        return ki_fail_memory(w->context, error, "an analysis", count * 96 * sizeof(double));
+    free_own(w);
+    w->borrows = true;
+    w->orders = orders->memory;
+    w->scratch = scratch->memory;
     return KILN_OK;
 }
 
@@ -115,9 +126,7 @@ void ki_analysis_workspace_destroy(ki_analysis_workspace *workspace)
     ki_free(workspace->row_sums);
     ki_free(workspace->row_peaks);
     ki_free(workspace->candidates);
-    if (!workspace->borrows)
-        ki_free(workspace->orders);
-    ki_free(workspace->scratch);
+    free_own(workspace);
     ki_free(workspace);
 }
 

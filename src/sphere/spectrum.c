@@ -153,7 +153,7 @@ kiln_result ki_spectrum_create(kiln_context *context, const ki_analysis *analysi
     if (s) {
         *s =
             (kiln_spectrum){.context = context, .degree = analysis->degree, .size = analysis->size};
-        s->a = ki_alloc(context, ki_coefficient_count(s->degree), sizeof *s->a);
+        s->a = ki_alloc_raw(context, ki_coefficient_count(s->degree), sizeof *s->a);
         s->suns = ki_alloc_raw(context, KI_MAX_SUNS, sizeof *s->suns);
     }
     if (s && s->a && s->suns)

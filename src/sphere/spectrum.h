@@ -84,11 +84,12 @@ typedef struct ki_analysis_workspace ki_analysis_workspace;
 kiln_result ki_analysis_workspace_create(kiln_context *context, const ki_analysis *analysis,
                                          bool whole, ki_analysis_workspace **workspace,
                                          kiln_error *error);
-/// Lets a workspace keep the Fourier coefficients of the rings in `memory`, which is made large
-/// enough, in place of its own memory. The buffer may be used for other purposes between the
-/// executions, and may move if ki_analysis_borrow is called again before the next execution.
+/// Lets a workspace work in two buffers, which are made large enough, in place of its own memory:
+/// `orders` for the Fourier coefficients of the rings, and `scratch` for the threads. The buffers may
+/// be used for other purposes between the executions, and may move if ki_analysis_borrow is called
+/// again before the next execution.
 kiln_result ki_analysis_borrow(const ki_analysis *analysis, ki_analysis_workspace *workspace,
-                               ki_buffer *memory, kiln_error *error);
+                               ki_buffer *orders, ki_buffer *scratch, kiln_error *error);
 /// Frees a workspace. `workspace` may be NULL.
 void ki_analysis_workspace_destroy(ki_analysis_workspace *workspace);
 /// Writes the spectrum of a whole panorama of `size` rows. The function allocates nothing.
