@@ -280,10 +280,33 @@ static int bake_all(bake *b)
     return CLI_DONE;
 }
 
+// Fails before any work if the levels alone need more memory than the process may use. Levels after
+// the first one have a third of its texels together.
+static int check_memory(const bake *b)
+{
+    const kiln_map first = {.shape = (kiln_shape)b->shape, .size = b->size, .level_count = 1};
+    char needed[32], usable[32];
+    double limit = (double)cli_memory_limit();
+    double bytes = 3.0 * sizeof(float) * (b->size ? (double)kiln_map_texels(&first, 0) : 0);
+    bytes *= b->level_count == 1 ? 1 : 4.0 / 3;
+    if (limit == 0 || bytes <= limit)
+        return CLI_GO;
+    return cli_fail(
+        "--size %d: the levels take %s of memory, and kiln may use %s; choose a smaller "
+        "size",
+        b->size, cli_bytes(bytes, needed), cli_bytes(limit, usable));
+}
+
 int bake_in_context(bake *b)
 {
     b->since = os_seconds();
-    int code = bake_all(b);
+    int code = check_memory(b);
+    if (code == CLI_GO)
+        code = bake_all(b);
+    char *message = b->work.error.message, *end = message + strlen(message);
+    if (code == CLI_FAILED && message[0] && b->work.error.result == KILN_ERROR_MEMORY)
+        snprintf(end, sizeof b->work.error.message - (size_t)(end - message), "; %s",
+                 "a smaller --size needs less");
     kiln_map_free(&b->source);
     kiln_environment_free(&b->made);
     return code;
