@@ -185,11 +185,17 @@ static int bake_by_textbook(bake *b)
                : CLI_GO;
 }
 
+// Returns the name of an output for messages.
+static const char *shown_path(const bake *b, const char *path)
+{
+    return b->to_stdout && path == b->output ? "standard output" : path;
+}
+
 static void warn_of_negatives(bake *b, const kiln_cut *cut, const char *path)
 {
     kiln_note note;
     if (!b->quiet && kiln_cut_note(&b->work.loaded, cut, &note))
-        cli_note(&b->work, note.warning, "%s: %s", path, note.text);
+        cli_note(&b->work, note.warning, "%s: %s", shown_path(b, path), note.text);
 }
 
 static void warn_of_clamping(bake *b, const kiln_save_report *report, const char *path)
@@ -209,8 +215,8 @@ static void warn_of_clamping(bake *b, const kiln_save_report *report, const char
     cli_note(&b->work, true,
              "%s: %zu values above %g (up to %.4g), %.2g %% of all, were cut off, with %.3g %% of "
              "the light%s",
-             path, report->cut_count, report->limit, report->largest, 100 * report->share,
-             100 * report->light_share, way_out);
+             shown_path(b, path), report->cut_count, report->limit, report->largest,
+             100 * report->share, 100 * report->light_share, way_out);
 }
 
 // Writes the one file of the environment to standard output.

@@ -155,6 +155,8 @@ same a.dds b.dds
 expect 0 "" bake sky.exr -o a.hdr --size 16 --shape panorama --levels 1
 "$KILN" bake sky.exr -o -.hdr --size 16 --shape panorama --levels 1 >b.hdr
 same a.hdr b.hdr
+"$KILN" bake sky.exr -o - --size 16 --exposure 20 >b.ktx2 2>log/err || die "cut off"
+grep -q '^kiln: warning: standard output: [0-9]* values above 65504 ' log/err || die "the output's name"
 if [ -e /dev/full ]; then
     code=0
     "$KILN" bake sky.exr -o - --size 16 >/dev/full 2>log/err || code=$?
