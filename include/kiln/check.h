@@ -51,11 +51,14 @@ typedef struct kiln_findings {
 // ------------------------------------------------------------------------------------------ levels
 
 /// Loads all levels of a prefiltered environment, whoever wrote it, in the axes of the file: a cube
-/// in a KTX, KTX2 or DDS file; any file or set of faces that kiln_map_load reads, where `{level}` or
-/// `%d` in the path stands for the level; or a folder with the faces that Filament's cmgen writes,
-/// m0_px.exr, ... `report` may be NULL. The roughness of a level is -1 where the file does not state
-/// the roughness.
+/// in a KTX, KTX2 or DDS file; an .env file of Babylon.js; an atlas of three.js (CubeUV) or of
+/// PlayCanvas, as a cube of what the engine's shader reads; any file or set of faces that
+/// kiln_map_load reads, where `{level}` or `%d` in the path stands for the level; or a folder with
+/// the faces that Filament's cmgen writes, m0_px.exr, ... `engine` says whose atlas a flat picture
+/// is, and may be NULL for other files and for atlases that kiln wrote. `report` may be NULL. The
+/// roughness of a level is -1 where the file does not state the roughness.
 KILN_API KILN_CHECKED kiln_result kiln_levels_load(kiln_context *context, const char *path,
+                                                   const kiln_engine *engine,
                                                    kiln_load_report *report, kiln_map *map,
                                                    kiln_error *error);
 
@@ -117,6 +120,29 @@ KILN_API KILN_CHECKED kiln_result kiln_check_levels(kiln_context *context, const
                                                     const kiln_check_levels_def *def,
                                                     kiln_check_levels_report *report,
                                                     kiln_map *difference, kiln_error *error);
+
+enum { KILN_SHOWN = 19 };
+
+/// How right what an engine shows of levels is: the levels are mixed and interpolated as the
+/// engine's shader does. Entry i stands for the roughness 0.1 + 0.05 i.
+typedef struct kiln_check_shown_report {
+    /// Root mean square difference from brute force over `direction_count` directions, divided by
+    /// the root mean square of the values of brute force.
+    double rms[KILN_SHOWN];
+    double all;   ///< root mean square of `rms`
+    double worst; ///< largest of `rms`
+    double worst_roughness;
+    int direction_count;
+} kiln_check_shown_report;
+
+/// Compares what an engine that reads levels shows of a cube with brute force, in directions that
+/// are spread evenly over the sphere, 192 of them or fewer for panoramas of more than 1024 rows.
+/// `levels` has the axes of the engine.
+KILN_API KILN_CHECKED kiln_result kiln_check_shown(kiln_context *context, const kiln_map *source,
+                                                   const kiln_map *levels,
+                                                   const kiln_engine *engine,
+                                                   kiln_check_shown_report *report,
+                                                   kiln_error *error);
 
 // --------------------------------------------------------------------------------------- harmonics
 

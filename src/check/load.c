@@ -2,8 +2,14 @@
 // each level, or a folder. Out: a map with all levels in the axes of the file.
 #include "check/check.h"
 
+#include "base/file.h"
 #include "base/os.h"
+#include "codec/codec.h"
+#include "codec/engine_text.h"
+#include "codec/env.h"
+#include "codec/rgbx_png.h"
 #include "image/image.h"
+#include "image/mend.h"
 #include "image/pack.h"
 
 #include <stdio.h>
@@ -123,10 +129,73 @@ static kiln_result load_pattern(kiln_context *context, const char *pattern,
     return result;
 }
 
-// Loads one file. Levels whose roughness the file does not state have the roughness -1.
-static kiln_result load_file(kiln_context *context, const char *path, kiln_load_report *report,
-                             kiln_map *map, kiln_error *error)
+// Decodes an atlas, a flat picture.
+static kiln_result decode_atlas(kiln_context *context, const ki_recipe *recipe,
+                                const uint8_t *bytes, size_t size, const char *path,
+                                kiln_load_report *report, kiln_map *map, kiln_error *error)
 {
+    static const uint8_t png[4] = {0x89, 'P', 'N', 'G'};
+    ki_decoded decoded = {0};
+    kiln_result result;
+    if (recipe->unpack && size > sizeof png && !memcmp(bytes, png, sizeof png))
+        result = ki_png_decode_as(context, bytes, size, path, recipe->unpack, &decoded.image, NULL,
+                                  NULL, error);
+    else
+        result = ki_decode(context, bytes, size, path, &decoded, NULL, error);
+    if (result == KILN_OK && (decoded.is_map || decoded.image.channels != 3))
+        result = ki_fail(error, KILN_ERROR_UNSUPPORTED, "%s: is no picture, but %s reads pictures",
+                         path, recipe->about.title);
+    if (result == KILN_OK)
+        result = ki_image_mend(context, path, &decoded.image, report, error);
+    if (result == KILN_OK)
+        result = recipe->read(context, &decoded.image, map, error);
+    ki_decoded_free(&decoded);
+    return result;
+}
+
+// Loads the files that kiln_map_load does not read: those of Babylon.js and atlases. Sets *done if
+// the file is one of these.
+static kiln_result load_special(kiln_context *context, const char *path, const kiln_engine *engine,
+                                bool *done, kiln_load_report *report, kiln_map *map,
+                                kiln_error *error)
+{
+    uint8_t *bytes;
+    size_t size;
+    kiln_file_info info;
+    *done = false;
+    if (ki_os_kind_of(path) != KI_OS_FILE)
+        return KILN_OK;
+    kiln_result result = kiln_file_describe(context, path, &info, error);
+    if (result != KILN_OK)
+        return result;
+    bool cube = info.face_count == 6;
+    engine = engine ? engine : ki_is_atlas(&info) ? kiln_engine_find(info.engine) : NULL;
+    const ki_recipe *recipe = engine ? ki_recipe_of(engine) : NULL;
+    bool atlas = recipe && recipe->read && !cube, env = !strcmp(info.format, "env");
+    if (!atlas && !env)
+        return KILN_OK;
+    *done = true;
+    result = ki_file_read(context, path, &bytes, &size, error);
+    if (result != KILN_OK)
+        return result;
+    if (atlas)
+        result = decode_atlas(context, recipe, bytes, size, path, report, map, error);
+    else if (ki_env_begins(bytes, size))
+        result = ki_env_decode(context, bytes, size, path, map, error);
+    else
+        result = ki_fail(error, KILN_ERROR_UNSUPPORTED, "%s: is no .env file of Babylon.js", path);
+    ki_free(bytes);
+    return result;
+}
+
+// Loads one file. Levels whose roughness the file does not state have the roughness -1.
+static kiln_result load_file(kiln_context *context, const char *path, const kiln_engine *engine,
+                             kiln_load_report *report, kiln_map *map, kiln_error *error)
+{
+    bool done;
+    kiln_result special = load_special(context, path, engine, &done, report, map, error);
+    if (special != KILN_OK || done)
+        return special;
     kiln_result result =
         kiln_map_load(context, path, &(kiln_load_def){.report = report}, map, error);
     return result == KILN_OK
@@ -134,8 +203,8 @@ static kiln_result load_file(kiln_context *context, const char *path, kiln_load_
                : result;
 }
 
-kiln_result kiln_levels_load(kiln_context *context, const char *path, kiln_load_report *report,
-                             kiln_map *map, kiln_error *error)
+kiln_result kiln_levels_load(kiln_context *context, const char *path, const kiln_engine *engine,
+                             kiln_load_report *report, kiln_map *map, kiln_error *error)
 {
     char pattern[KI_OS_PATH];
     kiln_load_report unused;
@@ -149,7 +218,7 @@ kiln_result kiln_levels_load(kiln_context *context, const char *path, kiln_load_
     else if (strstr(path, "{level}") || strstr(path, "%d"))
         result = load_pattern(context, path, report, map, error);
     else
-        result = load_file(context, path, report, map, error);
+        result = load_file(context, path, engine, report, map, error);
     if (result != KILN_OK)
         kiln_map_free(map);
     return result;

@@ -125,12 +125,16 @@ kiln_result ki_env_encode(const kiln_map *map, double lod_scale, const kiln_sh *
 
 // ----------------------------------------------------------------------------------------- reading
 
+enum { MOST_IMAGES = 6 * KILN_MAX_LEVELS };
+
 // The values of an .env file's JSON manifest. The images follow the manifest in the file and take
 // at least `image_bytes` bytes.
 typedef struct manifest {
     int version, width, image_count;
     // Number of bytes from the end of the manifest to the end of the last image.
     uint64_t image_bytes;
+    // Place of each image after the manifest, for the first MOST_IMAGES images.
+    uint32_t position[MOST_IMAGES], length[MOST_IMAGES];
     double lod_scale;
     char type[32];
     bool has_polynomial;
@@ -169,6 +173,10 @@ static void read_images(ki_json *j, manifest *m)
                 position = ki_json_count(j, UINT32_MAX);
             else
                 ki_json_skip(j);
+        }
+        if (m->image_count < MOST_IMAGES) {
+            m->position[m->image_count] = (uint32_t)position;
+            m->length[m->image_count] = (uint32_t)length;
         }
         m->image_count += m->image_count < INT32_MAX;
         if (position + length > m->image_bytes)
@@ -250,24 +258,87 @@ static void describe(manifest *m, kiln_file_info *info)
         make_harmonics(m->polynomial, info);
 }
 
-kiln_result ki_env_describe(kiln_context *context, const uint8_t *bytes, size_t size,
-                            const char *name, kiln_file_info *info, kiln_error *error)
+// Reads the manifest, and sets *images to the bytes after it.
+static kiln_result read_file(kiln_context *context, const uint8_t *bytes, size_t size,
+                             const char *name, manifest *m, const uint8_t **images,
+                             kiln_error *error)
 {
     const uint8_t *from = bytes + sizeof magic;
     const uint8_t *end = size > sizeof magic ? memchr(from, 0, size - sizeof magic) : NULL;
     if (!end)
         return ki_fail(error, KILN_ERROR_FORMAT,
                        "%s: the manifest does not end within the file's %zu bytes", name, size);
-    manifest m = {.lod_scale = 0.8}; // the level scale that Babylon.js uses if a file states none
+    *m = (manifest){.lod_scale = 0.8}; // the level scale that Babylon.js uses if a file states none
     ki_json json = ki_json_make(context, from, (size_t)(end - from));
-    read_manifest(&json, &m);
+    read_manifest(&json, m);
     if (json.stopped)
         return ki_fail_cancelled(error, "reading");
     if (json.failed)
         return ki_fail(error, KILN_ERROR_FORMAT, "%s: the manifest is damaged at byte %zu", name,
                        (size_t)(json.at - (const char *)bytes));
-    kiln_result result = check(&m, size - (size_t)(end + 1 - bytes), name, error);
+    *images = end + 1;
+    return check(m, size - (size_t)(end + 1 - bytes), name, error);
+}
+
+kiln_result ki_env_describe(kiln_context *context, const uint8_t *bytes, size_t size,
+                            const char *name, kiln_file_info *info, kiln_error *error)
+{
+    manifest m;
+    const uint8_t *images;
+    kiln_result result = read_file(context, bytes, size, name, &m, &images, error);
     if (result == KILN_OK)
         describe(&m, info);
+    return result;
+}
+
+bool ki_env_begins(const uint8_t *bytes, size_t size)
+{
+    return size >= sizeof magic && !memcmp(bytes, magic, sizeof magic);
+}
+
+// Decodes image `index` of a file, whose rows come from the bottom, to its face of the cube.
+static kiln_result read_image(kiln_context *context, const manifest *m, const uint8_t *images,
+                              int index, const char *name, kiln_map *map, kiln_error *error)
+{
+    kiln_image image;
+    int level = index / 6, n = kiln_map_level_size(map, level);
+    kiln_result result = ki_png_decode_as(context, images + m->position[index], m->length[index],
+                                          name, ki_float_from_rgbd, &image, NULL, NULL, error);
+    if (result != KILN_OK)
+        return result;
+    if (image.width != n || image.height != n)
+        result = ki_fail(error, KILN_ERROR_FORMAT,
+                         "%s: image %d is %d x %d, a face of level %d must be %d x %d", name, index,
+                         image.width, image.height, level, n, n);
+    float *face = map->level[level] + 3 * (size_t)(index % 6) * (size_t)n * (size_t)n;
+    for (int y = 0; y < n && result == KILN_OK; y++)
+        memcpy(face + 3 * (size_t)y * (size_t)n, image.pixels + 3 * (size_t)(n - 1 - y) * (size_t)n,
+               3 * sizeof *face * (size_t)n);
+    kiln_image_free(&image);
+    return result;
+}
+
+kiln_result ki_env_decode(kiln_context *context, const uint8_t *bytes, size_t size,
+                          const char *name, kiln_map *map, kiln_error *error)
+{
+    manifest m;
+    const uint8_t *images;
+    *map = (kiln_map){0};
+    kiln_result result = read_file(context, bytes, size, name, &m, &images, error);
+    if (result == KILN_OK && m.type[0] && strcmp(m.type, "image/png") != 0)
+        return ki_fail(error, KILN_ERROR_UNSUPPORTED,
+                       "%s: its images are %s, kiln reads .env files of image/png", name, m.type);
+    if (result != KILN_OK)
+        return result;
+    *map = (kiln_map){.shape = KILN_SHAPE_CUBE,
+                      .size = m.width,
+                      .level_count = ki_min(m.image_count / 6, KILN_MAX_LEVELS)};
+    result = ki_map_allocate(context, map, error);
+    for (int i = 0; i < 6 * map->level_count && result == KILN_OK; i++)
+        result = read_image(context, &m, images, i, name, map, error);
+    for (int k = 0; k < map->level_count; k++)
+        map->roughness[k] = (float)ki_env_roughness(k, m.lod_scale, m.width);
+    if (result != KILN_OK)
+        kiln_map_free(map);
     return result;
 }

@@ -14,4 +14,10 @@ kiln_result ki_env_encode(const kiln_map *map, double lod_scale, const kiln_sh *
 kiln_result ki_env_describe(kiln_context *context, const uint8_t *bytes, size_t size,
                             const char *name, kiln_file_info *info, kiln_error *error);
 
+/// Returns whether bytes begin like an .env file of Babylon.js.
+bool ki_env_begins(const uint8_t *bytes, size_t size);
+/// Decodes all levels of an .env file whose images are PNG files, in the axes of the file.
+kiln_result ki_env_decode(kiln_context *context, const uint8_t *bytes, size_t size,
+                          const char *name, kiln_map *map, kiln_error *error);
+
 #endif

@@ -14,6 +14,7 @@
 #include "codec/deflate.h"
 #include "codec/png_color.h"
 #include "codec/report.h"
+#include "codec/rgbx_png.h"
 #include "codec/upright.h"
 
 #include <stdio.h>
@@ -44,6 +45,7 @@ typedef struct png_file {
     uint64_t raw_size; // number of bytes that the IDAT data must decompress to
     uint8_t *raw;
     ki_png_meaning meaning;
+    ki_from_rgbx *forced; // what the samples mean, whatever the file says; NULL for what it says
     // table[c]: the linear value of every possible sample of channel c; pixels: the picture, three
     // floats a pixel
     float *table[3], *pixels;
@@ -478,6 +480,7 @@ static kiln_result read_meaning(png_file *f, const uint8_t *bytes, size_t size,
         ki_png_read_meaning(f->context, bytes, size, f->name, &f->meaning, report, error);
     if (result != KILN_OK)
         return result;
+    f->meaning.unpack = f->forced ? f->forced : f->meaning.unpack;
     if (f->meaning.unpack && (f->depth != 8 || f->channels != 4))
         return ki_fail(error, KILN_ERROR_FORMAT,
                        "%s: says that its texels are %s, which has four channels of 8 bits, but "
@@ -492,6 +495,13 @@ kiln_result ki_png_decode(kiln_context *context, const uint8_t *bytes, size_t si
                           const char *name, kiln_image *image, kiln_file_info *info,
                           kiln_load_report *report, kiln_error *error)
 {
+    return ki_png_decode_as(context, bytes, size, name, NULL, image, info, report, error);
+}
+
+kiln_result ki_png_decode_as(kiln_context *context, const uint8_t *bytes, size_t size,
+                             const char *name, ki_from_rgbx *forced, kiln_image *image,
+                             kiln_file_info *info, kiln_load_report *report, kiln_error *error)
+{
     if (image)
         *image = (kiln_image){0};
     png_file *f = ki_alloc(context, 1, sizeof *f);
@@ -499,6 +509,7 @@ kiln_result ki_png_decode(kiln_context *context, const uint8_t *bytes, size_t si
         return ki_fail_memory(context, error, name, sizeof *f);
     f->context = context;
     f->name = name;
+    f->forced = forced;
     f->reader = ki_reader_make(bytes, size);
     ki_crc32_fill(&f->crc);
     kiln_result result = read_head(f, error);

@@ -10,4 +10,10 @@
 kiln_result ki_rgbx_png_encode(const kiln_image *image, ki_rgbx *pack, bool upward,
                                ki_writer *writer, kiln_error *error);
 
+/// Decodes a PNG file as ki_png_decode does, but takes its four samples of 8 bits as radiance that
+/// `unpack` computes, whatever the file says. `unpack`, `info` and `report` may be NULL.
+kiln_result ki_png_decode_as(kiln_context *context, const uint8_t *bytes, size_t size,
+                             const char *name, ki_from_rgbx *unpack, kiln_image *image,
+                             kiln_file_info *info, kiln_load_report *report, kiln_error *error);
+
 #endif

@@ -53,7 +53,25 @@ typedef struct ki_recipe {
     /// True: the engine reads no cube, but flat pictures into which `write` draws the levels.
     bool flat;
     kiln_result (*write)(ki_export *to, kiln_error *error);
+    /// The inverse of `write` for engines that read flat pictures: fills a cube in the engine's
+    /// directions with what the engine's shader reads from the picture `atlas`, RGB radiance. Sets
+    /// *map, whose levels the caller frees. NULL for engines without such a function.
+    kiln_result (*read)(kiln_context *context, const kiln_image *atlas, kiln_map *map,
+                        kiln_error *error);
+    /// Computes radiance from the four samples of a pixel of the engine's PNG file; NULL for
+    /// engines whose pictures hold radiance.
+    void (*unpack)(const float rgbx[4], float rgb[3]);
 } ki_recipe;
+
+/// Reads an atlas bilinearly at (x, y) texels from its upper left corner, clamped to its edges.
+/// `roots`: the shader interpolates square roots of radiance.
+void ki_atlas_read(const kiln_image *atlas, double x, double y, bool roots, float rgb[3]);
+/// A function that reads level `level` of an atlas in a direction of the engine.
+typedef void ki_atlas_look(const kiln_image *atlas, int level, const double direction[3],
+                           float rgb[3]);
+/// Allocates the levels of a cube and fills them with what `look` reads from an atlas.
+kiln_result ki_atlas_fill(kiln_context *context, const ki_recipe *recipe, const kiln_image *atlas,
+                          int size, ki_atlas_look *look, kiln_map *map, kiln_error *error);
 
 /// Levels at equal steps of roughness: level k of n has roughness k / (n - 1).
 double ki_even_roughness(int level, int level_count, int size);

@@ -183,6 +183,56 @@ static kiln_result write_halfs(ki_export *to, kiln_error *error)
     return write_atlas(to, false, error);
 }
 
+// ----------------------------------------------------------------------------------------- reading
+
+// Reads a level of an atlas as the shader does.
+static void look_at(const kiln_image *picture, int level, const double d[3], bool roots,
+                    float rgb[3])
+{
+    int size = picture->width, border = size / ATLAS, width = size >> level;
+    double u, v;
+    const double at[3] = {-d[0], d[1], -d[2]}; // as in read_picture
+    ki_direction_panorama(at, &u, &v);
+    ki_atlas_read(picture, border + u * (width - 2 * border),
+                  (level ? size - width : 0) + border + v * (width / 2 - 2 * border), roots, rgb);
+}
+
+static void look_rgbp(const kiln_image *picture, int level, const double d[3], float rgb[3])
+{
+    look_at(picture, level, d, true, rgb);
+}
+
+static void look_halfs(const kiln_image *picture, int level, const double d[3], float rgb[3])
+{
+    look_at(picture, level, d, false, rgb);
+}
+
+static kiln_result read_atlas(kiln_context *context, const kiln_image *picture, bool roots,
+                              kiln_map *map, kiln_error *error)
+{
+    int size = picture->width;
+    if (size != picture->height || size < ATLAS || size & (size - 1) || size > KILN_MAX_SIZE / 4)
+        return ki_fail(
+            error, KILN_ERROR_FORMAT,
+            "the picture is %d x %d, an atlas of PlayCanvas is square with a side that is "
+            "a power of two from %d on",
+            picture->width, picture->height, ATLAS);
+    return ki_atlas_fill(context, &ki_playcanvas, picture, size, roots ? look_rgbp : look_halfs,
+                         map, error);
+}
+
+static kiln_result read_rgbp(kiln_context *context, const kiln_image *picture, kiln_map *map,
+                             kiln_error *error)
+{
+    return read_atlas(context, picture, true, map, error);
+}
+
+static kiln_result read_halfs(kiln_context *context, const kiln_image *picture, kiln_map *map,
+                              kiln_error *error)
+{
+    return read_atlas(context, picture, false, map, error);
+}
+
 const ki_recipe ki_playcanvas = {
     .about = {.name = "playcanvas",
               .title = "PlayCanvas 2, .png",
@@ -203,6 +253,8 @@ const ki_recipe ki_playcanvas = {
     .level = ki_even_level,
     .flat = true,
     .write = write_rgbp,
+    .read = read_rgbp,
+    .unpack = ki_float_from_rgbp,
 };
 
 const ki_recipe ki_playcanvas_dds = {
@@ -225,4 +277,5 @@ const ki_recipe ki_playcanvas_dds = {
     .level = ki_even_level,
     .flat = true,
     .write = write_halfs,
+    .read = read_halfs,
 };

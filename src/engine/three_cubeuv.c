@@ -163,6 +163,47 @@ static kiln_result write_files(ki_export *to, kiln_error *error)
     return result;
 }
 
+// ----------------------------------------------------------------------------------------- reading
+
+// Reads level k as three.js' shader does: the function getUV of the shader, then one lookup.
+static void look(const kiln_image *atlas, int k, const double d[3], float rgb[3])
+{
+    int most = largest_mip(FINER * atlas->height / 4), mip = most - k, size = 1 << ki_max(mip, 4);
+    double x = fabs(d[0]), y = fabs(d[1]), z = fabs(d[2]), s, t;
+    int index;
+    if (x >= y && x >= z) {
+        index = d[0] > 0 ? 0 : 3;
+        s = (d[0] > 0 ? d[2] : -d[2]) / x;
+        t = d[1] / x;
+    } else if (y >= z) {
+        index = d[1] > 0 ? 1 : 4;
+        s = -d[0] / y;
+        t = (d[1] > 0 ? -d[2] : d[2]) / y;
+    } else {
+        index = d[2] > 0 ? 2 : 5;
+        s = (d[2] > 0 ? -d[0] : d[0]) / z;
+        t = d[1] / z;
+    }
+    double left = index % 3 * size + ki_max(4 - mip, 0) * 3 * LAST;
+    double bottom = index / 3 * size + 4 * ((1 << most) - size);
+    double u = (s + 1) / 2 * (size - 2) + 1, v = (t + 1) / 2 * (size - 2) + 1;
+    ki_atlas_read(atlas, left + u, atlas->height - bottom - v, false, rgb);
+}
+
+static kiln_result read_atlas(kiln_context *context, const kiln_image *atlas, kiln_map *map,
+                              kiln_error *error)
+{
+    int base = atlas->height / 4;
+    if (base < LAST * FINER || base & (base - 1) || atlas->height != 4 * base ||
+        atlas->width != 3 * ki_max(base, 7 * LAST) || base > KILN_MAX_SIZE / 4)
+        return ki_fail(
+            error, KILN_ERROR_FORMAT,
+            "the picture is %d x %d, an atlas of three.js is 3 n x 4 n with n a power of "
+            "two, and at least 336 wide",
+            atlas->width, atlas->height);
+    return ki_atlas_fill(context, &ki_three_cubeuv, atlas, FINER * base, look, map, error);
+}
+
 const ki_recipe ki_three_cubeuv = {
     .about = {.name = "three-cubeuv",
               .title = "three.js r150 to r186",
@@ -186,4 +227,5 @@ const ki_recipe ki_three_cubeuv = {
     .roughness = roughness,
     .level = level,
     .write = write_files,
+    .read = read_atlas,
 };

@@ -5,7 +5,7 @@
 
 #include "kit/context.h"
 
-enum { SCENE_LIGHTS = 24, SCENE_ROWS = 128 };
+enum { SCENE_LIGHTS = 24, SCENE_ROWS = 64 };
 
 static inline kiln_map blobs(bool sun)
 {
@@ -35,7 +35,7 @@ static inline kiln_map blobs(bool sun)
             map.level[0][3 * i + c] = (float)rgb[c];
     }
     for (size_t c = 0; c < 3 && sun; c++)
-        texel_at(&map, 40, 37)[c] = 3000;
+        texel_at(&map, 20, 18)[c] = 3000;
     return map;
 }
 

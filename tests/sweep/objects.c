@@ -360,7 +360,7 @@ static void checks(void **state)
         SWEEP(kiln_check_levels(c, &panorama, &wrong, NULL, &report, NULL, &e),
               !report.level_count);
     }
-    SWEEP(kiln_levels_load(c, "none.ktx2", NULL, &rest, &e), !rest.level_count);
+    SWEEP(kiln_levels_load(c, "none.ktx2", NULL, NULL, &rest, &e), !rest.level_count);
     kiln_check_table_report table;
     kiln_image image, numbers;
     bool flip;
@@ -380,6 +380,14 @@ static void checks(void **state)
     }
     kiln_image_free(&image);
     SWEEP(kiln_table_numbers_load(c, "none.png", &numbers, &flip, &e), !numbers.pixels);
+    kiln_check_shown_report shown;
+    const kiln_engine *three = kiln_engine_find("three");
+    EACH_INT (n) {
+        wrong = cube;
+        wrong.level_count = n > KILN_MAX_LEVELS || n < 4 ? n : 4;
+        SWEEP(kiln_check_shown(c, &panorama, &wrong, three, &shown, &e), !shown.direction_count);
+    }
+    SWEEP(kiln_check_shown(c, &panorama, &cube, NULL, &shown, &e), !shown.direction_count);
     kiln_check_sh_report bands;
     kiln_sh sh = {.bands = 3};
     EACH_REAL (x) {
