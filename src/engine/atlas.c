@@ -46,16 +46,12 @@ static void fill_row(void *data, int row)
 }
 
 kiln_result ki_atlas_fill(kiln_context *context, const ki_recipe *recipe, const kiln_image *atlas,
-                          int size, ki_atlas_look *look, kiln_map *map, kiln_error *error)
+                          ki_atlas_look *look, kiln_map *map, kiln_error *error)
 {
-    *map = (kiln_map){.shape = KILN_SHAPE_CUBE,
-                      .size = size,
-                      .level_count = ki_recipe_levels(recipe, size),
-                      .smallest = recipe->smallest};
     kiln_result result = ki_map_allocate(context, map, error);
     for (int k = 0; k < map->level_count && result == KILN_OK; k++) {
         fill_job job = {atlas, look, map, k};
-        map->roughness[k] = (float)recipe->roughness(k, map->level_count, size);
+        map->roughness[k] = (float)recipe->roughness(k, map->level_count, map->size);
         if (!ki_parallel_steps(context, NULL, 6 * kiln_map_level_size(map, k), fill_row, &job))
             result = ki_fail_cancelled(error, "reading");
     }

@@ -69,9 +69,10 @@ void ki_atlas_read(const kiln_image *atlas, double x, double y, bool roots, floa
 /// A function that reads level `level` of an atlas in a direction of the engine.
 typedef void ki_atlas_look(const kiln_image *atlas, int level, const double direction[3],
                            float rgb[3]);
-/// Allocates the levels of a cube and fills them with what `look` reads from an atlas.
+/// Fills the levels of a cube with what `look` reads from an atlas. Shape, size, level_count and
+/// smallest of *map are set; its levels are allocated and have the recipe's roughness.
 kiln_result ki_atlas_fill(kiln_context *context, const ki_recipe *recipe, const kiln_image *atlas,
-                          int size, ki_atlas_look *look, kiln_map *map, kiln_error *error);
+                          ki_atlas_look *look, kiln_map *map, kiln_error *error);
 
 /// Levels at equal steps of roughness: level k of n has roughness k / (n - 1).
 double ki_even_roughness(int level, int level_count, int size);

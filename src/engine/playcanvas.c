@@ -217,8 +217,9 @@ static kiln_result read_atlas(kiln_context *context, const kiln_image *picture, 
             "the picture is %d x %d, an atlas of PlayCanvas is square with a side that is "
             "a power of two from %d on",
             picture->width, picture->height, ATLAS);
-    return ki_atlas_fill(context, &ki_playcanvas, picture, size, roots ? look_rgbp : look_halfs,
-                         map, error);
+    *map = (kiln_map){.shape = KILN_SHAPE_CUBE, .size = size, .level_count = LEVELS};
+    return ki_atlas_fill(context, &ki_playcanvas, picture, roots ? look_rgbp : look_halfs, map,
+                         error);
 }
 
 static kiln_result read_rgbp(kiln_context *context, const kiln_image *picture, kiln_map *map,

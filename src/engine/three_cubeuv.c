@@ -201,7 +201,11 @@ static kiln_result read_atlas(kiln_context *context, const kiln_image *atlas, ki
             "the picture is %d x %d, an atlas of three.js is 3 n x 4 n with n a power of "
             "two, and at least 336 wide",
             atlas->width, atlas->height);
-    return ki_atlas_fill(context, &ki_three_cubeuv, atlas, FINER * base, look, map, error);
+    *map = (kiln_map){.shape = KILN_SHAPE_CUBE,
+                      .size = FINER * base,
+                      .level_count = largest_mip(FINER * base) - 4 + 1 + EXTRA,
+                      .smallest = FINER * LAST};
+    return ki_atlas_fill(context, &ki_three_cubeuv, atlas, look, map, error);
 }
 
 const ki_recipe ki_three_cubeuv = {
