@@ -7,6 +7,7 @@
 #   engines  compares the pixels of engines with kiln's files and with the engines' own bakes
 #   engines-lights  measures the pixels with kiln's files after suns and lamps were taken out of the panoramas
 #   blocks   compares BC6H by kiln and by Basis Universal
+#   batch    bakes a library of 200 panoramas by kiln batch, and some of them by cmgen
 set -eu
 cd "$(dirname "$0")/.."
 bin=build/release/bin
@@ -134,6 +135,10 @@ for name; do
         ;;
     blocks)
         blocks || status=1
+        continue
+        ;;
+    batch)
+        bench/batch.sh $inputs/batch "$results/$($bin/bench --machine)/batch.csv" || status=1
         continue
         ;;
     peer)
