@@ -74,14 +74,14 @@ static kiln_result write_model_viewer(ki_export *to, kiln_error *error)
 
 const ki_recipe ki_godot = {
     .about = {.name = "godot",
-              .title = "Godot 4, which filters by itself",
+              .title = "Godot 3 and 4, which filter by themselves",
               .files = "NAME.exr, a panorama",
               .ending = "exr",
               .mapping = "r = 0, unfiltered",
               .size = 512,
               .level_count = 1,
               .limit = KI_HALF_MAX,
-              .proof = "source of Godot 0095d7d"},
+              .proof = "pixels of Godot 3.2.3, source of Godot 4 (0095d7d)"},
     .axes = {{0, 1, 2}, {1, 1, 1}},
     .size_min = 32,
     .size_max = 4096,
