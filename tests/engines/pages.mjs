@@ -21,6 +21,12 @@ const PACKAGES = {
     '@google/model-viewer': 'model-viewer/node_modules/@google/model-viewer',
 };
 
+// Further versions with which pages of a single package run.
+const ALSO = {
+    'three@0.183': ['versions/node_modules/three-r150', 'versions/node_modules/three-r186'],
+    'babylonjs': ['versions/node_modules/babylonjs-5'],
+};
+
 function check(good, sentence) {
     if (!good)
         throw new Error(sentence);
@@ -39,17 +45,21 @@ function pagesOf(name) {
     return text.split(/^(?=## )/m).flatMap((section) => {
         const html = section.match(/^```html\n(<!doctype html>[^]*?)\n```$/m)?.[1];
         const lines = (start) => [...section.matchAll(new RegExp(`^    ${start} (.*)$`, 'gm'))].map(([, words]) => words.split(' '));
-        return html ? [{ name, html, packages: lines('npm install')[0], bakes: lines('kiln bake') }] : [];
+        if (!html)
+            return [];
+        const packages = lines('npm install')[0], one = { name, html, packages, bakes: lines('kiln bake') };
+        const also = packages.length === 1 ? ALSO[packages[0]] ?? [] : [];
+        return [one, ...also.map((place) => ({ ...one, places: { [packages[0]]: place } }))];
     });
 }
 
-function makeFolder({ html, packages, bakes }, site) {
+function makeFolder({ html, packages, bakes, places = PACKAGES }, site) {
     fs.rmSync(site, { recursive: true, force: true });
     fs.mkdirSync(path.join(site, 'node_modules'), { recursive: true });
     for (const each of packages) {
         const link = path.join(site, 'node_modules', each.replace(/(.)@.*/, '$1'));
         fs.mkdirSync(path.dirname(link), { recursive: true });
-        fs.symlinkSync(path.join(here, PACKAGES[each] ?? `node_modules/${each}`), link);
+        fs.symlinkSync(path.join(here, places[each] ?? `node_modules/${each}`), link);
     }
     makePanorama(path.join(site, 'city.exr'));
     for (const words of bakes)
@@ -93,7 +103,7 @@ check(all.length >= 9, `docs/engines has ${all.length} whole pages`);
 const faults = [];
 fs.mkdirSync(folder, { recursive: true });
 for (const one of all.filter(({ name }) => !only.length || only.includes(name))) {
-    one.title = `${one.name}, ${one.packages}`;
+    one.title = `${one.name}, ${Object.values(one.places ?? one.packages)}`;
     const stem = path.join(folder, one.title.replace(/\W+/g, '-'));
     try {
         makeFolder(one, stem);
