@@ -3,6 +3,7 @@
 #include "fuzz.h"
 
 #include "codec/codec.h"
+#include "codec/env.h"
 #include "image/mend.h"
 
 #include <stdlib.h>
@@ -90,6 +91,21 @@ static void lay_out(kiln_context *context, const uint8_t *bytes, size_t size)
     }
 }
 
+// Reads the levels of an .env file, which ki_decode only describes.
+static void read_env(kiln_context *context, const uint8_t *bytes, size_t size)
+{
+    kiln_error error = {0};
+    kiln_map map;
+    if (!ki_env_begins(bytes, size))
+        return;
+    kiln_result result = ki_env_decode(context, bytes, size, "fuzz", &map, &error);
+    for (int k = 0; result == KILN_OK && k < map.level_count; k++)
+        fuzz_must_be_finite(map.level[k], 3 * kiln_map_texels(&map, k));
+    if (result != KILN_OK)
+        check_failure(result, &error);
+    kiln_map_free(&map);
+}
+
 void fuzz_decode(const uint8_t *bytes, size_t size)
 {
     enum { SMALL = 32 };
@@ -100,6 +116,7 @@ void fuzz_decode(const uint8_t *bytes, size_t size)
         if (info.width <= 2 * SMALL && info.height <= SMALL)
             lay_out(context, bytes, size);
     }
+    read_env(context, bytes, size);
     fuzz_end(context);
 }
 

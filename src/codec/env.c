@@ -328,6 +328,13 @@ kiln_result ki_env_decode(kiln_context *context, const uint8_t *bytes, size_t si
     if (result == KILN_OK && m.type[0] && strcmp(m.type, "image/png") != 0)
         return ki_fail(error, KILN_ERROR_UNSUPPORTED,
                        "%s: its images are %s, kiln reads .env files of image/png", name, m.type);
+    // Deflate makes at most 1032 bytes of one byte, so that a short file cannot ask for memory for
+    // a huge cube.
+    uint64_t wanted = 24 * (uint64_t)m.width * (uint64_t)m.width;
+    if (result == KILN_OK && wanted / 1032 > m.image_bytes)
+        return ki_fail(error, KILN_ERROR_FORMAT,
+                       "%s: its images have %llu bytes, too few for six faces of size %d", name,
+                       (unsigned long long)m.image_bytes, m.width);
     if (result != KILN_OK)
         return result;
     *map = (kiln_map){.shape = KILN_SHAPE_CUBE,

@@ -151,6 +151,40 @@ static void unstated_levels_are_recognised(void **state)
     kiln_map_free(&map);
 }
 
+// Replaces the first `from` in an .env file by `to`, of the same length, and checks what the loader says.
+static void expect_env_error(const char *from, const char *to, kiln_result wanted,
+                             const char *words)
+{
+    static unsigned char bytes[1 << 18];
+    kiln_map map;
+    FILE *file = fopen(in_folder("b.env"), "rb");
+    assert_non_null(file);
+    size_t size = fread(bytes, 1, sizeof bytes, file), length = strlen(from), at = 0;
+    fclose(file);
+    while (at + length < size && memcmp(bytes + at, from, length) != 0)
+        at++;
+    assert_true(at + length < size);
+    memcpy(bytes + at, to, length);
+    file = fopen(in_folder("w.env"), "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(bytes, 1, size, file), size);
+    fclose(file);
+    assert_int_equal(kiln_levels_load(context, in_folder("w.env"), NULL, NULL, &map, &error),
+                     wanted);
+    CHECK_SAYS(error.message, words);
+    assert_int_equal(map.level_count, 0);
+}
+
+static void wrong_env_files_are_refused(void **state)
+{
+    (void)state;
+    expect_env_error("image/png", "image/jpg", KILN_ERROR_UNSUPPORTED,
+                     "its images are image/jpg, kiln reads");
+    expect_env_error("IHDR", "IHDX", KILN_ERROR_FORMAT, "w.env: the PNG is damaged");
+    expect_env_error("\"width\":64", "\"width\":96", KILN_ERROR_FORMAT,
+                     "image 0 is 64 x 64, a face of level 0 must be 96 x 96");
+}
+
 static void faces_of_each_level_are_loaded(void **state)
 {
     (void)state;
@@ -313,6 +347,7 @@ int main(void)
         cmocka_unit_test(exact_floats_are_right),
         cmocka_unit_test(other_shapes_are_right),
         cmocka_unit_test(engines_files_are_right),
+        cmocka_unit_test(wrong_env_files_are_refused),
         cmocka_unit_test(unstated_levels_are_recognised),
         cmocka_unit_test(faces_of_each_level_are_loaded),
         cmocka_unit_test(a_mirror_image_is_named),
