@@ -123,7 +123,7 @@ bool bench_memory(bench *b)
            8192.0 * 4096 * 12 / 1048576);
     bench_value(b, "peak", "bytes", u.peak);
     bench_value(b, "user", "s", u.user);
-    bench_bar(b, "peak memory of the process", u.peak / 1048576, "MiB", 700, false);
+    bench_bar(b, "peak memory of the process", u.peak / 1048576, "MiB", 160, false);
     return true;
 }
 

@@ -17,6 +17,8 @@ for file in tests/files/good/*.exr tests/files/bad/*; do
     [ "$ending" = bin ] || cp "$file" "$seeds/$ending/"
 done
 
+mkdir -p "$seeds/rows"
+cp "$seeds"/exr/* "$seeds"/hdr/* "$seeds/rows/"
 [ ! -d tests/corpus ] || cp -r tests/corpus/. "$seeds/"
 
 if [ "$wanted" = process ]; then

@@ -294,6 +294,45 @@ static void write_exr_compressions(void)
             }
 }
 
+// Panoramas, which can be read by rows: scan lines and tiles, in several orders, with a window that is not the picture,
+// and in the second of two parts.
+static void write_panoramas(void)
+{
+    static const exr_make_channel channels[3] = {{"B", EXR_PIXEL_HALF, 0, false},
+                                                 {"G", EXR_PIXEL_FLOAT, 0, false},
+                                                 {"R", EXR_PIXEL_HALF, 0, false}};
+    enum { ROWS = 20 };
+    for (int i = 0; i < 8 * 4; i++) {
+        int kind = i / 8;
+        exr_make make = {.width = kind == 2 ? 30 : 2 * ROWS,
+                         .height = kind == 2 ? 11 : ROWS,
+                         .x = kind == 2 ? -3 : 0,
+                         .y = kind == 2 ? 5 : 0,
+                         .display = {{{{0, 0}}}, {{{2 * ROWS - 1, ROWS - 1}}}},
+                         .compression = (exr_compression_t)(i % 8),
+                         .order =
+                             kind == 3 ? EXR_LINEORDER_DECREASING_Y : EXR_LINEORDER_INCREASING_Y,
+                         .tile_width = kind == 1 ? 9 : 0,
+                         .tile_height = kind == 1 ? 7 : 0,
+                         .part_count = 1 + kind / 3,
+                         .channels = channels,
+                         .channel_count = 3,
+                         .value = exr_value};
+        size_t size;
+        char name[64];
+        snprintf(name, sizeof name, "panorama-%d.exr", i);
+        uint8_t *bytes = exr_make_file(&make, &size);
+        save("rows", name, bytes, size);
+        free(bytes);
+    }
+    kiln_map map;
+    must(kiln_sky(context, &(kiln_sky_def){.size = 16}, &map, &error));
+    char path[512];
+    snprintf(path, sizeof path, "%s/rows/sky.hdr", folder);
+    must(kiln_map_save(context, &map, path, NULL, NULL, &error));
+    kiln_map_free(&map);
+}
+
 static void write_exr_plain(void)
 {
     static const float primaries[8] = {0.68f, 0.32f, 0.265f, 0.69f, 0.15f, 0.06f, 0.3127f, 0.329f};
@@ -611,6 +650,7 @@ int main(int argc, char **argv)
     write_tables();
     write_exr_compressions();
     write_exr_plain();
+    write_panoramas();
     write_texts();
     write_png();
     write_jpeg();
