@@ -34,7 +34,7 @@ bool ki_cesium_sh_begins(const uint8_t *bytes, size_t size)
 kiln_result ki_cesium_sh_describe(kiln_context *context, const uint8_t *bytes, size_t size,
                                   const char *name, kiln_file_info *info, kiln_error *error)
 {
-    double factors[COUNT][3], unused[3];
+    double factors[COUNT][3] = {{0}}, unused[3] = {0};
     int count = 0;
     ki_json json = ki_json_make(context, bytes, size);
     ki_json_enter_array(&json);
