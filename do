@@ -271,7 +271,8 @@ demo)
 bench)
     need build web bench
     panoramas
-    npm_packages web npm/codecs tests/web tests/engines tests/engines/cesium tests/engines/galacean bench/blocks
+    npm_packages web npm/codecs tests/web tests/engines tests/engines/cesium tests/engines/galacean tests/files/assets \
+        bench/blocks
     build_release BENCH
     build wasm
     bench/run.sh "$@"
@@ -282,7 +283,7 @@ lint)
     say "formatting" && scripts/format.sh --check
     say "shellcheck"
     shellcheck -S warning ./do .ci/run
-    find scripts packaging tests bench -name "*.sh" -not -path "*/node_modules/*" -exec shellcheck -x -P SCRIPTDIR -S warning {} +
+    find scripts packaging contrib tests bench -name "*.sh" -not -path "*/node_modules/*" -exec shellcheck -x -P SCRIPTDIR -S warning {} +
     build strict
     sources=$(find src cli viewer bench examples tests -name '*.c' -not -path '*/node_modules/*')
     say "cppcheck"
@@ -291,12 +292,13 @@ lint)
     cppcheck --quiet --error-exitcode=1 --inline-suppr --std=c11 -I include -I src \
         --enable=warning,performance,portability --suppress=missingInclude --suppress=ctuuninitvar $sources
     say "clang-tidy"
-    printf '%s\n' "$sources" | grep -vE '/os_(windows|host)\.c$' |
+    printf '%s\n' "$sources" | grep -vE '/os_(thread_)?(windows|host)\.c$' |
         xargs -n 1 -P 2 clang-tidy --quiet -p build/strict 2>build/tidy.log
     # The sources for Windows and those for WebAssembly, by the commands that the cross compilers are called with;
     # nothing is compiled.
     cmake --preset mingw >build/mingw.log 2>&1 || { cat build/mingw.log; exit 1; }
-    clang-tidy --quiet -p build/mingw src/base/os_windows.c cli/os_windows.c 2>>build/tidy.log
+    clang-tidy --quiet -p build/mingw src/base/os_windows.c cli/os_windows.c \
+        cli/os_thread_windows.c 2>>build/tidy.log
     npm_packages web npm/codecs
     cmake --preset wasm >build/wasm.log 2>&1 || { cat build/wasm.log; exit 1; }
     clang-tidy --quiet -p build/wasm --extra-arg=--target=wasm32-unknown-emscripten \

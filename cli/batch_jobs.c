@@ -6,6 +6,7 @@
 #include "hash.h"
 
 #include <errno.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -34,7 +35,7 @@ static void add_name(names *list, const char *folder, size_t length, const char 
         return;
     }
     memcpy(path, folder, length);
-    strcpy(path + length, name);
+    memcpy(path + length, name, strlen(name) + 1);
     list->name[list->count++] = path;
 }
 
@@ -102,14 +103,20 @@ typedef struct listing {
     size_t begin_length;
 } listing;
 
+// Returns whether a name begins and ends as those of a set of faces.
+static bool is_face(const listing *l, const char *name)
+{
+    size_t size = strlen(name), tail = strlen(l->end);
+    return size >= l->begin_length + tail && !strncmp(name, l->begin, l->begin_length) &&
+           !strcmp(name + size - tail, l->end);
+}
+
 static void take_entry(void *user, const char *name)
 {
     const listing *l = user;
-    size_t size = strlen(name), tail = l->end ? strlen(l->end) : 0;
     bool wanted;
-    if (l->begin)
-        wanted = size >= l->begin_length + tail && !strncmp(name, l->begin, l->begin_length) &&
-                 !strcmp(name + size - tail, l->end);
+    if (l->begin && l->end)
+        wanted = is_face(l, name);
     else
         wanted = l->pattern ? matches(l->pattern, name) : name[0] != '.' && is_picture(name);
     if (wanted)
@@ -135,6 +142,17 @@ static bool list_folder(listing *l)
         qsort(l->list->name + first, (size_t)(l->list->count - first), sizeof *l->list->name,
               compare_names);
     return true;
+}
+
+// Copies the path of a folder with a final slash, and lists that folder. Returns false if the path
+// is too long.
+static bool name_folder(const char *path, char room[4096], listing *l)
+{
+    size_t size = strlen(path);
+    const char *slash = size && path[size - 1] == '/' ? "" : "/";
+    l->folder = room;
+    l->length = size + strlen(slash);
+    return snprintf(room, 4096, "%s%s", path, slash) < 4096;
 }
 
 static size_t folder_length(const char *path)
@@ -169,18 +187,10 @@ static int expand(batch_store *store, const batch_line *line, const char *input,
     if (strpbrk(input, "*?") && strcspn(input, "*?") < length)
         return cli_wrong(&line->command, "%s: * and ? may stand in the name of a file only", input);
     listing l = {.list = list, .folder = input, .length = length};
-    if (folder) {
-        size_t size = strlen(input);
-        if (size + 2 > sizeof path)
-            return cli_wrong(&line->command, "%.60s...: the path is too long", input);
-        memcpy(path, input, size + 1);
-        if (path[size - 1] != '/')
-            strcpy(path + size, "/");
-        l.folder = path;
-        l.length = strlen(path);
-    } else {
+    if (!folder)
         l.pattern = input + length;
-    }
+    else if (!name_folder(input, path, &l))
+        return cli_wrong(&line->command, "%.60s...: the path is too long", input);
     if (!list_folder(&l))
         return cli_wrong(&line->command, "%s: cannot be listed: %s", input, strerror(errno));
     if (!keep_folder(store, l.length ? l.folder : ".", l.length ? l.length : 1, jobs))
@@ -262,7 +272,7 @@ static int make_several(batch_store *store, const batch_line *line, batch_jobs *
         code == CLI_GO ? batch_keep(store, (size_t)list.count * sizeof *input + 1) : NULL;
     if (code == CLI_GO && !input)
         code = cli_fail("out of memory");
-    for (int i = 0; i < list.count && code == CLI_GO; i++) {
+    for (int i = 0; input && i < list.count && code == CLI_GO; i++) {
         input[i] = batch_keep_text(store, list.name[i], strlen(list.name[i]));
         code = bake_check_name(&line->command, list.name[i]);
         if (code == CLI_GO)
@@ -385,14 +395,9 @@ bool batch_list_inputs(const batch_job *job, void (*file)(void *user, const char
         size_t mark = face ? 6 : 2;
         face = face ? face : strstr(input, "%s");
         char path[4096];
-        if (os_kind_of(input) == OS_FOLDER && strlen(input) + 2 <= sizeof path) {
-            strcpy(path, input);
-            if (path[strlen(path) - 1] != '/')
-                strcat(path, "/");
-            l.folder = path;
-            l.length = strlen(path);
+        if (os_kind_of(input) == OS_FOLDER && name_folder(input, path, &l)) {
             list_folder(&l);
-        } else if (face && face >= input + l.length) {
+        } else if (face && face >= input + folder_length(input)) {
             l.begin = input + l.length;
             l.begin_length = (size_t)(face - l.begin);
             l.end = face + mark;

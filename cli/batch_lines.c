@@ -27,7 +27,7 @@ static batch_line *add_line(batch_store *store, batch_lines *lines)
 {
     if (lines->count == lines->room) {
         size_t room = lines->room ? 2 * lines->room : 64;
-        batch_line **larger = realloc(lines->line, room * sizeof *larger);
+        batch_line **larger = realloc(lines->line, room * sizeof(batch_line *));
         if (!larger)
             return NULL;
         lines->line = larger;
@@ -213,7 +213,7 @@ int batch_add_manifest(batch_store *store, const char *path,
         code = out_of_memory();
     else if (!bytes)
         code = cli_fail("%s: cannot be read: %s", path, strerror(errno));
-    manifest_reader reader = {.at = bytes, .end = bytes + size, .line = 1};
+    manifest_reader reader = {.at = bytes, .end = bytes ? bytes + size : NULL, .line = 1};
     while (code == CLI_GO) {
         int count = manifest_read(&reader, members);
         if (count < 0)

@@ -158,10 +158,8 @@ static void find_path(batch_record *r, const char *output)
     size_t length = is_folder ? size : slash ? (size_t)(slash + 1 - output) : 0;
     if (length + 16 > sizeof folder)
         return;
-    memcpy(folder, output, length);
-    folder[length] = 0;
-    if (is_folder && folder[length - 1] != '/')
-        strcat(folder, "/");
+    const char *end = is_folder && output[length - 1] != '/' ? "/" : "";
+    snprintf(folder, sizeof folder, "%.*s%s", (int)length, output, end);
     if (snprintf(r->path, sizeof r->path, "%s.kiln/%s.record", folder, name) >=
         (int)sizeof r->path - 8)
         r->path[0] = 0;

@@ -51,14 +51,14 @@ void batch_draw(batch *all)
     os_lock(&all->output);
     bool due = all->on_terminal && now - all->began > 0.5 && now - all->drawn > 0.1;
     if (due && !cli_interrupted()) {
-        char line[WIDTH + 1], left[40] = "";
+        char line[128], left[40] = "";
         double seconds = seconds_left(all, now);
         if (seconds >= 0)
             snprintf(left, sizeof left, seconds < 90 ? ", %.0f s left" : ", %.0f min left",
                      seconds < 90 ? seconds : seconds / 60);
         snprintf(line, sizeof line, "kiln: %zu of %zu environments%s", all->done, all->jobs.count,
                  left);
-        fprintf(stderr, "\r%-*s", WIDTH, line);
+        fprintf(stderr, "\r%-*.*s", WIDTH, WIDTH, line);
         all->drawn = now;
     }
     os_unlock(&all->output);

@@ -45,7 +45,7 @@ static void add(state *s, const uint8_t *at, size_t size)
 {
     s->length += size;
     for (const uint8_t *end = at + size; at < end; at += STRIPE)
-        for (int k = 0; k < 4; k++)
+        for (size_t k = 0; k < 4; k++)
             s->sum[k] = add_lane(s->sum[k], read_number(at + 8 * k, 8));
 }
 
