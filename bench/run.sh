@@ -110,7 +110,9 @@ blocks() {
     have oiiotool || fail "oiiotool is missing: install Debian's openimageio-tools"
     [ -d bench/blocks/node_modules ] || fail "packages are missing: run  npm ci --prefix bench/blocks"
     printf '\n'
-    node bench/blocks/blocks.mjs build/release/bin build/data/blender $inputs/blocks \
+    assets=tests/files/assets/node_modules/@pmndrs/assets/hdri
+    [ -d $assets ] || fail "panoramas are missing: run  npm ci --prefix tests/files/assets"
+    node bench/blocks/blocks.mjs build/release/bin build/data/blender $assets $inputs/blocks \
         "$results/$($bin/bench --machine)/blocks.csv"
 }
 

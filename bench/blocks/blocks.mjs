@@ -1,14 +1,16 @@
-// Compares the errors of BC6H by kiln and by Basis Universal: node blocks.mjs BIN PANORAMAS FOLDER CSV
-// In: the panoramas NAMES. Out: errors and CPU times, printed and as rows of CSV. kiln bakes a cube of each
-// panorama and encodes its levels. Basis Universal (UASTC HDR 4x4 at its default effort, transcoded to BC6H; npm
-// ktx2-encoder, WebAssembly) encodes the same levels. oiiotool decodes the files of the two encoders. Then the UASTC HDR
-// blocks of the two are compared, which kiln and Basis Universal's transcoder decode.
+// Compares the errors of BC6H and of UASTC HDR by kiln and by Basis Universal:
+// node blocks.mjs BIN PANORAMAS ASSETS FOLDER CSV
+// In: the panoramas NAMES, and those of npm's @pmndrs/assets in the folder ASSETS, which are data URLs in modules of
+// JavaScript. Out: errors and CPU times, printed and as rows of CSV. kiln bakes a cube of each panorama and encodes
+// its levels as BC6H and as UASTC HDR. Basis Universal (UASTC HDR 4x4 at its default effort; npm ktx2-encoder,
+// WebAssembly) encodes the same levels, and its transcoder converts the UASTC HDR of both encoders to BC6H. oiiotool
+// decodes BC6H. The summary gives, for each set of panoramas, kiln's errors divided by Basis Universal's.
 import { execFileSync } from 'node:child_process';
 import fs from 'node:fs';
 import path from 'node:path';
 import BASIS from './node_modules/ktx2-encoder/dist/basis/basis_encoder.js';
 
-const [bin, panoramas, folder, csv] = process.argv.slice(2).map((name) => path.resolve(name));
+const [bin, panoramas, assets, folder, csv] = process.argv.slice(2).map((name) => path.resolve(name));
 const NAMES = ['city', 'courtyard', 'forest', 'interior', 'night', 'studio', 'sunrise', 'sunset'], LEVELS = 6, PEER_LEVELS = [0, 2, 4];
 const run = (program, ...args) => execFileSync(program, args, { encoding: 'utf8', cwd: folder });
 const ours = (...args) => run(path.join(bin, 'bench_blocks'), ...args).trim().split(' ').map(Number);
@@ -72,6 +74,22 @@ function measure(name, truth, level) {
 
 const valueOf = (h) => (h >> 10 ? (1024 + (h & 1023)) * 2 ** ((h >> 10) - 25) : h * 2 ** -24);
 
+// The blocks of a level of kiln's UASTC HDR file after conversion to BC6H, of all faces.
+function convertLevel(name, level) {
+    const file = new basis.KTX2File(new Uint8Array(fs.readFileSync(path.join(folder, name))));
+    const format = basis.transcoder_texture_format.cTFBC6H.value;
+    if (!file.isValid() || !file.startTranscoding())
+        throw new Error(`${name} is not converted`);
+    const faces = Array.from({ length: 6 }, (_, face) => {
+        const blocks = new Uint8Array(file.getImageTranscodedSizeInBytes(level, 0, face, format));
+        file.transcodeImage(blocks, level, 0, face, format, 0, -1, -1);
+        return blocks;
+    });
+    file.close();
+    file.delete();
+    return faces;
+}
+
 // The RMS difference of UASTC HDR as the transcoder decodes it, relative to the level's RMS radiance.
 function measureHalfs(faces, made) {
     let off = 0, all = 0;
@@ -89,11 +107,22 @@ function measureHalfs(faces, made) {
 
 const rows = ['name,unit,median,minimum'];
 const add = (name, unit, value) => rows.push(`${name},${unit},${value},${value}`);
+const ratios = {};
+const compare = (set, what, ratio) => ((ratios[set] ??= {})[what] ??= []).push(ratio);
+
+// The panoramas as [set, name, path].
+const pictures = NAMES.map((name) => ['eight', name, path.join(panoramas, `${name}.exr`)]);
+for (const module of fs.readdirSync(assets).filter((name) => name.endsWith('.exr.js'))) {
+    const name = `assets-${module.replace('.exr.js', '')}`, file = path.join(folder, `${name}.exr`);
+    const [, text] = fs.readFileSync(path.join(assets, module), 'utf8').match(/base64,([A-Za-z0-9+/=]+)/);
+    fs.writeFileSync(file, Buffer.from(text, 'base64'));
+    pictures.push(['assets', name, file]);
+}
 console.log('blocks: RMS error in steps of half floats (10 steps are nearly 1 %) | RMS error relative to the RMS ' +
             'radiance | CPU microseconds for each texel');
-for (const name of NAMES) {
+for (const [set, name, picture] of pictures) {
     const truth = `${name}.ktx2`;
-    const [time] = ours('save', path.join(panoramas, `${name}.exr`), truth, `${name}.dds`);
+    const [time] = ours('save', picture, truth, `${name}.dds`);
     const dds = fs.readFileSync(path.join(folder, `${name}.dds`)), header = dds.subarray(0, 148);
     console.log(`  ${name}  kiln, all levels: ${time.toFixed(2)}`);
     add(`${name} kiln`, 'us/texel', time);
@@ -115,17 +144,32 @@ for (const name of NAMES) {
             writeLevel('basis.dds', header, size, made.map(({ blocks }) => blocks));
             const [theirs, theirEnergy] = measure('basis', truth, level);
             const uastcEnergy = measureHalfs(faces, made);
+            writeLevel('converted.dds', header, size, convertLevel(`${name}-uastc.ktx2`, level));
+            const [, convertedEnergy] = measure('converted', truth, level);
+            add(`${name} kiln uastc as bc6h level ${level}`, 'relative', convertedEnergy);
+            compare(set, 'uastc', uastc[2 * level + 1] / uastcEnergy);
+            compare(set, 'converted to bc6h', convertedEnergy / theirEnergy);
+            compare(set, 'bc6h', energy / theirEnergy);
             add(`${name} kiln uastc level ${level}`, 'relative', uastc[2 * level + 1]);
             add(`${name} basis uastc level ${level}`, 'relative', uastcEnergy);
             const us = made.reduce((sum, { microseconds }) => sum + microseconds, 0) / (6 * size * size);
             add(`${name} basis level ${level}`, 'codes', theirs);
             add(`${name} basis level ${level}`, 'relative', theirEnergy);
             add(`${name} basis level ${level}`, 'us/texel', us);
+            compare(set, 'cpu', uastcTime / us);
             line += `   Basis ${theirs.toFixed(1)} | ${theirEnergy.toExponential(1)} | ${us.toFixed(0)} (WebAssembly)` +
-                    `   as UASTC HDR: kiln ${uastc[2 * level + 1].toExponential(1)} Basis ${uastcEnergy.toExponential(1)}`;
+                    `   as UASTC HDR (converted ${convertedEnergy.toExponential(1)}): kiln ${uastc[2 * level + 1].toExponential(1)} Basis ${uastcEnergy.toExponential(1)}`;
         }
         console.log(line);
     });
 }
+for (const [set, kinds] of Object.entries(ratios))
+    for (const [what, list] of Object.entries(kinds)) {
+        const sorted = list.sort((a, b) => a - b), mean = Math.exp(list.reduce((sum, x) => sum + Math.log(x), 0) / list.length);
+        const shown = [sorted[0], sorted[sorted.length >> 1], sorted.at(-1), mean].map((x) => x.toFixed(3));
+        console.log(`  ${set}, ${what}, kiln / Basis Universal: least ${shown[0]}, median ${shown[1]}, most ${shown[2]}, ` +
+                    `geometric mean ${shown[3]}; ${list.filter((x) => x > 1).length} of ${list.length} above 1`);
+        add(`${set} ${what}`, 'kiln / basis', mean);
+    }
 fs.mkdirSync(path.dirname(csv), { recursive: true });
 fs.writeFileSync(csv, `${rows.join('\n')}\n`);

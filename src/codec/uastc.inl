@@ -2,7 +2,8 @@
 // Out: 16 bytes for each block of 4 x 4 texels. The including file defines KI_UASTC_ROW, the name
 // of the function. Method: a line of least squares is fitted to the colours of the block, and two
 // lines for the most promising partition; the ends are rounded to what a mode can store, a weight
-// is chosen for each texel, and both are refined by least squares. Blocks of one colour are stored
+// is chosen for each texel, and both are refined by least squares. Then both are adjusted such that
+// the block also has little error after a conversion to BC6H. Blocks of one colour are stored
 // exactly.
 //
 // Errors are weighted squared differences between ASTC's logarithmic numbers of 16 bits ("codes",
@@ -16,21 +17,33 @@
 #include <string.h>
 
 // number of least-squares refinements for each mode
-enum { ROUNDS = 2 };
+enum { ROUNDS = 1 };
 
-// Indices in ki_uastc_modes of the modes that are tried: one line with 16 and with 12 weights, two
-// lines with 4 weights, and two lines along which only brightness changes with 8 weights.
-enum { ONE_16 = 7, ONE_12 = 6, TWO_4 = 22, SCALES_8 = 20 };
+// Indices in ki_uastc_modes of the modes that are tried: one line with 16 and with 12 weights, one
+// line along which only brightness changes with 16 weights, two lines with 4 weights, and two lines
+// along which only brightness changes with 8 weights.
+enum { ONE_16 = 7, ONE_12 = 6, SCALE_16 = 15, TWO_4 = 22, SCALES_8 = 20 };
 
+// Weight of the error after conversion to BC6H relative to the error of the block itself. With this
+// weight both errors are below those of Basis Universal's encoder in most pictures.
+#define BC6H_SHARE 2.0f
+// Sum of both errors of a block below which no other mode than ONE_16 is tried: at most 1.2 % RMS.
+#define SMOOTH 60000.0f
+// A candidate whose own error is not this many times less than the sum of both errors of the best
+// candidate is given up. The sum is usually 3 times the own error or more.
+#define HOPELESS 2.0f
 // Least weight of an error, which black channels have.
 #define LEAST_SHARE 0.005f
+// Values below the block's largest value divided by 2^DARKEST count as equal to this quotient.
+#define DARKEST 12
 // Before lines are fitted, values are raised to this many codes below the block's largest value,
 // such that nearly black channels do not determine the direction of a line.
 #define REACH (8 * 2048.0f)
 
-// The texels of a block, and the weights of their errors.
+// The texels of a block, the bits of their half floats, and the weights of their errors.
 typedef struct colors {
     texels t, raised;
+    float half[3][TEXELS];
     float share[3][TEXELS];
 } colors;
 
@@ -39,6 +52,15 @@ typedef struct candidate {
     int end[2][2][3]; // what the block's values of endpoints give, in numbers of 12 bits
     float error;
 } candidate;
+
+// Sets end[2 subset + which] to one channel of the block's endpoints, as a number of 16 bits.
+static void read_channel(const candidate *k, int channel, float end[4])
+{
+    for (int e = 0; e < 4; e++) {
+        int number = 16 * k->end[e / 2][e % 2][channel];
+        end[e] = (float)number;
+    }
+}
 
 // Returns the middle of the logarithmic numbers of 16 bits that decode to a half float: the inverse
 // of ki_uastc_half.
@@ -61,10 +83,7 @@ static void project(const colors *b, const float mask[TEXELS], const candidate *
         along[i] = 0;
     for (int c = 0; c < 3; c++) {
         float end[4];
-        for (int e = 0; e < 4; e++) {
-            int number = 16 * k->end[e / 2][e % 2][c];
-            end[e] = (float)number;
-        }
+        read_channel(k, c, end);
         for (int i = 0; i < TEXELS; i++) {
             float from = mask[i] != 0 ? end[2] : end[0];
             float way = mask[i] != 0 ? end[3] - end[2] : end[1] - end[0];
@@ -79,23 +98,85 @@ static void project(const colors *b, const float mask[TEXELS], const candidate *
     }
 }
 
-// Chooses the weight of each texel, and measures the error of the decoded block.
-static void choose_weights(const colors *b, const float mask[TEXELS], candidate *k)
+// A candidate's block after conversion to BC6H: the endpoints as numbers of 16 bits, by channel and
+// 2 subset + which, and the number of bits in which BC6H stores them.
+typedef struct converted {
+    float end[3][4];
+    int bits;
+} converted;
+
+// Weights of BC6H to which the weights of a mode are converted, by the number of weights.
+static const uint8_t converted_weights[4][16] = {
+    {0, 18, 46, 64},
+    {0, 9, 18, 27, 37, 46, 55, 64},
+    {0, 4, 9, 17, 21, 26, 38, 43, 47, 55, 60, 64},
+    {0, 4, 9, 13, 17, 21, 26, 30, 34, 38, 43, 47, 51, 55, 60, 64},
+};
+
+static const uint8_t *weights_after(const ki_uastc_mode *mode)
 {
+    int levels = ki_uastc_levels[mode->weights];
+    return converted_weights[levels == 4 ? 0 : levels == 8 ? 1 : levels == 12 ? 2 : 3];
+}
+
+// Converts endpoints as Basis Universal's transcoder does: each is rounded down in the first mode
+// whose bits reach all endpoints. Modes store differences from the endpoint that is near the first
+// texel.
+static void convert(const candidate *k, converted *o)
+{
+    static const uint8_t one[4] = {13, 12, 11, 10}, two[10] = {2, 3, 4, 0, 5, 6, 7, 8, 1, 9};
     const ki_uastc_mode *mode = &ki_uastc_modes[k->block.mode];
-    float last = (float)(ki_uastc_levels[mode->weights] - 1);
-    float along[TEXELS], error[TEXELS] = {0}, weight[TEXELS];
-    project(b, mask, k, along);
+    bool turned = mode->subsets == 2 && ki_uastc_partitions[k->block.partition].inverted;
+    int near = weights_after(mode)[k->block.index[0]] > 32, count = 6 * mode->subsets, whole[12];
+    for (int i = 0; i < count; i++)
+        whole[i] = (ki_uastc_half(16 * k->end[i / 6][i / 3 % 2][i % 3]) * 64 + 30) / 31;
+    const int *base = whole + 6 * turned + 3 * near;
+    const uint8_t *m = mode->subsets == 2 ? two : one;
+    for (bool fits = false; !fits; m++) {
+        const ki_bc6h_mode *bc6h = &ki_bc6h_modes[*m];
+        o->bits = bc6h->bits;
+        fits = true;
+        for (int i = 0; i < count && bc6h->relative; i++) {
+            int reach = 1 << (bc6h->delta_bits[i % 3] - 1), shift = 16 - o->bits;
+            int less = (whole[i] >> shift) - (base[i % 3] >> shift);
+            fits = fits && less >= -reach && less < reach;
+        }
+    }
+    for (int i = 0; i < count; i++)
+        o->end[i % 3][i / 3] = (float)ki_bc6h_unquantize(whole[i] >> (16 - o->bits), o->bits);
+}
+
+// Adds the weighted errors of the texels of a converted block whose texels have these indices.
+static void add_converted(const colors *b, const float mask[TEXELS], const candidate *k,
+                          const converted *o, const uint8_t index[TEXELS], float error[TEXELS])
+{
+    const uint8_t *weights = weights_after(&ki_uastc_modes[k->block.mode]);
+    float weight[TEXELS];
     for (int i = 0; i < TEXELS; i++)
-        k->block.index[i] = (uint8_t)(int)(along[i] * last + 0.5f);
+        weight[i] = (float)weights[index[i]];
+    for (int c = 0; c < 3; c++)
+        for (int i = 0; i < TEXELS; i++) {
+            float from = mask[i] != 0 ? o->end[c][2] : o->end[c][0];
+            float to = mask[i] != 0 ? o->end[c][3] : o->end[c][1];
+            // Integers below 2^24, which floats represent exactly.
+            float mixed = (float)(int)(((64 - weight[i]) * from + weight[i] * to + 32) / 64);
+            // Half floats have 1024 steps for each factor of two, and codes have 2048.
+            float off = 2 * ((float)(int)(mixed * 31 / 64) - b->half[c][i]);
+            error[i] += BC6H_SHARE * off * off * b->share[c][i];
+        }
+}
+
+// Adds the weighted errors of the texels of the block itself.
+static void add_own(const colors *b, const float mask[TEXELS], const candidate *k,
+                    const uint8_t index[TEXELS], float error[TEXELS])
+{
+    const uint8_t *weights = ki_uastc_weights[ki_uastc_modes[k->block.mode].weights];
+    float weight[TEXELS];
     for (int i = 0; i < TEXELS; i++)
-        weight[i] = (float)ki_uastc_weights[mode->weights][k->block.index[i]];
+        weight[i] = (float)weights[index[i]];
     for (int c = 0; c < 3; c++) {
         float end[4];
-        for (int e = 0; e < 4; e++) {
-            int number = 16 * k->end[e / 2][e % 2][c];
-            end[e] = (float)number;
-        }
+        read_channel(k, c, end);
         for (int i = 0; i < TEXELS; i++) {
             float from = mask[i] != 0 ? end[2] : end[0], to = mask[i] != 0 ? end[3] : end[1];
             // Integers below 2^24, which floats represent exactly.
@@ -104,7 +185,46 @@ static void choose_weights(const colors *b, const float mask[TEXELS], candidate 
             error[i] += off * off * b->share[c][i];
         }
     }
+}
+
+// Chooses the weight of each texel, and measures the error of the decoded block.
+static void choose_weights(const colors *b, const float mask[TEXELS], candidate *k)
+{
+    float last = (float)(ki_uastc_levels[ki_uastc_modes[k->block.mode].weights] - 1);
+    float along[TEXELS], error[TEXELS] = {0};
+    project(b, mask, k, along);
+    for (int i = 0; i < TEXELS; i++)
+        k->block.index[i] = (uint8_t)(int)(along[i] * last + 0.5f);
+    add_own(b, mask, k, k->block.index, error);
     k->error = fold(error);
+}
+
+// Adds the error after conversion, and takes for each texel the neighbouring weight if that lowers
+// the sum of the texel's two errors.
+static void settle_weights(const colors *b, const float mask[TEXELS], candidate *k)
+{
+    int last = ki_uastc_levels[ki_uastc_modes[k->block.mode].weights] - 1;
+    converted o;
+    float least[TEXELS] = {0};
+    uint8_t first[TEXELS];
+    convert(k, &o);
+    memcpy(first, k->block.index, sizeof first);
+    add_own(b, mask, k, first, least);
+    add_converted(b, mask, k, &o, first, least);
+    for (int step = -1; step <= 1; step += 2) {
+        float error[TEXELS] = {0};
+        uint8_t index[TEXELS];
+        for (int i = 0; i < TEXELS; i++)
+            index[i] = (uint8_t)ki_max(0, ki_min(first[i] + step, last));
+        add_own(b, mask, k, index, error);
+        add_converted(b, mask, k, &o, index, error);
+        for (int i = 0; i < TEXELS; i++) {
+            bool better = error[i] < least[i];
+            k->block.index[i] = better ? index[i] : k->block.index[i];
+            least[i] = better ? error[i] : least[i];
+        }
+    }
+    k->error = fold(least);
 }
 
 // The line of least squares in one channel: y = at0 + slope x, where x is 0 to 1, through the mean
@@ -170,6 +290,67 @@ static void refine(const colors *b, const float mask[TEXELS], const candidate *k
     }
 }
 
+// Returns the endpoint of a mode of BC6H of `bits` bits to which a code is converted, within the range of the bits.
+static int to_bc6h(float code, int bits)
+{
+    int number = (int)(code > 0 ? code < 63487 ? code : 63487 : 0);
+    return (ki_uastc_half(number) * 64 + 30) / 31 >> (16 - bits);
+}
+
+// Returns the code for which an endpoint of BC6H stands.
+static float of_bc6h(int value, int bits)
+{
+    return code_of_half(ki_bc6h_unquantize(value, bits) * 31 / 64);
+}
+
+// Moves the ends of a line in one channel to where a mode of BC6H of `bits` bits has endpoints. The error of the
+// channel is a parabola of the ends: tries three endpoints near *from, each with the best other end for that endpoint.
+static void snap(const float share[TEXELS], const float in[TEXELS], const float x[TEXELS],
+                 const float code[TEXELS], int bits, float *from, float *to)
+{
+    float products[5][TEXELS];
+    for (int i = 0; i < TEXELS; i++) {
+        float w = share[i] * in[i], near = 1 - x[i], y = code[i] + 0.5f - code[0];
+        products[0][i] = w * near * near;
+        products[1][i] = w * near * x[i];
+        products[2][i] = w * x[i] * x[i];
+        products[3][i] = w * near * y;
+        products[4][i] = w * x[i] * y;
+    }
+    float xx = fold(products[0]), xy = fold(products[1]), yy = fold(products[2]);
+    float a = fold(products[3]), b = fold(products[4]), best = INFINITY;
+    int first = to_bc6h(*from, bits), last = (1 << bits) - 1;
+    for (int q = ki_max(first - 1, 0); q <= ki_min(first + 1, last); q++) {
+        float u = of_bc6h(q, bits) - code[0];
+        float v = of_bc6h(to_bc6h((b - xy * u) / yy + code[0], bits), bits) - code[0];
+        float error = xx * u * u + 2 * xy * u * v + yy * v * v - 2 * (a * u + b * v);
+        if (error < best) {
+            best = error;
+            *from = u + code[0];
+            *to = v + code[0];
+        }
+    }
+}
+
+// Moves the ends of all lines to where BC6H has endpoints, in the mode to which the candidate is
+// converted.
+static void snap_lines(const colors *b, const float mask[TEXELS], const candidate *k, lines *ends)
+{
+    const ki_uastc_mode *mode = &ki_uastc_modes[k->block.mode];
+    converted o;
+    float in[TEXELS], x[TEXELS];
+    convert(k, &o);
+    for (int i = 0; i < TEXELS; i++)
+        x[i] = (float)ki_uastc_weights[mode->weights][k->block.index[i]] / 64;
+    for (int s = 0; s < mode->subsets; s++) {
+        for (int i = 0; i < TEXELS; i++)
+            in[i] = s ? mask[i] : 1 - mask[i];
+        for (int c = 0; c < 3; c++)
+            snap(b->share[c], in, x, b->t.code[c], o.bits, &ends->end[s][0][c],
+                 &ends->end[s][1][c]);
+    }
+}
+
 static void write_lines(const lines *ends, candidate *k)
 {
     for (int s = 0; s < ki_uastc_modes[k->block.mode].subsets; s++) {
@@ -182,22 +363,37 @@ static void write_lines(const lines *ends, candidate *k)
     }
 }
 
+// Settles the weights of a candidate for both formats, and keeps the result if it is the best.
+static void keep_settled(const colors *b, const float mask[TEXELS], const candidate *k,
+                         candidate *best)
+{
+    if (HOPELESS * k->error >= best->error)
+        return;
+    candidate settled = *k;
+    settle_weights(b, mask, &settled);
+    if (settled.error < best->error)
+        *best = settled;
+}
+
+// Tries a mode on lines. The lines are refined by least squares for the block alone, then moved to where BC6H has
+// endpoints, and the weights are settled for both formats.
 static void try_mode(const colors *b, const float mask[TEXELS], const lines *ends, int mode,
                      int partition, candidate *best)
 {
     candidate k = {.block = {.mode = mode, .partition = partition}};
     lines now = *ends;
-    float before = INFINITY;
     for (int round = 0;; round++) {
         write_lines(&now, &k);
         choose_weights(b, mask, &k);
-        if (k.error < best->error)
-            *best = k;
-        if (round == ROUNDS || !(k.error < before))
+        if (round == ROUNDS)
             break;
-        before = k.error;
         refine(b, mask, &k, &now);
     }
+    keep_settled(b, mask, &k, best);
+    snap_lines(b, mask, &k, &now);
+    write_lines(&now, &k);
+    choose_weights(b, mask, &k);
+    keep_settled(b, mask, &k, best);
 }
 
 // Finds the line through the mean of the texels whose weight is 1 along which the three channels
@@ -259,9 +455,13 @@ static void encode(const colors *b, uint8_t bytes[KI_BLOCK_BYTES])
         all[i] = 1;
     find_line(&b->raised, all, ends.end[0]);
     try_mode(b, none, &ends, ONE_16, 0, &best);
-    try_mode(b, none, &ends, ONE_12, 0, &best);
-    rank(&b->raised, left);
-    try_partition(b, best_partition(left), &best);
+    if (best.error > SMOOTH) {
+        try_mode(b, none, &ends, ONE_12, 0, &best);
+        find_scale(&b->raised, all, ends.end[0]);
+        try_mode(b, none, &ends, SCALE_16, 0, &best);
+        rank(&b->raised, left);
+        try_partition(b, best_partition(left), &best);
+    }
     ki_uastc_pack(&best.block, bytes);
 }
 
@@ -279,22 +479,23 @@ static bool encode_solid(const uint16_t halfs[VALUES], uint8_t bytes[KI_BLOCK_BY
 
 static void read_colors(const uint16_t halfs[VALUES], colors *b)
 {
-    float value[VALUES], most = 0, top = 0;
+    float value[VALUES], most = 0;
+    uint16_t top = 0;
     ki_floats_from_halfs(halfs, VALUES, value);
-    for (int i = 0; i < VALUES; i++)
-        most = value[i] > most ? value[i] : most;
     for (int i = 0; i < VALUES; i++) {
-        b->t.code[i % 3][i / 3] = code_of_half(halfs[i]) - 0.5f;
-        b->share[i % 3][i / 3] = value[i] / most + LEAST_SHARE;
+        most = value[i] > most ? value[i] : most;
+        top = halfs[i] > top ? halfs[i] : top;
     }
-    for (int c = 0; c < 3; c++)
-        for (int i = 0; i < TEXELS; i++)
-            top = b->t.code[c][i] > top ? b->t.code[c][i] : top;
-    for (int c = 0; c < 3; c++)
-        for (int i = 0; i < TEXELS; i++) {
-            float code = b->t.code[c][i];
-            b->raised.code[c][i] = code > top - REACH ? code : top - REACH;
-        }
+    int least = ki_max(top - DARKEST * 1024, 0);
+    float reach = code_of_half(top) - 0.5f - REACH;
+    for (int i = 0; i < VALUES; i++) {
+        int c = i % 3, t = i / 3, half = ki_max(halfs[i], least);
+        float code = code_of_half(half) - 0.5f;
+        b->half[c][t] = (float)half;
+        b->t.code[c][t] = code;
+        b->raised.code[c][t] = code > reach ? code : reach;
+        b->share[c][t] = value[i] / most + LEAST_SHARE;
+    }
 }
 
 void KI_UASTC_ROW(const float *rgb, int width, int height, int y, uint8_t *bytes)

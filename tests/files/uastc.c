@@ -204,6 +204,27 @@ static void a_bright_texel_keeps_its_light(void **state)
     }
 }
 
+// A texel of 65504, the largest half float, among texels that are 2^step darker. Ends that lie up to
+// 8 factors of two apart are stored in steps of 4 of 128 numbers for each factor of two, of which
+// the last finite one is 64256. Ends further apart are stored in steps of 16, in blue of 32: 60416
+// and 55296 are the last ones.
+static void the_brightest_texel_keeps_its_light(void **state)
+{
+    (void)state;
+    for (int step = 1; step < 30; step++)
+        for (int at = 0; at < TEXELS; at++) {
+            int code[TEXELS][3], back[TEXELS][3];
+            for (int i = 0; i < TEXELS; i++)
+                for (int c = 0; c < 3; c++)
+                    code[i][c] = i == at ? CODES - 1 : ki_max(CODES - 1 - 1024 * step, 0);
+            there_and_back(code, back);
+            for (int c = 0; c < 3; c++)
+                CHECK_BELOW(relative(code[at][c], back[at][c]), step <= 8 ? 0.0191
+                                                                : c < 2   ? 0.0777
+                                                                          : 0.1559);
+        }
+}
+
 // Noise of every range: the texels err by less than the noise's own spread, and twice as little as
 // the mean of the block would.
 static void noise_errs_less_than_its_range(void **state)
@@ -284,6 +305,7 @@ int main(void)
         cmocka_unit_test(constant_blocks_are_exact),
         cmocka_unit_test(gradients_err_by_half_a_step),
         cmocka_unit_test(a_bright_texel_keeps_its_light),
+        cmocka_unit_test(the_brightest_texel_keeps_its_light),
         cmocka_unit_test(noise_errs_less_than_its_range),
         cmocka_unit_test(a_sky_errs_little),
     };
