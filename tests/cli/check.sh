@@ -36,7 +36,8 @@ wrong sky.exr half.ktx2 --tolerance 0.00001
 grep -q '^half.ktx2: WRONG, the largest error of a level is 0.0' log/out || die "the tolerance"
 
 ! "$KILN" check sky.exr right.ktx2 none.ktx2 --json >log/out 2>log/err || die "a missing file"
-grep -q '^kiln: none.ktx2: ' log/err && [ "$(wc -l <log/err)" = 1 ] || die "the sentence about a missing file"
+grep -q '^kiln: none.ktx2: ' log/err || die "the sentence about a missing file"
+[ "$(wc -l <log/err)" = 1 ] || die "one sentence about a missing file"
 node -e '
     const [right, none] = JSON.parse(require("fs").readFileSync("log/out"));
     const [first, second] = right.levels.levels;
@@ -48,7 +49,8 @@ node -e '
 
 expect 0 "" check sky.exr half.ktx2 --picture errors.png -q
 expect 0 "" info errors.png --json
-grep -q '"width":	256' log/out && grep -q '"height":	512' log/out || die "the picture"
+grep -q '"width":	256' log/out || die "the width of the picture"
+grep -q '"height":	512' log/out || die "the height of the picture"
 
 expect 2 "no input is named" check
 expect 2 "no file to check is named" check sky.exr
