@@ -160,6 +160,30 @@ static bool judge(checker *c, const char *kind, const kiln_findings *findings, d
     return good;
 }
 
+static void print_levels_report(checker *c, const char *path, const kiln_engine *engine,
+                                const kiln_check_levels_report *report,
+                                const kiln_check_shown_report *shown)
+{
+    bool good = judge(c, "levels", &report->findings, report->worst);
+    if (c->json) {
+        print_levels_json(c->json, report);
+        print_shown_json(c->json, shown);
+        print_findings_json(c->json, &report->findings);
+        json_end(c->json);
+        return;
+    }
+    if (c->values->quiet)
+        return;
+    printf("%s: %s, the largest error of a level is %.3g %%\n", cli_show(path).text,
+           good ? "right" : "WRONG", 100 * report->worst);
+    print_levels(report);
+    if (shown->direction_count)
+        printf("  %s shows it with an error of %.3g %% over 19 roughnesses from 0.1 to 1, at most "
+               "%.3g %% at roughness %.2f\n",
+               engine->name, 100 * shown->all, 100 * shown->worst, shown->worst_roughness);
+    print_findings(&report->findings);
+}
+
 // Checks levels for an engine, which is NULL for levels of any kind.
 static int check_levels(checker *c, const char *path, const kiln_engine *engine)
 {
@@ -182,23 +206,7 @@ static int check_levels(checker *c, const char *path, const kiln_engine *engine)
         result = check_draw(context, &difference, c->values->picture, &c->work->error);
     if (result == KILN_OK) {
         add_replaced(&loaded, &report.findings);
-        bool good = judge(c, "levels", &report.findings, report.worst);
-        if (c->json) {
-            print_levels_json(c->json, &report);
-            print_shown_json(c->json, &shown);
-            print_findings_json(c->json, &report.findings);
-            json_end(c->json);
-        } else if (!c->values->quiet) {
-            printf("%s: %s, the largest error of a level is %.3g %%\n", cli_show(path).text,
-                   good ? "right" : "WRONG", 100 * report.worst);
-            print_levels(&report);
-            if (shown.direction_count)
-                printf(
-                    "  %s shows it with an error of %.3g %% over 19 roughnesses from 0.1 to 1, at "
-                    "most %.3g %% at roughness %.2f\n",
-                    engine->name, 100 * shown.all, 100 * shown.worst, shown.worst_roughness);
-            print_findings(&report.findings);
-        }
+        print_levels_report(c, path, engine, &report, &shown);
     }
     kiln_map_free(&difference);
     kiln_map_free(&levels);

@@ -204,6 +204,16 @@ static kiln_result check_all(check *c, const kiln_map *levels, kiln_error *error
     return result == KILN_OK ? measure(c, &mapping, error) : result;
 }
 
+// Moves the levels to `difference`, and subtracts the exact levels.
+static void take_difference(check *c, kiln_map *difference)
+{
+    for (int k = 0; k < c->levels.level_count; k++)
+        for (size_t i = 0; i < 3 * kiln_map_texels(&c->levels, k); i++)
+            c->levels.level[k][i] -= c->exact.level[k][i];
+    *difference = c->levels;
+    c->levels = (kiln_map){0};
+}
+
 kiln_result kiln_check_levels(kiln_context *context, const kiln_map *source, const kiln_map *levels,
                               const kiln_check_levels_def *def, kiln_check_levels_report *report,
                               kiln_map *difference, kiln_error *error)
@@ -226,13 +236,9 @@ kiln_result kiln_check_levels(kiln_context *context, const kiln_map *source, con
         c.panorama = source->shape == KILN_SHAPE_PANORAMA ? source : &panorama;
         result = check_all(&c, levels, error);
     }
-    for (int k = 0; k < c.levels.level_count && result == KILN_OK; k++)
-        for (size_t i = 0; i < 3 * kiln_map_texels(&c.levels, k); i++)
-            c.levels.level[k][i] -= c.exact.level[k][i];
     if (difference && result == KILN_OK)
-        *difference = c.levels;
-    else
-        kiln_map_free(&c.levels);
+        take_difference(&c, difference);
+    kiln_map_free(&c.levels);
     if (result != KILN_OK)
         memset(report, 0, sizeof *report);
     kiln_map_free(&c.exact);
