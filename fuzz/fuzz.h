@@ -53,6 +53,8 @@ void fuzz_table(const uint8_t *bytes, size_t size);
 void fuzz_input(const uint8_t *bytes, size_t size);
 void fuzz_faces(const uint8_t *bytes, size_t size);
 void fuzz_folder(const uint8_t *bytes, size_t size);
+// manifest.c: manifests of `kiln batch`.
+void fuzz_manifest(const uint8_t *bytes, size_t size);
 // eval.c: the command `kiln eval`.
 void fuzz_eval(const uint8_t *bytes, size_t size);
 

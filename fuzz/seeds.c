@@ -411,6 +411,10 @@ static void write_texts(void)
     save_text("folder", "two",
               "px.hdr\nnx.hdr\npy.hdr\nny.hdr\npz.hdr\nnz.hdr\nrt.hdr\nlf.hdr\nup.hdr\ndn.hdr\nft."
               "hdr\nbk.hdr\n\n");
+    save_text("manifest", "two",
+              "{\"input\": \"a.exr\", \"output\": \"a.ktx2\", \"for\": \"three\"}\n"
+              "{\"input\": [\"b\", \"c\"], \"size\": 64, \"zstd\": true}\n");
+    save_text("manifest", "escapes", "{\"a\\u0041\\ud83c\\udf0c\": null,\n\"b\": -1.5e3}");
     save_text("eval", "columns", "e --roughness 0.5\n0.25\n 1e-1 \r\n.75");
     save_text("eval", "alone", "specular --roughness 0.5 --mu 0.5 --nol 0.5 --noh 0.5 --voh 0.5");
     save_text("eval", "json", "schlick --json\n0.04 0.5\n1 1\n");

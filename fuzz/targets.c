@@ -32,6 +32,7 @@ const fuzz_target fuzz_targets[] = {{"exr", fuzz_decode, "\x76\x2f\x31\x01", 4},
                                     {"folder", fuzz_folder, NULL, 0},
                                     {"input", fuzz_input, NULL, 0},
                                     {"eval", fuzz_eval, NULL, 0},
+                                    {"manifest", fuzz_manifest, NULL, 0},
                                     {NULL, NULL, NULL, 0}};
 
 void fuzz_run(const fuzz_target *target, const uint8_t *bytes, size_t size)

@@ -232,12 +232,45 @@ static void spectra(void **state)
     kiln_stream_cancel(NULL);
 }
 
+// Black rows of a panorama with as many rows as the int at `user`.
+static kiln_result read_black(void *user, int first, int count, float *rgb, kiln_error *error)
+{
+    int size = *(const int *)user;
+    (void)error;
+    assert_true(first >= 0 && count >= 1 && count <= size - first);
+    memset(rgb, 0, 6 * (size_t)size * (size_t)count * sizeof *rgb);
+    return KILN_OK;
+}
+
+static void bakes_of_rows(void **state)
+{
+    (void)state;
+    kiln_environment made;
+    const kiln_bake_def small = {.levels.size = 4, .irradiance_size = 4};
+    EACH_INT (n) {
+        int eight = 8, size = n;
+        const kiln_rows all[] = {{size, read_black, &size, 0, 0},
+                                 {eight, read_black, &eight, n, 1},
+                                 {eight, read_black, &eight, 3, n}};
+        for (int i = 0; i < 3; i++) {
+            SWEEP(kiln_bake_rows(c, &all[i], &small, &made, &e), !made.levels.owner);
+            kiln_environment_free(&made);
+        }
+    }
+    INT_FIELD(kiln_load_def, layout, kiln_bake_file(c, "none.exr", &def, &small, NULL, &made, &e),
+              !made.levels.owner, kiln_environment_free(&made));
+    INT_FIELD(kiln_load_def, negative, kiln_bake_file(c, "none.exr", &def, &small, NULL, &made, &e),
+              !made.levels.owner, kiln_environment_free(&made));
+}
+
 static void bakes(void **state)
 {
     (void)state;
     kiln_map m;
     kiln_environment made;
     kiln_plan *plan = NULL;
+    int eight = 8;
+    const kiln_rows rows = {eight, read_black, &eight, 0, 0};
 #define SKY(kind, field)                                                                           \
     kind(kiln_sky_def, field, kiln_sky(c, &def, &m, &e), !m.owner, kiln_map_free(&m))
     SKY(INT_FIELD, size);
@@ -259,7 +292,9 @@ static void bakes(void **state)
     kind(kiln_bake_def, field, kiln_bake(c, &panorama, &def, &made, &e), !made.levels.owner,       \
          kiln_environment_free(&made))                                                             \
         kind(kiln_bake_def, field, kiln_plan_create(c, KILN_SHAPE_PANORAMA, 8, &def, &plan, &e),   \
-             !plan, kiln_plan_destroy(plan))
+             !plan, kiln_plan_destroy(plan))                                                       \
+            kind(kiln_bake_def, field, kiln_bake_rows(c, &rows, &def, &made, &e),                  \
+                 !made.levels.owner, kiln_environment_free(&made))
     BAKE(INT_FIELD, levels.size);
     BAKE(INT_FIELD, tune);
     BAKE(REAL_FIELD, exposure);
@@ -600,9 +635,9 @@ int main(void)
 {
 #define SWEPT(test) cmocka_unit_test_setup_teardown(test, begin, finish)
     const struct CMUnitTest tests[] = {
-        SWEPT(contexts), SWEPT(maps),   SWEPT(loads),   SWEPT(spectra),
-        SWEPT(bakes),    SWEPT(lights), SWEPT(checks),  SWEPT(saves),
-        SWEPT(engines),  SWEPT(tables), SWEPT(courses),
+        SWEPT(contexts), SWEPT(maps),          SWEPT(loads),  SWEPT(spectra),
+        SWEPT(bakes),    SWEPT(bakes_of_rows), SWEPT(lights), SWEPT(checks),
+        SWEPT(saves),    SWEPT(engines),       SWEPT(tables), SWEPT(courses),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
