@@ -6,7 +6,8 @@
 #   web      compares kiln and three.js in a page of a browser
 #   engines  compares the pixels of engines with kiln's files and with the engines' own bakes
 #   engines-lights  measures the pixels with kiln's files after suns and lamps were taken out of the panoramas
-#   blocks   compares BC6H by kiln and by Basis Universal
+#   load     measures how long pages of three.js take to load kiln's files, and panoramas that three.js filters
+#   blocks   compares BC6H and UASTC HDR by kiln and by Basis Universal
 #   batch    bakes a library of 200 panoramas by kiln batch, and some of them by cmgen
 set -eu
 cd "$(dirname "$0")/.."
@@ -129,6 +130,10 @@ for name; do
         ;;
     engines)
         engines || status=1
+        continue
+        ;;
+    load)
+        engine_pixels load load || status=1
         continue
         ;;
     engines-lights)
