@@ -96,7 +96,7 @@ static void choose(ki_search *search, const kiln_lights_def *def, kiln_map *targ
                    kiln_lights *lights)
 {
     bool seen[KI_MOST_REGIONS] = {false};
-    const ki_region *chosen[KILN_MAX_LIGHTS];
+    const ki_region *chosen[KILN_MAX_LIGHTS] = {NULL};
     double sum[KI_SH_COUNT][3] = {{0}};
     int count = def->count ? def->count : def->share != 0 ? KILN_MAX_LIGHTS : 1;
     double share = def->share != 0 ? def->share : 0.01;

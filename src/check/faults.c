@@ -143,7 +143,7 @@ static agreement find_agreement(const ki_pair *pairs, const kiln_check_levels_re
                                 bool turn)
 {
     agreement all = {{0}, 0, 0};
-    shift shifts[KILN_MAX_LEVELS];
+    shift shifts[KILN_MAX_LEVELS] = {0};
     double list[KILN_MAX_LEVELS];
     for (int k = 0; k < report->level_count; k++) {
         if (pairs[k].exact.size < LEAST || report->level[k].rms < 0.003)

@@ -91,7 +91,7 @@ static void find_factors(const kiln_sh *file, double exact[MOST][3], match *m)
         // Each band counts alike. A band that is turned the other way round is no match; a band of
         // irradiance may be negative from degree 4 on.
         double part = ff[l] > 0 && ee[l] > 0 ? 1 - fe[l] * fe[l] / (ff[l] * ee[l]) : 0;
-        m->error += m->factor[l] < 0 && l < 3 ? 2 : part;
+        m->error += l < 3 && m->factor[l] < 0 ? 2 : part;
     }
 }
 

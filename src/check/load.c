@@ -115,7 +115,7 @@ static kiln_result load_pattern(kiln_context *context, const char *pattern,
     kiln_result result = KILN_OK;
     for (int k = 0; k < count && result == KILN_OK; k++) {
         kiln_map one = {0};
-        kiln_load_report found;
+        kiln_load_report found = {0};
         expand(pattern, k, path);
         result = kiln_map_load(context, path, &(kiln_load_def){.report = &found}, &one, error);
         if (result == KILN_OK)
@@ -207,7 +207,7 @@ kiln_result kiln_levels_load(kiln_context *context, const char *path, const kiln
                              kiln_load_report *report, kiln_map *map, kiln_error *error)
 {
     char pattern[KI_OS_PATH];
-    kiln_load_report unused;
+    kiln_load_report unused = {0};
     report = report ? report : &unused;
     *map = (kiln_map){0};
     *report = (kiln_load_report){0};

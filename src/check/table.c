@@ -44,7 +44,7 @@ static void evaluate(const kiln_table_def *def, bool sheen, double u, double v, 
 {
     double ab[2], r = ki_clamp(v, 0, 1), nov = ki_axis_to_nov(def, r, ki_clamp(u, 0, 1));
     kiln_energy_split(&def->model, r, nov, ab);
-    result[KILN_HOLDS_UNKNOWN] = NAN;
+    result[KILN_HOLDS_UNKNOWN] = (double)NAN;
     result[KILN_HOLDS_A] = ab[0];
     result[KILN_HOLDS_B] = ab[1];
     result[KILN_HOLDS_E] = ab[0] + ab[1];
@@ -165,7 +165,7 @@ static void find_places(const table_check *c, const exact_grid *grid, guess *g)
         for (int channel = 0; channel < c->image->channels; channel++, at++) {
             const float *texel =
                 texel_of(c->image, g->order, c->index_u[i % GRID], c->index_v[i / GRID]);
-            int q = g->content[channel];
+            int q = (int)g->content[channel];
             double u = (c->index_u[i % GRID] + 0.5) / c->width - 0.5,
                    v = (c->index_v[i / GRID] + 0.5) / c->height - 0.5;
             const double s[4] = {grid->along_u[i][q], u * grid->along_u[i][q], grid->along_v[i][q],

@@ -234,7 +234,7 @@ kiln_result kiln_bake_file(kiln_context *context, const char *path, const kiln_l
                            kiln_environment *environment, kiln_error *error)
 {
     static const kiln_load_def defaults = {0};
-    kiln_extent unused;
+    kiln_extent unused = {0};
     bool done;
     load = load ? load : &defaults;
     source = source ? source : &unused;

@@ -43,7 +43,7 @@ expect 2 "^kiln: -o needs a value" sky -o
 expect 2 "^kiln: --size needs a value" sky -o sky.exr --size
 expect 2 "size is '', it must be a whole number" sky -o sky.exr --size=
 mkdir faces
-expect 1 "^kiln: faces: is a folder, name one of its files$" info faces
+expect 1 "^kiln: faces: holds no six faces; name the files px nx py ny pz nz or right" info faces
 rmdir faces
 # Words that are empty, as "$FILE" is where FILE was never set.
 expect 2 "^kiln: --output is empty, it must name a file or folder$" sky -o ""
