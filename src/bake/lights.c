@@ -74,15 +74,20 @@ static int find_common_horizons(const kiln_light *one, const kiln_light *other,
 }
 
 // Returns whether the discs of all chosen lights together replace what is taken out, for surfaces that
-// have the last of these lights and another one on their horizon.
+// have the last of these lights and another one on their horizon. Lights without a shape do not count.
 static bool fits_others(const ki_search *search, const ki_region *const *chosen, int count)
 {
     const kiln_light *last = &chosen[count - 1]->light;
+    if (chosen[count - 1]->count < KI_SHAPED)
+        return true;
     for (int i = 0; i < count - 1; i++) {
+        if (chosen[i]->count < KI_SHAPED)
+            continue;
         double normals[9][3], errors[9][3] = {{0}};
         int found = find_common_horizons(last, &chosen[i]->light, normals);
         for (int k = 0; k < count && found; k++)
-            ki_region_add_errors(search, chosen[k], (const double(*)[3])normals, found, errors);
+            if (chosen[k]->count >= KI_SHAPED)
+                ki_region_add_errors(search, chosen[k], (const double(*)[3])normals, found, errors);
         for (int n = 0; n < found; n++)
             for (int c = 0; c < 3; c++)
                 if (fabs(errors[n][c]) > ki_light_error)
@@ -105,8 +110,8 @@ static void choose(ki_search *search, const kiln_lights_def *def, kiln_map *targ
            region->light.share >= share) {
         seen[region - search->region] = true;
         chosen[lights->count] = region;
-        if (ki_region_error(search, region) > ki_light_error ||
-            !fits_others(search, chosen, lights->count + 1) || !add_mismatch(region, sum))
+        if (!ki_region_is_disc(search, region) || !fits_others(search, chosen, lights->count + 1) ||
+            !add_mismatch(region, sum))
             continue;
         lights->light[lights->count++] = region->light;
     }

@@ -51,6 +51,9 @@ enum { KI_REJECTED = 65535 };
 /// Largest mismatch of one light, and of the sum of all lights that are taken out, so that the
 /// lights and the map that remains have the harmonics of the map to a thousandth.
 extern const double ki_light_mismatch, ki_lights_mismatch;
+/// Number of texels from which on a light has a shape. The edges of a light of fewer texels are those of
+/// its texels, and say nothing of the source.
+enum { KI_SHAPED = 9 };
 /// Largest error of irradiance of one light, and of all lights together, as a part of the greatest
 /// irradiance. The bound is a thousandth less 5 %, because few surfaces are tried and the greatest
 /// irradiance is known within 4 %.
@@ -73,9 +76,9 @@ void ki_region_measure(const ki_search *search, ki_region *region, kiln_map *tar
 /// part of search->brightest.
 void ki_region_add_errors(const ki_search *search, const ki_region *region,
                           const double (*normals)[3], int count, double (*errors)[3]);
-/// Returns the largest magnitude of these errors over channels and over surfaces whose horizons pass
-/// through the centre of the light or up to three quarters of its radius above and below.
-double ki_region_error(const ki_search *search, const ki_region *region);
+/// Returns whether the disc of a measured region replaces what is taken out of the region: the errors of
+/// surfaces are at most ki_light_error, or the region has no shape.
+bool ki_region_is_disc(const ki_search *search, const ki_region *region);
 /// Adds the harmonics of a light's disc to coefficients.
 void ki_light_add_sh(const kiln_light *light, double c[KI_SH_COUNT][3]);
 /// Returns the largest magnitude of a mismatch.

@@ -272,7 +272,9 @@ void ki_region_add_errors(const ki_search *search, const ki_region *region,
     }
 }
 
-double ki_region_error(const ki_search *search, const ki_region *region)
+// Returns the largest magnitude of a region's errors over channels and over surfaces whose horizons
+// pass through the centre of the light or up to three quarters of its radius above and below.
+static double largest_error(const ki_search *search, const ki_region *region)
 {
     enum { SIDES = 24, HEIGHTS = 7, SURFACES = SIDES * HEIGHTS };
     const double *d = region->light.direction;
@@ -293,6 +295,11 @@ double ki_region_error(const ki_search *search, const ki_region *region)
         for (int c = 0; c < 3; c++)
             most = fmax(most, fabs(errors[i][c]));
     return most;
+}
+
+bool ki_region_is_disc(const ki_search *search, const ki_region *region)
+{
+    return region->count < KI_SHAPED || largest_error(search, region) <= ki_light_error;
 }
 
 double ki_mismatch_size(const double mismatch[KI_SH_COUNT][3])

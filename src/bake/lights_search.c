@@ -165,7 +165,7 @@ static bool find_region(ki_search *search, ki_region *region, size_t seed)
         if (grow(search, region, seed, threshold)) {
             ki_region_measure(search, region, NULL);
             if (ki_mismatch_size((const double(*)[3])region->mismatch) <= ki_light_mismatch &&
-                ki_region_error(search, region) <= ki_light_error)
+                ki_region_is_disc(search, region))
                 return true;
         }
         set_owner(search, region, 0);

@@ -317,6 +317,22 @@ static void the_skys_sun_is_the_skys_sun(void **state)
     }
 }
 
+// In a small panorama the sun is one texel or two, whose rectangle is no disc.
+static void a_sun_of_few_texels_is_a_light(void **state)
+{
+    (void)state;
+    for (int elevation = 10; elevation <= 90; elevation += 8) {
+        kiln_map map;
+        ki_sky sky;
+        const kiln_sky_def def = {.size = 64, .elevation = elevation, .azimuth = 7.0 * elevation};
+        CHECK_OK(kiln_sky(context, &def, &map, &error));
+        ki_sky_prepare(&sky, elevation, 7.0 * elevation, 3, 0.2);
+        kiln_lights lights = extract(&map, 4, false);
+        assert_int_equal(lights.count, 1);
+        CHECK_BELOW(degrees_between(lights.light[0].direction, sky.sun), 0.5 * 180 / 64);
+    }
+}
+
 // ------------------------------------------------------------------------------------------- bakes
 
 static void a_bake_without_its_sun_is_the_bake_of_what_remains(void **state)
@@ -426,7 +442,7 @@ static void memory_that_runs_out_is_an_error(void **state)
         kiln_context *c = failing_context(&f);
         kiln_map map = make_panorama(c, 64);
         fill_constant(&map, 1);
-        texel_at(&map, 5, 25)[0] = 1e4f;
+        texel_at(&map, 5, 5)[0] = 1e4f;
         f.fail_at = f.calls + n;
         kiln_result result = kiln_lights_extract(c, &map, NULL, &lights, &said);
         bool failed = f.calls >= f.fail_at;
@@ -449,6 +465,7 @@ int main(void)
         cmocka_unit_test(two_suns_a_window_and_lamps_are_told_apart),
         cmocka_unit_test(nothing_is_found_where_nothing_stands_out),
         cmocka_unit_test(the_skys_sun_is_the_skys_sun),
+        cmocka_unit_test(a_sun_of_few_texels_is_a_light),
         cmocka_unit_test(a_bake_without_its_sun_is_the_bake_of_what_remains),
         cmocka_unit_test(a_clamp_keeps_colours_and_tells_what_was_lost),
         cmocka_unit_test(wrong_numbers_are_named),
