@@ -100,7 +100,7 @@ static kiln_result read_pieces(pass *p, kiln_error *error)
 // Returns the first end of a block at or after `row`, no further than `limit`.
 static int end_of_block(const pass *p, int row, int limit)
 {
-    int into = (row - p->source->phase) % p->block;
+    int into = (int)(((int64_t)row - p->source->phase) % p->block);
     into += into < 0 ? p->block : 0;
     int64_t end = (int64_t)row + (into ? p->block - into : 0);
     return end < limit ? (int)end : limit;
