@@ -62,8 +62,9 @@ static int find_common_horizons(const kiln_light *one, const kiln_light *other,
         return 0;
     for (int i = 0; i < 9; i++) {
         // The heights over the horizon are the cosines of the normal with both directions.
-        double x = (i % 3 - 1) * 0.5 * ki_sin(one->angular_radius * (KI_PI / 180));
-        double y = (i / 3 - 1) * 0.5 * ki_sin(other->angular_radius * (KI_PI / 180));
+        int column = i % 3, row = i / 3;
+        double x = (column - 1) * 0.5 * ki_sin(one->angular_radius * (KI_PI / 180));
+        double y = (row - 1) * 0.5 * ki_sin(other->angular_radius * (KI_PI / 180));
         double in_a = (x - cosine * y) / squares, in_b = (y - cosine * x) / squares;
         double flat = x * in_a + y * in_b; // squared length of the part in the plane of a and b
         double up = sqrt(fmax(0, 1 - flat) / squares);

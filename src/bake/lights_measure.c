@@ -284,7 +284,8 @@ static double largest_error(const ki_search *search, const ki_region *region)
     const double a[3] = {1 + side * d[0] * d[0] * m, side * d[0] * d[1] * m, -side * d[0]};
     const double b[3] = {d[0] * d[1] * m, side + d[1] * d[1] * m, -d[1]};
     for (int i = 0; i < SURFACES; i++) {
-        double sine, cosine, up, out, height = 0.25 * (i % HEIGHTS - HEIGHTS / 2);
+        int step = i % HEIGHTS - HEIGHTS / 2;
+        double sine, cosine, up, out, height = 0.25 * step;
         ki_sincos(height * region->light.angular_radius * (KI_PI / 180), &up, &out);
         ki_sincos(2 * KI_PI * i / SURFACES, &sine, &cosine);
         for (int k = 0; k < 3; k++)

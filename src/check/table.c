@@ -166,8 +166,8 @@ static void find_places(const table_check *c, const exact_grid *grid, guess *g)
             const float *texel =
                 texel_of(c->image, g->order, c->index_u[i % GRID], c->index_v[i / GRID]);
             int q = (int)g->content[channel];
-            double u = (c->index_u[i % GRID] + 0.5) / c->width - 0.5,
-                   v = (c->index_v[i / GRID] + 0.5) / c->height - 0.5;
+            int column = c->index_u[i % GRID], row = c->index_v[i / GRID];
+            double u = (column + 0.5) / c->width - 0.5, v = (row + 0.5) / c->height - 0.5;
             const double s[4] = {grid->along_u[i][q], u * grid->along_u[i][q], grid->along_v[i][q],
                                  v * grid->along_v[i][q]};
             left[at] = right[at] = decode((double)texel[channel], g->gamma) - grid->at[i][q];

@@ -321,8 +321,8 @@ static kiln_result read_image(kiln_context *context, const manifest *m, const ui
 kiln_result ki_env_decode(kiln_context *context, const uint8_t *bytes, size_t size,
                           const char *name, kiln_map *map, kiln_error *error)
 {
-    manifest m;
-    const uint8_t *images;
+    manifest m = {0};
+    const uint8_t *images = NULL;
     *map = (kiln_map){0};
     kiln_result result = read_file(context, bytes, size, name, &m, &images, error);
     if (result == KILN_OK && m.type[0] && strcmp(m.type, "image/png") != 0)

@@ -130,7 +130,7 @@ static void convert(const candidate *k, converted *o)
     int near = weights_after(mode)[k->block.index[0]] > 32, count = 6 * mode->subsets, whole[12];
     for (int i = 0; i < count; i++)
         whole[i] = (ki_uastc_half(16 * k->end[i / 6][i / 3 % 2][i % 3]) * 64 + 30) / 31;
-    const int *base = whole + 6 * turned + 3 * near;
+    const int *base = whole + (turned ? 6 : 0) + (near ? 3 : 0);
     const uint8_t *m = mode->subsets == 2 ? two : one;
     for (bool fits = false; !fits; m++) {
         const ki_bc6h_mode *bc6h = &ki_bc6h_modes[*m];

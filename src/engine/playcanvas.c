@@ -193,8 +193,9 @@ static void look_at(const kiln_image *picture, int level, const double d[3], boo
     double u, v;
     const double at[3] = {-d[0], d[1], -d[2]}; // as in read_picture
     ki_direction_panorama(at, &u, &v);
+    int height = width / 2;
     ki_atlas_read(picture, border + u * (width - 2 * border),
-                  (level ? size - width : 0) + border + v * (width / 2 - 2 * border), roots, rgb);
+                  (level ? size - width : 0) + border + v * (height - 2 * border), roots, rgb);
 }
 
 static void look_rgbp(const kiln_image *picture, int level, const double d[3], float rgb[3])

@@ -184,8 +184,9 @@ static void look(const kiln_image *atlas, int k, const double d[3], float rgb[3]
         s = (d[2] > 0 ? -d[0] : d[0]) / z;
         t = d[1] / z;
     }
-    double left = index % 3 * size + ki_max(4 - mip, 0) * 3 * LAST;
-    double bottom = index / 3 * size + 4 * ((1 << most) - size);
+    int column = index % 3, row = index / 3;
+    double left = column * size + ki_max(4 - mip, 0) * 3 * LAST;
+    double bottom = row * size + 4 * ((1 << most) - size);
     double u = (s + 1) / 2 * (size - 2) + 1, v = (t + 1) / 2 * (size - 2) + 1;
     ki_atlas_read(atlas, left + u, atlas->height - bottom - v, false, rgb);
 }

@@ -167,7 +167,8 @@ static void values_that_are_no_radiance(void **state)
                          .channels = colours,
                          .channel_count = 3,
                          .value = strange};
-        strange_at = (float)rows[i / 5];
+        int place = i / 5;
+        strange_at = (float)rows[place];
         strange_value = values[i % 5];
         size_t size;
         uint8_t *bytes = exr_make_file(&make, &size);
