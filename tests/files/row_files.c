@@ -167,7 +167,7 @@ static void values_that_are_no_radiance(void **state)
                          .channels = colours,
                          .channel_count = 3,
                          .value = strange};
-        int place = i / 5;
+        size_t place = i / 5;
         strange_at = (float)rows[place];
         strange_value = values[i % 5];
         size_t size;
