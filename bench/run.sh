@@ -6,7 +6,8 @@
 #   web      compares kiln and three.js in a page of a browser
 #   engines  compares the pixels of engines with kiln's files and with the engines' own bakes
 #   engines-lights  measures the pixels with kiln's files after suns and lamps were taken out of the panoramas
-#   load     measures how long pages of three.js take to load kiln's files, and panoramas that three.js filters
+#   load     measures the time from fetch to the first picture of pages of three.js that load kiln's files, and of pages
+#            that load panoramas, which three.js filters itself
 #   blocks   compares BC6H and UASTC HDR by kiln and by Basis Universal
 #   batch    bakes a library of 200 panoramas by kiln batch, and some of them by cmgen
 set -eu

@@ -1,6 +1,6 @@
 // The checksum XXH64. In: bytes. Out: 64 bits. Method: four sums take 8 bytes each of every 32
-// bytes; after the last whole 32 bytes the sums and the bytes that are left are mixed into one
-// number. Source: "xxHash fast digest algorithm", version 0.1.1, section XXH64.
+// bytes. At the end the four sums, and then the last bytes, which are fewer than 32, are mixed into
+// one number. Source: "xxHash fast digest algorithm", version 0.1.1, section XXH64.
 #include "hash.h"
 #include "os.h"
 

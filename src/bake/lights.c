@@ -75,7 +75,8 @@ static int find_common_horizons(const kiln_light *one, const kiln_light *other,
 }
 
 // Returns whether the discs of all chosen lights together replace what is taken out, for surfaces that
-// have the last of these lights and another one on their horizon. Lights without a shape do not count.
+// have the last of these lights and another one on their horizon. Lights of
+// fewer than KI_SHAPED texels are left out.
 static bool fits_others(const ki_search *search, const ki_region *const *chosen, int count)
 {
     const kiln_light *last = &chosen[count - 1]->light;

@@ -64,7 +64,8 @@ static float *northern_memory(const pass *p)
 
 // ----------------------------------------------------------------------------------------- reading
 
-// Task of one thread: reads one piece and changes its rows as the work asks for.
+// Task of one thread: reads the rows of one piece, mirrors them if the bake mirrors its source, and
+// multiplies them by the exposure of the bake.
 static void read_piece(void *data, int index)
 {
     pass *p = data;

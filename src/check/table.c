@@ -188,7 +188,8 @@ static void find_places(const table_check *c, const exact_grid *grid, guess *g)
             g->remains = g->error;
 }
 
-// Compares a model and an axis with the table in the orders that swap rows and columns, or do not.
+// Compares the table with the exact values of one model and one axis: in the four orders in which n.v
+// grows or falls along rows, or, if `swapped` is true, in the four in which n.v runs along columns.
 static kiln_result try_model(kiln_context *context, table_check *c, bool swapped, bool sheen,
                              exact_grid *grid, guess *best, kiln_error *error)
 {

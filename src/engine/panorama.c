@@ -1,6 +1,7 @@
 // Engines that load only a panorama and filter it themselves: Godot's PanoramaSkyMaterial, Unreal's
-// sky light, and <model-viewer> and drei's <Environment>, which load JPEG files with gain maps. A cube of w texels becomes a panorama of 4w x 2w in kiln's own directions,
-// which is the orientation of the panorama that kiln read.
+// sky light, and <model-viewer> and drei's <Environment>, which load JPEG files with gain maps. A
+// cube of w texels becomes a panorama of 4w x 2w in kiln's own directions, which is the orientation
+// of the panorama that kiln read.
 #include "engine/engine.h"
 
 #include "codec/codec.h"
@@ -72,6 +73,11 @@ static kiln_result write_model_viewer(ki_export *to, kiln_error *error)
     return write_panorama(to, write_jpeg, error);
 }
 
+// What the recipes have in common: one unfiltered level in kiln's own axes.
+#define UNFILTERED                                                                                 \
+    .axes = {{0, 1, 2}, {1, 1, 1}}, .size_min = 32, .size_max = 4096, .last_size = 1,              \
+    .level_count_max = 1, .roughness = roughness
+
 const ki_recipe ki_godot = {
     .about = {.name = "godot",
               .title = "Godot 3 and 4, which filter by themselves",
@@ -82,12 +88,7 @@ const ki_recipe ki_godot = {
               .level_count = 1,
               .limit = KI_HALF_MAX,
               .proof = "pixels of Godot 3.2.3, source of Godot 4 (0095d7d)"},
-    .axes = {{0, 1, 2}, {1, 1, 1}},
-    .size_min = 32,
-    .size_max = 4096,
-    .last_size = 1,
-    .level_count_max = 1,
-    .roughness = roughness,
+    UNFILTERED,
     .write = write_godot,
 };
 
@@ -101,12 +102,7 @@ const ki_recipe ki_unreal = {
               .level_count = 1,
               .limit = 1e38,
               .proof = "manual of Unreal Engine 4.27"},
-    .axes = {{0, 1, 2}, {1, 1, 1}},
-    .size_min = 32,
-    .size_max = 4096,
-    .last_size = 1,
-    .level_count_max = 1,
-    .roughness = roughness,
+    UNFILTERED,
     .write = write_unreal,
 };
 
@@ -120,11 +116,6 @@ const ki_recipe ki_model_viewer = {
               .level_count = 1,
               .limit = KI_HALF_MAX,
               .proof = "pixels of <model-viewer> 4.4.0"},
-    .axes = {{0, 1, 2}, {1, 1, 1}},
-    .size_min = 32,
-    .size_max = 4096,
-    .last_size = 1,
-    .level_count_max = 1,
-    .roughness = roughness,
+    UNFILTERED,
     .write = write_model_viewer,
 };

@@ -220,8 +220,9 @@ static void add_total(ki_analysis_workspace *w, int row, double solid)
 }
 
 // Adds the light of the rows r->rows[0] to the total, and their brightest texels to the candidate
-// suns. The total depends on the order of the rows by its rounding, so that texels that hold very
-// little less than the share sun_share are candidates too; select_suns knows the exact total.
+// suns. The last bits of the total depend on the order in which rows are added. Texels that hold a
+// billionth less than the share sun_share are candidates too, and select_suns, which adds the rows from
+// north to south, decides.
 static void gather_candidates(const run *r)
 {
     const double share = sun_share * (1 - 1e-9);

@@ -3,6 +3,8 @@
 
 #include "kit/context.h"
 
+#include "findings.h"
+
 enum { N = 64 };
 
 static kiln_table made(const kiln_table_def *def)
@@ -20,17 +22,6 @@ static kiln_check_table_report checked(const kiln_image *image, bool flip)
     kiln_check_table_report report;
     CHECK_OK(kiln_check_table(context, image, flip, &report, &error));
     return report;
-}
-
-static void expect_fault(const kiln_check_table_report *report, kiln_finding_kind kind,
-                         const char *words)
-{
-    for (int i = 0; i < report->findings.count; i++)
-        if (report->findings.finding[i].fault) {
-            CHECK_SAYS(report->findings.finding[i].text, words);
-            assert_int_equal(report->findings.finding[i].kind, kind);
-        }
-    assert_int_equal(report->findings.fault_count, 1);
 }
 
 // An image of the same size whose texel (x, y) is that of `from` at (u, v).
@@ -114,7 +105,7 @@ static void orders_are_named(void **state)
     for (int i = 0; i < 3; i++) {
         kiln_image image = ordered(&table.image, i == 0, i == 1, i == 2);
         kiln_check_table_report report = checked(&image, false);
-        expect_fault(&report, KILN_FINDING_ORDER, words[i]);
+        expect_one_fault(&report.findings, KILN_FINDING_ORDER, words[i]);
         CHECK_BELOW(report.rms, 1e-6);
         kiln_image_free(&image);
     }
@@ -131,7 +122,7 @@ static void a_gamma_curve_is_named(void **state)
             (float)(x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - 0.055);
     }
     kiln_check_table_report report = checked(&table.image, false);
-    expect_fault(&report, KILN_FINDING_ENCODING, "gamma-encoded");
+    expect_one_fault(&report.findings, KILN_FINDING_ENCODING, "gamma-encoded");
     CHECK_BELOW(report.rms, 1e-5);
     kiln_table_free(&table);
 }
@@ -164,7 +155,7 @@ static void texels_beside_their_places_are_named(void **state)
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         fill_places(&image, rows[i].right, rows[i].down);
         kiln_check_table_report report = checked(&image, false);
-        expect_fault(&report, KILN_FINDING_SHIFT, rows[i].words);
+        expect_one_fault(&report.findings, KILN_FINDING_SHIFT, rows[i].words);
         CHECK_BELOW(5e-4, report.rms);
     }
     kiln_image_free(&image);
@@ -179,7 +170,8 @@ static void other_pictures_are_no_tables(void **state)
     for (int i = 0; i < N * N; i++)
         image.pixels[i] = (float)(i % N) / N;
     report = checked(&image, false);
-    expect_fault(&report, KILN_FINDING_CONTENT, "not those of a table that kiln knows");
+    expect_one_fault(&report.findings, KILN_FINDING_CONTENT,
+                     "not those of a table that kiln knows");
     image.pixels[77] = NAN;
     assert_int_equal(kiln_check_table(context, &image, false, &report, &error),
                      KILN_ERROR_ARGUMENT);
