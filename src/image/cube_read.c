@@ -16,26 +16,18 @@ size_t ki_cube_texel(int n, int face, int x, int y)
     return ((size_t)face * (size_t)n + (size_t)y) * (size_t)n + (size_t)x;
 }
 
-void ki_face_taps(int size, int face, double s, double t, size_t texels[4], double weights[4])
-{
-    double u = (s + 1) / 2 * size - 0.5, v = (t + 1) / 2 * size - 0.5;
-    int x = (int)floor(u), y = (int)floor(v);
-    u -= x;
-    v -= y;
-    bool inside = x >= 0 && y >= 0 && x + 1 < size && y + 1 < size;
-    size_t first = inside ? ki_cube_texel(size, face, x, y) : 0;
-    for (int i = 0; i < 4; i++) {
-        texels[i] = inside ? first + (size_t)(i % 2) + (size_t)(i / 2) * (size_t)size
-                           : ki_cube_texel(size, face, x + i % 2, y + i / 2);
-        weights[i] = (i % 2 ? u : 1 - u) * (i / 2 ? v : 1 - v);
-    }
-}
-
 void ki_cube_taps(int size, const double direction[3], size_t texels[4], double weights[4])
 {
     double s, t;
     int face = ki_direction_face(direction, &s, &t);
-    ki_face_taps(size, face, s, t, texels, weights);
+    double u = (s + 1) / 2 * size - 0.5, v = (t + 1) / 2 * size - 0.5;
+    int x = (int)floor(u), y = (int)floor(v);
+    u -= x;
+    v -= y;
+    for (int i = 0; i < 4; i++) {
+        texels[i] = ki_cube_texel(size, face, x + i % 2, y + i / 2);
+        weights[i] = (i % 2 ? u : 1 - u) * (i / 2 ? v : 1 - v);
+    }
 }
 
 void ki_cube_read(const kiln_map *cube, int level, const double direction[3], double rgb[3])

@@ -67,8 +67,6 @@ size_t ki_cube_texel(int n, int face, int x, int y);
 /// Finds the four texels, and their weights, from which a graphics processor reads a cube of `size`
 /// bilinearly, across the edges of faces too, in a direction that is not 0.
 void ki_cube_taps(int size, const double direction[3], size_t texels[4], double weights[4]);
-/// Finds the same at (s, t), each from -1 to 1, of a face.
-void ki_face_taps(int size, int face, double s, double t, size_t texels[4], double weights[4]);
 /// Reads a level of a cube in a direction, with the texels and weights of ki_cube_taps.
 void ki_cube_read(const kiln_map *cube, int level, const double direction[3], double rgb[3]);
 

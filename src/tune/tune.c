@@ -10,6 +10,7 @@
 #include "math/math.h"
 #include "sphere/points.h"
 #include "sphere/sh.h"
+#include "tune/tune_faces.h"
 #include "tune/tune_level.h"
 #include "tune/tune_mix.h"
 #include "tune/tune_read.h"
@@ -281,42 +282,84 @@ static bool is_read(const ki_tune *t, int level)
            size > 1;
 }
 
-typedef struct correction {
-    kiln_map *goal;
-    // texels of the next coarser level, and the radiance that it should show
-    const kiln_map *map, *target;
-    int level;
-    double factor;
-} correction;
+// A cube that is read at the points of the goal: its texels as planes, and where the points lie.
+typedef struct read_cube {
+    ki_faces faces;
+    double *planes;
+    ki_face_tap *taps; // [goal's size]
+} read_cube;
 
-// Reads a level at (s, t) of a face.
-static void read_face(const kiln_map *map, int level, int face, double s, double t, double rgb[3])
+static kiln_result open_cube(kiln_context *context, const kiln_map *map, int level, int edge,
+                             read_cube *cube, kiln_error *error)
 {
-    size_t texels[4];
-    double w[4];
-    ki_face_taps(kiln_map_level_size(map, level), face, s, t, texels, w);
-    for (size_t c = 0; c < 3; c++) {
-        rgb[c] = 0;
-        for (int i = 0; i < 4; i++)
-            rgb[c] += w[i] * (double)map->level[level][3 * texels[i] + c];
-    }
+    kiln_result result =
+        ki_faces_create(context, kiln_map_level_size(map, level), &cube->faces, error);
+    if (result != KILN_OK)
+        return result;
+    size_t count = ki_faces_count(&cube->faces);
+    cube->planes = ki_alloc(context, count, sizeof *cube->planes);
+    cube->taps = ki_alloc_raw(context, (size_t)edge, sizeof *cube->taps);
+    if (!cube->planes || !cube->taps)
+        return ki_fail_memory(context, error, "a level's error", count * sizeof *cube->planes);
+    ki_face_taps_set(&cube->faces, edge, cube->taps);
+    ki_faces_load(&cube->faces, map->level[level], cube->planes);
+    return KILN_OK;
 }
 
-// Task of one thread: subtracts from a row of the goal the error of the next coarser level, times
-// `factor`.
-static void correct_row(void *data, int row)
+static void close_cube(read_cube *cube)
 {
-    const correction *a = data;
-    int size = a->goal->size, face = row / size;
-    double t = (2 * (row % size) + 1.0) / size - 1;
-    float *to = a->goal->level[0] + 3 * (size_t)row * (size_t)size;
-    for (int x = 0; x < size; x++, to += 3) {
-        double shown[3], wanted[3], s = (2 * x + 1.0) / size - 1;
-        read_face(a->map, a->level, face, s, t, shown);
-        read_face(a->target, 0, face, s, t, wanted);
-        for (size_t c = 0; c < 3; c++)
-            to[c] -= (float)(a->factor * (shown[c] - wanted[c]));
+    ki_faces_destroy(&cube->faces);
+    ki_free(cube->planes);
+    ki_free(cube->taps);
+}
+
+typedef struct correction {
+    kiln_map *goal;
+    // the texels of the next coarser level, and the radiance that they should show
+    read_cube shown, wanted;
+    double factor;
+    double *lines; // [KI_PLANES][room]
+    size_t room;   // doubles of the longest row that is read
+} correction;
+
+// Task of one thread: subtracts from a channel of a face of the goal the error of the next coarser
+// level, times `factor`.
+static void correct_plane(void *data, int plane)
+{
+    correction *a = data;
+    int edge = a->goal->size;
+    size_t row = 3 * (size_t)edge;
+    float *to = a->goal->level[0] + row * (size_t)edge * (size_t)(plane / 3) + plane % 3;
+    double *line = a->lines + a->room * (size_t)plane;
+    read_cube *const cubes[2] = {&a->shown, &a->wanted};
+    for (int y = 0; y < edge; y++, to += row)
+        for (int i = 0; i < 2; i++)
+            ki_faces_read_row(&cubes[i]->faces,
+                              ki_faces_plane(&cubes[i]->faces, cubes[i]->planes, plane), edge,
+                              cubes[i]->taps, y, i ? a->factor : -a->factor, line, to);
+}
+
+// Subtracts from the goal of a level the error of the next coarser level, for which the finer level
+// makes up.
+static kiln_result correct_goal(run *r, int level, kiln_map *goal, kiln_error *error)
+{
+    correction a = {.goal = goal, .factor = r->mixtures.coupling[level]};
+    kiln_result result = open_cube(r->context, r->map, level + 1, goal->size, &a.shown, error);
+    if (result == KILN_OK)
+        result = open_cube(r->context, &r->targets[level + 1], 0, goal->size, &a.wanted, error);
+    if (result == KILN_OK) {
+        a.room = (size_t)ki_max(a.shown.faces.width, a.wanted.faces.width);
+        a.lines = ki_alloc_raw(r->context, KI_PLANES * a.room, sizeof *a.lines);
+        if (!a.lines)
+            result = ki_fail_memory(r->context, error, "a level's error",
+                                    KI_PLANES * a.room * sizeof *a.lines);
     }
+    if (result == KILN_OK)
+        ki_parallel_for(r->context, KI_PLANES, correct_plane, &a);
+    ki_free(a.lines);
+    close_cube(&a.shown);
+    close_cube(&a.wanted);
+    return result;
 }
 
 // Makes a level whose texels ki_solve_texels computes, such that bilinear reads of the level come
@@ -339,12 +382,10 @@ static kiln_result make_read(run *r, int level, kiln_error *error)
     if (result != KILN_OK)
         return result;
     memcpy(goal.level[0], target->level[0], 3 * kiln_map_texels(target, 0) * sizeof(float));
-    if (t->nodes.tuned[level] && is_read(t, level + 1)) {
-        correction a = {&goal, r->map, &r->targets[level + 1], level + 1,
-                        r->mixtures.coupling[level]};
-        ki_parallel_for(r->context, 6 * goal.size, correct_row, &a);
-    }
-    result = ki_solve_texels(r->context, &goal, r->map, level, error);
+    if (t->nodes.tuned[level] && is_read(t, level + 1))
+        result = correct_goal(r, level, &goal, error);
+    if (result == KILN_OK)
+        result = ki_solve_texels(r->context, &goal, r->map, level, error);
     kiln_map_free(&goal);
     return result;
 }

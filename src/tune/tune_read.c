@@ -1,356 +1,474 @@
 // Computes the texels of a cube level such that the level, interpolated bilinearly, comes nearest
 // to a finer cube, the goal. In: the goal. Out: texels >= 0. Method: a linear least-squares
 // problem, by conjugate gradients.
-#include "tune/tune_read.h"
-
-#include "image/image.h"
-
-#include <math.h>
-#include <string.h>
-
+//
 // The points are the directions of the goal's texels. B x are the values that bilinear reads of the
 // texels x give at the points; each read has four taps. W is the diagonal matrix of the points'
 // solid angles. The normal equations B' W B x = B' W goal are solved by conjugate gradients,
 // preconditioned by the diagonal of B' W B. The condition number of B' W B is about 9, so that
 // STEPS steps suffice. Texels that become negative are fixed at 0, and the equations of the
-// remaining texels are solved again, in up to ROUNDS rounds. Tasks process CHUNK texels or points.
-enum { STEPS = 14, ROUNDS = 3, CHUNK = 2048 };
+// remaining texels are solved again, in up to ROUNDS rounds.
+//
+// The matrix B' W B connects each texel with itself and its eight neighbours. The points of a face
+// read only texels of that face's plane and of its rim (tune_faces.h), and they lie alike on all
+// faces. The matrix is therefore the sum, over the faces, of one matrix for a plane, whose rows are
+// computed once and serve 18 planes. What a plane's product adds to its rim belongs to the texels
+// that the rim repeats, and is added there.
+#include "tune/tune_read.h"
+
+#include "tune/tune_faces.h"
+
+#include <math.h>
+#include <string.h>
+
+// Levels with faces of at most SMALL texels are one task, others a task for each plane.
+enum { STEPS = 14, ROUNDS = 3, SMALL = 32 };
 
 // The steps end when the squared residual, weighted by the inverse diagonal, is this part of what it was
 // before the first step.
 static const double near = 1e-5;
 
-typedef struct tap {
-    // in `taps` the index of the texel that a point reads, in `reverse` the index of the point that
-    // reads a texel
-    uint32_t at;
-    float weight;
-} tap;
+// Elements of the symmetric matrix for a plane: of each texel with itself and with the four
+// neighbours that come after it in memory. Its elements with the four neighbours before it are
+// stored at these neighbours.
+enum { SELF, EAST, SOUTH_WEST, SOUTH, SOUTH_EAST, NEIGHBOURS };
 
 typedef struct reads {
     kiln_context *context;
-    const kiln_map *goal;
-    size_t texel_count, point_count;
-    // the matrix B: the four texels that a bilinear read at each point uses, with their weights
-    tap (*taps)[4];
-    // index in `reverse` of the first point that reads each texel, [texel_count + 1]
-    uint32_t *start;
-    // the transpose of `taps`: the points that read each texel, with their weights
-    tap *reverse;
-    // solid angle of each point of one cube face, up to a constant factor
-    float *solid;
-    // at each point, the value that is read from the texels, or the goal minus that value, times
-    // the point's solid angle
-    double (*shown)[3];
-    // For each texel and channel: the solution x; the residual of the normal equations; the search
-    // direction; the matrix B' W B times that direction; the diagonal of the matrix (for each
-    // texel); and whether the texel is fixed at 0.
-    double (*x)[3], (*residual)[3], (*direction)[3], (*product)[3], *diagonal;
-    bool (*held)[3];
-    // [chunk][2][channel]: for each chunk of texels or points, two sums that a task has written;
-    // show_points, gather, take_step and hold say which.
-    double (*sums)[2][3];
+    ki_faces faces;
+    const float *goal; // RGB texels of the goal's faces
+    int edge;          // texels along the edge of a face of the goal
+    ki_face_tap *taps; // [edge]: the two texels between which each point of a row or column lies
+    // [edge * edge]: solid angle of the points of a face, up to a constant factor
+    double *solid;
+    double *matrix; // planes, one for each of the elements above
+    // Planes of a cube (tune_faces.h). `right` is B' W goal; `share` is B' W 1, the weight of each
+    // texel in the mean of what is read; `inverse` is 1 over the diagonal of the matrix, and 0 for
+    // texels that are fixed at 0.
+    double *right, *share, *inverse;
+    // The solution, the residual of the equations, the search direction, and the matrix times that
+    // direction or, after a step, the residual times `inverse`.
+    double *x, *residual, *direction, *product;
+    double *lines;          // [KI_PLANES][width]: a line of texels for each task
+    double sums[KI_PLANES]; // a sum over each plane, which tasks write
+    double length[3], turn[3];
 } reads;
 
-static int chunks(size_t count)
-{
-    return (int)((count + CHUNK - 1) / CHUNK);
-}
+enum { CUBES = 7 };
 
-static size_t chunk_end(int index, size_t count)
-{
-    size_t end = ((size_t)index + 1) * CHUNK;
-    return end < count ? end : count;
-}
-
-static void add_up(const reads *r, size_t count, int which, double sum[3])
-{
-    for (int c = 0; c < 3; c++) {
-        sum[c] = 0;
-        for (int i = 0; i < chunks(count); i++)
-            sum[c] += r->sums[i][which][c];
-    }
-}
-
-// ------------------------------------------------------------------------------------------ set up
-
-// Task of one thread: sets the four taps and the solid angle of each point of a chunk. The points
-// are the directions of the goal's texels.
-static void make_taps(void *data, int index)
-{
-    reads *r = data;
-    size_t face = r->point_count / 6;
-    int size = (int)(sqrt((double)r->texel_count / 6) + 0.5);
-    size_t edge = (size_t)r->goal->size;
-    for (size_t p = (size_t)index * CHUNK; p < chunk_end(index, r->point_count); p++) {
-        double s = (2 * (double)(p % edge) + 1) / (double)edge - 1, weights[4];
-        size_t row = p % face / edge;
-        double t = (2 * (double)row + 1) / (double)edge - 1;
-        size_t texels[4];
-        ki_face_taps(size, (int)(p / face), s, t, texels, weights);
-        for (int i = 0; i < 4; i++)
-            r->taps[p][i] = (tap){(uint32_t)texels[i], (float)weights[i]};
-        // A texel's solid angle is proportional to 1 / d^3, where d is the distance from the cube's
-        // centre to the texel on a face at distance 1.
-        double squared = 1 + s * s + t * t;
-        if (p < face)
-            r->solid[p] = (float)(1 / (squared * sqrt(squared)));
-    }
-}
-
-// Fills `reverse`: for each texel, the points that read it, in the order of the points.
-static void transpose_taps(reads *r)
-{
-    for (size_t p = 0; p < r->point_count; p++)
-        for (int i = 0; i < 4; i++)
-            r->start[r->taps[p][i].at + 1]++;
-    for (size_t t = 0; t < r->texel_count; t++)
-        r->start[t + 1] += r->start[t];
-    for (size_t p = 0; p < r->point_count; p++)
-        for (int i = 0; i < 4; i++) {
-            const tap *to = &r->taps[p][i];
-            r->reverse[r->start[to->at]++] = (tap){(uint32_t)p, to->weight};
-        }
-    for (size_t t = r->texel_count; t > 0; t--)
-        r->start[t] = r->start[t - 1];
-    r->start[0] = 0;
-}
-
-static bool allocate(reads *r)
+static kiln_result allocate(reads *r, kiln_error *error)
 {
     kiln_context *k = r->context;
-    size_t texels = r->texel_count, points = r->point_count;
-    r->taps = ki_alloc_raw(k, points, sizeof *r->taps);
-    r->start = ki_alloc(k, texels + 1, sizeof *r->start);
-    r->reverse = ki_alloc_raw(k, 4 * points, sizeof *r->reverse);
-    r->solid = ki_alloc_raw(k, points / 6, sizeof *r->solid);
-    r->shown = ki_alloc_raw(k, points, sizeof *r->shown);
-    r->x = ki_alloc_raw(k, texels, sizeof *r->x);
-    r->residual = ki_alloc_raw(k, texels, sizeof *r->residual);
-    r->direction = ki_alloc(k, texels, sizeof *r->direction);
-    r->product = ki_alloc_raw(k, texels, sizeof *r->product);
-    r->diagonal = ki_alloc(k, texels, sizeof *r->diagonal);
-    r->held = ki_alloc(k, texels, sizeof *r->held);
-    r->sums = ki_alloc(k, (size_t)chunks(points), sizeof *r->sums);
-    return r->taps && r->start && r->reverse && r->solid && r->shown && r->x && r->residual &&
-           r->direction && r->product && r->diagonal && r->held && r->sums;
+    const ki_faces *f = &r->faces;
+    size_t edge = (size_t)r->edge, each = ki_faces_count(f);
+    r->taps = ki_alloc_raw(k, edge, sizeof *r->taps);
+    r->solid = ki_alloc_raw(k, edge * edge, sizeof *r->solid);
+    r->matrix = ki_alloc(k, NEIGHBOURS * f->stride + f->guard, sizeof *r->matrix);
+    r->lines = ki_alloc_raw(k, KI_PLANES * (size_t)f->width, sizeof *r->lines);
+    double **cubes[CUBES] = {&r->right,    &r->share,     &r->inverse, &r->x,
+                             &r->residual, &r->direction, &r->product};
+    bool done = r->taps && r->solid && r->matrix && r->lines;
+    for (int i = 0; i < CUBES; i++) {
+        *cubes[i] = ki_alloc(k, each, sizeof(double));
+        done = done && *cubes[i];
+    }
+    return done ? KILN_OK
+                : ki_fail_memory(k, error, "a level's reads", CUBES * each * sizeof(double));
 }
 
 static void release(reads *r)
 {
+    ki_faces_destroy(&r->faces);
     ki_free(r->taps);
-    ki_free(r->start);
-    ki_free(r->reverse);
     ki_free(r->solid);
-    ki_free(r->shown);
-    ki_free(r->x);
-    ki_free(r->residual);
-    ki_free(r->direction);
-    ki_free(r->product);
-    ki_free(r->diagonal);
-    ki_free(r->held);
-    ki_free(r->sums);
+    ki_free(r->matrix);
+    ki_free(r->lines);
+    double *const cubes[CUBES] = {r->right,    r->share,     r->inverse, r->x,
+                                  r->residual, r->direction, r->product};
+    for (int i = 0; i < CUBES; i++)
+        ki_free(cubes[i]);
 }
 
-// Task of one thread: for a chunk of texels, sets the diagonal of the normal equations' matrix, and
-// as the first guess of the solution the weighted mean of the goal over the points that read the
-// texel.
-static void begin(void *data, int index)
+// ------------------------------------------------------------------------------------------ set up
+
+static double *matrix_plane(const reads *r, int neighbour)
+{
+    return ki_faces_plane(&r->faces, r->matrix, neighbour);
+}
+
+static void place_points(reads *r)
+{
+    double ratio = (double)r->edge / r->faces.size;
+    ki_face_taps_set(&r->faces, r->edge, r->taps);
+    double *solid = r->solid;
+    for (int y = 0; y < r->edge; y++)
+        for (int x = 0; x < r->edge; x++) {
+            // A texel's solid angle is proportional to 1 / d^3, where d is the distance from the
+            // cube's centre to the texel on a face at distance 1.
+            double s = (2 * x + 1.0) / r->edge - 1, t = (2 * y + 1.0) / r->edge - 1;
+            double squared = 1 + s * s + t * t;
+            *solid++ = 1 / (squared * sqrt(squared) * ratio * ratio);
+        }
+}
+
+static void add_scaled(double *to, const double *from, double factor, int count)
+{
+    for (int i = 0; i < count; i++)
+        to[i] += factor * from[i];
+}
+
+// Adds a row of points to the elements of the matrix of the two rows of texels between which the
+// points lie. `own` and `east` receive the row's sums over columns, for the products of each texel's
+// weights with themselves and with those of the eastern neighbour.
+static void add_matrix_row(reads *r, int y, double *own, double *east)
+{
+    int width = r->faces.width;
+    const double *solid = r->solid + (size_t)r->edge * (size_t)y;
+    memset(own, 0, (size_t)width * sizeof *own);
+    memset(east, 0, (size_t)width * sizeof *east);
+    for (int x = 0; x < r->edge; x++) {
+        const ki_face_tap *tap = &r->taps[x];
+        double a = tap->share[0], b = tap->share[1];
+        own[tap->first] += solid[x] * a * a;
+        own[tap->first + 1] += solid[x] * b * b;
+        east[tap->first] += solid[x] * a * b;
+    }
+    double a = r->taps[y].share[0], b = r->taps[y].share[1];
+    size_t row = (size_t)r->taps[y].first * (size_t)width, next = row + (size_t)width;
+    add_scaled(matrix_plane(r, SELF) + row, own, a * a, width);
+    add_scaled(matrix_plane(r, SELF) + next, own, b * b, width);
+    add_scaled(matrix_plane(r, EAST) + row, east, a * a, width);
+    add_scaled(matrix_plane(r, EAST) + next, east, b * b, width);
+    add_scaled(matrix_plane(r, SOUTH) + row, own, a * b, width);
+    add_scaled(matrix_plane(r, SOUTH_EAST) + row, east, a * b, width);
+    add_scaled(matrix_plane(r, SOUTH_WEST) + row + 1, east, a * b, width - 1);
+}
+
+static void make_matrix(reads *r)
+{
+    for (int y = 0; y < r->edge; y++)
+        add_matrix_row(r, y, r->lines, r->lines + r->faces.width);
+}
+
+// Adds a row of points of a face and channel, times the points' solid angles, to the two rows of
+// texels between which the points lie. `from` is the goal at the first point; `line` receives the
+// sums over columns; `plane` is the texels' plane.
+static void gather_row(const reads *r, const float *from, int y, double *line, double *plane)
+{
+    int width = r->faces.width;
+    const double *solid = r->solid + (size_t)r->edge * (size_t)y;
+    memset(line, 0, (size_t)width * sizeof *line);
+    for (int x = 0; x < r->edge; x++) {
+        const ki_face_tap *tap = &r->taps[x];
+        double value = (double)from[3 * x] * solid[x];
+        line[tap->first] += tap->share[0] * value;
+        line[tap->first + 1] += tap->share[1] * value;
+    }
+    double *to = plane + (size_t)r->taps[y].first * (size_t)width;
+    add_scaled(to, line, r->taps[y].share[0], width);
+    add_scaled(to + width, line, r->taps[y].share[1], width);
+}
+
+// Task of one thread: computes a plane of B' W goal, in which the rim has what belongs to the texels
+// of other faces.
+static void gather_plane(void *data, int plane)
+{
+    const reads *r = data;
+    size_t edge = (size_t)r->edge, first = 3 * edge * edge * (size_t)(plane / 3);
+    double *line = r->lines + (size_t)plane * (size_t)r->faces.width;
+    double *to = ki_faces_plane(&r->faces, r->right, plane);
+    for (int y = 0; y < r->edge; y++)
+        gather_row(r, r->goal + first + 3 * edge * (size_t)y + plane % 3, y, line, to);
+}
+
+// ---------------------------------------------------------------------------------- the equations
+
+// Runs a task for each plane.
+static void for_planes(reads *r, ki_task *task)
+{
+    if (r->faces.size > SMALL) {
+        ki_parallel_for(r->context, KI_PLANES, task, r);
+        return;
+    }
+    for (int plane = 0; plane < KI_PLANES; plane++)
+        task(r, plane);
+}
+
+static void for_rims(const reads *r, double *planes,
+                     void (*use)(const ki_faces *faces, double *planes, int plane))
+{
+    for (int plane = 0; plane < KI_PLANES; plane++)
+        use(&r->faces, planes, plane);
+}
+
+// Multiplies a plane by the matrix: each texel's element with itself and with its eight neighbours.
+static void multiply_plane(const reads *r, const double *restrict from, double *restrict to)
+{
+    const double *restrict self = matrix_plane(r, SELF), *restrict east = matrix_plane(r, EAST);
+    const double *restrict south = matrix_plane(r, SOUTH);
+    const double *restrict left = matrix_plane(r, SOUTH_WEST);
+    const double *restrict right = matrix_plane(r, SOUTH_EAST);
+    ptrdiff_t w = r->faces.width, count = (ptrdiff_t)r->faces.plane;
+    for (ptrdiff_t i = 0; i < count; i++) {
+        double row = self[i] * from[i] + (east[i] * from[i + 1] + east[i - 1] * from[i - 1]);
+        double below =
+            south[i] * from[i + w] + (left[i] * from[i + w - 1] + right[i] * from[i + w + 1]);
+        double above = south[i - w] * from[i - w] +
+                       (left[i - w + 1] * from[i - w + 1] + right[i - w - 1] * from[i - w - 1]);
+        to[i] = row + (below + above);
+    }
+}
+
+// Returns the sum of a_i b_i.
+static double dot(const double *a, const double *b, size_t count)
+{
+    enum { LANES = 8 };
+    double lanes[LANES] = {0}, sum = 0;
+    size_t i = 0;
+    for (; i + LANES <= count; i += LANES)
+        for (size_t k = 0; k < LANES; k++)
+            lanes[k] += a[i + k] * b[i + k];
+    for (; i < count; i++)
+        sum += a[i] * b[i];
+    return sum + (((lanes[0] + lanes[4]) + (lanes[2] + lanes[6])) +
+                  ((lanes[1] + lanes[5]) + (lanes[3] + lanes[7])));
+}
+
+static void add_up(const reads *r, double sum[3])
+{
+    memset(sum, 0, 3 * sizeof *sum);
+    for (int plane = 0; plane < KI_PLANES; plane++)
+        sum[plane % 3] += r->sums[plane];
+}
+
+// Rows of one plane: texels of one row of a face in each of the cubes that the solver uses.
+typedef struct row {
+    const double *right, *share;
+    double *inverse, *x, *residual, *direction, *product;
+} row;
+
+static row row_at(const reads *r, int plane, int y)
+{
+    const ki_faces *f = &r->faces;
+    size_t at =
+        (size_t)(ki_faces_plane(f, r->x, plane) - r->x) + (size_t)(y + 1) * (size_t)f->width + 1;
+    return (row){r->right + at,    r->share + at,     r->inverse + at, r->x + at,
+                 r->residual + at, r->direction + at, r->product + at};
+}
+
+// Task of one thread: computes the next search direction of the conjugate-gradient method in a plane,
+// and copies it to the rims that repeat the plane's texels.
+static void turn_direction(void *data, int plane)
 {
     reads *r = data;
-    size_t face = r->point_count / 6;
-    for (size_t t = (size_t)index * CHUNK; t < chunk_end(index, r->texel_count); t++) {
-        double weights = 0, sum[3] = {0};
-        for (uint32_t i = r->start[t]; i < r->start[t + 1]; i++) {
-            size_t p = r->reverse[i].at;
-            double share = (double)r->reverse[i].weight,
-                   weight = share * (double)r->solid[p % face];
-            r->diagonal[t] += share * weight;
-            weights += weight;
-            for (size_t c = 0; c < 3; c++)
-                sum[c] += weight * (double)r->goal->level[0][3 * p + c];
+    double turn = r->turn[plane % 3];
+    for (int y = 0; y < r->faces.size; y++) {
+        row at = row_at(r, plane, y);
+        for (int x = 0; x < r->faces.size; x++)
+            at.direction[x] = at.product[x] + turn * at.direction[x];
+    }
+    ki_faces_fill_rims(&r->faces, r->direction, plane);
+}
+
+// Task of one thread: multiplies the search direction in a plane by the matrix, without what other
+// planes add to it, and sums the direction times the product.
+static void multiply_direction(void *data, int plane)
+{
+    reads *r = data;
+    const double *from = ki_faces_plane(&r->faces, r->direction, plane);
+    double *to = ki_faces_plane(&r->faces, r->product, plane);
+    multiply_plane(r, from, to);
+    r->sums[plane] = dot(from, to, r->faces.plane);
+}
+
+// Task of one thread: moves the texels of a plane along the search direction and updates their
+// residual. Sums the squared residual over the diagonal of the matrix.
+static void take_step(void *data, int plane)
+{
+    reads *r = data;
+    double length = r->length[plane % 3];
+    r->sums[plane] = 0;
+    ki_faces_add_rims(&r->faces, r->product, plane);
+    for (int y = 0; y < r->faces.size; y++) {
+        row at = row_at(r, plane, y);
+        for (int x = 0; x < r->faces.size; x++) {
+            at.x[x] += length * at.direction[x];
+            at.residual[x] -= length * at.product[x];
+            at.product[x] = at.residual[x] * at.inverse[x];
         }
-        for (int c = 0; c < 3; c++)
-            r->x[t][c] = sum[c] / weights > 0 ? sum[c] / weights : 0;
+        r->sums[plane] += dot(at.residual, at.product, (size_t)r->faces.size);
     }
 }
 
-// -------------------------------------------------------------------------------------- the solver
-
-typedef struct product {
-    reads *r;
-    const double (*from)[3]; // RGB of each texel
-    double (*to)[3];
-    // true: `to` is the residual B' W (goal - B from) of the normal equations; false: the product
-    // B' W B from. B are the weights of bilinear reads, W the points' solid angles.
-    bool residual;
-} product;
-
-// Task of one thread: reads the texels `from` at a chunk of points, and sets `shown` to the value
-// read or to the goal minus that value, times the point's solid angle. Writes to r->sums the sums
-// over the chunk of the goal and of the value read, both times solid angle.
-static void show_points(void *data, int index)
+// Task of one thread: sets the residual of a plane, right - matrix x, and sums it as take_step does.
+static void begin_steps(void *data, int plane)
 {
-    const product *a = data;
-    reads *r = a->r;
-    size_t face = r->point_count / 6;
-    double(*sums)[3] = r->sums[index];
-    memset(sums, 0, sizeof r->sums[index]);
-    for (size_t p = (size_t)index * CHUNK; p < chunk_end(index, r->point_count); p++) {
-        double solid = (double)r->solid[p % face];
-        const tap *taps = r->taps[p];
-        for (size_t c = 0; c < 3; c++) {
-            double shown = 0, goal = (double)r->goal->level[0][3 * p + c];
-            for (int i = 0; i < 4; i++)
-                shown += (double)taps[i].weight * a->from[taps[i].at][c];
-            sums[0][c] += solid * goal;
-            sums[1][c] += solid * shown;
-            r->shown[p][c] = solid * (a->residual ? goal - shown : shown);
+    reads *r = data;
+    r->sums[plane] = 0;
+    ki_faces_add_rims(&r->faces, r->product, plane);
+    for (int y = 0; y < r->faces.size; y++) {
+        row at = row_at(r, plane, y);
+        for (int x = 0; x < r->faces.size; x++) {
+            at.residual[x] = at.right[x] - at.product[x];
+            at.product[x] = at.residual[x] * at.inverse[x];
         }
+        r->sums[plane] += dot(at.residual, at.product, (size_t)r->faces.size);
     }
 }
 
-// Task of one thread: sets a chunk of texels of `to` to the sums of `shown` over the points that
-// read each texel, times the weights of the reads. Writes to r->sums the sums over the chunk of
-// `to` times `from`, and of `to` squared over the diagonal of the normal equations' matrix.
-static void gather(void *data, int index)
+// Task of one thread: multiplies the texels x of a plane by the matrix.
+static void multiply_texels(void *data, int plane)
 {
-    const product *a = data;
-    reads *r = a->r;
-    double(*sums)[3] = r->sums[index];
-    memset(sums, 0, sizeof r->sums[index]);
-    for (size_t t = (size_t)index * CHUNK; t < chunk_end(index, r->texel_count); t++) {
-        double sum[3] = {0};
-        for (uint32_t i = r->start[t]; i < r->start[t + 1]; i++)
-            for (int c = 0; c < 3; c++)
-                sum[c] += (double)r->reverse[i].weight * r->shown[r->reverse[i].at][c];
-        for (int c = 0; c < 3; c++) {
-            a->to[t][c] = r->held[t][c] ? 0 : sum[c];
-            sums[0][c] += a->to[t][c] * a->from[t][c];
-            sums[1][c] += a->to[t][c] * a->to[t][c] / r->diagonal[t];
-        }
-    }
+    reads *r = data;
+    multiply_plane(r, ki_faces_plane(&r->faces, r->x, plane),
+                   ki_faces_plane(&r->faces, r->product, plane));
 }
 
-static void multiply(reads *r, const double (*from)[3], double (*to)[3], bool residual)
-{
-    product a = {r, from, to, residual};
-    ki_parallel_for(r->context, chunks(r->point_count), show_points, &a);
-    ki_parallel_for(r->context, chunks(r->texel_count), gather, &a);
-}
+// ---------------------------------------------------------------------------------------- the solver
 
-typedef struct step {
-    reads *r;
-    double length[3], turn[3];
-} step;
-
-// Task of one thread: moves a chunk of texels along the search direction of the conjugate-gradient
-// method and updates their residual. Writes to r->sums, as the second sum, that of the squared
-// residual over the diagonal of the matrix.
-static void take_step(void *data, int index)
-{
-    const step *s = data;
-    reads *r = s->r;
-    double(*sums)[3] = r->sums[index];
-    memset(sums, 0, sizeof r->sums[index]);
-    for (size_t t = (size_t)index * CHUNK; t < chunk_end(index, r->texel_count); t++)
-        for (int c = 0; c < 3; c++) {
-            r->x[t][c] += s->length[c] * r->direction[t][c];
-            r->residual[t][c] -= s->length[c] * r->product[t][c];
-            sums[1][c] += r->residual[t][c] * r->residual[t][c] / r->diagonal[t];
-        }
-}
-
-// Task of one thread: computes the next search direction of the conjugate-gradient method for a
-// chunk of texels.
-static void turn_direction(void *data, int index)
-{
-    const step *s = data;
-    reads *r = s->r;
-    for (size_t t = (size_t)index * CHUNK; t < chunk_end(index, r->texel_count); t++)
-        for (int c = 0; c < 3; c++)
-            r->direction[t][c] =
-                r->residual[t][c] / r->diagonal[t] + s->turn[c] * r->direction[t][c];
-}
-
-// Solves the normal equations B' W B x = B' W goal for the texels x, by STEPS steps of
-// preconditioned conjugate gradients in each colour channel. B is the matrix of the weights of
-// bilinear reads, W the diagonal matrix of the points' solid angles. Texels with `held` set keep
-// the value 0 and have no equation.
+// Solves the normal equations by at most STEPS steps of preconditioned conjugate gradients in each
+// colour channel. Texels with `inverse` 0 keep the value 0 and have no equation.
 static void solve(reads *r)
 {
-    int texel_chunks = chunks(r->texel_count);
     double first[3], norm[3], next[3], along[3];
-    step s = {.r = r};
-    multiply(r, (const double(*)[3])r->x, r->residual, true);
-    add_up(r, r->texel_count, 1, norm);
+    for_rims(r, r->x, ki_faces_fill_rims);
+    for_planes(r, multiply_texels);
+    for_planes(r, begin_steps);
+    add_up(r, norm);
     memcpy(first, norm, sizeof first);
-    ki_parallel_for(r->context, texel_chunks, turn_direction, &s);
+    memset(r->turn, 0, sizeof r->turn);
     bool far = true;
     for (int i = 0; i < STEPS && far; i++) {
-        multiply(r, (const double(*)[3])r->direction, r->product, false);
-        add_up(r, r->texel_count, 0, along);
+        for_planes(r, turn_direction);
+        for_planes(r, multiply_direction);
+        add_up(r, along);
         for (int c = 0; c < 3; c++)
-            s.length[c] = along[c] > 0 ? norm[c] / along[c] : 0;
-        ki_parallel_for(r->context, texel_chunks, take_step, &s);
-        add_up(r, r->texel_count, 1, next);
+            r->length[c] = along[c] > 0 ? norm[c] / along[c] : 0;
+        for_planes(r, take_step);
+        add_up(r, next);
         far = false;
         for (int c = 0; c < 3; c++) {
             far = far || next[c] > near * first[c];
-            s.turn[c] = norm[c] > 0 ? next[c] / norm[c] : 0;
+            r->turn[c] = norm[c] > 0 ? next[c] / norm[c] : 0;
             norm[c] = next[c];
         }
-        ki_parallel_for(r->context, texel_chunks, turn_direction, &s);
     }
 }
 
-// Task of one thread: sets the negative texels of a chunk to 0, fixes them at 0 for the next round,
-// and writes their number to r->sums.
-static void hold(void *data, int index)
+// Task of one thread: sets the negative texels of a plane to 0, fixes them at 0 for the next round,
+// and sums their number.
+static void hold(void *data, int plane)
 {
     reads *r = data;
-    r->sums[index][0][0] = 0;
-    for (size_t t = (size_t)index * CHUNK; t < chunk_end(index, r->texel_count); t++)
-        for (int c = 0; c < 3; c++) {
-            r->direction[t][c] = 0;
-            if (r->x[t][c] >= 0)
+    r->sums[plane] = 0;
+    for (int y = 0; y < r->faces.size; y++) {
+        row at = row_at(r, plane, y);
+        for (int x = 0; x < r->faces.size; x++) {
+            if (at.x[x] >= 0)
                 continue;
-            r->x[t][c] = 0;
-            r->held[t][c] = true;
-            r->sums[index][0][0]++;
+            at.x[x] = at.inverse[x] = 0;
+            r->sums[plane]++;
         }
+    }
+}
+
+// Task of one thread: sets in a plane the inverse diagonal of the matrix, and as the first guess of
+// the solution the weighted mean of the goal over the points that read each texel.
+static void begin_plane(void *data, int plane)
+{
+    reads *r = data;
+    ki_faces_add_rims(&r->faces, r->inverse, plane);
+    ki_faces_add_rims(&r->faces, r->right, plane);
+    ki_faces_add_rims(&r->faces, r->share, plane);
+    for (int y = 0; y < r->faces.size; y++) {
+        row at = row_at(r, plane, y);
+        for (int x = 0; x < r->faces.size; x++) {
+            double guess = at.right[x] / at.share[x];
+            at.inverse[x] = 1 / at.inverse[x];
+            at.x[x] = guess > 0 ? guess : 0;
+        }
+    }
+}
+
+// Sets up the equations. The weights of a read add up to 1, so that B' W 1 is the matrix times 1.
+static void set_up(reads *r)
+{
+    place_points(r);
+    make_matrix(r);
+    double *ones = ki_faces_plane(&r->faces, r->x, 0), *self = matrix_plane(r, SELF);
+    for (size_t i = 0; i < r->faces.plane; i++)
+        ones[i] = 1;
+    for (int plane = 0; plane < KI_PLANES; plane++) {
+        multiply_plane(r, ones, ki_faces_plane(&r->faces, r->share, plane));
+        memcpy(ki_faces_plane(&r->faces, r->inverse, plane), self, r->faces.plane * sizeof *self);
+    }
+    for_planes(r, gather_plane);
+    for_planes(r, begin_plane);
+}
+
+// Task of one thread: sums the right-hand side over a plane, which for each channel gives the mean of
+// the goal, up to the factor that sum_shown has too.
+static void sum_goal(void *data, int plane)
+{
+    reads *r = data;
+    double sum = 0;
+    for (int y = 0; y < r->faces.size; y++) {
+        row at = row_at(r, plane, y);
+        for (int x = 0; x < r->faces.size; x++)
+            sum += at.right[x];
+    }
+    r->sums[plane] = sum;
+}
+
+// Task of one thread: sums the texels of a plane times their weights in the mean of what is read.
+static void sum_shown(void *data, int plane)
+{
+    reads *r = data;
+    r->sums[plane] = 0;
+    for (int y = 0; y < r->faces.size; y++) {
+        row at = row_at(r, plane, y);
+        r->sums[plane] += dot(at.x, at.share, (size_t)r->faces.size);
+    }
+}
+
+// Writes the solution, scaled such that the mean of what is read is the goal's, as RGB texels.
+static void write_texels(reads *r, float *texels)
+{
+    double goal[3], shown[3];
+    size_t n = (size_t)r->faces.size;
+    for_planes(r, sum_goal);
+    add_up(r, goal);
+    for_planes(r, sum_shown);
+    add_up(r, shown);
+    for (int plane = 0; plane < KI_PLANES; plane++) {
+        int c = plane % 3;
+        double scale = goal[c] > 0 && shown[c] > 0 ? goal[c] / shown[c] : 1;
+        for (int y = 0; y < r->faces.size; y++) {
+            const double *x = row_at(r, plane, y).x;
+            float *to = texels + 3 * n * (n * (size_t)(plane / 3) + (size_t)y) + c;
+            for (size_t i = 0; i < n; i++)
+                to[3 * i] = (float)(x[i] * scale);
+        }
+    }
 }
 
 kiln_result ki_solve_texels(kiln_context *context, const kiln_map *goal, kiln_map *map, int index,
                             kiln_error *error)
 {
-    reads r = {.context = context,
-               .goal = goal,
-               .texel_count = kiln_map_texels(map, index),
-               .point_count = kiln_map_texels(goal, 0)};
-    if (!allocate(&r)) {
-        release(&r);
-        return ki_fail_memory(context, error, "a level's reads", r.point_count * sizeof *r.taps);
-    }
-    ki_parallel_for(context, chunks(r.point_count), make_taps, &r);
-    transpose_taps(&r);
-    ki_parallel_for(context, chunks(r.texel_count), begin, &r);
-    double held[3] = {1};
-    for (int i = 0; i < ROUNDS && held[0] > 0; i++) {
-        solve(&r);
-        ki_parallel_for(context, chunks(r.texel_count), hold, &r);
-        add_up(&r, r.texel_count, 0, held);
-    }
-    product whole = {&r, (const double(*)[3])r.x, NULL, false};
-    double sums[2][3];
-    ki_parallel_for(context, chunks(r.point_count), show_points, &whole);
-    add_up(&r, r.point_count, 0, sums[0]);
-    add_up(&r, r.point_count, 1, sums[1]);
-    for (int c = 0; c < 3; c++) {
-        double scale = sums[0][c] > 0 && sums[1][c] > 0 ? sums[0][c] / sums[1][c] : 1;
-        for (size_t t = 0; t < r.texel_count; t++)
-            map->level[index][3 * t + (size_t)c] = (float)(r.x[t][c] * scale);
+    reads r = {.context = context, .goal = goal->level[0], .edge = goal->size};
+    kiln_result result = ki_faces_create(context, kiln_map_level_size(map, index), &r.faces, error);
+    if (result == KILN_OK)
+        result = allocate(&r, error);
+    if (result == KILN_OK) {
+        set_up(&r);
+        double held[3] = {1};
+        for (int i = 0; i < ROUNDS && held[0] + held[1] + held[2] > 0; i++) {
+            solve(&r);
+            for_planes(&r, hold);
+            add_up(&r, held);
+        }
+        write_texels(&r, map->level[index]);
     }
     release(&r);
-    return KILN_OK;
+    return result;
 }

@@ -209,6 +209,27 @@ static void tuned_levels_show_less_error(void **state)
     kiln_context_destroy(context);
 }
 
+// Light of 2^112 times the strength, whose sums are too large for floats, makes the same levels times 2^112.
+static void strong_light_makes_strong_levels(void **state)
+{
+    (void)state;
+    kiln_context *context = make_context(0);
+    kiln_map weak = make_environment(context, 32, true),
+             strong = make_environment(context, 32, true);
+    for (size_t i = 0; i < 3 * kiln_map_texels(&strong, 0); i++)
+        strong.level[0][i] *= 0x1p112F;
+    kiln_map from_weak = bake(context, &weak, "three", 64, 0, true, true);
+    kiln_map from_strong = bake(context, &strong, "three", 64, 0, true, true);
+    for (int k = 0; k < from_weak.level_count; k++)
+        for (size_t i = 0; i < 3 * kiln_map_texels(&from_weak, k); i++)
+            assert_true(from_strong.level[k][i] == from_weak.level[k][i] * 0x1p112F);
+    kiln_map_free(&from_weak);
+    kiln_map_free(&from_strong);
+    kiln_map_free(&weak);
+    kiln_map_free(&strong);
+    kiln_context_destroy(context);
+}
+
 // The same plan again, and another environment between: nothing of the last one stays.
 static void a_plan_may_be_executed_again(void **state)
 {
@@ -292,6 +313,7 @@ int main(void)
         cmocka_unit_test(white_stays_white),
         cmocka_unit_test(nothing_is_negative_under_a_sun),
         cmocka_unit_test(tuned_levels_show_less_error),
+        cmocka_unit_test(strong_light_makes_strong_levels),
         cmocka_unit_test(a_plan_may_be_executed_again),
         cmocka_unit_test(what_cannot_be_tuned_is_said),
         cmocka_unit_test(a_failing_allocation_leaks_nothing),
