@@ -8,6 +8,7 @@
 #define KI_KERNELS_H
 
 #include "base/base.h"
+#include "sphere/mixture.h"
 
 #include <stddef.h>
 
@@ -114,6 +115,9 @@ typedef struct ki_kernels {
     /// directions [axis][lane]. The weight of the lobe is that of ki_lobe_weight.
     void (*suns_ggx)(const ki_sun_points *suns, double alpha, const double *directions,
                      double *sum);
+    /// Adds the light of the suns as suns_ggx does, through a mixture of lobes.
+    void (*suns_mixture)(const ki_sun_points *suns, const ki_mixture *mixture,
+                         const double *directions, double *sum);
 } ki_kernels;
 
 /// Returns the kernels for the instruction set of the context.

@@ -451,32 +451,106 @@ static inline void add_points(double a2, const double *directions, const double 
     }
 }
 
+// Chooses the points that represent a sun for eight directions, as kernels.h describes. Returns their
+// number.
+static inline int choose_points(const ki_sun_points *suns, int i, const double *directions,
+                                const double (**points)[6])
+{
+    double distances[KI_LANES], nearest = 2, edge = 2;
+    for (int h = 0; h < KI_LANES; h += KI_WIDTH)
+        store(distances + h, versine(directions, h, suns->centre[i]));
+    for (int j = 0; j < KI_LANES; j++) {
+        double above = distances[j] < 1 ? 1 - distances[j] : distances[j] - 1;
+        nearest = distances[j] < nearest ? distances[j] : nearest;
+        edge = above < edge ? above : edge;
+    }
+    size_t sun = (size_t)i;
+    if (nearest < suns->close_versine) {
+        *points = (const double(*)[6])suns->close + (size_t)suns->close_count * sun;
+        return suns->close_count;
+    }
+    if (edge < suns->horizon || nearest < suns->near_versine) {
+        *points = (const double(*)[6])suns->near + (size_t)suns->near_count * sun;
+        return suns->near_count;
+    }
+    bool far = !(nearest < suns->far_versine);
+    *points =
+        far ? (const double(*)[6])suns->centre + sun : (const double(*)[6])suns->pairs + 4 * sun;
+    return far ? 1 : 4;
+}
+
 static void suns_ggx(const ki_sun_points *suns, double alpha, const double *directions, double *sum)
 {
-    double a2 = alpha * alpha;
     for (int i = 0; i < suns->count; i++) {
-        double distances[KI_LANES], nearest = 2, edge = 2;
-        for (int h = 0; h < KI_LANES; h += KI_WIDTH)
-            store(distances + h, versine(directions, h, suns->centre[i]));
-        for (int j = 0; j < KI_LANES; j++) {
-            double above = distances[j] < 1 ? 1 - distances[j] : distances[j] - 1;
-            nearest = distances[j] < nearest ? distances[j] : nearest;
-            edge = above < edge ? above : edge;
-        }
-        if (nearest < suns->close_versine)
-            add_points(a2, directions,
-                       (const double(*)[6])suns->close + (size_t)suns->close_count * (size_t)i,
-                       suns->close_count, sum);
-        else if (edge < suns->horizon || nearest < suns->near_versine)
-            add_points(a2, directions,
-                       (const double(*)[6])suns->near + (size_t)suns->near_count * (size_t)i,
-                       suns->near_count, sum);
-        else if (nearest < suns->far_versine)
-            add_points(a2, directions, (const double(*)[6])suns->pairs + 4 * (size_t)i, 4, sum);
-        else
-            add_points(a2, directions, (const double(*)[6])suns->centre + i, 1, sum);
+        const double(*points)[6];
+        int count = choose_points(suns, i, directions, &points);
+        add_points(alpha * alpha, directions, points, count, sum);
     }
 }
 
-const ki_kernels KI_TABLE = {fft,        add_weighted, sum_row,     analyze,
-                             synthesize, sum_orders,   interpolate, suns_ggx};
+// Returns entries `index` of a table, one for each lane.
+static inline vec look_up(const double *table, const int64_t *index)
+{
+#if KI_WIDTH == 1
+    return table[index[0]];
+#elif KI_WIDTH == 2
+    return (vec){table[index[0]], table[index[1]]};
+#elif KI_WIDTH == 4
+    return (vec){table[index[0]], table[index[1]], table[index[2]], table[index[3]]};
+#else
+    return (vec){table[index[0]], table[index[1]], table[index[2]], table[index[3]],
+                 table[index[4]], table[index[5]], table[index[6]], table[index[7]]};
+#endif
+}
+
+// Returns the weight of a mixture where 1 - cos of the angle is v: ki_mixture_weight in each lane. The
+// argument t of the cubics is found from the bits of a number in [1, 2), since few instruction sets
+// convert integers of 64 bits to doubles.
+static inline vec mixture_weight(const ki_mixture *mixture, vec v)
+{
+    const int rest = 52 - KI_MIXTURE_STEP_BITS;
+    const int64_t first = (int64_t)(1023 + KI_MIXTURE_FIRST) << KI_MIXTURE_STEP_BITS;
+    const int64_t low = (INT64_C(1) << rest) - 1, one = INT64_C(1023) << 52;
+    int64_t index[KI_WIDTH];
+#if KI_WIDTH == 1
+    typedef int64_t mask;
+    vec x = (v < 1 ? v : 0) + 0x1p-20, t;
+    mask bits;
+    memcpy(&bits, &x, sizeof bits);
+#else
+    vec x = (vec)((mask)v & (mask)(v < 1)) + 0x1p-20, t;
+    mask bits = (mask)x;
+#endif
+    mask row = ((bits >> rest) - first) * 4,
+         argument = ((bits & low) << KI_MIXTURE_STEP_BITS) | one;
+    memcpy(index, &row, sizeof index);
+    memcpy(&t, &argument, sizeof t);
+    t -= 1;
+    const double *c = mixture->cubic[0];
+    vec high = look_up(c + 2, index) + t * look_up(c + 3, index);
+    return positive(1 - v) * (look_up(c, index) + t * (look_up(c + 1, index) + t * high));
+}
+
+static void suns_mixture(const ki_sun_points *suns, const ki_mixture *mixture,
+                         const double *directions, double *sum)
+{
+    for (int i = 0; i < suns->count; i++) {
+        const double(*points)[6];
+        int count = choose_points(suns, i, directions, &points);
+        for (int h = 0; h < KI_LANES; h += KI_WIDTH) {
+            vec red = load(sum + h), green = load(sum + 8 + h), blue = load(sum + 16 + h);
+            for (int n = 0; n < count; n++) {
+                vec weight = mixture_weight(mixture, versine(directions, h, points[n]));
+                red += weight * points[n][3];
+                green += weight * points[n][4];
+                blue += weight * points[n][5];
+            }
+            store(sum + h, red);
+            store(sum + 8 + h, green);
+            store(sum + 16 + h, blue);
+        }
+    }
+}
+
+const ki_kernels KI_TABLE = {fft,        add_weighted, sum_row,  analyze,     synthesize,
+                             sum_orders, interpolate,  suns_ggx, suns_mixture};

@@ -1,9 +1,6 @@
 #include "sphere/mixture.h"
 
-#include <string.h>
-
-enum { STEP_BITS = 5, FIRST_OCTAVE = -20 };
-_Static_assert(1 << STEP_BITS == KI_MIXTURE_STEPS, "steps are a mantissa's first bits");
+_Static_assert(1 << KI_MIXTURE_STEP_BITS == KI_MIXTURE_STEPS, "steps are a mantissa's first bits");
 static const double offset = 0x1p-20;
 
 // Returns the weight of a mixture of GGX lobes without its factor cos theta, whose kink at the
@@ -44,13 +41,8 @@ double ki_mixture_weight(const ki_mixture *mixture, double one_minus_cos)
 {
     if (!(one_minus_cos < 1))
         return 0;
-    double x = (one_minus_cos > 0 ? one_minus_cos : 0) + offset;
-    uint64_t bits;
-    memcpy(&bits, &x, sizeof bits);
-    // x = 1 - cos theta + 2^-20. The exponent of x and the first bits of its mantissa choose the
-    // cubic. The remaining bits of the mantissa are the cubic's argument t.
-    uint64_t first = (uint64_t)(1023 + FIRST_OCTAVE) << STEP_BITS;
-    const double *c = mixture->cubic[(bits >> (52 - STEP_BITS)) - first];
-    double t = (double)(bits & ((UINT64_C(1) << (52 - STEP_BITS)) - 1)) * 0x1p-47;
+    double t;
+    const double *c =
+        mixture->cubic[ki_mixture_range((one_minus_cos > 0 ? one_minus_cos : 0) + offset, &t)];
     return (1 - one_minus_cos) * (c[0] + t * (c[1] + t * (c[2] + t * c[3])));
 }

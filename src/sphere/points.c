@@ -155,8 +155,8 @@ void ki_points_destroy(ki_points *points)
 }
 
 // Sets *list to the points that represent sun i for one direction, and returns their number: as the
-// kernel suns_ggx chooses them, but at least `least` points, 1 or 4.
-static int choose_points(const ki_sun_points *suns, size_t i, const double *direction, int least,
+// kernel suns_ggx chooses them, but at least 4 points.
+static int choose_points(const ki_sun_points *suns, size_t i, const double *direction,
                          const double (**list)[6])
 {
     double away = versine(direction, suns->centre[i]);
@@ -168,30 +168,8 @@ static int choose_points(const ki_sun_points *suns, size_t i, const double *dire
         *list = (const double(*)[6])suns->near + (size_t)suns->near_count * i;
         return suns->near_count;
     }
-    bool pairs = least == 4 || away < suns->far_versine;
-    *list = pairs ? (const double(*)[6])suns->pairs + 4 * i : (const double(*)[6])suns->centre + i;
-    return pairs ? 4 : 1;
-}
-
-// Adds the suns through a mixture of lobes, one by one for each of the eight directions.
-static void add_mixture(const ki_points *points, const double *directions, double *sum)
-{
-    const ki_sun_points *suns = &points->suns;
-    for (int j = 0; j < KI_LANES; j++) {
-        const double at[3] = {directions[j], directions[8 + j], directions[16 + j]};
-        double rgb[3] = {0};
-        for (size_t i = 0; i < (size_t)suns->count; i++) {
-            const double(*list)[6];
-            int count = choose_points(suns, i, at, 1, &list);
-            for (int n = 0; n < count; n++) {
-                double weight = ki_mixture_weight(points->zonal.mixture, versine(at, list[n]));
-                for (int c = 0; c < 3; c++)
-                    rgb[c] += weight * list[n][3 + c];
-            }
-        }
-        for (int c = 0; c < 3; c++)
-            sum[8 * c + j] += rgb[c];
-    }
+    *list = (const double(*)[6])suns->pairs + 4 * i;
+    return 4;
 }
 
 void ki_points_add(const ki_points *points, const double *directions, double *sum)
@@ -199,7 +177,7 @@ void ki_points_add(const ki_points *points, const double *directions, double *su
     const ki_sun_points *suns = &points->suns;
     const kiln_lobe *lobe = &points->zonal.lobe;
     if (points->zonal.mixture) {
-        add_mixture(points, directions, sum);
+        points->kernels->suns_mixture(suns, points->zonal.mixture, directions, sum);
         return;
     }
     bool ggx = lobe->kind == KILN_LOBE_GGX && points->zonal.outer <= 0;
@@ -213,7 +191,7 @@ void ki_points_add(const ki_points *points, const double *directions, double *su
         for (int j = 0; j < KI_LANES; j++) {
             const double direction[3] = {directions[j], directions[8 + j], directions[16 + j]};
             const double(*list)[6];
-            int count = choose_points(suns, i, direction, 4, &list);
+            int count = choose_points(suns, i, direction, &list);
             for (int n = 0; n < count; n++) {
                 double weight = ki_zonal_weight(&points->zonal, versine(direction, list[n]));
                 for (int c = 0; c < 3; c++)
