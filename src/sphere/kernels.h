@@ -14,6 +14,8 @@
 
 enum {
     KI_LANES = 8,
+    // number of degrees that the kernel sum_degrees handles at once
+    KI_DEGREES = 4,
     // number of doubles of a coefficient a_lm: real and imaginary parts of three colour channels
     KI_COMPONENTS = 6,
     // Number of weights of the interpolation between latitude rings, and between the points of a
@@ -118,6 +120,12 @@ typedef struct ki_kernels {
     /// Adds the light of the suns as suns_ggx does, through a mixture of lobes.
     void (*suns_mixture)(const ki_sun_points *suns, const ki_mixture *mixture,
                          const double *directions, double *sum);
+
+    /// Sums weights times Legendre polynomials over `count` quadrature nodes, a multiple of 4, for the
+    /// degrees l to l + KI_DEGREES - 1: sums[k] is the sum of w[i] P_{l+k}(x[i]). p0 and p1 hold P_{l-1}
+    /// and P_l of each node, and are moved on by KI_DEGREES degrees.
+    void (*sum_degrees)(const double *x, const double *w, ptrdiff_t count, int l, double *p0,
+                        double *p1, double sums[KI_DEGREES]);
 } ki_kernels;
 
 /// Returns the kernels for the instruction set of the context.

@@ -552,5 +552,45 @@ static void suns_mixture(const ki_sun_points *suns, const ki_mixture *mixture,
     }
 }
 
-const ki_kernels KI_TABLE = {fft,        add_weighted, sum_row,  analyze,     synthesize,
-                             sum_orders, interpolate,  suns_ggx, suns_mixture};
+// Sums are taken in four lanes on every instruction set: lane j has the nodes i with i % 4 = j.
+static void sum_degrees(const double *x, const double *w, ptrdiff_t count, int l, double *p0,
+                        double *p1, double sums[KI_DEGREES])
+{
+#if KI_WIDTH > 4
+    typedef double part __attribute__((vector_size(32), may_alias));
+#else
+    typedef vec part;
+#endif
+    enum { LANES = 4, STEP = sizeof(part) / sizeof(double) };
+    double a[KI_DEGREES], b[KI_DEGREES], lanes[KI_DEGREES][LANES];
+    for (int k = 0; k < KI_DEGREES; k++) {
+        a[k] = (2 * (l + k) + 1.0) / (l + k + 1);
+        b[k] = (double)(l + k) / (l + k + 1);
+    }
+    for (ptrdiff_t h = 0; h < LANES; h += STEP) {
+        part sum[KI_DEGREES];
+        memset(sum, 0, sizeof sum);
+        for (ptrdiff_t i = h; i < count; i += LANES) {
+            part cosine, weight, before, now;
+            memcpy(&cosine, x + i, sizeof cosine);
+            memcpy(&weight, w + i, sizeof weight);
+            memcpy(&before, p0 + i, sizeof before);
+            memcpy(&now, p1 + i, sizeof now);
+            for (int k = 0; k < KI_DEGREES; k++) {
+                part next = a[k] * cosine * now - b[k] * before;
+                sum[k] += weight * now;
+                before = now;
+                now = next;
+            }
+            memcpy(p0 + i, &before, sizeof before);
+            memcpy(p1 + i, &now, sizeof now);
+        }
+        for (int k = 0; k < KI_DEGREES; k++)
+            memcpy(&lanes[k][h], &sum[k], sizeof sum[k]);
+    }
+    for (int k = 0; k < KI_DEGREES; k++)
+        sums[k] = (lanes[k][0] + lanes[k][2]) + (lanes[k][1] + lanes[k][3]);
+}
+
+const ki_kernels KI_TABLE = {fft,        add_weighted, sum_row,  analyze,      synthesize,
+                             sum_orders, interpolate,  suns_ggx, suns_mixture, sum_degrees};

@@ -6,6 +6,7 @@
 #include "sphere/zonal.h"
 
 #include "math/math.h"
+#include "sphere/kernels.h"
 #include "sphere/lobe.h"
 
 #include <math.h>
@@ -78,6 +79,7 @@ kiln_result ki_zonal_analyze(kiln_context *context, const ki_zonal *zonal, doubl
                              int limit, ki_zonal_spectrum *spectrum, kiln_error *error)
 {
     kiln_result result = KILN_OK;
+    const ki_kernels *kernels = ki_sphere_kernels(context);
     *spectrum = (ki_zonal_spectrum){0};
     double rule[PANEL_NODES], rule_weights[PANEL_NODES];
     ki_gauss_legendre(PANEL_NODES, rule, rule_weights);
@@ -135,21 +137,15 @@ kiln_result ki_zonal_analyze(kiln_context *context, const ki_zonal *zonal, doubl
     double left = squares * 4 * KI_PI - sum * sum;
     double stop = tolerance * tolerance * squares * 4 * KI_PI;
     int l = 1, last = limit;
+    double sums[KI_DEGREES] = {0};
     for (; l <= last; l++) {
         if (left <= stop && last == limit)
             last = ki_min(limit, ki_max(l + l / 4, KI_LEAST_DEGREE));
         if (left <= stop / 16 && l > ki_min(limit, KI_LEAST_DEGREE))
             break;
-        double part[4] = {0};
-        double a = (2 * l + 1.0) / (l + 1), b = (double)l / (l + 1);
-        for (size_t i = 0; i < count; i += 4)
-            for (size_t j = 0; j < 4; j++) {
-                double now = p1[i + j];
-                part[j] += w[i + j] * now;
-                p1[i + j] = a * x[i + j] * now - b * p0[i + j];
-                p0[i + j] = now;
-            }
-        double k = (part[0] + part[2]) + (part[1] + part[3]);
+        if ((l - 1) % KI_DEGREES == 0)
+            kernels->sum_degrees(x, w, (ptrdiff_t)count, l, p0, p1, sums);
+        double k = sums[(l - 1) % KI_DEGREES];
         spectrum->k[l] = k / whole;
         left -= (2 * l + 1) * k * k;
     }
