@@ -1,6 +1,5 @@
 // kiln check. In: a panorama, and files that any tool made from it. Out: what is right and what is
 // wrong with the files, as text or JSON. The exit code is 1 if a file is wrong.
-#include "check.h"
 #include "json.h"
 #include "work.h"
 
@@ -32,7 +31,8 @@ static const cli_option options[OPTIONS + 1] = {
              .help = "the engine that the files are for, whose axes and roughnesses they must have",
              .unset = "axes and roughnesses are found out"},
     [TABLE] = {"table", CLI_FLAG, AT(table),
-               .help = "the files are tables of reflection models; no panorama is named"},
+               .help = "the files are tables of reflection models as textures or pictures (.ktx2, "
+                       ".exr, .hdr or .png); no panorama is named"},
     [TOLERANCE] = {"tolerance", CLI_NUMBER, AT(tolerance), 0, 1, 0.01, "E",
                    .help = "largest relative root mean square error of a level for which the exit "
                            "code is 0"},
@@ -184,6 +184,17 @@ static void print_levels_report(checker *c, const char *path, const kiln_engine 
     print_findings(&report->findings);
 }
 
+static kiln_result save_picture(kiln_context *context, const kiln_map *difference, const char *path,
+                                kiln_error *error)
+{
+    kiln_image picture;
+    kiln_result result = kiln_check_picture(context, difference, &picture, error);
+    if (result == KILN_OK)
+        result = kiln_image_save(context, &picture, path, error);
+    kiln_image_free(&picture);
+    return result;
+}
+
 // Checks levels for an engine, which is NULL for levels of any kind.
 static int check_levels(checker *c, const char *path, const kiln_engine *engine)
 {
@@ -203,7 +214,7 @@ static int check_levels(checker *c, const char *path, const kiln_engine *engine)
         kiln_engine_level(engine, 0.5, levels.size, levels.level_count) >= 0)
         result = kiln_check_shown(context, &c->panorama, &levels, engine, &shown, &c->work->error);
     if (result == KILN_OK && c->values->picture)
-        result = check_draw(context, &difference, c->values->picture, &c->work->error);
+        result = save_picture(context, &difference, c->values->picture, &c->work->error);
     if (result == KILN_OK) {
         add_replaced(&loaded, &report.findings);
         print_levels_report(c, path, engine, &report, &shown);

@@ -4,6 +4,8 @@
 
 #include "codec/codec.h"
 #include "codec/env.h"
+#include "codec/galacean_env.h"
+#include "codec/gltf.h"
 #include "image/mend.h"
 
 #include <stdlib.h>
@@ -37,17 +39,18 @@ static void check_failure(kiln_result result, const kiln_error *error)
     fuzz_must(result == KILN_ERROR_MEMORY || strstr(error->message, "fuzz"));
 }
 
-// Describes and reads the file. Returns whether it can be read.
-static bool decode(kiln_context *context, const uint8_t *bytes, size_t size, kiln_file_info *info)
+// Describes and reads the file. Returns whether it can be read; *described says whether it can be described.
+static bool decode(kiln_context *context, const uint8_t *bytes, size_t size, kiln_file_info *info,
+                   kiln_result *described)
 {
     kiln_error error = {0};
     ki_decoded decoded;
-    kiln_result described = ki_decode(context, bytes, size, "fuzz", NULL, info, &error);
-    if (described == KILN_OK)
+    *described = ki_decode(context, bytes, size, "fuzz", NULL, info, &error);
+    if (*described == KILN_OK)
         fuzz_check_info(info);
     kiln_file_info again;
     kiln_result result = ki_decode(context, bytes, size, "fuzz", &decoded, &again, &error);
-    fuzz_must(result != KILN_OK || described == KILN_OK);
+    fuzz_must(result != KILN_OK || *described == KILN_OK);
     if (result == KILN_OK)
         check_texels(context, &decoded);
     else
@@ -91,16 +94,27 @@ static void lay_out(kiln_context *context, const uint8_t *bytes, size_t size)
     }
 }
 
-// Reads the levels of an .env file, which ki_decode only describes.
-static void read_env(kiln_context *context, const uint8_t *bytes, size_t size)
+// Reads the levels of a file that ki_decode only describes: of Babylon.js, glTF or Galacean Engine.
+// A file of Galacean Engine has no magic bytes: bytes that begin like another format are of that format.
+static void read_cube(kiln_context *context, const uint8_t *bytes, size_t size,
+                      kiln_result described, const kiln_file_info *info)
 {
     kiln_error error = {0};
-    kiln_map map;
-    if (!ki_env_begins(bytes, size))
+    kiln_map map = {0};
+    kiln_result result;
+    if (ki_env_begins(bytes, size))
+        result = ki_env_decode(context, bytes, size, "fuzz", &map, &error);
+    else if (size >= 4 && !memcmp(bytes, "glTF", 4))
+        result = ki_gltf_decode(context, bytes, size, "fuzz", &map, &error);
+    else if (described == KILN_OK && !strcmp(info->format, "galacean env"))
+        result = ki_galacean_env_decode(context, bytes, size, &map, &error);
+    else
         return;
-    kiln_result result = ki_env_decode(context, bytes, size, "fuzz", &map, &error);
-    for (int k = 0; result == KILN_OK && k < map.level_count; k++)
+    fuzz_must(result != KILN_OK || described == KILN_OK);
+    for (int k = 0; result == KILN_OK && k < map.level_count; k++) {
         fuzz_must_be_finite(map.level[k], 3 * kiln_map_texels(&map, k));
+        fuzz_must(map.roughness[k] >= 0 && map.roughness[k] <= 1);
+    }
     if (result != KILN_OK)
         check_failure(result, &error);
     kiln_map_free(&map);
@@ -111,13 +125,34 @@ void fuzz_decode(const uint8_t *bytes, size_t size)
     enum { SMALL = 32 };
     kiln_context *context = fuzz_context(MEMORY);
     kiln_file_info info;
-    if (decode(context, bytes, size, &info)) {
+    kiln_result described;
+    if (decode(context, bytes, size, &info, &described)) {
         read_layers(context, bytes, size, &info);
         if (info.width <= 2 * SMALL && info.height <= SMALL)
             lay_out(context, bytes, size);
     }
-    read_env(context, bytes, size);
+    read_cube(context, bytes, size, described, &info);
     fuzz_end(context);
+}
+
+// A file of Galacean Engine has no magic bytes. The first byte of the input chooses the size of a face, and the
+// file is made as long as this size demands.
+void fuzz_galacean(const uint8_t *bytes, size_t size)
+{
+    enum { HARMONICS = 108, SIZES = 4 };
+    int side = 1 << (size ? bytes[0] % SIZES : 0);
+    size_t whole = HARMONICS + 2;
+    for (int n = side; n; n /= 2)
+        whole += (size_t)(24 * n * n);
+    uint8_t *file = calloc(whole, 1);
+    fuzz_must(file != NULL);
+    if (size > 1)
+        memcpy(file, bytes + 1, size - 1 < whole ? size - 1 : whole);
+    file[HARMONICS] = (uint8_t)side;
+    file[HARMONICS + 1] = 0;
+    fuzz_must(ki_galacean_env_begins(file, whole));
+    fuzz_decode(file, whole);
+    free(file);
 }
 
 void fuzz_harmonics(const uint8_t *bytes, size_t size)

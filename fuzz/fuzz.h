@@ -29,6 +29,8 @@ const fuzz_target *fuzz_find(const char *name);
 
 /// Describes and reads a file of any format.
 void fuzz_decode(const uint8_t *bytes, size_t size);
+/// A file of Galacean Engine whose length fits its size.
+void fuzz_galacean(const uint8_t *bytes, size_t size);
 /// Reads a file by rows, and as a whole. The function is in rows.c.
 void fuzz_rows(const uint8_t *bytes, size_t size);
 /// Harmonics as JSON, lines of text, Filament's text and C arrays.

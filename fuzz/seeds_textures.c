@@ -4,6 +4,7 @@
 
 #include "codec/deflate.h"
 #include "codec/env.h"
+#include "codec/galacean_env.h"
 #include "codec/gltf.h"
 #include "codec/ktx1.h"
 
@@ -139,6 +140,10 @@ static void write_engines(void)
     ki_writer w = seed_writer();
     if (ki_env_encode(&map, 0.8, &sh, &w, NULL) == KILN_OK)
         seed_save("env", 0, &w);
+    w = seed_writer();
+    ki_write_u8(&w, 1); // faces of 2 texels along an edge
+    if (ki_galacean_env_encode(&map, &sh, &w, NULL) == KILN_OK)
+        seed_save("galacean", 0, &w);
     kiln_map_free(&map);
 }
 

@@ -1,6 +1,6 @@
 """Reads kiln's C headers and writes what the Python package takes from them.
 
-In: include/kiln/kiln.h, brdf.h and course.h. Out, by write():
+In: include/kiln/kiln.h, brdf.h, course.h and check.h. Out, by write():
   _header.py  constants, enumerators, structs as ctypes, the types of all functions, and their comments
   brdf.py     the functions of brdf.h whose arguments and results are numbers, on arrays, with types and docstrings
   each.c      a loop over arrays in C for each function of brdf.py
@@ -17,7 +17,7 @@ import re
 import textwrap
 from typing import Dict, List, NamedTuple, Tuple
 
-HEADERS = ("kiln.h", "brdf.h", "course.h")
+HEADERS = ("kiln.h", "brdf.h", "course.h", "check.h")
 
 PLAIN = {
     "int": "c_int", "unsigned": "c_uint", "double": "c_double", "float": "c_float", "bool": "c_bool",

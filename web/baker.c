@@ -257,6 +257,28 @@ const double *baker_scenery_harmonics(const baker *b)
     return &b->scenery.sh.c[0][0];
 }
 
+kiln_context *baker_context(baker *b)
+{
+    return b->context;
+}
+
+kiln_error *baker_error(baker *b)
+{
+    return &b->error;
+}
+
+const kiln_map *baker_source(const baker *b)
+{
+    return &b->source;
+}
+
+void baker_take_levels(baker *b, kiln_map *levels)
+{
+    kiln_map_free(&b->scenery.levels);
+    b->scenery.levels = *levels;
+    *levels = (kiln_map){0};
+}
+
 bool baker_table(baker *b, const char *path, int kind)
 {
     static const kiln_table_kind kinds[] = {KILN_TABLE_E, KILN_TABLE_E_AVERAGE, KILN_TABLE_DFG};

@@ -61,6 +61,13 @@ BAKER double baker_scenery_roughness(const baker *b, int level);
 BAKER const float *baker_scenery_texels(const baker *b, int level);
 BAKER const double *baker_scenery_harmonics(const baker *b);
 
+/// For checker.c: the context, the error and the source of a baker.
+kiln_context *baker_context(baker *b);
+kiln_error *baker_error(baker *b);
+const kiln_map *baker_source(const baker *b);
+/// Replaces the levels of the scenery, which belongs to the baker afterwards.
+void baker_take_levels(baker *b, kiln_map *levels);
+
 /// Integrates a view of the source until pixels reach the relative standard error `noise`, as `kiln
 /// render --reference` does. The picture is RGB floats, row 0 at the top.
 BAKER bool baker_truth(baker *b, const double *numbers, int width, int height, double noise,

@@ -1,5 +1,7 @@
 // JavaScript class around baker.h; failures throw an Error with baker_message's text.
 //   const baker = await Baker.make(makeModule, { progress(stage, fraction) {} })
+import { Checker } from './checker.mjs';
+
 const TUNES = ['auto', 'none', 'sharp', 'soft'];
 const SUNS = ['keep', 'extract', 'clamp'];
 export const TABLES = ['e', 'eavg', 'dfg'];
@@ -19,9 +21,13 @@ export class Baker {
     }
 
     call(name, ...values) {
+        this.callOf(this.self, name, ...values);
+    }
+
+    // Calls a function whose first argument is the pointer `self`, and throws the message of a failure.
+    callOf(self, name, ...values) {
         const types = values.map((value) => (typeof value === 'string' ? 'string' : 'number'));
-        const good = this.module.ccall(name, 'boolean', ['number', ...types],
-                                       [this.self, ...values]);
+        const good = this.module.ccall(name, 'boolean', ['number', ...types], [self, ...values]);
         if (!good)
             throw new Error(this.module.UTF8ToString(this.module._baker_message(this.self)));
     }
@@ -153,21 +159,29 @@ export class Baker {
     // Returns the textures that light the view, in the form that Stage.light takes. With `samples`
     // above 0 the levels are importance-sampled with that many samples a texel.
     scenery({ size = 256, samples = 0 } = {}) {
-        const { module, self } = this, began = performance.now();
+        const began = performance.now();
         this.call('baker_scenery', size, samples);
-        const seconds = (performance.now() - began) / 1000;
-        const sh = module._baker_scenery_harmonics(self) >>> 3;
+        return { ...this.readScenery(), seconds: (performance.now() - began) / 1000 };
+    }
+
+    readScenery() {
+        const { module, self } = this, sh = module._baker_scenery_harmonics(self) >>> 3;
         const level = (k) => {
             const side = module._baker_scenery_size(self, k);
             return { size: side, roughness: k < 0 ? 1 : module._baker_scenery_roughness(self, k),
                      texels: this.texels(module._baker_scenery_texels(self, k), side) };
         };
         return {
-            seconds,
             harmonics: module.HEAPF64.slice(sh, sh + 27),
             irradiance: level(-1),
             levels: Array.from({ length: module._baker_scenery_levels(self) }, (_, k) => level(k)),
         };
+    }
+
+    // Checks a file of any tool: see Checker.check.
+    check(bytes, name, engine) {
+        this.checker ??= new Checker(this);
+        return this.checker.check(bytes, name, engine);
     }
 
     // Integrates a view until its pixels reach the relative standard error `noise`. Returns RGB

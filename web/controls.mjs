@@ -7,7 +7,7 @@ const SIZES = [16, 32, 64, 128, 256, 512, 1024];
 // Names that the page gives to the words of viewer.h.
 export const NAMES = {
     scene: { ibl: 'Two rows of balls', grid: 'Paint to metal', compare: 'Exact beside sampled',
-             three: 'three.js beside kiln', furnace: 'White furnace', assignment: 'GAMES202 assignment' },
+             three: 'three.js beside kiln', check: 'A checked file beside exact', furnace: 'White furnace', assignment: 'GAMES202 assignment' },
     material: { gold: 'Gold', copper: 'Copper', aluminium: 'Aluminium', silver: 'Silver', iron: 'Iron',
                 titanium: 'Titanium', white: 'White metal', handout: 'Copper of the assignment',
                 plastic: 'Red plastic', chalk: 'Chalk' },
@@ -43,7 +43,7 @@ function rows(words) {
         ['size', 'Size of the preview', 'Texels along an edge of the baked cube that this page shows.', SIZES],
     ];
     const see = [
-        ['scene', 'Scene', 'What is drawn in the baked light.', list(NAMES.scene, [...words.scene, 'three'])],
+        ['scene', 'Scene', 'What is drawn in the baked light.', list(NAMES.scene, [...words.scene, 'three', 'check'])],
         ['material', 'Material', 'What the balls are made of. The metals have measured colours.',
          list(NAMES.material, words.material)],
         ['method', 'Lost light added by',
@@ -97,7 +97,7 @@ export function makeControls(container, state, words, changed) {
     const shown = {
         sun: () => state.source === 'sky', bearing: () => state.source === 'sky', haze: () => state.source === 'sky',
         count: () => state.lamps === 'extract', clamp: () => state.lamps === 'clamp',
-        split: () => state.scene === 'compare', asPrinted: () => state.scene === 'assignment',
+        split: () => ['compare', 'check'].includes(state.scene), asPrinted: () => state.scene === 'assignment',
         noise: () => state.debug === 'error', alone: () => state.debug === 'error',
         material: () => !bare(state.scene), method: () => state.scene !== 'three',
         auto: () => !bare(state.scene), ground: () => !bare(state.scene) && state.scene !== 'three',

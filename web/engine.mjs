@@ -4,7 +4,7 @@
 import { Remote } from './remote.mjs';
 
 const WORK = ['open', 'sky', 'options', 'bake', 'sun', 'scenery', 'truth', 'histogram', 'panorama', 'engines',
-              'engineFiles', 'file', 'irradiance', 'lights', 'table'];
+              'engineFiles', 'check', 'file', 'irradiance', 'lights', 'table'];
 
 export class Engine extends Remote {
     constructor({ onProgress = () => {} } = {}) {

@@ -6,6 +6,7 @@ const ADDED = ['Light that bounces more than once is added back', 'Without that 
 const ROWS = {
     ibl: ADDED,
     compare: ADDED,
+    check: ADDED,
     furnace: ['With all light added back, the balls are invisible', 'The light that is lost shows as grey'],
     assignment: ['Lost light added back', 'Without the lost light'],
     three: ['three.js with kiln\'s file', 'three.js with its own filter'],

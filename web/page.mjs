@@ -2,6 +2,7 @@
 // view, the strip of baked levels, files to download. A worker (engine.mjs) bakes and another
 // (stage_client.mjs) draws, so that nothing keeps the page waiting; the state is kept in the address.
 import { BackgroundWork } from './background.mjs';
+import { CheckPanel, sortFiles } from './check.mjs';
 import { makeControls, NAMES } from './controls.mjs';
 import { Engine } from './engine.mjs';
 import { Files, save } from './files.mjs';
@@ -47,8 +48,9 @@ const [stage, engines] = await Promise.all([
 
 // Name, kind and default of each value that the address may hold. Each scene has defaults of its
 // own for camera, material and method.
-const SCENES = [...stage.words.scene, 'three'];
-const sceneOf = (scene) => (scene === 'three' ? 'ibl' : scene); // the scene whose balls are shown
+const SCENES = [...stage.words.scene, 'three', 'check'];
+// The scene of the renderer whose balls are shown.
+const sceneOf = (scene) => ({ three: 'ibl', check: 'compare' })[scene] ?? scene;
 function kindsOf(scene) {
     const own = stage.view(sceneOf(scene)), { words } = stage;
     return {
@@ -66,6 +68,7 @@ function kindsOf(scene) {
         engineSize: number(0, 0, 2048, 0), // 0: the engine's own
         format: word('auto', 'auto', ...engines.flatMap(({ formats }) => formats)),
         tune: word('auto', 'auto', 'none', 'sharp', 'soft'),
+        checkFor: word('', '', ...engines.map(({ name }) => name)), // the engine that the checked file is for
         // index of the level shown in place of the balls; -1 shows the balls
         shown: number(-1, -1, 15, 0),
         scene: word('ibl', ...SCENES),
@@ -188,7 +191,7 @@ const bake = (file) => request(async () => {
 
 // --------------------------------------------------------------------------------- background work
 
-const words = { textbook: '', truth: '' };
+const words = { textbook: '', check: '', truth: '' };
 const speak = (who) => (sentence) => {
     words[who] = sentence;
     get('background').textContent = Object.values(words).filter(Boolean).join('; ');
@@ -213,6 +216,7 @@ const textbook = new BackgroundWork({
     onFailure: (problem) => complain(problem.message),
     async onResult(scenery, _, last) {
         await stage.upload(scenery, true);
+        beside = null;
         canvas.dataset.textbook = last ? 'whole' : 'so far';
         view.change();
     },
@@ -232,6 +236,25 @@ function wantTextbook() {
             work: (worker) => worker.scenery({ size, samples }),
         })),
     });
+}
+
+// The check of another file, whose levels scene check shows at the right.
+let beside = null; // the result whose levels are in the sampled slot of the stage
+const checking = new CheckPanel({
+    engines, read: () => state, onWords: speak('check'), onChange: (name, value) => change(name, value),
+    onFailure: (problem) => complain(problem.message), onResult: () => refresh(),
+    onShow: () => change('scene', 'check'),
+    source: () => ({ key: baked ? keyOf(opened) : '', open: openWhole }),
+});
+
+async function wantBeside() {
+    const { result } = checking;
+    if (state.scene !== 'check' || !stage.ready || !lit || !result?.scenery || beside === result)
+        return;
+    beside = result;
+    textbook.stop(); // whose levels are replaced
+    await stage.upload(structuredClone(result.scenery), true);
+    view.change();
 }
 
 // The integrated reference, with much noise first, and the view's error against it.
@@ -254,7 +277,7 @@ function wantedTruth() {
     const seen = { ...viewOf(width / height), samples: 1 };
     const { noise, alone } = state;
     return { seen, width, height, noise, alone,
-             key: [lit, stage.numbers(seen), width, height, noise, alone].join() };
+             key: [lit, beside && checking.work.key, stage.numbers(seen), width, height, noise, alone].join() };
 }
 
 function wantTruth() {
@@ -288,6 +311,7 @@ get('stop').onclick = () => {
         stopped.truth = wantedTruth().key;
     textbook.stop();
     truth.stop();
+    checking.stop();
 };
 
 function paint({ colours, width, height }) {
@@ -302,17 +326,23 @@ function paint({ colours, width, height }) {
 }
 
 let stamps = 0;
-async function take(file) {
-    if (!file)
-        return;
-    let bytes;
+// The bytes of a file of the user's; nothing, and a sentence, if the file cannot be read.
+async function read(file) {
     try {
-        bytes = new Uint8Array(await file.arrayBuffer());
+        return file && { name: file.name, bytes: new Uint8Array(await file.arrayBuffer()), stamp: `file ${++stamps}` };
     } catch (problem) {
         complain(`${file.name}: cannot be read: ${problem.message}`);
-        return;
+        return undefined;
     }
-    await bake({ name: file.name, bytes, stamp: `file ${++stamps}` });
+}
+
+// Opens a panorama, and checks another file against the panorama that is open then. Either may be missing.
+async function take({ panorama, checked }) {
+    const source = await read(panorama), other = await read(checked);
+    if (source)
+        await bake(source);
+    if (other)
+        checking.take(other);
 }
 
 // ----------------------------------------------------------------------------------------- showing
@@ -386,6 +416,9 @@ function noteOf(error) {
         tellFurnace().catch((problem) => complain(problem.message));
     if (state.scene === 'three')
         return three.note;
+    if (state.scene === 'check')
+        return checking.result?.scenery ? `Left of the line exact levels, right of it ${checking.result.name}`
+                                        : 'Choose or drop a file to check, and its levels are shown right of the line';
     return state.scene === 'compare' ? 'Left of the line exact levels, right of it levels by random sampling' : '';
 }
 
@@ -394,6 +427,8 @@ function refresh() {
     const showsLevel = baked && (k >= 0 || !stage.ready);
     wantTextbook();
     wantTruth();
+    checking.want();
+    wantBeside().catch((problem) => complain(problem.message));
     const error = !showsLevel && state.debug === 'error' && baked && wrong?.key === wantedTruth().key
         ? wrong : null;
     flat.hidden = !showsLevel && !error;
@@ -407,7 +442,7 @@ function refresh() {
     [...get('levels').children].forEach((item, i) => {
         item.firstChild.setAttribute('aria-pressed', String(i === k));
     });
-    get('handle').hidden = !flat.hidden || state.scene !== 'compare';
+    get('handle').hidden = !flat.hidden || sceneOf(state.scene) !== 'compare';
     get('handle').setAttribute('aria-valuenow', String(Math.round(100 * state.split)));
     if (state.scene !== 'furnace' || showsLevel || error)
         get('note').textContent = showsLevel && stage.ready ? `Level ${k}, unrolled as a panorama` : noteOf(error);
@@ -555,8 +590,13 @@ addTable('Table of A, B', 'dfg');
 
 get('choose').onclick = () => get('file').click();
 get('file').onchange = async () => {
-    await take(get('file').files[0]);
+    await take(sortFiles(get('file').files, false));
     get('file').value = '';
+};
+get('check-choose').onclick = () => get('check-file').click();
+get('check-file').onchange = async () => {
+    await take(sortFiles(get('check-file').files, true));
+    get('check-file').value = '';
 };
 
 // Skies to start with, made by kiln's own model of the sky.
@@ -586,7 +626,7 @@ document.addEventListener('drop', (event) => {
     event.preventDefault();
     document.body.classList.remove('dropping');
     if (event.dataTransfer.files.length)
-        take(event.dataTransfer.files[0]);
+        take(sortFiles(event.dataTransfer.files, Boolean(event.target.closest?.('#check'))));
     else
         complain('The dropped item is not a file.');
 });

@@ -5,7 +5,7 @@ export const KEYS = [
     ['+ −, wheel', 'nearer, farther'],
     ['[ ]', 'turn the environment'],
     [', .', 'darker, brighter'],
-    ['1 to 6', 'scenes'],
+    ['1 to 7', 'scenes'],
     ['m k', 'next material, next method'],
     ['0', 'the scene as it was'],
     ['? h', 'these keys'],
@@ -86,7 +86,7 @@ export class View {
             this.approach(1.1);
         else if (event.key === '-')
             this.approach(1 / 1.1);
-        else if (event.key >= '1' && event.key <= '6')
+        else if (event.key >= '1' && event.key <= '7')
             this.onScene(Number(event.key) - 1);
         else if (event.key === 'm' || event.key === 'k')
             this.onNext(event.key === 'm' ? 'material' : 'method');

@@ -18,7 +18,7 @@ async function answer({ id, work, values }) {
     try {
         const baker = await ready;
         const result = baker[work](...values);
-        const moved = [...(result?.levels ?? []).map((level) => level.texels.buffer),
+        const moved = [...(result?.levels ?? result?.scenery?.levels ?? []).map((level) => level.texels.buffer),
                        ...(result?.files ?? []).map((file) => file.bytes.buffer)];
         postMessage({ id, result }, moved);
     } catch (error) {

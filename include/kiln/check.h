@@ -51,9 +51,9 @@ typedef struct kiln_findings {
 // ------------------------------------------------------------------------------------------ levels
 
 /// Loads all levels of a prefiltered environment, whoever wrote it, in the axes of the file: a cube
-/// in a KTX, KTX2 or DDS file; an .env file of Babylon.js; an atlas of three.js (CubeUV) or of
-/// PlayCanvas, as a cube of what the engine's shader reads; any file or set of faces that
-/// kiln_map_load reads, where `{level}` or `%d` in the path stands for the level; or a folder with
+/// in a KTX, KTX2 or DDS file; an .env file of Babylon.js or of Galacean Engine; the first light of
+/// EXT_lights_image_based in a .glb file; an atlas of three.js (CubeUV) or of PlayCanvas, as a cube
+/// of what the engine's shader reads; any file or set of faces that kiln_map_load reads, where `{level}` or `%d` in the path stands for the level; or a folder with
 /// the faces that Filament's cmgen writes, m0_px.exr, ... `engine` says whose atlas a flat picture
 /// is, and may be NULL for other files and for atlases that kiln wrote. `report` may be NULL. The
 /// roughness of a level is -1 where the file does not state the roughness.
@@ -106,6 +106,9 @@ typedef struct kiln_check_levels_report {
     /// The file shows in direction e the light from the panorama's direction d, where d[i] = sign[i]
     /// e[axis[i]].
     int axis[3], sign[3];
+    /// The axes that the file should have: those of the engine. Without an engine, those that were
+    /// found where an engine has them, and those of kiln elsewhere.
+    int wanted_axis[3], wanted_sign[3];
     /// Factor by which all values of the file are too bright; errors are measured after a division
     /// by this factor, which is 1 if it is within 2 % of 1.
     double brightness;
@@ -120,6 +123,20 @@ KILN_API KILN_CHECKED kiln_result kiln_check_levels(kiln_context *context, const
                                                     const kiln_check_levels_def *def,
                                                     kiln_check_levels_report *report,
                                                     kiln_map *difference, kiln_error *error);
+
+/// Copies levels of a file to the panorama's directions, where `axis` and `sign` are axes as in
+/// kiln_check_levels_report. With the axes that a file should have, `map` is what is shown of the
+/// file. Only cubes are turned about other axes than y; other maps become what they are.
+KILN_API KILN_CHECKED kiln_result kiln_levels_unturn(kiln_context *context, const kiln_map *levels,
+                                                     const int axis[3], const int sign[3],
+                                                     kiln_map *map, kiln_error *error);
+
+/// Draws the differences that kiln_check_levels returns: for each level a panorama of 256 x 128
+/// texels in sRGB from 0 to 1, one below the other. Grey is no difference, red is too bright, blue is
+/// too dark, and the full colours stand for three times the root mean square difference of the level.
+KILN_API KILN_CHECKED kiln_result kiln_check_picture(kiln_context *context,
+                                                     const kiln_map *difference,
+                                                     kiln_image *picture, kiln_error *error);
 
 enum { KILN_SHOWN = 19 };
 

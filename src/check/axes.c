@@ -220,6 +220,13 @@ static void list_engines(const ki_axes *axes, char text[128])
     }
 }
 
+bool ki_axes_known(const ki_axes *axes)
+{
+    char engines[128];
+    list_engines(axes, engines);
+    return engines[0] != 0;
+}
+
 void ki_say_axes(const ki_axes *found, const ki_axes *expected, kiln_findings *findings)
 {
     char how[128], engines[128];
@@ -258,5 +265,30 @@ kiln_result ki_map_unturn(kiln_context *context, const kiln_map *map, const ki_a
                    3 * sizeof(float));
         }
     }
+    return result;
+}
+
+kiln_result kiln_levels_unturn(kiln_context *context, const kiln_map *levels, const int axis[3],
+                               const int sign[3], kiln_map *map, kiln_error *error)
+{
+    ki_axes axes;
+    int seen = 0;
+    *map = (kiln_map){0};
+    kiln_result result = ki_map_check(levels, error);
+    for (int i = 0; i < 3; i++) {
+        axes.axis[i] = axis[i];
+        axes.sign[i] = sign[i];
+        seen |= axis[i] >= 0 && axis[i] < 3 && (sign[i] == 1 || sign[i] == -1) ? 1 << axis[i] : 0;
+    }
+    if (result == KILN_OK && seen != 7)
+        return ki_fail(
+            error, KILN_ERROR_ARGUMENT,
+            "the axes are (%d, %d, %d) with the signs (%d, %d, %d), they must be 0, 1 and "
+            "2 in any order with signs of 1 or -1",
+            axis[0], axis[1], axis[2], sign[0], sign[1], sign[2]);
+    if (result == KILN_OK)
+        result = ki_map_unturn(context, levels, &axes, map, error);
+    if (result != KILN_OK)
+        kiln_map_free(map);
     return result;
 }

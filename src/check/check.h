@@ -29,6 +29,8 @@ ki_axes ki_axes_shown(const ki_axes *found, const ki_axes *expected);
 /// `expected` is preferred, then those of engines.
 kiln_result ki_find_axes(kiln_context *context, const kiln_map *source, const kiln_map *map,
                          const ki_axes *expected, ki_axes *axes, kiln_error *error);
+/// Returns whether an engine reads cubes under these axes.
+bool ki_axes_known(const ki_axes *axes);
 /// Adds a sentence that says how a file with the axes `found` is turned, and a fault if `expected`
 /// is not NULL and differs.
 void ki_say_axes(const ki_axes *found, const ki_axes *expected, kiln_findings *findings);

@@ -97,6 +97,9 @@ static kiln_result turn(check *c, const kiln_map *levels, kiln_error *error)
         return result;
     memcpy(c->report->axis, found.axis, sizeof found.axis);
     memcpy(c->report->sign, found.sign, sizeof found.sign);
+    ki_axes wanted = expected ? *expected : ki_axes_known(&found) ? found : ki_axes_none;
+    memcpy(c->report->wanted_axis, wanted.axis, sizeof wanted.axis);
+    memcpy(c->report->wanted_sign, wanted.sign, sizeof wanted.sign);
     // What an engine's file shows is said in the directions in which the engine shows it.
     ki_axes shown = expected ? ki_axes_shown(&found, expected) : found;
     ki_say_axes(&shown, expected ? &ki_axes_none : NULL, &c->report->findings);

@@ -7,6 +7,8 @@
 #include "codec/codec.h"
 #include "codec/engine_text.h"
 #include "codec/env.h"
+#include "codec/galacean_env.h"
+#include "codec/gltf.h"
 #include "codec/rgbx_png.h"
 #include "image/image.h"
 #include "image/mend.h"
@@ -153,8 +155,31 @@ static kiln_result decode_atlas(kiln_context *context, const ki_recipe *recipe,
     return result;
 }
 
-// Loads the files that kiln_map_load does not read: those of Babylon.js and atlases. Sets *done if
-// the file is one of these.
+// Returns whether a file holds a cube that kiln_map_load does not read.
+static bool is_described_cube(const kiln_file_info *info)
+{
+    return !strcmp(info->format, "env") || !strcmp(info->format, "glb") ||
+           !strcmp(info->format, "galacean env");
+}
+
+// Decodes the files that hold a cube which kiln_map_load does not read. Sets *done if the bytes are
+// such a file.
+static kiln_result decode_cube(kiln_context *context, const uint8_t *bytes, size_t size,
+                               const char *path, bool *done, kiln_map *map, kiln_error *error)
+{
+    *done = true;
+    if (ki_env_begins(bytes, size))
+        return ki_env_decode(context, bytes, size, path, map, error);
+    if (size >= 4 && !memcmp(bytes, "glTF", 4))
+        return ki_gltf_decode(context, bytes, size, path, map, error);
+    if (ki_galacean_env_begins(bytes, size))
+        return ki_galacean_env_decode(context, bytes, size, map, error);
+    *done = false;
+    return KILN_OK;
+}
+
+// Loads the files that kiln_map_load does not read: those of Babylon.js, glTF and Galacean, and
+// atlases. Sets *done if the file is one of these.
 static kiln_result load_special(kiln_context *context, const char *path, const kiln_engine *engine,
                                 bool *done, kiln_load_report *report, kiln_map *map,
                                 kiln_error *error)
@@ -168,22 +193,17 @@ static kiln_result load_special(kiln_context *context, const char *path, const k
     kiln_result result = kiln_file_describe(context, path, &info, error);
     if (result != KILN_OK)
         return result;
-    bool cube = info.face_count == 6;
     engine = engine ? engine : ki_is_atlas(&info) ? kiln_engine_find(info.engine) : NULL;
     const ki_recipe *recipe = engine ? ki_recipe_of(engine) : NULL;
-    bool atlas = recipe && recipe->read && !cube, env = !strcmp(info.format, "env");
-    if (!atlas && !env)
+    bool atlas = recipe && recipe->read && info.face_count != 6;
+    if (!atlas && !is_described_cube(&info))
         return KILN_OK;
-    *done = true;
     result = ki_file_read(context, path, &bytes, &size, error);
     if (result != KILN_OK)
         return result;
-    if (atlas)
-        result = decode_atlas(context, recipe, bytes, size, path, report, map, error);
-    else if (ki_env_begins(bytes, size))
-        result = ki_env_decode(context, bytes, size, path, map, error);
-    else
-        result = ki_fail(error, KILN_ERROR_UNSUPPORTED, "%s: is no .env file of Babylon.js", path);
+    *done = atlas;
+    result = atlas ? decode_atlas(context, recipe, bytes, size, path, report, map, error)
+                   : decode_cube(context, bytes, size, path, done, map, error);
     ki_free(bytes);
     return result;
 }

@@ -3,6 +3,7 @@
 // texels of the panorama.
 #include "check/check.h"
 
+#include "bake/reference.h"
 #include "image/image.h"
 #include "math/math.h"
 
@@ -10,6 +11,11 @@
 #include <string.h>
 
 enum { MOST = 192 };
+
+// A coarser rule than the default, which takes three times as long on a panorama of 256 rows. The
+// reported errors differ by at most 1e-5 between the two rules.
+static const ki_reference_rule rule = {
+    .centre = 1.0 / 60, .pairs = 1.0 / 8, .quads = 1, .edge = 0.03};
 
 // Spreads directions evenly on a spiral from pole to pole.
 static void spread(int count, double at[MOST][3])
@@ -35,8 +41,8 @@ static kiln_result measure(kiln_context *context, const kiln_map *panorama, cons
     kiln_result result = kiln_engine_show(context, engine, map, roughness, (const double(*)[3])at,
                                           count, shown, error);
     if (result == KILN_OK)
-        result = kiln_reference_filter(context, panorama, &lobe, 0, (const double(*)[3])at, count,
-                                       exact, error);
+        result = ki_reference_integrate(context, panorama, &lobe, 0, (const double(*)[3])at, count,
+                                        &rule, exact, error);
     for (int i = 0; i < count && result == KILN_OK; i++)
         for (int c = 0; c < 3; c++) {
             sum += (shown[i][c] - exact[i][c]) * (shown[i][c] - exact[i][c]);

@@ -296,28 +296,6 @@ bool ki_env_begins(const uint8_t *bytes, size_t size)
     return size >= sizeof magic && !memcmp(bytes, magic, sizeof magic);
 }
 
-// Decodes image `index` of a file, whose rows come from the bottom, to its face of the cube.
-static kiln_result read_image(kiln_context *context, const manifest *m, const uint8_t *images,
-                              int index, const char *name, kiln_map *map, kiln_error *error)
-{
-    kiln_image image;
-    int level = index / 6, n = kiln_map_level_size(map, level);
-    kiln_result result = ki_png_decode_as(context, images + m->position[index], m->length[index],
-                                          name, ki_float_from_rgbd, &image, NULL, NULL, error);
-    if (result != KILN_OK)
-        return result;
-    if (image.width != n || image.height != n)
-        result = ki_fail(error, KILN_ERROR_FORMAT,
-                         "%s: image %d is %d x %d, a face of level %d must be %d x %d", name, index,
-                         image.width, image.height, level, n, n);
-    float *face = map->level[level] + 3 * (size_t)(index % 6) * (size_t)n * (size_t)n;
-    for (int y = 0; y < n && result == KILN_OK; y++)
-        memcpy(face + 3 * (size_t)y * (size_t)n, image.pixels + 3 * (size_t)(n - 1 - y) * (size_t)n,
-               3 * sizeof *face * (size_t)n);
-    kiln_image_free(&image);
-    return result;
-}
-
 kiln_result ki_env_decode(kiln_context *context, const uint8_t *bytes, size_t size,
                           const char *name, kiln_map *map, kiln_error *error)
 {
@@ -328,13 +306,8 @@ kiln_result ki_env_decode(kiln_context *context, const uint8_t *bytes, size_t si
     if (result == KILN_OK && m.type[0] && strcmp(m.type, "image/png") != 0)
         return ki_fail(error, KILN_ERROR_UNSUPPORTED,
                        "%s: its images are %s, kiln reads .env files of image/png", name, m.type);
-    // Deflate makes at most 1032 bytes of one byte, so that a short file cannot ask for memory for
-    // a huge cube.
-    uint64_t wanted = 24 * (uint64_t)m.width * (uint64_t)m.width;
-    if (result == KILN_OK && wanted / 1032 > m.image_bytes)
-        return ki_fail(error, KILN_ERROR_FORMAT,
-                       "%s: its images have %llu bytes, too few for six faces of size %d", name,
-                       (unsigned long long)m.image_bytes, m.width);
+    if (result == KILN_OK)
+        result = ki_rgbd_png_check_size(m.width, m.image_bytes, name, error);
     if (result != KILN_OK)
         return result;
     *map = (kiln_map){.shape = KILN_SHAPE_CUBE,
@@ -342,7 +315,8 @@ kiln_result ki_env_decode(kiln_context *context, const uint8_t *bytes, size_t si
                       .level_count = ki_min(m.image_count / 6, KILN_MAX_LEVELS)};
     result = ki_map_allocate(context, map, error);
     for (int i = 0; i < 6 * map->level_count && result == KILN_OK; i++)
-        result = read_image(context, &m, images, i, name, map, error);
+        result = ki_rgbd_png_decode_face(context, images + m.position[i], m.length[i], name, i, map,
+                                         error);
     for (int k = 0; k < map->level_count; k++)
         map->roughness[k] = (float)ki_env_roughness(k, m.lod_scale, m.width);
     if (result != KILN_OK)

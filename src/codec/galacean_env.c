@@ -1,10 +1,11 @@
 // Galacean Engine's .env files. In: a cube and harmonics. Out: bytes of a file; or of a file that
-// is read, its description. A file is 27 floats of harmonics, the size of a face in 16 bits, and
+// is read, its description or its cube. A file is 27 floats of harmonics, the size of a face in 16 bits, and
 // the texels of all faces, level by level down to a single texel, four bytes each. A file has no
 // magic bytes, so that files are recognised by their length, which the size of a face decides.
 #include "codec/galacean_env.h"
 
 #include "codec/file_info.h"
+#include "image/image.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -77,6 +78,18 @@ static double read_float(ki_reader *r)
     return (double)value;
 }
 
+static float roughness_of(int level, int level_count)
+{
+    return level ? (float)level / (float)(level_count - 1) : 0;
+}
+
+// Sets radiance to 5 a c, with a and c in [0, 1].
+static void take_texel(const uint8_t texel[4], float rgb[3])
+{
+    for (int c = 0; c < 3; c++)
+        rgb[c] = (float)(KI_GALACEAN_MAX * (double)texel[3] * (double)texel[c] / (255.0 * 255.0));
+}
+
 static int size_of(const uint8_t *bytes)
 {
     return bytes[HARMONICS] + 256 * bytes[HARMONICS + 1];
@@ -104,8 +117,27 @@ kiln_result ki_galacean_env_describe(kiln_context *context, const uint8_t *bytes
     info->face_count = 6;
     info->level_count = count_levels(info->width, &byte_count);
     info->channel_count = 3;
-    for (int k = 1; k < info->level_count; k++)
-        info->roughness[k] = (float)k / (float)(info->level_count - 1);
-    info->roughness[0] = 0;
+    for (int k = 0; k < info->level_count; k++)
+        info->roughness[k] = roughness_of(k, info->level_count);
+    return KILN_OK;
+}
+
+kiln_result ki_galacean_env_decode(kiln_context *context, const uint8_t *bytes, size_t size,
+                                   kiln_map *map, kiln_error *error)
+{
+    size_t byte_count;
+    ki_reader r = ki_reader_make(bytes, size);
+    *map = (kiln_map){.shape = KILN_SHAPE_CUBE,
+                      .size = size_of(bytes),
+                      .level_count = count_levels(size_of(bytes), &byte_count)};
+    kiln_result result = ki_map_allocate(context, map, error);
+    if (result != KILN_OK)
+        return result;
+    ki_read_bytes(&r, HEAD);
+    for (int k = 0; k < map->level_count; k++) {
+        map->roughness[k] = roughness_of(k, map->level_count);
+        for (size_t i = 0; i < kiln_map_texels(map, k); i++)
+            take_texel(ki_read_bytes(&r, 4), map->level[k] + 3 * i);
+    }
     return KILN_OK;
 }

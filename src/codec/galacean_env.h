@@ -15,5 +15,8 @@ kiln_result ki_galacean_env_encode(const kiln_map *map, const kiln_sh *sh, ki_wr
 bool ki_galacean_env_begins(const uint8_t *bytes, size_t size);
 kiln_result ki_galacean_env_describe(kiln_context *context, const uint8_t *bytes, size_t size,
                                      const char *name, kiln_file_info *info, kiln_error *error);
+/// Decodes all levels of a file that ki_galacean_env_begins accepts, in the axes of the file.
+kiln_result ki_galacean_env_decode(kiln_context *context, const uint8_t *bytes, size_t size,
+                                   kiln_map *map, kiln_error *error);
 
 #endif

@@ -1,5 +1,5 @@
 // Binary glTF 2.0 with the extension EXT_lights_image_based. In: a cube, harmonics and lights. Out:
-// bytes of a file; or of a file that is read, the description of its first light. A file is 12
+// bytes of a file; or of a file that is read, the description or the cube of its first light. A file is 12
 // bytes of header, a chunk of JSON padded with spaces, and a chunk of bytes padded with zeros. The
 // images of a light are PNG files in RGBD, level by level, face by face. The extension's figure has
 // v upward while glTF has v downward, so images are stored with the bottom row first.
@@ -9,6 +9,7 @@
 #include "codec/file_info.h"
 #include "codec/json.h"
 #include "codec/rgbx_png.h"
+#include "image/image.h"
 #include "math/math.h"
 
 #include <math.h>
@@ -160,6 +161,15 @@ kiln_result ki_gltf_encode(const kiln_map *map, const kiln_sh *sh, const kiln_li
 
 // ----------------------------------------------------------------------------------------- reading
 
+enum { MOST_IMAGES = 6 * KILN_MAX_LEVELS };
+
+// A file's image of the light: its index among the images of the file, the index of the view of the
+// buffer that holds the image, and the place of the view in the buffer.
+typedef struct face_image {
+    uint32_t image, view, offset, length;
+    bool found, placed; // whether the file has such an image, and such a view
+} face_image;
+
 // What the JSON of a glTF file says about its first light.
 typedef struct light {
     char generator[64];
@@ -170,6 +180,11 @@ typedef struct light {
     double sh[9][3];
     // number of bytes from the buffer's beginning to the end of the last image
     uint64_t image_bytes;
+    double intensity;
+    bool rotated, foreign; // foreign: an image of the light is no PNG file
+    // The first images of the light, level by level, face by face.
+    int image_count;
+    face_image image[MOST_IMAGES];
 } light;
 
 static void read_asset(ki_json *j, light *l)
@@ -188,7 +203,7 @@ static void read_views(ki_json *j, light *l)
 {
     char key[16];
     ki_json_enter_array(j);
-    while (ki_json_item(j)) {
+    for (uint32_t index = 0; ki_json_item(j); index++) {
         uint64_t offset = 0, length = 0;
         ki_json_enter_object(j);
         while (ki_json_member(j, key, sizeof key)) {
@@ -201,6 +216,42 @@ static void read_views(ki_json *j, light *l)
         }
         if (offset + length > l->image_bytes)
             l->image_bytes = offset + length;
+        for (int i = 0; i < l->image_count; i++)
+            if (l->image[i].found && l->image[i].view == index) {
+                l->image[i].offset = (uint32_t)offset;
+                l->image[i].length = (uint32_t)length;
+                l->image[i].placed = true;
+            }
+    }
+}
+
+// Reads which views hold the images of the light.
+static void read_images(ki_json *j, light *l)
+{
+    char key[16];
+    ki_json_enter_array(j);
+    for (uint32_t index = 0; ki_json_item(j); index++) {
+        uint32_t view = 0;
+        bool has_view = false, foreign = false;
+        char type[16];
+        ki_json_enter_object(j);
+        while (ki_json_member(j, key, sizeof key)) {
+            if (!strcmp(key, "bufferView")) {
+                view = ki_json_count(j, UINT32_MAX);
+                has_view = true;
+            } else if (!strcmp(key, "mimeType")) {
+                ki_json_string(j, type, sizeof type);
+                foreign = strcmp(type, "image/png") != 0;
+            } else {
+                ki_json_skip(j);
+            }
+        }
+        for (int i = 0; i < l->image_count; i++)
+            if (l->image[i].image == index) {
+                l->image[i].view = view;
+                l->image[i].found = has_view;
+                l->foreign |= foreign;
+            }
     }
 }
 
@@ -210,10 +261,23 @@ static void read_specular(ki_json *j, light *l)
     while (ki_json_item(j)) {
         int faces = 0;
         ki_json_enter_array(j);
-        for (; ki_json_item(j); faces += faces < 7)
-            ki_json_skip(j);
+        for (; ki_json_item(j); faces += faces < 7) {
+            uint32_t image = ki_json_count(j, UINT32_MAX);
+            if (l->image_count < MOST_IMAGES)
+                l->image[l->image_count++].image = image;
+        }
         l->uneven |= faces != 6;
         l->level_count += l->level_count < INT32_MAX;
+    }
+}
+
+// Reads a quaternion, of which (0, 0, 0, 1) and (0, 0, 0, -1) rotate nothing.
+static void read_rotation(ki_json *j, light *l)
+{
+    ki_json_enter_array(j);
+    for (int i = 0; ki_json_item(j); i += i < 3) {
+        double part = ki_json_number(j);
+        l->rotated |= i < 3 && fabs(part) > 1e-6;
     }
 }
 
@@ -232,6 +296,10 @@ static void read_light(ki_json *j, light *l)
             ki_json_enter_array(j);
             for (; ki_json_item(j); l->sh_count += l->sh_count < 10)
                 ki_json_triple(j, l->sh_count < 9 ? l->sh[l->sh_count] : unused);
+        } else if (!strcmp(key, "rotation")) {
+            read_rotation(j, l);
+        } else if (!strcmp(key, "intensity")) {
+            l->intensity = ki_json_number(j);
         } else {
             ki_json_skip(j);
         }
@@ -259,17 +327,25 @@ static void read_extensions(ki_json *j, light *l, bool inside)
     }
 }
 
-static void read_json(ki_json *j, light *l)
+typedef void read_part(ki_json *j, light *l);
+
+static void read_own_extensions(ki_json *j, light *l)
+{
+    read_extensions(j, l, false);
+}
+
+// Reads those members of the file's object that `keys` names, each by its function.
+static void read_members(ki_json *j, light *l, const char *const *keys, read_part *const *parts,
+                         int count)
 {
     char key[16];
     ki_json_enter_object(j);
     while (ki_json_member(j, key, sizeof key)) {
-        if (!strcmp(key, "asset"))
-            read_asset(j, l);
-        else if (!strcmp(key, "bufferViews"))
-            read_views(j, l);
-        else if (!strcmp(key, "extensions"))
-            read_extensions(j, l, false);
+        int i = 0;
+        while (i < count && strcmp(key, keys[i]) != 0)
+            i++;
+        if (i < count)
+            parts[i](j, l);
         else
             ki_json_skip(j);
     }
@@ -295,6 +371,11 @@ static kiln_result check(const light *l, size_t binary, const char *name, kiln_e
     return KILN_OK;
 }
 
+static float roughness_of(int level, int level_count)
+{
+    return level ? (float)level / (float)(level_count - 1) : 0;
+}
+
 static void describe(const light *l, kiln_file_info *info)
 {
     snprintf(info->format, sizeof info->format, "glb");
@@ -307,7 +388,7 @@ static void describe(const light *l, kiln_file_info *info)
     info->level_count = l->level_count;
     info->channel_count = 3;
     for (int k = 0; k < l->level_count; k++)
-        info->roughness[k] = l->level_count > 1 ? (float)k / (float)(l->level_count - 1) : 0;
+        info->roughness[k] = roughness_of(k, l->level_count);
     info->sh_bands = l->sh_count == 9 ? 3 : 0;
     for (int i = 0; i < 9 && info->sh_bands; i++)
         for (int c = 0; c < 3; c++)
@@ -324,30 +405,117 @@ static const uint8_t *read_chunk(ki_reader *r, uint32_t type, uint32_t *size)
     return good ? bytes : NULL;
 }
 
-kiln_result ki_gltf_describe(kiln_context *context, const uint8_t *bytes, size_t size,
-                             const char *name, kiln_file_info *info, kiln_error *error)
+// The JSON and the bytes of the buffer of a file.
+typedef struct chunks {
+    const uint8_t *text, *binary;
+    uint32_t text_size, binary_size;
+} chunks;
+
+static kiln_result read_light_of(kiln_context *context, const uint8_t *bytes, size_t size,
+                                 const char *name, chunks *c, light *l, kiln_error *error)
 {
+    static const char *const keys[] = {"asset", "bufferViews", "extensions"};
+    static read_part *const parts[] = {read_asset, read_views, read_own_extensions};
     ki_reader r = ki_reader_make(bytes, size);
     ki_read_u32(&r);
-    uint32_t version = ki_read_u32(&r), stated = ki_read_u32(&r), json_size, binary_size = 0;
-    const uint8_t *text = read_chunk(&r, CHUNK_JSON, &json_size);
-    if (!text || version != VERSION || stated > size)
+    uint32_t version = ki_read_u32(&r), stated = ki_read_u32(&r);
+    c->text = read_chunk(&r, CHUNK_JSON, &c->text_size);
+    if (!c->text || version != VERSION || stated > size)
         return ki_fail(error, KILN_ERROR_FORMAT,
                        "%s: the glTF file is cut off or damaged: its header states version %u and "
                        "%u bytes, the file has %zu bytes",
                        name, version, stated, size);
-    light l = {0};
-    ki_json json = ki_json_make(context, text, json_size);
-    read_json(&json, &l);
+    *l = (light){.intensity = 1};
+    ki_json json = ki_json_make(context, c->text, c->text_size);
+    read_members(&json, l, keys, parts, 3);
     if (json.stopped)
         return ki_fail_cancelled(error, "reading");
     if (json.failed)
         return ki_fail(error, KILN_ERROR_FORMAT, "%s: its JSON is damaged at byte %zu", name,
-                       (size_t)(json.at - (const char *)text));
-    if (!read_chunk(&r, CHUNK_BIN, &binary_size))
-        binary_size = 0;
-    kiln_result result = check(&l, binary_size, name, error);
+                       (size_t)(json.at - (const char *)c->text));
+    c->binary = read_chunk(&r, CHUNK_BIN, &c->binary_size);
+    if (!c->binary)
+        c->binary_size = 0;
+    return check(l, c->binary_size, name, error);
+}
+
+kiln_result ki_gltf_describe(kiln_context *context, const uint8_t *bytes, size_t size,
+                             const char *name, kiln_file_info *info, kiln_error *error)
+{
+    light l;
+    chunks c;
+    kiln_result result = read_light_of(context, bytes, size, name, &c, &l, error);
     if (result == KILN_OK)
         describe(&l, info);
+    return result;
+}
+
+// Finds the places of the images. The JSON may name them after the light, before the light, or in
+// any order, and is therefore read once for the images and once for the views that hold these.
+static kiln_result find_images(kiln_context *context, const chunks *c, const char *name, light *l,
+                               kiln_error *error)
+{
+    static const char *const keys[] = {"images", "bufferViews"};
+    static read_part *const parts[] = {read_images, read_views};
+    for (int i = 0; i < 2; i++) {
+        ki_json json = ki_json_make(context, c->text, c->text_size);
+        read_members(&json, l, &keys[i], &parts[i], 1);
+        if (json.stopped)
+            return ki_fail_cancelled(error, "reading");
+        if (json.failed)
+            return ki_fail(error, KILN_ERROR_FORMAT, "%s: its JSON is damaged at byte %zu", name,
+                           (size_t)(json.at - (const char *)c->text));
+    }
+    if (l->foreign)
+        return ki_fail(error, KILN_ERROR_UNSUPPORTED,
+                       "%s: its light has images of another format, kiln reads lights of image/png",
+                       name);
+    for (int i = 0; i < l->image_count; i++)
+        if (!l->image[i].placed)
+            return ki_fail(error, KILN_ERROR_FORMAT,
+                           "%s: image %u of its light does not lie in the buffer of the file", name,
+                           l->image[i].image);
+    return KILN_OK;
+}
+
+static kiln_result check_scale(const light *l, const char *name, kiln_error *error)
+{
+    if (l->rotated)
+        return ki_fail(error, KILN_ERROR_UNSUPPORTED,
+                       "%s: its light is rotated, kiln reads lights without a rotation", name);
+    if (!(l->intensity >= 0 && l->intensity <= 1e9))
+        return ki_fail(error, KILN_ERROR_FORMAT,
+                       "%s: the intensity of its light is %g, it must be 0 to 1e9", name,
+                       l->intensity);
+    return KILN_OK;
+}
+
+kiln_result ki_gltf_decode(kiln_context *context, const uint8_t *bytes, size_t size,
+                           const char *name, kiln_map *map, kiln_error *error)
+{
+    light l;
+    chunks c;
+    *map = (kiln_map){0};
+    kiln_result result = read_light_of(context, bytes, size, name, &c, &l, error);
+    if (result == KILN_OK)
+        result = check_scale(&l, name, error);
+    if (result == KILN_OK)
+        result = find_images(context, &c, name, &l, error);
+    if (result == KILN_OK)
+        result = ki_rgbd_png_check_size(l.width, c.binary_size, name, error);
+    if (result != KILN_OK)
+        return result;
+    *map = (kiln_map){.shape = KILN_SHAPE_CUBE, .size = l.width, .level_count = l.level_count};
+    result = ki_map_allocate(context, map, error);
+    for (int i = 0; i < l.image_count && result == KILN_OK; i++)
+        result = ki_rgbd_png_decode_face(context, c.binary + l.image[i].offset, l.image[i].length,
+                                         name, i, map, error);
+    for (int k = 0; k < map->level_count && result == KILN_OK; k++) {
+        map->roughness[k] = roughness_of(k, map->level_count);
+        for (size_t i = 0; i < 3 * kiln_map_texels(map, k); i++)
+            map->level[k][i] = (float)((double)map->level[k][i] * l.intensity);
+    }
+    if (result != KILN_OK)
+        kiln_map_free(map);
     return result;
 }

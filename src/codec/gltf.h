@@ -12,5 +12,10 @@ kiln_result ki_gltf_encode(const kiln_map *map, const kiln_sh *sh, const kiln_li
 /// Describes the first light of a binary glTF file.
 kiln_result ki_gltf_describe(kiln_context *context, const uint8_t *bytes, size_t size,
                              const char *name, kiln_file_info *info, kiln_error *error);
+/// Decodes all levels of the first light of a binary glTF file whose images are PNG files in the
+/// buffer of the file, in the axes of the file, times the intensity of the light. A light that is
+/// rotated is not supported.
+kiln_result ki_gltf_decode(kiln_context *context, const uint8_t *bytes, size_t size,
+                           const char *name, kiln_map *map, kiln_error *error);
 
 #endif

@@ -99,6 +99,8 @@ static void engines_files_are_right(void **state)
     } rows[] = {{"three", "t.ktx2", "t.ktx2", KILN_FORMAT_RGBA16F, 4e-4},
                 {"filament", "f", "f_ibl.ktx", KILN_FORMAT_B10G11R11, 0.016},
                 {"babylon", "b.env", "b.env", KILN_FORMAT_AUTO, 0.006},
+                {"gltf", "g.glb", "g.glb", KILN_FORMAT_AUTO, 0.006},
+                {"galacean", "a.env", "a.env", KILN_FORMAT_AUTO, 0.02},
                 {"unity", "u.dds", "u.dds", KILN_FORMAT_BC6H, 0.12}};
     source = &calm; // files of these engines cannot hold the sun
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
@@ -140,38 +142,77 @@ static void unstated_levels_are_recognised(void **state)
     kiln_map_free(&map);
 }
 
-// Replaces the first `from` in an .env file by `to`, of the same length, and checks what the loader says.
-static void expect_env_error(const char *from, const char *to, kiln_result wanted,
-                             const char *words)
+// Writes the file `w.` with its ending: the file `name` with `to` in place of the first `from`, of the same length.
+static const char *edited(const char *name, const char *from, const char *to)
 {
     static unsigned char bytes[1 << 18];
-    kiln_map map;
-    FILE *file = fopen(in_folder("b.env"), "rb");
+    static char wrong[16];
+    FILE *file = fopen(in_folder(name), "rb");
     assert_non_null(file);
     size_t size = fread(bytes, 1, sizeof bytes, file), length = strlen(from), at = 0;
     fclose(file);
+    assert_int_equal(strlen(to), length);
     while (at + length < size && memcmp(bytes + at, from, length) != 0)
         at++;
     assert_true(at + length < size);
     memcpy(bytes + at, to, length);
-    file = fopen(in_folder("w.env"), "wb");
+    snprintf(wrong, sizeof wrong, "w%s", strchr(name, '.'));
+    file = fopen(in_folder(wrong), "wb");
     assert_non_null(file);
     assert_int_equal(fwrite(bytes, 1, size, file), size);
     fclose(file);
-    assert_int_equal(kiln_levels_load(context, in_folder("w.env"), NULL, NULL, &map, &error),
-                     wanted);
-    CHECK_SAYS(error.message, words);
-    assert_int_equal(map.level_count, 0);
+    return wrong;
 }
 
-static void wrong_env_files_are_refused(void **state)
+// Files that engines_files_are_right wrote, each with a few bytes changed.
+static void wrong_files_are_refused(void **state)
 {
     (void)state;
-    expect_env_error("image/png", "image/jpg", KILN_ERROR_UNSUPPORTED,
-                     "its images are image/jpg, kiln reads");
-    expect_env_error("IHDR", "IHDX", KILN_ERROR_FORMAT, "w.env: the PNG is damaged");
-    expect_env_error("\"width\":64", "\"width\":96", KILN_ERROR_FORMAT,
-                     "image 0 is 64 x 64, a face of level 0 must be 96 x 96");
+    static const struct {
+        const char *file, *from, *to;
+        kiln_result wanted;
+        const char *words;
+    } rows[] = {
+        {"b.env", "image/png", "image/jpg", KILN_ERROR_UNSUPPORTED,
+         "w.env: its images are image/jpg, kiln reads"},
+        {"b.env", "IHDR", "IHDX", KILN_ERROR_FORMAT, "w.env: the PNG is damaged"},
+        {"b.env", "\"width\":64", "\"width\":96", KILN_ERROR_FORMAT,
+         "image 0 is 64 x 64, a face of level 0 must be 96 x 96"},
+        {"g.glb", "image/png", "image/jpg", KILN_ERROR_UNSUPPORTED,
+         "w.glb: its light has images of another format"},
+        {"g.glb", "IHDR", "IHDX", KILN_ERROR_FORMAT, "w.glb: the PNG is damaged"},
+        {"g.glb", "[0,0,0,1]", "[0,1,0,0]", KILN_ERROR_UNSUPPORTED, "w.glb: its light is rotated"},
+        {"g.glb", "\"intensity\":1", "\"intensity\":-", KILN_ERROR_FORMAT, "its JSON is damaged"},
+        {"g.glb", "\"specularImageSize\":64", "\"specularImageSize\":96", KILN_ERROR_FORMAT,
+         "image 0 is 64 x 64, a face of level 0 must be 96 x 96"},
+        {"g.glb", "\"bufferView\":17,", "\"bufferView\":99,", KILN_ERROR_FORMAT,
+         "image 17 of its light does not lie in the buffer"},
+        {"g.glb", "\"specularImages\":[[0", "\"specularImages\":[[9", KILN_ERROR_FORMAT,
+         "image 0 is 32 x 32, a face of level 0 must be 64 x 64"}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        kiln_map map;
+        const char *wrong = edited(rows[i].file, rows[i].from, rows[i].to);
+        kiln_result result = kiln_levels_load(context, in_folder(wrong), NULL, NULL, &map, &error);
+        if (result != rows[i].wanted || !strstr(error.message, rows[i].words))
+            fail_msg("%s gives %d: %s", rows[i].to, (int)result, error.message);
+        assert_int_equal(map.level_count, 0);
+    }
+}
+
+// The intensity of a light of glTF multiplies all radiance.
+static void the_intensity_of_a_light_counts(void **state)
+{
+    (void)state;
+    kiln_map one, five;
+    CHECK_OK(kiln_levels_load(context, in_folder("g.glb"), NULL, NULL, &one, &error));
+    CHECK_OK(kiln_levels_load(context,
+                              in_folder(edited("g.glb", "\"intensity\":1", "\"intensity\":5")),
+                              NULL, NULL, &five, &error));
+    for (int k = 0; k < one.level_count; k++)
+        for (size_t i = 0; i < value_count(&one, k); i++)
+            assert_true(fabsf(five.level[k][i] - 5 * one.level[k][i]) <= 1e-6F * five.level[k][i]);
+    kiln_map_free(&one);
+    kiln_map_free(&five);
 }
 
 static void faces_of_each_level_are_loaded(void **state)
@@ -206,6 +247,45 @@ static void a_mirror_image_is_named(void **state)
     kiln_check_levels_report report = checked(&map, "gltf", false);
     expect_one_fault(&report.findings, KILN_FINDING_AXES, "mirrored: left and right are swapped");
     CHECK_BELOW(report.worst, 1e-4);
+    // What is shown of the file is the mirror image; what the file holds is the environment.
+    kiln_map shown, held, right = baked(&(kiln_prefilter_def){0});
+    CHECK_OK(
+        kiln_levels_unturn(context, &map, report.wanted_axis, report.wanted_sign, &shown, &error));
+    CHECK_OK(kiln_levels_unturn(context, &map, report.axis, report.sign, &held, &error));
+    check_same_levels(&shown, &map);
+    check_same_levels(&held, &right);
+    kiln_map_free(&right);
+    kiln_map_free(&held);
+    kiln_map_free(&shown);
+    kiln_map_free(&map);
+}
+
+// A picture of differences: a face that is too bright is red, one that is too dark is blue, and nothing is grey.
+static void the_picture_has_the_colour_of_the_error(void **state)
+{
+    (void)state;
+    kiln_map map = make_map(context, KILN_SHAPE_CUBE, 16, 2);
+    for (int c = 0; c < 3; c++)
+        for (int i = 0; i < 256; i++) {
+            map.level[0][3 * i + c] = 2;             // +X
+            map.level[0][3 * (256 + i) + c] = -0.5F; // -X
+        }
+    kiln_image picture;
+    CHECK_OK(kiln_check_picture(context, &map, &picture, &error));
+    assert_int_equal(picture.width, 256);
+    assert_int_equal(picture.height, 2 * 128);
+    const float *right = picture.pixels + 3 * (64 * 256 + 192), *left = right - 3 * 128;
+    const float *ahead = right - 3 * 64, *below = right + 3 * 128 * 256;
+    // The root mean square is sqrt((4 + 1/4) / 6) = 0.84: 2 is 0.79 of three times that, and 1/2 is 0.2.
+    CHECK_NEAR((double)right[0], 0.5 + 0.5 * 0.79, 0.01);
+    CHECK_NEAR((double)right[2], 0.5 - 0.5 * 0.79, 0.01);
+    CHECK_NEAR((double)left[2], 0.5 + 0.5 * 0.198, 0.01);
+    CHECK_NEAR((double)left[0], 0.5 - 0.5 * 0.198, 0.01);
+    for (int c = 0; c < 3; c++) {
+        CHECK_NEAR((double)ahead[c], 0.5, 0);
+        CHECK_NEAR((double)below[c], 0.5, 0);
+    }
+    kiln_image_free(&picture);
     kiln_map_free(&map);
 }
 
@@ -339,10 +419,12 @@ int main(void)
         cmocka_unit_test(exact_floats_are_right),
         cmocka_unit_test(other_shapes_are_right),
         cmocka_unit_test(engines_files_are_right),
-        cmocka_unit_test(wrong_env_files_are_refused),
+        cmocka_unit_test(wrong_files_are_refused),
+        cmocka_unit_test(the_intensity_of_a_light_counts),
         cmocka_unit_test(unstated_levels_are_recognised),
         cmocka_unit_test(faces_of_each_level_are_loaded),
         cmocka_unit_test(a_mirror_image_is_named),
+        cmocka_unit_test(the_picture_has_the_colour_of_the_error),
         cmocka_unit_test(a_quarter_turn_is_named),
         cmocka_unit_test(wrong_roughness_is_named),
         cmocka_unit_test(a_shift_of_half_a_texel_is_named),

@@ -30,7 +30,7 @@ def expected(c) -> list:
 def enumerators(include: str, c) -> list:
     """Each enumerator of the headers by its own name: words() cuts the common beginning off."""
     text = ""
-    for name in ("kiln.h", "brdf.h", "course.h"):
+    for name in ("kiln.h", "brdf.h", "course.h", "check.h"):
         with open(os.path.join(include, "kiln", name), encoding="utf-8") as file:
             text += re.sub("//.*", "", file.read())
     rows = []
@@ -47,7 +47,7 @@ def enumerators(include: str, c) -> list:
 
 
 def program(rows: list) -> str:
-    lines = ["#include <kiln/course.h>", "#include <stdio.h>", "int main(void)", "{"]
+    lines = ["#include <kiln/check.h>", "#include <kiln/course.h>", "#include <stdio.h>", "int main(void)", "{"]
     lines += ['    printf("%%lld\\n", (long long)(%s));' % expression for expression, _ in rows]
     lines += ['    printf("%.17g\\n", KILN_ZERO);', "    return 0;", "}", ""]
     return "\n".join(lines)

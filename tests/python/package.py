@@ -418,5 +418,61 @@ class Surface(unittest.TestCase):
                     self.assertNotIn("kiln_", thing.__doc__.replace("kiln_h", ""), name)
 
 
+class Check(unittest.TestCase):
+    """kiln.check says of right files that they are right, and names a planted fault."""
+
+    source: kiln.Map
+
+    @classmethod
+    def setUpClass(cls) -> None:
+        cls.source = kiln.Map(np.zeros((32, 64, 3), np.float32))
+        there, random = cls.source.directions(), np.random.default_rng(3)
+        cls.source.levels[0][...] = 0.2
+        for at in directions(12):
+            light = np.exp(8 * (there @ at - 1))[..., None] * random.uniform(0.5, 2, 3)
+            cls.source.levels[0][...] += light.astype(np.float32)
+
+    def test_levels(self) -> None:
+        made = kiln.bake(self.source, size=32, level_count=4)
+        report = kiln.check(self.source, made.map)
+        self.assertEqual(report.faults, [])
+        self.assertLess(report.worst, 1e-4)
+        self.assertEqual([level.size for level in report.levels], [32, 16, 8, 4])
+        self.assertEqual((report.axis, report.sign, report.brightness), ((0, 1, 2), (1, 1, 1), 1))
+        self.assertEqual(report.difference.levels[1].shape, (6, 16, 16, 3))
+        turned = kiln.check(self.source, kiln.bake(self.source, size=32, level_count=4, mirror=True).map, "gltf")
+        self.assertEqual(len(turned.faults), 1)
+        self.assertIn("mirrored: left and right are swapped", turned.faults[0])
+        self.assertEqual([f.kind for f in turned.findings if f.fault], ["axes"])
+
+    def test_files(self) -> None:
+        with tempfile.TemporaryDirectory() as work:
+            path = os.path.join(work, "a.glb")
+            kiln.bake(self.source, "gltf", 32, tune="none").save(path)
+            self.assertEqual(kiln.load_levels(path).levels[0].shape, (6, 32, 32, 3))
+            report = kiln.check(self.source, path, "gltf")
+            self.assertEqual(report.faults, [])
+            self.assertLess(report.worst, 0.01)
+            shown = kiln.check_shown(self.source, path, "gltf")
+            self.assertEqual(shown.rms.shape, (19,))
+            self.assertLess(0, shown.all)
+            self.assertLess(shown.all, shown.worst)
+            table = os.path.join(work, "dfg.png")
+            kiln.table("dfg", width=16, height=16).save(table)
+            found = kiln.check_table(table)
+            self.assertEqual((found.content, found.faults), (["a", "b", "zero"], []))
+            self.assertLess(found.rms, 1e-5)
+            with self.assertRaisesRegex(kiln.FileError, "none.ktx2"):
+                kiln.check(self.source, os.path.join(work, "none.ktx2"))
+
+    def test_harmonics(self) -> None:
+        right = kiln.harmonics(self.source)
+        self.assertLess(kiln.check_harmonics(self.source, right).rms, 1e-6)
+        wrong = kiln.Harmonics(right.filter(irradiance=True).c)  # irradiance that is called radiance
+        report = kiln.check_harmonics(self.source, wrong)
+        self.assertEqual(len(report.faults), 1)
+        self.assertIn("irradiance", report.faults[0])
+
+
 if __name__ == "__main__":
     unittest.main()

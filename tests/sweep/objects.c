@@ -379,6 +379,7 @@ static void checks(void **state)
     (void)state;
     kiln_check_levels_report report;
     kiln_map rest;
+    kiln_image picture;
     INT_FIELD(kiln_check_levels_def, lobe,
               kiln_check_levels(c, &panorama, &cube, &def, &report, &rest, &e),
               !report.level_count && !rest.level_count, kiln_map_free(&rest));
@@ -394,6 +395,16 @@ static void checks(void **state)
         wrong.level_count = n > KILN_MAX_LEVELS || n < 4 ? n : 4;
         SWEEP(kiln_check_levels(c, &panorama, &wrong, NULL, &report, NULL, &e),
               !report.level_count);
+        SWEEP(kiln_check_picture(c, &wrong, &picture, &e), !picture.pixels);
+        kiln_image_free(&picture);
+        SWEEP(kiln_levels_unturn(c, &wrong, (const int[]){0, 1, 2}, (const int[]){1, 1, 1}, &rest,
+                                 &e),
+              !rest.level_count);
+        kiln_map_free(&rest);
+        SWEEP(kiln_levels_unturn(c, &cube, (const int[]){0, n < 3 ? n : 1, 2},
+                                 (const int[]){1, 1, n}, &rest, &e),
+              !rest.level_count);
+        kiln_map_free(&rest);
     }
     SWEEP(kiln_levels_load(c, "none.ktx2", NULL, NULL, &rest, &e), !rest.level_count);
     kiln_check_table_report table;

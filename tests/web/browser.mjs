@@ -68,16 +68,23 @@ export const idle = (page) => page.waitForFunction(
 export const drawn = (page) => page.waitForFunction(
     () => document.getElementById('view').dataset.drawn === 'finely', null, { timeout: 60000 });
 
-// Drops bytes on the page as a file.
-export async function drop(page, name, bytes) {
-    await page.evaluate(([file, base64]) => {
+// Drops files { name, bytes } on the element `selector`.
+export async function dropOn(page, selector, files) {
+    const texts = files.map(({ name, bytes }) => [name, Buffer.from(bytes).toString('base64')]);
+    await page.evaluate(([where, list]) => {
         const data = new DataTransfer();
-        data.items.add(new File([Uint8Array.from(atob(base64), (c) => c.charCodeAt(0))], file));
+        for (const [file, base64] of list)
+            data.items.add(new File([Uint8Array.from(atob(base64), (c) => c.charCodeAt(0))], file));
         for (const type of ['dragover', 'drop'])
-            document.body.dispatchEvent(new DragEvent(type, { dataTransfer: data, bubbles: true,
-                                                              cancelable: true }));
-        document.body.setAttribute('aria-busy', 'true');
-    }, [name, Buffer.from(bytes).toString('base64')]);
+            document.querySelector(where).dispatchEvent(new DragEvent(type, { dataTransfer: data, bubbles: true,
+                                                                              cancelable: true }));
+    }, [selector, texts]);
+}
+
+// Drops bytes on the page as the file of a panorama, and waits until that is baked.
+export async function drop(page, name, bytes) {
+    await page.evaluate(() => document.body.setAttribute('aria-busy', 'true'));
+    await dropOn(page, 'body', [{ name, bytes }]);
     await idle(page);
 }
 
