@@ -52,6 +52,7 @@ typedef struct bake {
     // without a plan. plan_key: a number that is equal for bakes whose options give the same plan.
     bake_plan *plan;
     uint64_t plan_key;
+    bool makes_folders; ///< the folders of the outputs need not be there yet
     /// called with the path and the bytes of each file that is written; may be NULL
     void (*watch)(void *user, const char *path, const void *bytes, size_t size);
     void *watch_user;

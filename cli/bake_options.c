@@ -339,6 +339,14 @@ static int check_stdout(const bake *b)
     return CLI_GO;
 }
 
+static int check_folder(const bake *b, const char *path)
+{
+    kiln_error error;
+    if (!b->makes_folders)
+        return cli_check_folder(path);
+    return cli_make_folders(path, false, NULL, &error) ? CLI_GO : cli_fail("%s", error.message);
+}
+
 static int check_paths(const bake *b)
 {
     enum { PATHS = 4 };
@@ -360,7 +368,7 @@ static int check_paths(const bake *b)
         code = check_output(b, "--irradiance", b->irradiance_path);
     for (int i = 0; i < PATHS && code == CLI_GO; i++)
         if (paths[i])
-            code = cli_check_folder(paths[i]);
+            code = check_folder(b, paths[i]);
     return code;
 }
 

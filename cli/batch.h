@@ -228,7 +228,8 @@ struct batch {
     int busy;                ///< number of workers that have a job
     bool stopped;            ///< no further job is begun, because one failed
     batch_loop *loop;
-    atomic_int idle; ///< number of workers that could help with a loop
+    atomic_int idle;    ///< number of workers that could help with a loop
+    atomic_int folders; ///< number of folders that were created for outputs
 
     size_t limit;            ///< bytes that all contexts together may hold
     atomic_size_t held;      ///< bytes that they hold now, with free blocks

@@ -184,7 +184,8 @@ const cli_command cli_batch = {
         "name, such as {\"input\": \"city.exr\", \"output\": \"city.ktx2\", \"for\": \"three\", "
         "\"sh-bands\": 3}. Options of kiln bake on the command line hold for all lines that do not "
         "have them. IN is a picture, a pattern such as 'in/*.hdr', or a folder, which stands for "
-        "the pictures in it; OUT then holds {name}, as for kiln bake.\n\nFiles are those of kiln "
+        "the pictures in it; OUT then holds {name}, as for kiln bake. Folders of outputs that are "
+        "missing are created.\n\nFiles are those of kiln "
         "bake, byte for byte. What was baked is recorded in a folder .kiln next to each output: "
         "environments whose inputs, options and outputs have not changed since are kept, by the "
         "content of the files and not by their times.",

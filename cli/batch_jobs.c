@@ -354,8 +354,10 @@ int batch_check_files(const batch_jobs *jobs)
 int batch_job_bake(const batch_job *job, bake *b)
 {
     const batch_line *line = job->line;
-    *b = (bake){.arguments = {
-                    .command = &line->command, .rest = job->input, .rest_count = job->input_count}};
+    *b = (bake){.arguments = {.command = &line->command,
+                              .rest = job->input,
+                              .rest_count = job->input_count},
+                .makes_folders = true};
     for (int i = 0; i < line->setting_count; i++)
         b->arguments.text[line->setting[i].option] = line->setting[i].text;
     for (int i = 0, p = 0; bake_options[i].name; i++)

@@ -150,6 +150,7 @@ static void print_json(const batch *all, const counts *c, double seconds, double
     json_number(&j, "environments", (double)all->jobs.count);
     for (int i = BATCH_WAITS; i <= BATCH_FAILED; i++)
         json_number(&j, outcome_word((batch_outcome)i), (double)c->of[i]);
+    json_number(&j, "folders", atomic_load(&all->folders));
     json_rounded(&j, "seconds", seconds, 6);
     json_rounded(&j, "cpu_seconds", cpu, 6);
     json_number(&j, "threads", all->threads);
@@ -175,6 +176,9 @@ static void print_words(const batch *all, const counts *c, double seconds, doubl
         printf(", %zu failed", c->of[BATCH_FAILED]);
     if (c->of[BATCH_WAITS])
         printf(", %zu not begun", c->of[BATCH_WAITS]);
+    int folders = atomic_load(&all->folders);
+    if (folders)
+        printf(", %d folder%s created", folders, folders == 1 ? "" : "s");
     printf("; %.2f s, %.2f s of CPU time (%.0f %% of %d core%s), %s at most\n", seconds, cpu,
            seconds > 0 ? 100 * cpu / (seconds * all->threads) : 0, all->threads,
            all->threads == 1 ? "" : "s", cli_bytes(os_peak_memory(), memory));

@@ -105,10 +105,22 @@ static int bake_once(batch_worker *worker, const batch_job *job, batch_record *r
     return code;
 }
 
+static bool make_folders(batch *all, const batch_job *job, kiln_error *error)
+{
+    bool good = true;
+    int made = 0;
+    for (int i = 0; i < BATCH_PATHS && good; i++)
+        good = !job->path[i] || cli_make_folders(job->path[i], true, &made, error);
+    atomic_fetch_add(&all->folders, made);
+    return good;
+}
+
 static void bake_job(batch_worker *worker, batch_job *job, batch_record *record, bake *b)
 {
     batch_record_inputs(record);
-    int code = bake_once(worker, job, record, b, false);
+    int code = CLI_FAILED;
+    if (make_folders(worker->batch, job, &b->work.error))
+        code = bake_once(worker, job, record, b, false);
     if (code == CLI_FAILED && b->work.error.result == KILN_ERROR_MEMORY && !cli_interrupted())
         code = bake_once(worker, job, record, b, true);
     if (code == CLI_DONE)

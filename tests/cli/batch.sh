@@ -48,6 +48,19 @@ options="--size 16 --exposure -8 --levels 3"
     outcome "0 baked, 1 kept" 'in/sky?0.exr' -o 'out/{name}.ktx2' $options --shard 3/3
 }
 
+# Folders of outputs are created where they are missing: not by a dry run, and only those of a part's own files.
+for name in a/b/1 a/b/2 a/c/3; do
+    echo "{\"input\": \"in/sky10.exr\", \"output\": \"tree/$name.ktx2\", \"size\": 8, \"sh\": \"tree/sh/$name.json\"}"
+done >tree.jsonl
+"$KILN" batch tree.jsonl --dry-run >log/out || die "a dry run of a tree"
+[ ! -e tree ] || die "a dry run creates folders"
+outcome "1 baked, 0 kept, 6 folders created" tree.jsonl --shard 3/3
+[ ! -e tree/a/b ] || die "a part of a batch creates the folders of another part"
+outcome "2 baked, 1 kept, 2 folders created" tree.jsonl --depfile tree.d
+grep -q 'tree/sh/a/b/2.json' tree.d || die "the rule for make leaves a file out"
+same tree/a/b/1.ktx2 tree/a/c/3.ktx2
+outcome "0 baked, 3 kept" tree.jsonl
+
 # A manifest: each kind of option, and every kind of file that a bake writes.
 cat >list.jsonl <<'LIST'
 {"input": "in/sky10.exr", "output": "out/three.ktx2", "for": "three", "tune": "none", "size": 64}
@@ -143,7 +156,8 @@ refused 1 '^kiln: in/sky10.exr and in/sky30.exr would both be written to o.ktx2$
 refused 1 '^kiln: p.exr is read and written by one batch' \
     '{"input": "in/sky10.exr", "output": "p.exr", "shape": "panorama", "levels": 1}
     {"input": "p.exr", "output": "q.ktx2"}'
-refused 1 '^kiln: no/o.ktx2: there is no folder no' '{"input": "in/sky10.exr", "output": "no/o.ktx2"}'
+refused 1 '^kiln: in/sky10.exr/a/o.ktx2: the folder in/sky10.exr is a file$' \
+    '{"input": "in/sky30.exr", "output": "in/sky10.exr/a/o.ktx2"}'
 expect 1 '^kiln: none.jsonl: cannot be read' batch none.jsonl
 expect 2 '^kiln: no input is named' batch
 expect 2 '^kiln: manifests and pictures cannot be mixed' batch list.jsonl in/sky10.exr -o o.ktx2
