@@ -217,6 +217,22 @@ static kiln_result write_cube(ki_file_set *set, kiln_context *context, const kil
     return result;
 }
 
+// Returns the largest of `count` values that is above 0, or 0.
+static float find_largest(const float *value, size_t count)
+{
+    enum { LANES = 8 };
+    float lanes[LANES] = {0}, most = 0;
+    size_t i = 0;
+    for (; i + LANES <= count; i += LANES)
+        for (size_t k = 0; k < LANES; k++)
+            lanes[k] = value[i + k] > lanes[k] ? value[i + k] : lanes[k];
+    for (; i < count; i++)
+        most = value[i] > most ? value[i] : most;
+    for (int k = 0; k < LANES; k++)
+        most = lanes[k] > most ? lanes[k] : most;
+    return most;
+}
+
 void ki_count_cut(const kiln_map *map, double limit, kiln_save_report *report)
 {
     float most = 0;
@@ -224,10 +240,10 @@ void ki_count_cut(const kiln_map *map, double limit, kiln_save_report *report)
     for (int k = 0; k < map->level_count; k++) {
         size_t count = 3 * kiln_map_texels(map, k);
         const float *value = map->level[k];
-        for (size_t i = 0; i < count; i++) {
-            cut += limit > 0 && (double)value[i] > limit;
-            most = value[i] > most ? value[i] : most;
-        }
+        float largest = find_largest(value, count);
+        for (size_t i = 0; i < count && limit > 0 && (double)largest > limit; i++)
+            cut += (double)value[i] > limit;
+        most = largest > most ? largest : most;
         values += count;
     }
     report->limit = limit;

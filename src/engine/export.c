@@ -16,22 +16,42 @@ static void turn(const ki_axes *axes, const double direction[3], double turned[3
         turned[i] = axes->sign[i] * direction[axes->axis[i]];
 }
 
+// Returns the index, in a source level of size n, of the texel that comes to (x, y) of a face of the
+// turned level.
+static ptrdiff_t turned_texel(const ki_axes *axes, int n, int face, int x, int y)
+{
+    double at[3], from[3], s, t;
+    ki_face_direction(face, (2 * x + 1.0) / n - 1, (2 * y + 1.0) / n - 1, at);
+    turn(axes, at, from);
+    int other = ki_direction_face(from, &s, &t);
+    int column = (int)floor((s + 1) / 2 * n), row = (int)floor((t + 1) / 2 * n);
+    return ((ptrdiff_t)other * n + row) * n + column;
+}
+
+// Turns one face of a level. The turn takes the rows and columns of a face to rows or columns of a
+// face, so that the texels are found by steps of one length.
+static void turn_face(const ki_axes *axes, int n, int face, const float *source, float *turned)
+{
+    ptrdiff_t first = turned_texel(axes, n, face, 0, 0), across = 0, down = 0;
+    if (n > 1) {
+        across = turned_texel(axes, n, face, 1, 0) - first;
+        down = turned_texel(axes, n, face, 0, 1) - first;
+    }
+    float *to = turned + 3 * (size_t)face * (size_t)n * (size_t)n;
+    for (int y = 0; y < n; y++) {
+        const float *from = source + 3 * (first + y * down);
+        for (int x = 0; x < n; x++, from += 3 * across, to += 3)
+            memcpy(to, from, 3 * sizeof *to);
+    }
+}
+
 void ki_turn_cube(const kiln_map *source, const ki_axes *axes, kiln_map *turned)
 {
     for (int k = 0; k < source->level_count; k++) {
-        int n = kiln_map_level_size(source, k);
-        float *to = turned->level[k];
         turned->roughness[k] = source->roughness[k];
-        for (int i = 0; i < 6 * n * n; i++, to += 3) {
-            int face = i / (n * n), y = i / n % n, x = i % n;
-            double at[3], from[3], s, t;
-            ki_face_direction(face, (2 * x + 1.0) / n - 1, (2 * y + 1.0) / n - 1, at);
-            turn(axes, at, from);
-            int other = ki_direction_face(from, &s, &t);
-            int column = (int)floor((s + 1) / 2 * n), row = (int)floor((t + 1) / 2 * n);
-            size_t texel = ((size_t)other * (size_t)n + (size_t)row) * (size_t)n + (size_t)column;
-            memcpy(to, source->level[k] + 3 * texel, 3 * sizeof *to);
-        }
+        for (int face = 0; face < 6; face++)
+            turn_face(axes, kiln_map_level_size(source, k), face, source->level[k],
+                      turned->level[k]);
     }
 }
 

@@ -5,6 +5,7 @@
 #include "math/math.h"
 
 #include <math.h>
+#include <string.h>
 
 double ki_texel_weight(kiln_shape shape, int size, int row, int x)
 {
@@ -18,25 +19,37 @@ double ki_texel_weight(kiln_shape shape, int size, int row, int x)
     return 1;
 }
 
+// Adds the light of texels of equal weight. Eight sums are taken side by side.
+static void add_even_light(double weight, const float *rgb, size_t count, double limit,
+                           ki_light *light)
+{
+    enum { LANES = 8 };
+    double above[LANES] = {0}, below[LANES] = {0}, over[LANES] = {0};
+    for (size_t i = 0; i < count; i += LANES) {
+        float values[LANES] = {0};
+        memcpy(values, rgb + i, (count - i < LANES ? count - i : LANES) * sizeof *values);
+        for (int k = 0; k < LANES; k++) {
+            double value = (double)values[k];
+            above[k] += value > 0 ? value : 0;
+            below[k] -= value < 0 ? value : 0;
+            over[k] += value > limit ? value - limit : 0;
+        }
+    }
+    for (int k = 0; k < LANES; k++) {
+        light->above_zero += weight * above[k];
+        light->below_zero += weight * below[k];
+        light->above_limit += weight * over[k];
+    }
+}
+
 void ki_add_light(kiln_shape shape, int size, int row, int width, const float *rgb, double limit,
                   ki_light *light)
 {
     // Only a cube's texels differ in weight within a row.
-    bool cube = shape == KILN_SHAPE_CUBE;
-    double weight = ki_texel_weight(shape, size, row, 0);
-    for (int x = 0; x < width; x++) {
-        weight = cube ? ki_texel_weight(shape, size, row, x) : weight;
-        double above = 0, below = 0, over = 0;
-        for (int c = 0; c < 3; c++) {
-            double value = (double)rgb[3 * (size_t)x + (size_t)c];
-            above += value > 0 ? value : 0;
-            below -= value < 0 ? value : 0;
-            over += value > limit ? value - limit : 0;
-        }
-        light->above_zero += weight * above;
-        light->below_zero += weight * below;
-        light->above_limit += weight * over;
-    }
+    for (int x = 0; x < width && shape == KILN_SHAPE_CUBE; x++)
+        add_even_light(ki_texel_weight(shape, size, row, x), rgb + 3 * (size_t)x, 3, limit, light);
+    if (shape != KILN_SHAPE_CUBE)
+        add_even_light(ki_texel_weight(shape, size, row, 0), rgb, 3 * (size_t)width, limit, light);
 }
 
 double ki_share_below(const ki_light *light)
