@@ -238,8 +238,15 @@ typedef enum kiln_table_kind {
     /// The part of the albedo that is due to light reflected twice or more between microfacets,
     /// computed by random walks, with w along F0. The albedo of all bounces is F0 A + B plus the
     /// table's value, with an error below 2e-3.
-    KILN_TABLE_E_WALK
+    KILN_TABLE_E_WALK,
+    /// The lobe of a GGX surface as 1 to 3 taps of prefiltered levels and six coefficients for the
+    /// environment's harmonics; four channels and one slice more than taps. See kiln_table_lookup
+    /// and docs/theory/lobes.md.
+    KILN_TABLE_LOBES
 } kiln_table_kind;
+
+/// Greatest number of taps of KILN_TABLE_LOBES.
+enum { KILN_MAX_TAPS = 3 };
 
 /// How n.v depends on u. The nonlinear axes place more texels at grazing angles, where E changes
 /// fast.
@@ -282,6 +289,14 @@ typedef struct kiln_table_def {
     /// Number of random walks per texel, only for KILN_TABLE_E_WALK, rounded as in kiln_walk_def; 0
     /// for 8192.
     int path_count;
+    /// Number of taps, only for KILN_TABLE_LOBES, 1 to KILN_MAX_TAPS; 0 for 1.
+    int tap_count;
+    /// Number of levels of the prefiltered environment that taps read, only for KILN_TABLE_LOBES, 2
+    /// to KILN_MAX_LEVELS; 0 for 7.
+    int level_count;
+    /// Roughness of each level, increasing, 0 to 1, only for KILN_TABLE_LOBES. All 0 stands for
+    /// equal steps from 0 to 1.
+    float level_roughness[KILN_MAX_LEVELS];
 } kiln_table_def;
 
 /// A table. `image` holds the slices one below the other: width x (height * depth) texels.
@@ -307,10 +322,28 @@ KILN_API KILN_CHECKED kiln_result kiln_table_average(kiln_context *context, cons
 KILN_API void kiln_table_texel(const kiln_table *table, int x, int y, int slice, double *nov,
                                double *roughness, double *third);
 /// Sets `values`, one number for each channel, to the table's value interpolated between texels as
-/// graphics hardware does. A stored complement is undone. `third` is used only by tables with
-/// slices.
+/// graphics hardware does. A stored complement is undone. `third` is used only by tables with a
+/// third argument. Tables of KILN_TABLE_LOBES give the 4 (tap_count + 1) numbers of all slices: for
+/// each tap the lean, the level, the weight and one coefficient, then four coefficients.
 KILN_API void kiln_table_lookup(const kiln_table *table, double nov, double roughness, double third,
                                 double *values);
+
+/// Expected errors of three lookups of reflected light, relative to the standard deviation of the
+/// reflected light itself: 0.1 stands for 10 %. Expectations are over environments whose harmonics
+/// of degree l are independent and have the variance l^-2.5, as those of tone-mapped panoramas do.
+typedef struct kiln_lobes_error {
+    double straight; ///< the split sum's lookup in the mirror direction
+    double bent;     ///< the same in the dominant direction of Lagarde and de Rousiers (2014)
+    double table;    ///< the taps and coefficients of the table
+} kiln_lobes_error;
+
+/// Sets errors[i] to the expected errors at nov[i] and roughness[i], i < count, of lookups in a
+/// table of KILN_TABLE_LOBES. Between texels the table is interpolated. Source:
+/// docs/theory/lobes.md.
+KILN_API KILN_CHECKED kiln_result kiln_lobes_errors(kiln_context *context, const kiln_table *table,
+                                                    const double *nov, const double *roughness,
+                                                    int count, kiln_lobes_error *errors,
+                                                    kiln_error *error);
 
 // ------------------------------------------------------------------------------------ closed forms
 

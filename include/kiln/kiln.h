@@ -414,7 +414,7 @@ typedef struct kiln_file_info {
     char engine[24];
     char writer[64];      ///< program that wrote the file, for example "kiln 0.2.0", or empty
     char orientation[16]; ///< orientation of the texels in the file's own words, or empty
-    char table[160];      ///< parameters of a table that kiln wrote, "kind=e d=ggx ...", or empty
+    char table[384];      ///< parameters of a table that kiln wrote, "kind=e d=ggx ...", or empty
     /// number of bands of spherical harmonics in the file, 0 if the file has no harmonics
     int sh_bands;
     bool sh_irradiance; ///< true: the harmonics are of irradiance; false: of radiance

@@ -9,6 +9,7 @@
 #include "brdf/sheen.h"
 #include "brdf/surface.h"
 #include "brdf/walk.h"
+#include "table/lobes.h"
 #include "table/table_axis.h"
 
 int ki_table_channels(kiln_table_kind kind)
@@ -19,6 +20,7 @@ int ki_table_channels(kiln_table_kind kind)
     case KILN_TABLE_DFG_MULTISCATTER:
         return 3;
     case KILN_TABLE_GLASS:
+    case KILN_TABLE_LOBES:
         return 4;
     default:
         return 1;
@@ -147,9 +149,9 @@ static kiln_result check_depth(const kiln_table_def *def, bool has_depth, kiln_e
 
 static kiln_result check_choices(const kiln_table_def *def, kiln_error *error)
 {
-    if ((unsigned)def->kind > KILN_TABLE_E_WALK)
+    if ((unsigned)def->kind > KILN_TABLE_LOBES)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "kind of the table is %d, it must be 0 to %d",
-                       (int)def->kind, KILN_TABLE_E_WALK);
+                       (int)def->kind, KILN_TABLE_LOBES);
     if ((unsigned)def->model.d > KILN_D_BECKMANN || (unsigned)def->model.g > KILN_G_SCHLICK_TEXT)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
                        "the model has d %d and g %d, which must be 0 to %d and 0 to %d",
@@ -186,6 +188,8 @@ kiln_result ki_table_complete(kiln_table_def *def, kiln_error *error)
     kiln_result result = check_choices(def, error);
     if (result)
         return result;
+    if (def->kind == KILN_TABLE_LOBES)
+        return ki_lobes_complete(def, error);
     bool has_depth = ki_table_third(def->kind) != KI_THIRD_NONE;
     bool walks = def->kind == KILN_TABLE_E_WALK;
     if (def->kind == KILN_TABLE_E_AVERAGE)
@@ -298,7 +302,8 @@ kiln_result kiln_table_create(kiln_context *context, const kiln_table_def *def, 
         result = kiln_image_create(context, table->def.width, table->def.height * table->def.depth,
                                    ki_table_channels(table->def.kind), &table->image, error);
     if (!result)
-        result = fill_table(context, table, error);
+        result = table->def.kind == KILN_TABLE_LOBES ? ki_lobes_fill(context, table, error)
+                                                     : fill_table(context, table, error);
     if (result)
         kiln_table_free(table);
     return result;

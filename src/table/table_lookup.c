@@ -35,6 +35,19 @@ static between find(double place, int count, bool corners, size_t stride)
     return (between){(size_t)low * stride, low < count - 1 ? stride : 0, index - low};
 }
 
+// Interpolates one channel between eight texels; t points to the first of them.
+static double mix_texels(const float *t, const between *x, const between *y, const between *z)
+{
+    double slice[2];
+    for (size_t k = 0; k < 2; k++, t += z->step) {
+        const float *b = t + y->step;
+        double top = (double)t[0] + ((double)t[x->step] - (double)t[0]) * x->share;
+        double bottom = (double)b[0] + ((double)b[x->step] - (double)b[0]) * x->share;
+        slice[k] = top + (bottom - top) * y->share;
+    }
+    return slice[0] + (slice[1] - slice[0]) * z->share;
+}
+
 void kiln_table_lookup(const kiln_table *table, double nov, double roughness, double third,
                        double *values)
 {
@@ -46,17 +59,17 @@ void kiln_table_lookup(const kiln_table *table, double nov, double roughness, do
     between y = find(def->flip ? 1 - roughness : roughness, def->height, def->corners, row);
     between z = find(ki_third_to_w(ki_table_third(def->kind), third), def->depth, def->corners,
                      row * (size_t)def->height);
-    const float *texel = table->image.pixels + x.index + y.index + z.index;
-    for (size_t c = 0; c < channels; c++, texel++) {
-        double slice[2];
-        for (size_t k = 0; k < 2; k++) {
-            const float *t = texel + k * z.step;
-            double top = (double)t[0] + ((double)t[x.step] - (double)t[0]) * x.share;
-            t += y.step;
-            double bottom = (double)t[0] + ((double)t[x.step] - (double)t[0]) * x.share;
-            slice[k] = top + (bottom - top) * y.share;
-        }
-        values[c] = slice[0] + (slice[1] - slice[0]) * z.share;
+    const float *texel = table->image.pixels + x.index + y.index;
+    if (def->kind == KILN_TABLE_LOBES) {
+        // Slices are no axis: every slice has four numbers of its own.
+        size_t slice = row * (size_t)def->height;
+        z = (between){0};
+        for (size_t i = 0; i < channels * (size_t)def->depth; i++)
+            values[i] = mix_texels(texel + i / channels * slice + i % channels, &x, &y, &z);
+        return;
+    }
+    for (size_t c = 0; c < channels; c++) {
+        values[c] = mix_texels(texel + z.index + c, &x, &y, &z);
         if (def->complement)
             values[c] = 1 - values[c];
     }

@@ -6,6 +6,7 @@
 #include "codec/formats.h"
 #include "codec/rgbx_png.h"
 #include "image/pack.h"
+#include "table/lobes.h"
 #include "table/table.h"
 #include "table/table_source.h"
 #include "table/table_text.h"
@@ -17,7 +18,7 @@
 
 static kiln_result check_def(const kiln_table_def *def, kiln_error *error)
 {
-    if ((unsigned)def->kind > KILN_TABLE_E_WALK || (unsigned)def->model.d > KILN_D_BECKMANN ||
+    if ((unsigned)def->kind > KILN_TABLE_LOBES || (unsigned)def->model.d > KILN_D_BECKMANN ||
         (unsigned)def->model.g > KILN_G_SCHLICK_TEXT || (unsigned)def->axis > KILN_AXIS_GRAZING ||
         (unsigned)def->sheen > KILN_SHEEN_ESTEVEZ)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
@@ -32,7 +33,8 @@ static kiln_result check_def(const kiln_table_def *def, kiln_error *error)
                        "the table is %d x %d x %d with %d paths, its sides must be 1 to %d and its "
                        "paths 0 or more",
                        def->width, def->height, def->depth, def->path_count, KILN_MAX_TABLE);
-    return KILN_OK;
+    kiln_table_def complete = *def;
+    return def->kind == KILN_TABLE_LOBES ? ki_lobes_complete(&complete, error) : KILN_OK;
 }
 
 static kiln_result check_table(const kiln_table *table, kiln_error *error)
@@ -77,6 +79,20 @@ static kiln_result find_format(const char *path, const kiln_table_save_def *def,
                        kiln_path_ending(path), names[def->format]);
     *format = def->format ? def->format : (*file)->table_format;
     return ki_check_zstd(path, *file, def->zstd, error);
+}
+
+// Fails if a format cannot hold the numbers of a kind of table.
+static kiln_result check_numbers(const kiln_table_def *def, kiln_table_format format,
+                                 const char *path, kiln_error *error)
+{
+    if (def->kind == KILN_TABLE_LOBES && format != KILN_TABLE_FORMAT_F16 &&
+        format != KILN_TABLE_FORMAT_F32)
+        return ki_fail(
+            error, KILN_ERROR_ARGUMENT,
+            "%s: a table of lobes has numbers below 0 and above 1, choose the format f16 "
+            "or f32 and a file that has it, such as .ktx2 or .exr",
+            path);
+    return KILN_OK;
 }
 
 // ---------------------------------------------------------------------------------------- pictures
@@ -179,6 +195,14 @@ static void encode_inc(const kiln_table *table, ki_writer *w)
                       (i + 1) % 12 && i + 1 < count ? " " : "\n");
 }
 
+static kiln_result fail_code(const char *path, kiln_error *error)
+{
+    return ki_fail(error, KILN_ERROR_UNSUPPORTED,
+                   "%s: kiln writes no code for tables of lobes; save an array as .h or a texture "
+                   "as .ktx2",
+                   path);
+}
+
 static kiln_result encode_code(const kiln_table *table, kiln_table_format format, const char *path,
                                const char *wanted_name, ki_writer *w, kiln_error *error)
 {
@@ -186,6 +210,8 @@ static kiln_result encode_code(const kiln_table *table, kiln_table_format format
     kiln_result result = ki_source_name_make(path, wanted_name, &name, error);
     if (result != KILN_OK)
         return result;
+    if (table->def.kind == KILN_TABLE_LOBES && !ki_ends_with(path, ".h"))
+        return fail_code(path, error);
     return ki_ends_with(path, ".h") ? ki_table_write_header(table, path, name.text, w, error)
                                     : ki_table_write_glsl(table, format, path, name.text, w, error);
 }
@@ -204,6 +230,8 @@ static kiln_result encode(const kiln_table *table, const char *path, const kiln_
     const ki_file_format *file;
     kiln_table_format format = KILN_TABLE_FORMAT_F32;
     kiln_result result = find_format(path, def, &file, &format, error);
+    if (result == KILN_OK)
+        result = check_numbers(&table->def, format, path, error);
     if (result != KILN_OK)
         return result;
     if (!strcmp(file->name, "ktx2"))
@@ -264,6 +292,8 @@ kiln_result kiln_table_lookup_save(kiln_context *context, const kiln_table_def *
         return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: must end in .h or .glsl", path);
     ki_source_name made;
     kiln_result result = check_def(def, error);
+    if (result == KILN_OK && def->kind == KILN_TABLE_LOBES)
+        return fail_code(path, error);
     if (result == KILN_OK)
         result = ki_source_name_make(path, name, &made, error);
     if (result != KILN_OK)

@@ -1,11 +1,14 @@
 // A kiln_table_def as one line of text, which files and written source code carry:
 //   kind=e d=ggx g=smith sheen=ashikhmin axis=grazing corners=1 complement=0 flip=0 size=128x128x1 paths=0
+// Tables of KILN_TABLE_LOBES append their number of taps and the roughness of each level, or the
+// number of levels if their roughness rises in equal steps from 0 to 1:
+//   taps=2 levels=0,0.25,0.6,1
 #ifndef KI_TABLE_TEXT_H
 #define KI_TABLE_TEXT_H
 
 #include <kiln/brdf.h>
 
-enum { KI_TABLE_TEXT = 160 };
+enum { KI_TABLE_TEXT = 384 };
 
 /// Writes the line of text for a kiln_table_def whose fields are in range. paths= is path_count,
 /// used by KILN_TABLE_E_WALK only.

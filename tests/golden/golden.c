@@ -212,6 +212,18 @@ static uint64_t table_walk(kiln_context *context)
             .kind = KILN_TABLE_E_WALK, .width = 6, .height = 4, .depth = 2, .path_count = 256});
 }
 
+static uint64_t table_lobes(kiln_context *context)
+{
+    uint64_t hash = 0;
+    for (int taps = 1; taps <= KILN_MAX_TAPS; taps++)
+        hash = hash * 31 + one_table(context, &(kiln_table_def){.kind = KILN_TABLE_LOBES,
+                                                                .width = 6,
+                                                                .height = 7,
+                                                                .tap_count = taps,
+                                                                .level_count = 4});
+    return hash;
+}
+
 static uint64_t sky(kiln_context *context)
 {
     kiln_map map;
@@ -295,6 +307,7 @@ static entry entries[] = {
     {"table-dfg", table_dfg, false, 0},
     {"table-e", table_e, false, 0},
     {"table-walk", table_walk, false, 0},
+    {"table-lobes", table_lobes, false, 0},
     {"sky", sky, false, 0},
     {"file-hdr", file_hdr, false, 0},
     {"file-exr", file_exr, false, 0},
