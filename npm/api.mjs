@@ -1,5 +1,6 @@
 // bake() and kiln() on workers. index.mjs and node.mjs say how a module is loaded and a worker is started.
 import { engines } from './engines.mjs';
+import { plain } from './memory.mjs';
 
 const SPECIAL = new Set(['name', 'output', 'onProgress', 'signal', 'json']);
 const REFUSED = ['help', 'verbose']; // what these print would take the report's place
@@ -171,7 +172,7 @@ export function makeApi(loadModule, startWorker) {
         if (result.code !== 0)
             throw failureOf(result);
         const report = JSON.parse(new TextDecoder().decode(result.stdout));
-        const text = result.files.find(({ name }) => name === (options.sh ?? HARMONICS));
+        const text = result.files.find(({ name }) => name === plain(options.sh ?? HARMONICS));
         if (!options.sh) { // the caller did not ask for this file
             delete report.output.sh;
             report.output.file_count--;

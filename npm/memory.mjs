@@ -8,8 +8,17 @@ const fail = (code) => {
     throw Object.assign(new Error(code), { code });
 };
 
-// A name without "." and empty parts: "./a//b" and "/a/b" are "a/b".
-const plain = (name) => name.split('/').filter((part) => part && part !== '.').join('/');
+// A name without ".", ".." and empty parts: "./a//b", "/a/b" and "../a/c/../b" are "a/b". No folder lies above the
+// files in memory, and a caller who writes files by their names writes them into his own folder.
+export function plain(name) {
+    const parts = [];
+    for (const part of name.split('/'))
+        if (part === '..')
+            parts.pop();
+        else if (part && part !== '.')
+            parts.push(part);
+    return parts.join('/');
+}
 
 const folderOf = (name) => name.slice(0, Math.max(0, name.lastIndexOf('/')));
 

@@ -3,10 +3,11 @@ import type { BakeEnvironmentOptions, Files, Found, Source } from 'kiln-ibl/thre
 
 /** Loads an environment that kiln baked, for `<Environment map={...}>` of @react-three/drei. A hook for components
  * inside `<Canvas>` that suspends until the texture is there. Throws where the running three.js cannot show the file.
- * The texture is kept for all components that ask for the same file. */
+ * Components that ask for the same file share the texture, which is disposed when the last of them is unmounted. */
 export function useEnvironmentMap(files: Files): Texture;
 
 /** Bakes a panorama in a worker, for `<Environment map={...}>`. A hook for components inside `<Canvas>` that suspends
- * until the texture is there. Panorama and options that are equal give the same texture. */
+ * until the texture is there. Components with equal panoramas and options share the texture, which is disposed when the
+ * last of them is unmounted. */
 export function useBakedEnvironmentMap(panorama: Source | Texture, options?: BakeEnvironmentOptions):
     Texture & { userData: { kiln: Found } };

@@ -195,6 +195,9 @@ export async function loadEnvironment(source, renderer, options = {}) {
 
 export async function bakeEnvironment(source, renderer, { size, ...options } = {}) {
     checkVersion(renderer);
+    if (options.for !== undefined && options.for !== engine)
+        throw new Error(`kiln-ibl/three: bakeEnvironment() bakes for the running three.js r${REVISION}, which shows ` +
+                        `files of --for ${engine}; leave out the option for, which is ${JSON.stringify(options.for)}`);
     const { bake, readPanorama } = await import('./three-bake.mjs'); // which those who only load do not need
     const input = source?.isTexture ? { name: source.name || 'panorama', bytes: readPanorama(source) }
                                     : await openFile(source, options);

@@ -75,17 +75,18 @@ struct kiln_plan {
 
 // ---------------------------------------------------------------------------------------- analysis
 
-// Returns the spectrum that `analysis`, to a low degree, computes from the panorama, or the
-// spectrum of the prefiltered levels if `analysis` is NULL. If `panorama` is NULL, the rows have
-// passed by and the spectrum is in the workspace already.
-static const kiln_spectrum *find_spectrum(const plan_workspace *w, const ki_analysis *analysis,
-                                          const ki_low_workspace *low, const kiln_map *panorama)
+// Finds the spectrum that `analysis`, to a low degree, computes from the panorama, or the spectrum of
+// the prefiltered levels if `analysis` is NULL. If `panorama` is NULL, the rows have passed by and the
+// spectrum is in the workspace already.
+static kiln_result find_spectrum(const plan_workspace *w, const ki_analysis *analysis,
+                                 const ki_low_workspace *low, const kiln_map *panorama,
+                                 const kiln_spectrum **spectrum, kiln_error *error)
 {
-    if (!analysis)
-        return w->prefilter.spectrum;
-    if (panorama)
-        ki_analysis_execute(analysis, low->analysis, panorama->level[0], low->spectrum);
-    return low->spectrum;
+    *spectrum = analysis ? low->spectrum : w->prefilter.spectrum;
+    if (analysis && panorama &&
+        !ki_analysis_execute(analysis, low->analysis, panorama->level[0], low->spectrum))
+        return ki_fail_cancelled(error, "filtering");
+    return KILN_OK;
 }
 
 // -------------------------------------------------------------------------------------------- plan
@@ -364,13 +365,18 @@ static kiln_result finish(const kiln_plan *p, plan_workspace *w, const kiln_map 
                           kiln_environment *environment, kiln_error *error)
 {
     kiln_result result = KILN_OK;
+    const kiln_spectrum *spectrum = NULL;
     if (p->sh_bands)
-        result = ki_sh_project(find_spectrum(w, p->for_sh, &w->for_sh, panorama), p->sh_bands,
-                               &p->prefilter->tilt, p->rotation, &environment->sh, error);
+        result = find_spectrum(w, p->for_sh, &w->for_sh, panorama, &spectrum, error);
+    if (result == KILN_OK && p->sh_bands)
+        result = ki_sh_project(spectrum, p->sh_bands, &p->prefilter->tilt, p->rotation,
+                               &environment->sh, error);
     if (result == KILN_OK && p->irradiance_size)
-        result = ki_level_execute(p->irradiance, &w->prefilter.levels,
-                                  find_spectrum(w, p->for_irradiance, &w->for_irradiance, panorama),
-                                  NULL, p->rotation, &environment->irradiance, 0, NULL, error);
+        result =
+            find_spectrum(w, p->for_irradiance, &w->for_irradiance, panorama, &spectrum, error);
+    if (result == KILN_OK && p->irradiance_size)
+        result = ki_level_execute(p->irradiance, &w->prefilter.levels, spectrum, NULL, p->rotation,
+                                  &environment->irradiance, 0, NULL, error);
     if (result == KILN_OK)
         ki_cut_negative(p->context, &environment->levels, 0, environment->levels.level_count,
                         &environment->levels_cut);

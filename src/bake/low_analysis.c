@@ -49,8 +49,9 @@ kiln_result kiln_map_sh(kiln_context *context, const kiln_map *map, int bands, d
     }
     if (result == KILN_OK)
         result = ki_low_create(context, map->size, KI_SH_DEGREE, &analysis, &low, error);
-    if (result == KILN_OK)
-        ki_analysis_execute(analysis, low.analysis, map->level[0], low.spectrum);
+    if (result == KILN_OK &&
+        !ki_analysis_execute(analysis, low.analysis, map->level[0], low.spectrum))
+        result = ki_fail_cancelled(error, "analysing");
     if (result == KILN_OK)
         result = ki_sh_project(low.spectrum, bands, NULL, rotation, sh, error);
     ki_low_free(&low);

@@ -267,7 +267,8 @@ kiln_result ki_prefilter_execute(const ki_prefilter *p, ki_prefilter_workspace *
     kiln_result result = ki_prefilter_begin(p, w, error);
     if (result != KILN_OK)
         return result;
-    ki_analysis_execute(p->analysis, w->analysis, panorama->level[0], w->spectrum);
+    if (!ki_analysis_execute(p->analysis, w->analysis, panorama->level[0], w->spectrum))
+        return ki_fail_cancelled(error, stage);
     return ki_prefilter_levels(p, w, panorama, source, rehearses, map, error);
 }
 

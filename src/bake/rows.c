@@ -132,18 +132,21 @@ static void see_rows(const pass *p, const ki_rows *rows)
 }
 
 // Adds the rings and computes the texels whose last row has a depth from p->depth to `to` - 1.
-static void add_band(const pass *p, const ki_rows rows[2], int to)
+// Returns false if the caller of the library stops the work.
+static bool add_band(const pass *p, const ki_rows rows[2], int to)
 {
     const ki_row_work *work = p->work;
-    for (int i = 0; i < work->analysis_count; i++) {
+    bool go_on = true;
+    for (int i = 0; i < work->analysis_count && go_on; i++) {
         const ki_row_analysis *a = &work->analysis[i];
-        ki_analysis_add_band(a->analysis, a->workspace, rows, p->depth, to, a->spectrum);
+        go_on = ki_analysis_add_band(a->analysis, a->workspace, rows, p->depth, to, a->spectrum);
     }
-    for (int i = 0; i < work->mirror_count; i++) {
+    for (int i = 0; i < work->mirror_count && go_on; i++) {
         ki_buffer buffer = work->mirrors[i].buffer;
         ki_resample_band(p->context, work->mirrors[i].plan, &buffer, rows, p->depth, to,
                          work->mirrors[i].target);
     }
+    return go_on;
 }
 
 // Reads the next rows on both sides and forgets the rows that are no longer needed.
@@ -196,7 +199,8 @@ static kiln_result pass_all(pass *p, kiln_error *error)
             rows[1] = rows[0];
             to = p->size;
         }
-        add_band(p, rows, to);
+        if (!add_band(p, rows, to))
+            return ki_fail_cancelled(error, reading);
         p->depth = to;
     }
     return KILN_OK;
@@ -218,11 +222,12 @@ static kiln_result add_suns(pass *p, const ki_row_analysis *a, kiln_error *error
             rows[side].rgb = to;
             to += (size_t)rows[side].count * line_floats(p);
         }
-        if (result == KILN_OK)
-            ki_analysis_add_vector(a->analysis, a->workspace, rows, vector, a->spectrum);
+        if (result == KILN_OK &&
+            !ki_analysis_add_vector(a->analysis, a->workspace, rows, vector, a->spectrum))
+            result = ki_fail_cancelled(error, reading);
     }
-    if (result == KILN_OK)
-        ki_analysis_sum_orders(a->analysis, a->workspace, a->spectrum);
+    if (result == KILN_OK && !ki_analysis_sum_orders(a->analysis, a->workspace, a->spectrum))
+        result = ki_fail_cancelled(error, reading);
     return result;
 }
 

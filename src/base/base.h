@@ -114,8 +114,10 @@ typedef void ki_task(void *data, int index);
 void ki_parallel_for(kiln_context *context, int count, ki_task *task, void *data);
 
 /// Runs tasks as ki_parallel_for does, for tasks that need scratch memory of their own. `worker` is
-/// less than ki_context_threads, and no two tasks run with the same worker at the same time.
-void ki_parallel_workers(kiln_context *context, int count,
+/// less than ki_context_threads, and no two tasks run with the same worker at the same time. Repeats
+/// the last report of progress meanwhile, as ki_go_on does. Returns false if a report asked to stop;
+/// some tasks have then not run.
+bool ki_parallel_workers(kiln_context *context, int count,
                          void (*task)(void *data, int worker, int index), void *data);
 
 /// Reports progress to the caller of the library: `fraction`, 0 to 1, of the work called `stage`, a

@@ -99,29 +99,55 @@ void ki_parallel_for(kiln_context *context, int count, ki_task *task, void *data
     pool->in_use = false;
 }
 
+// Longest time in seconds between two progress reports, unless one task takes longer. A caller can
+// therefore stop the work within this time.
+static const double silence = 0.05;
+
 typedef struct workers {
+    kiln_context *context;
     void (*task)(void *data, int worker, int index);
     void *data;
     int count;
+    uintptr_t caller;
+    double asked; // time of the last progress report, in seconds
     atomic_int next;
+    atomic_bool stopped;
 } workers;
+
+// Asks the caller of the library whether to go on, on the thread of the caller, from time to time.
+static void ask(workers *w)
+{
+    if (ki_os_this_thread() != w->caller || ki_os_seconds() < w->asked + silence)
+        return;
+    if (!ki_go_on(w->context))
+        atomic_store(&w->stopped, true);
+    w->asked = ki_os_seconds();
+}
 
 static void work(void *data, int worker)
 {
     workers *w = data;
-    for (;;) {
+    while (!atomic_load_explicit(&w->stopped, memory_order_relaxed)) {
         int index = atomic_fetch_add(&w->next, 1);
         if (index >= w->count)
             return;
         w->task(w->data, worker, index);
+        if (w->context->def.progress)
+            ask(w);
     }
 }
 
-void ki_parallel_workers(kiln_context *context, int count,
+bool ki_parallel_workers(kiln_context *context, int count,
                          void (*task)(void *data, int worker, int index), void *data)
 {
-    workers w = {.task = task, .data = data, .count = count};
+    workers w = {.context = context,
+                 .task = task,
+                 .data = data,
+                 .count = count,
+                 .caller = ki_os_this_thread(),
+                 .asked = ki_os_seconds()};
     ki_parallel_for(context, ki_min(context->def.thread_count, count), work, &w);
+    return !atomic_load(&w.stopped);
 }
 
 typedef struct steps {
@@ -137,10 +163,6 @@ typedef struct steps {
 } steps;
 
 enum { REPORTS = 64 };
-
-// Longest time in seconds between two progress reports, unless one task takes longer. A caller can
-// therefore stop the work within this time.
-static const double silence = 0.05;
 
 static void step(void *data, int index)
 {

@@ -416,15 +416,16 @@ static void analyze_order(void *data, int worker, int m)
             out[KI_COMPONENTS * i + c] *= a->legendre.scale[row + (size_t)i];
 }
 
-static void transform_vectors(run *r, int first, int count)
+// Returns false if the caller of the library stops the work.
+static bool transform_vectors(run *r, int first, int count)
 {
     r->first_vector = first;
-    ki_parallel_workers(r->work->context, count, transform_rings, r);
+    return ki_parallel_workers(r->work->context, count, transform_rings, r);
 }
 
-static void sum_orders(run *r)
+static bool sum_orders(run *r)
 {
-    ki_parallel_workers(r->work->context, r->analysis->degree + 1, analyze_order, r);
+    return ki_parallel_workers(r->work->context, r->analysis->degree + 1, analyze_order, r);
 }
 
 kiln_result ki_analysis_finish(const ki_analysis *analysis, ki_analysis_workspace *w,
@@ -435,12 +436,11 @@ kiln_result ki_analysis_finish(const ki_analysis *analysis, ki_analysis_workspac
                        analysis->size, w->row_count);
     run r = {.analysis = analysis, .work = w, .spectrum = spectrum};
     select_suns(w, spectrum);
-    transform_vectors(&r, 0, analysis->rings.vector_count);
-    sum_orders(&r);
-    return KILN_OK;
+    bool go_on = transform_vectors(&r, 0, analysis->rings.vector_count) && sum_orders(&r);
+    return go_on ? KILN_OK : ki_fail_cancelled(error, "analysing");
 }
 
-void ki_analysis_execute(const ki_analysis *analysis, ki_analysis_workspace *w, const float *rows,
+bool ki_analysis_execute(const ki_analysis *analysis, ki_analysis_workspace *w, const float *rows,
                          kiln_spectrum *spectrum)
 {
     ki_rows all = {rows, 0, analysis->size};
@@ -448,8 +448,7 @@ void ki_analysis_execute(const ki_analysis *analysis, ki_analysis_workspace *w, 
     ki_analysis_begin(w, spectrum);
     see_rows(&r);
     select_suns(w, spectrum);
-    transform_vectors(&r, 0, analysis->rings.vector_count);
-    sum_orders(&r);
+    return transform_vectors(&r, 0, analysis->rings.vector_count) && sum_orders(&r);
 }
 
 // --------------------------------------------------------------------------- rows from both poles
@@ -506,7 +505,7 @@ void ki_analysis_see_rows(const ki_analysis *analysis, ki_analysis_workspace *w,
     see_rows(&(run){.analysis = analysis, .work = w, .rows = {*rows, *rows}});
 }
 
-void ki_analysis_add_band(const ki_analysis *analysis, ki_analysis_workspace *w,
+bool ki_analysis_add_band(const ki_analysis *analysis, ki_analysis_workspace *w,
                           const ki_rows rows[2], int from, int to, kiln_spectrum *spectrum)
 {
     run r = {.analysis = analysis, .work = w, .rows = {rows[0], rows[1]}, .spectrum = spectrum};
@@ -516,7 +515,7 @@ void ki_analysis_add_band(const ki_analysis *analysis, ki_analysis_workspace *w,
     int end = first;
     while (end < count && find_depth(analysis, end, &reach) < to)
         end++;
-    transform_vectors(&r, first, end - first);
+    return transform_vectors(&r, first, end - first);
 }
 
 void ki_analysis_choose_suns(ki_analysis_workspace *w, kiln_spectrum *spectrum)
@@ -538,15 +537,15 @@ bool ki_analysis_next_sun(const ki_analysis *analysis, const kiln_spectrum *spec
     return false;
 }
 
-void ki_analysis_add_vector(const ki_analysis *analysis, ki_analysis_workspace *w,
+bool ki_analysis_add_vector(const ki_analysis *analysis, ki_analysis_workspace *w,
                             const ki_rows rows[2], int vector, kiln_spectrum *spectrum)
 {
     run r = {.analysis = analysis, .work = w, .rows = {rows[0], rows[1]}, .spectrum = spectrum};
-    transform_vectors(&r, vector, 1);
+    return transform_vectors(&r, vector, 1);
 }
 
-void ki_analysis_sum_orders(const ki_analysis *analysis, ki_analysis_workspace *w,
+bool ki_analysis_sum_orders(const ki_analysis *analysis, ki_analysis_workspace *w,
                             kiln_spectrum *spectrum)
 {
-    sum_orders(&(run){.analysis = analysis, .work = w, .spectrum = spectrum});
+    return sum_orders(&(run){.analysis = analysis, .work = w, .spectrum = spectrum});
 }

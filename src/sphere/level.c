@@ -567,11 +567,11 @@ kiln_result ki_level_execute(const ki_level *level, const ki_level_workspace *wo
     int width, height;
     ki_level_extent(map, index, &width, &height);
     ki_parallel_for(context, level->degree + 1, weigh_order, &r);
-    ki_parallel_workers(context, level->rings.vector_count / 2,
-                        level->places ? fill_places : fill_grid, &r);
-    if (!level->places)
+    bool go_on = ki_parallel_workers(context, level->rings.vector_count / 2,
+                                     level->places ? fill_places : fill_grid, &r);
+    if (go_on && !level->places)
         pad_grid(&r);
-    if (!ki_parallel_steps(context, range, height, fill_row, &r))
+    if (!go_on || !ki_parallel_steps(context, range, height, fill_row, &r))
         result = ki_fail_cancelled(error, range ? range->name : "filtering");
     ki_points_destroy(&r.points);
     return result;

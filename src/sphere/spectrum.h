@@ -92,8 +92,9 @@ kiln_result ki_analysis_borrow(const ki_analysis *analysis, ki_analysis_workspac
                                ki_buffer *orders, ki_buffer *scratch, kiln_error *error);
 /// Frees a workspace. `workspace` may be NULL.
 void ki_analysis_workspace_destroy(ki_analysis_workspace *workspace);
-/// Writes the spectrum of a whole panorama of `size` rows. The function allocates nothing.
-void ki_analysis_execute(const ki_analysis *analysis, ki_analysis_workspace *workspace,
+/// Writes the spectrum of a whole panorama of `size` rows. The function allocates nothing. Returns
+/// false if the caller of the library stops the work, as do the other functions that return a bool.
+bool ki_analysis_execute(const ki_analysis *analysis, ki_analysis_workspace *workspace,
                          const float *rows, kiln_spectrum *spectrum);
 /// Adds the next `count` rows of a panorama to its analysis. Rows come from north to south.
 kiln_result ki_analysis_add_rows(const ki_analysis *analysis, ki_analysis_workspace *workspace,
@@ -124,7 +125,7 @@ void ki_analysis_see_rows(const ki_analysis *analysis, ki_analysis_workspace *wo
                           const ki_rows *rows);
 /// Adds all vectors of rings whose last row has a depth from `from` to `to` - 1. rows[0] holds the
 /// rows from the north pole, rows[1] those from the south pole, as far as the reach says.
-void ki_analysis_add_band(const ki_analysis *analysis, ki_analysis_workspace *workspace,
+bool ki_analysis_add_band(const ki_analysis *analysis, ki_analysis_workspace *workspace,
                           const ki_rows rows[2], int from, int to, kiln_spectrum *spectrum);
 /// Decides which texels are suns, after all rows were seen.
 void ki_analysis_choose_suns(ki_analysis_workspace *workspace, kiln_spectrum *spectrum);
@@ -134,10 +135,10 @@ void ki_analysis_choose_suns(ki_analysis_workspace *workspace, kiln_spectrum *sp
 bool ki_analysis_next_sun(const ki_analysis *analysis, const kiln_spectrum *spectrum, int *vector,
                           ki_rows rows[2]);
 /// Adds one vector of rings, without the suns, in place of what was added for it before.
-void ki_analysis_add_vector(const ki_analysis *analysis, ki_analysis_workspace *workspace,
+bool ki_analysis_add_vector(const ki_analysis *analysis, ki_analysis_workspace *workspace,
                             const ki_rows rows[2], int vector, kiln_spectrum *spectrum);
 /// Writes the coefficients of the spectrum, after all rings were added.
-void ki_analysis_sum_orders(const ki_analysis *analysis, ki_analysis_workspace *workspace,
+bool ki_analysis_sum_orders(const ki_analysis *analysis, ki_analysis_workspace *workspace,
                             kiln_spectrum *spectrum);
 
 /// Adds the harmonics of the suns (bright texels kept out of the spectrum) up to `degree` to the

@@ -1,8 +1,11 @@
 // A system that starts fewer threads than a context asks for: the context works with those it has, says how many
-// these are, and gives the same bits.
+// these are, and gives the same bits. Long work asks its caller whether to go on.
+#include "base/base.h"
+
 #include "kit/kit.h"
 
 #include <pthread.h>
+#include <time.h>
 
 // The linker sends the library's calls here. `allowed` more threads may start.
 static int allowed;
@@ -53,8 +56,44 @@ static void missing_threads_change_nothing_but_time(void **state)
     kiln_environment_free(&all);
 }
 
+static int ask_count,
+    stop_at; // number of times that the caller was asked, and the answer that stops the work
+
+static bool ask(void *user, const char *stage, double fraction)
+{
+    (void)user, (void)stage, (void)fraction;
+    return ++ask_count != stop_at;
+}
+
+// Takes longer than the library may be silent, which is 50 ms.
+static void sleep_long(void *data, int worker, int index)
+{
+    (void)worker, (void)index;
+    nanosleep(&(struct timespec){.tv_nsec = 60000000}, NULL);
+    ++*(int *)data;
+}
+
+// Loops of long tasks with scratch memory of their own ask after each task, and end when they are told to.
+static void long_loops_ask(void **state)
+{
+    (void)state;
+    kiln_context *context = NULL;
+    CHECK_OK(kiln_context_create(&(kiln_context_def){.thread_count = 1, .progress = ask}, &context,
+                                 &error));
+    int done = 0;
+    assert_true(ki_parallel_workers(context, 3, sleep_long, &done));
+    assert_int_equal(done, 3);
+    assert_int_equal(ask_count, 3);
+    done = ask_count = 0;
+    stop_at = 2;
+    assert_false(ki_parallel_workers(context, 5, sleep_long, &done));
+    assert_int_equal(done, 2);
+    kiln_context_destroy(context);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(missing_threads_change_nothing_but_time)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(missing_threads_change_nothing_but_time),
+                                       cmocka_unit_test(long_loops_ask)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -64,6 +64,11 @@ for (const name of ['-', '--json', '.exr'])
 await assert.rejects(bake({ data: new Float32Array(5), width: 2, height: 1 }), /needs a Float32Array of 6 or 8 numbers/);
 await assert.rejects(bake('a.exr'), /neither bytes nor a picture/);
 
+// Names lead nowhere above the files in memory.
+const above = await bake(sky, { size: 8, output: '../../up/x.ktx2', sh: '../sh.json' });
+assert.deepEqual(above.files.map(({ name }) => name).sort(), ['sh.json', 'up/x.ktx2']);
+assert.equal(above.sh.bands, 3);
+
 // Errors are the native command's sentences.
 for (const [words, wrong] of [[['--sise', '3'], { sise: 3 }], [['--size', '0'], { size: 0 }],
                               [['--for', 'tree'], { for: 'tree' }], [['--lights', '2'], { lights: 2 }]]) {

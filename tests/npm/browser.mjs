@@ -57,6 +57,12 @@ const [packages, far] = await listen((request, response) => {
     response.writeHead(200, { 'Access-Control-Allow-Origin': '*', 'Content-Type': types[name.split('.')[1]] });
     response.end(fs.readFileSync(`${installed}/${name}`));
 });
+// As Vite's server does for a module that is bundled without its WebAssembly.
+const [misses, missing] = await listen((request, response) => {
+    const name = request.url.slice(1), wasm = name.endsWith('.wasm');
+    response.writeHead(200, { 'Access-Control-Allow-Origin': '*', 'Content-Type': wasm ? 'text/html' : types[name.split('.')[1]] });
+    response.end(wasm ? '<!doctype html><title>app</title>' : fs.readFileSync(`${installed}/${name}`));
+});
 const [pages, near] = await listen((request, response) => {
     response.writeHead(200, { 'Content-Type': 'text/html' });
     response.end('<!doctype html><title>kiln-ibl</title>');
@@ -72,8 +78,14 @@ try {
     }, far);
     assert.ok(Math.abs(texel - 2) < 1e-6, `the radiance is ${texel}`);
     console.log('  the package on another server: bakes');
+    const problem = await page.evaluate(async (address) => {
+        const { bake } = await import(`${address}/index.mjs`);
+        return bake(new Uint8Array(10)).catch((error) => error.message);
+    }, missing);
+    assert.match(problem, /kiln.wasm was asked for .* a web page \(HTML\).* optimizeDeps: \{ exclude: \['kiln-ibl'\] \}/);
 } finally {
     await browser.close();
     packages.close();
+    misses.close();
     pages.close();
 }

@@ -34,6 +34,14 @@ const round = bake('-o', 'round.ktx2');
 assert.deepEqual([round.code, round.stderr], [1, 'kiln: round.ktx2: cannot be created: Symbolic link loop\n']);
 fs.unlinkSync(inFolder('round.ktx2'));
 
+// kiln check says what the native command says, of a right file and of a mirror image.
+for (const [name, code, ...words] of [['right.ktx2', 0], ['mirror.ktx2', 1, '--mirror']]) {
+    kiln('bake', 'a.hdr', '-o', name, '--size', '32', '-q', ...words);
+    const check = ['check', 'a.hdr', name, '--json'], said = runIn(folder, command, check);
+    assert.deepEqual(said, runIn(folder, native, check));
+    assert.equal(said.code, code, said.stdout);
+}
+
 // Names with spaces and letters of any language; both names of the command.
 assert.equal(bake('-o', 'Umgebung für 東京.ktx2').code, 0);
 same('Umgebung für 東京.ktx2');
