@@ -225,6 +225,29 @@ static void the_brightest_texel_keeps_its_light(void **state)
         }
 }
 
+// A value is rounded to the nearest number of a range among those that are equal in the upper bits, by a search over all
+// numbers. All modes have one of these ranges.
+static void values_are_rounded_to_the_nearest(void **state)
+{
+    (void)state;
+    static const uint8_t numbers[] = {12, 14, 15, 17, 19, 20};
+    for (size_t n = 0; n < sizeof numbers; n++)
+        for (int i = 0; i < 4 * 256; i++) {
+            const int number = numbers[n];
+            const ki_uastc_range range = ki_uastc_ranges[number];
+            int kept = i / 256, value = i % 256, least = 256;
+            for (unsigned stored = 0; stored < (unsigned)range.base << range.bits; stored++) {
+                int have = ki_uastc_value(stored, range);
+                if (have >> (8 - kept) == value >> (8 - kept))
+                    least = abs(have - value) < least ? abs(have - value) : least;
+            }
+            int got = ki_uastc_quantize(value, number, kept);
+            assert_int_equal(abs(got - value), least);
+            assert_int_equal(got >> (8 - kept), value >> (8 - kept));
+            assert_int_equal(got, ki_uastc_value(ki_uastc_nearest(value, number, kept), range));
+        }
+}
+
 // Noise of every range: the texels err by less than the noise's own spread, and twice as little as
 // the mean of the block would.
 static void noise_errs_less_than_its_range(void **state)
@@ -306,6 +329,7 @@ int main(void)
         cmocka_unit_test(gradients_err_by_half_a_step),
         cmocka_unit_test(a_bright_texel_keeps_its_light),
         cmocka_unit_test(the_brightest_texel_keeps_its_light),
+        cmocka_unit_test(values_are_rounded_to_the_nearest),
         cmocka_unit_test(noise_errs_less_than_its_range),
         cmocka_unit_test(a_sky_errs_little),
     };
