@@ -8,6 +8,7 @@
 #   engines-lights  measures the pixels with kiln's files after suns and lamps were taken out of the panoramas
 #   load     measures the time from fetch to the first picture of pages of three.js that load kiln's files, and of pages
 #            that load panoramas, which three.js filters itself
+#   formats  measures the bytes and the errors of each format of each engine
 #   blocks   compares BC6H and UASTC HDR by kiln and by Basis Universal
 #   batch    bakes a library of 200 panoramas by kiln batch, and some of them by cmgen
 set -eu
@@ -139,6 +140,11 @@ for name; do
         ;;
     engines-lights)
         engine_pixels lights engines-lights || status=1
+        continue
+        ;;
+    formats)
+        have zstd || fail "zstd is missing: install Debian's zstd"
+        engine_pixels formats formats || status=1
         continue
         ;;
     blocks)

@@ -107,8 +107,8 @@ const cli_option bake_options[OPTIONS + 1] = {
          .unset = "rgba16f",
          .more = "bc6h and uastc take one byte for each texel and have errors of about a per cent; "
                  "uastc (UASTC HDR 4x4) is for KTX2 and for web engines. rgbm, rgbd and rgbp hold "
-                 "radiance up to 64, 255 and 64 in four bytes. With --for "
-                 "filament, b10g11r11 writes the texel format that Filament's cmgen writes."},
+                 "radiance up to 64, 255 and 64 in four bytes. Each engine of --for has a default "
+                 "of its own, for which 'kiln engines ENGINE' gives the reason."},
     [ZSTD] = {"zstd", CLI_INTEGER, AT(zstd), 1, 22, 0, "LEVEL",
               .help = "compress KTX2 files by Zstandard", .alone = "3"},
     [LOBE] = {"lobe", CLI_CHOICE, AT(lobe), .value = "LOBE", .words = bake_lobes, .group = "Filter",

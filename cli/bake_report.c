@@ -41,6 +41,9 @@ static void report_output(const bake *b, json *j)
     json_text(j, "shape", bake_shapes[b->made.levels.shape]);
     json_number(j, "size", b->made.levels.size);
     json_number(j, "level_count", b->made.levels.level_count);
+    if (b->engine && b->engine->formats[0])
+        json_text(j, "format",
+                  kiln_format_names()[b->format ? b->format : (int)b->engine->formats[0]]);
     json_array(j, "levels");
     for (int k = 0; k < b->made.levels.level_count; k++) {
         json_object(j, NULL);
@@ -148,6 +151,8 @@ static void print_summary(const bake *b)
            b->tuning != BAKE_EXACT ? "tuned" : bake_methods[b->textbook], bake_lobes[b->lobe],
            b->source_shape == KILN_SHAPE_OCTAHEDRON ? "an" : "a", bake_shapes[b->source_shape],
            b->source_width, b->source_height, total_seconds(b));
+    if (b->engine && b->engine->format_reason && !b->format)
+        printf("  format %s\n", b->engine->format_reason);
 }
 
 static void print_details(const bake *b)

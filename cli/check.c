@@ -128,6 +128,7 @@ static void print_shown_json(json *j, const kiln_check_shown_report *shown)
     json_object(j, "shown");
     json_rounded(j, "all", shown->all, 6);
     json_rounded(j, "worst", shown->worst, 6);
+    json_rounded(j, "displayed", shown->displayed, 6);
     json_array(j, "rms");
     for (int i = 0; i < KILN_SHOWN; i++)
         json_rounded(j, NULL, shown->rms[i], 6);

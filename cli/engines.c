@@ -36,6 +36,8 @@ static void print_json(json *j, const kiln_engine *engine)
     for (int k = 0; k < 4 && engine->formats[k]; k++)
         json_text(j, NULL, kiln_format_names()[engine->formats[k]]);
     json_end(j);
+    if (engine->format_reason)
+        json_text(j, "format_reason", engine->format_reason);
     json_array(j, "endings");
     for (int k = 0; k < 4 && engine->formats[k]; k++)
         json_text(j, NULL, kiln_engine_ending(engine, engine->formats[k]));
@@ -53,6 +55,8 @@ static void print_formats(const kiln_engine *engine)
     for (int k = 0; k < 4 && engine->formats[k]; k++)
         printf("%s%s", k ? " or " : "", kiln_format_names()[engine->formats[k]]);
     puts("");
+    if (engine->format_reason)
+        printf("  by default   %s\n", engine->format_reason);
 }
 
 static void print_short(const kiln_engine *engine)
@@ -145,7 +149,9 @@ const cli_command cli_engines = {
     .about = "The line 'roughness' relates level k of n, or the width w of level 0, to the "
              "roughness r for which the level is filtered. Tuned levels differ from exactly "
              "filtered levels where this reduces the error of the engine's picture (kiln bake "
-             "--tune). The line 'proof' says whether kiln's tests check pixels drawn by the "
+             "--tune). The line 'by default' says what the other formats would take and how "
+             "much larger the error of the picture would be. The line 'proof' says whether kiln's "
+             "tests check pixels drawn by the "
              "engine, or against which source the file was checked.",
     .word = engine_word,
     .examples = examples,

@@ -142,9 +142,12 @@ export interface Engine {
     /** Texels along the edge of a face and number of levels, by default. */
     size: number;
     level_count: number;
-    /** Greatest radiance that the files hold. */
+    /** Greatest radiance that the files hold in the default format. */
     limit: number;
+    /** The formats of the files, the default first. */
     formats: string[];
+    /** Why the first format is the default, for engines with a choice. */
+    format_reason?: string;
     /** The ending of the engine's files in each of these formats. */
     endings: string[];
     tune: 'none' | 'sharp';

@@ -5,14 +5,15 @@
 // From r187 on, three.js keeps a prefiltered environment in a cube map, before in one flat picture called CubeUV.
 // kiln's engines "three" and "three-cubeuv" write these two. A file of the wrong one would be shown black or be
 // filtered again, so the functions check the file and the running version, and throw an error.
-import { Color, CompressedTexture, CubeReflectionMapping, DataTexture, DirectionalLight, HalfFloatType, LinearFilter,
-         LinearMipmapLinearFilter, REVISION, RGBAFormat } from 'three';
+import { Color, CompressedTexture, CubeReflectionMapping, CubeTexture, DataTexture, DataUtils, DirectionalLight, HalfFloatType,
+         LinearFilter, LinearMipmapLinearFilter, REVISION, RGBAFormat } from 'three';
 import { kindOf, openFile } from './fetch.mjs';
 
 // The first versions that show CubeUV files, CubeUV files in WebGPURenderer, and cubes; and the first whose KTX2Loader
 // reads UASTC HDR.
 const OLDEST = 150, OLDEST_GPU = 186, CUBES = 187, OLDEST_UASTC = 170;
 const CUBE_UV_MAPPING = 306;     // CubeUVReflectionMapping, which r187 no longer exports
+const RGB_FORMAT = 1022, UNSIGNED_INT_5999 = 35902; // RGBFormat and UnsignedInt5999Type, which r150 does not export
 const revision = parseInt(REVISION, 10);
 
 // The engine of `kiln bake --for` whose files the running three.js shows.
@@ -31,7 +32,7 @@ function checkVersion(renderer) {
 
 // ---------------------------------------------------------------------------------------------- cubes (KTX2)
 
-const RGBA16F = 97, UASTC = 1000066000, ZSTD = 2; // two VkFormats and a supercompression scheme of KTX2
+const RGBA16F = 97, RGB9E5 = 123, UASTC = 1000066000, ZSTD = 2; // VkFormats and a supercompression scheme of KTX2
 
 // Header, levels and metadata of a KTX2 file. All numbers are little-endian, and those of 64 bits are below 2^53.
 function readKtx2({ name, bytes }) {
@@ -74,11 +75,23 @@ async function unzip(levels) {
 // themselves are mirrored for it.
 const CUBE = { minFilter: LinearMipmapLinearFilter, isPMREMTexture: true, isRenderTargetTexture: true };
 
-// The six faces of each level as halves: [level][face].
-const splitFaces = (levels) => levels.map((all) => Array.from({ length: 6 }, (_, face) => {
-    const length = all.length / 12, halves = new Uint16Array(all.buffer, all.byteOffset, 6 * length);
-    return halves.slice(face * length, (face + 1) * length);
+// The six faces of each level as an array of halves, or of words that hold a texel each: [level][face].
+const splitFaces = (levels, Numbers) => levels.map((all) => Array.from({ length: 6 }, (_, face) => {
+    const length = all.length / 6;
+    return new Numbers(all.slice(face * length, (face + 1) * length).buffer);
 }));
+
+// Returns the texels of rgb9e5, of which a word holds three whole numbers of 9 bits and the exponent of two by which
+// all three are multiplied, as four halves each. Halves hold all these values exactly.
+function toHalves(words) {
+    const halves = new Uint16Array(4 * words.length).fill(0x3c00);
+    words.forEach((word, i) => {
+        const scale = 2 ** ((word >>> 27) - 24);
+        for (let c = 0; c < 3; c++)
+            halves[4 * i + c] = DataUtils.toHalfFloat((word >>> 9 * c & 511) * scale);
+    });
+    return halves;
+}
 
 // The mirror image of a cube in x: +X and -X change places, and the rows of all faces are reversed.
 function mirror([right, left, ...others], width) {
@@ -114,14 +127,24 @@ async function makeCube(file, ktx2, renderer, options) {
                         `bake the file with --for ${engine}`);
     checkRoughness(name, metadata, levels.length);
     const gpu = Boolean(renderer.isWebGPURenderer);
-    if (format !== RGBA16F || (scheme !== 0 && scheme !== ZSTD)) {
+    if (![RGBA16F, RGB9E5].includes(format) || (scheme !== 0 && scheme !== ZSTD)) {
         if (gpu)
             throw new Error(`${name}: for WebGPURenderer the cube must be mirrored, which its VkFormat ${format} ` +
                             'does not allow; bake it with --format rgba16f, or use WebGLRenderer');
         return Object.assign(await readByLoader(file, format, options), CUBE);
     }
     const texels = scheme === ZSTD ? await unzip(levels) : levels.map(({ data }) => data);
-    const cubes = splitFaces(texels).map((cube, k) => (gpu ? mirror(cube, width >> k) : cube));
+    const cubes = splitFaces(texels, format === RGBA16F ? Uint16Array : Uint32Array);
+    if (format === RGB9E5 && !gpu)
+        return makeSharedExponents(cubes, width);
+    return makeHalves(cubes.map((cube, k) => {
+        const halves = format === RGBA16F ? cube : cube.map(toHalves);
+        return gpu ? mirror(halves, width >> k) : halves;
+    }), width, gpu);
+}
+
+// Makes a texture of the halves of all levels and faces.
+function makeHalves(cubes, width, gpu) {
     const sides = Array.from({ length: 6 }, (_, face) => ({
         width, height: width,
         mipmaps: cubes.map((cube, k) => ({ width: width >> k, height: width >> k, data: cube[face] })),
@@ -130,6 +153,21 @@ async function makeCube(file, ktx2, renderer, options) {
     const texture = new CompressedTexture([], width, width, RGBAFormat, HalfFloatType, CubeReflectionMapping);
     return Object.assign(texture, {
         image: sides, isCubeTexture: true, isCompressedCubeTexture: true, ...CUBE, isRenderTargetTexture: !gpu,
+    });
+}
+
+// Makes a texture of texels of rgb9e5. three.js passes the levels of a CompressedTexture to WebGL as blocks unless they
+// are RGBA, so that this is a CubeTexture, whose mipmaps are the levels after the first. The shader takes the number of
+// levels from the first face of a texture that is called a CompressedCubeTexture.
+function makeSharedExponents(cubes, width) {
+    const [first, ...others] = cubes.map((cube, k) => cube.map((data) => ({
+        isDataTexture: true, image: { width: width >> k, height: width >> k, data },
+    })));
+    first[0].mipmaps = cubes.map((_, k) => ({ width: width >> k, height: width >> k }));
+    const texture = new CubeTexture(first, CubeReflectionMapping);
+    return Object.assign(texture, {
+        mipmaps: others.map((image) => ({ image })), format: RGB_FORMAT, type: UNSIGNED_INT_5999,
+        magFilter: LinearFilter, isCompressedCubeTexture: true, ...CUBE,
     });
 }
 

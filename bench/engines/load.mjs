@@ -18,7 +18,8 @@ fs.symlinkSync(import.meta.dirname ?? path.dirname(new URL(import.meta.url).path
 
 // Version of three.js: [what is measured, way of load.html, ending of the file, words for kiln].
 const KINDS = {
-    three: [['kiln rgba16f', 'kiln', '-a.ktx2', ['--for', 'three']],
+    three: [['kiln rgba16f', 'kiln', '-a.ktx2', ['--for', 'three', '--format', 'rgba16f']],
+            ['kiln rgb9e5', 'kiln', '-e.ktx2', ['--for', 'three']],
             ['kiln uastc', 'kiln', '-b.ktx2', ['--for', 'three', '--format', 'uastc']],
             ['.hdr, filtered', 'hdr', '.hdr'], ['.exr, filtered', 'exr', '.exr']],
     'three-r186': [['kiln rgba16f', 'kiln', '-c.exr', ['--for', 'three-cubeuv']],

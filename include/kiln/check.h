@@ -149,6 +149,9 @@ typedef struct kiln_check_shown_report {
     double all;   ///< root mean square of `rms`
     double worst; ///< largest of `rms`
     double worst_roughness;
+    /// Root mean square difference of x / (x + mean) over all roughnesses, for values x and the mean
+    /// of all values of the source. Such a curve shows any light between black, 0, and white, 1.
+    double displayed;
     int direction_count;
 } kiln_check_shown_report;
 

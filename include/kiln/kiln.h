@@ -990,7 +990,7 @@ struct kiln_engine {
     const char *mapping;
     int size;        ///< default size of a cube face in texels
     int level_count; ///< default number of levels of the cube
-    double limit;    ///< largest radiance that the engine's files hold
+    double limit;    ///< largest radiance that the engine's files hold in the default format
     /// Formats that the engine's files may have, the default first and KILN_FORMAT_AUTO after the
     /// last.
     kiln_format formats[4];
@@ -1000,6 +1000,9 @@ struct kiln_engine {
     /// True if tuned levels (kiln_prefilter_def.tune_for) were measured to show less error in this
     /// engine than exact levels do. `kiln bake --for` then tunes by default.
     bool tune;
+    /// Why the first of `formats` is the default: the sizes and errors of the others beside its own,
+    /// as docs/engines/README.md lists them. NULL for engines without a choice.
+    const char *format_reason;
 };
 
 /// Returns the engine at an index of kiln's list of engines, or NULL for an index outside the list.

@@ -30,12 +30,19 @@ static void spread(int count, double at[MOST][3])
     }
 }
 
-// Measures one roughness. `map` has the panorama's directions.
-static kiln_result measure(kiln_context *context, const kiln_map *panorama, const kiln_map *map,
-                           const kiln_engine *engine, double roughness, int count, double *rms,
-                           kiln_error *error)
+// Returns light on a display whose mean light `mean` is shown as half of white.
+static double display(double light, double mean)
 {
-    double at[MOST][3], shown[MOST][3], exact[MOST][3], sum = 0, norm = 0;
+    return light > 0 ? light / (light + mean) : 0;
+}
+
+// Measures one roughness. `map` has the panorama's directions, and `mean` is the mean of the
+// panorama's values. Adds to *squares the mean square difference of values on a display.
+static kiln_result measure(kiln_context *context, const kiln_map *panorama, double mean,
+                           const kiln_map *map, const kiln_engine *engine, double roughness,
+                           int count, double *rms, double *squares, kiln_error *error)
+{
+    double at[MOST][3], shown[MOST][3], exact[MOST][3], sum = 0, norm = 0, off = 0;
     const kiln_lobe lobe = kiln_lobe_ggx(roughness * roughness);
     spread(count, at);
     kiln_result result = kiln_engine_show(context, engine, map, roughness, (const double(*)[3])at,
@@ -47,8 +54,11 @@ static kiln_result measure(kiln_context *context, const kiln_map *panorama, cons
         for (int c = 0; c < 3; c++) {
             sum += (shown[i][c] - exact[i][c]) * (shown[i][c] - exact[i][c]);
             norm += exact[i][c] * exact[i][c];
+            double d = display(shown[i][c], mean) - display(exact[i][c], mean);
+            off += d * d;
         }
     *rms = norm > 0 ? sqrt(sum / norm) : 0;
+    *squares += off / (3 * count);
     return result;
 }
 
@@ -82,11 +92,13 @@ kiln_result kiln_check_shown(kiln_context *context, const kiln_map *source, cons
                                   ki_min(2 * source->size, KILN_MAX_SIZE / 2), 0, &panorama, error);
     double rows = convert ? panorama.size : source->size;
     int count = (int)ki_clamp(MOST * 1024.0 * 1024 / (rows * rows), 12, MOST);
-    double squares = 0;
+    double squares = 0, displayed = 0, mean = 0;
+    if (result == KILN_OK)
+        mean = ki_map_mean(convert ? &panorama : source);
     for (int i = 0; i < KILN_SHOWN && result == KILN_OK; i++) {
         double roughness = ki_min(100, 10 + 5 * i) / 100.0;
-        result = measure(context, convert ? &panorama : source, &map, engine, roughness, count,
-                         &report->rms[i], error);
+        result = measure(context, convert ? &panorama : source, mean, &map, engine, roughness,
+                         count, &report->rms[i], &displayed, error);
         squares += report->rms[i] * report->rms[i];
         if (report->rms[i] > report->worst) {
             report->worst = report->rms[i];
@@ -94,6 +106,7 @@ kiln_result kiln_check_shown(kiln_context *context, const kiln_map *source, cons
         }
     }
     report->all = sqrt(squares / KILN_SHOWN);
+    report->displayed = sqrt(displayed / KILN_SHOWN);
     report->direction_count = count;
     if (result != KILN_OK)
         memset(report, 0, sizeof *report);

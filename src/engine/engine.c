@@ -300,9 +300,8 @@ kiln_result ki_engine_write(ki_file_set *set, kiln_context *context, const kiln_
         return result;
     if (!ki_progress(context, "writing", 0))
         return ki_fail_cancelled(error, "writing");
-    bool least = format == KILN_FORMAT_B10G11R11;
     if (report)
-        ki_count_cut(map, least ? kiln_format_limit(format) : engine->limit, report);
+        ki_count_cut(map, format ? kiln_format_limit(format) : engine->limit, report);
     kiln_map turned;
     kiln_sh turned_sh;
     result = turn(context, recipe, map, sh, &turned, &turned_sh, error);

@@ -74,8 +74,31 @@ static void atlases_are_right(void **state)
     }
 }
 
+// Under a source of 1, whose mean is 1, a cube of 2 is shown as 2 / (2 + 1) in place of 1 / (1 + 1): too bright by 1/6
+// of white on a display, and by 1 relative to the source.
+static void displayed_errors_are_of_values_on_a_display(void **state)
+{
+    (void)state;
+    kiln_map source, cube;
+    kiln_check_shown_report shown;
+    CHECK_OK(kiln_map_create(context, KILN_SHAPE_PANORAMA, 16, 1, &source, &error));
+    CHECK_OK(kiln_map_create(context, KILN_SHAPE_CUBE, 16, 2, &cube, &error));
+    for (size_t i = 0; i < 3 * kiln_map_texels(&source, 0); i++)
+        source.level[0][i] = 1;
+    for (int k = 0; k < 2; k++)
+        for (size_t i = 0; i < 3 * kiln_map_texels(&cube, k); i++)
+            cube.level[k][i] = 2;
+    CHECK_OK(kiln_check_shown(context, &source, &cube, kiln_engine_find("three"), &shown, &error));
+    CHECK_NEAR(shown.all, 1, 1e-6);
+    CHECK_NEAR(shown.displayed, 1.0 / 6, 1e-7);
+    kiln_map_free(&source);
+    kiln_map_free(&cube);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(atlases_are_right)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(atlases_are_right),
+        cmocka_unit_test(displayed_errors_are_of_values_on_a_display)};
     return cmocka_run_group_tests(tests, begin, end);
 }

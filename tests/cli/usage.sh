@@ -59,7 +59,7 @@ expect 2 "fit: this option is --tune sharp, --tune soft or --tune none since" ba
 expect 2 "fit: this option is --tune sharp" bake in.exr -o out.ktx2 --for three --fit=none
 expect 2 "out.dds: --for three writes .ktx2" bake in.exr -o out.dds --for three
 expect 2 "decides what --lobe is" bake in.exr -o out.ktx2 --for three --lobe ggx
-expect 2 "for filament: format is bc6h, it must be rgba16f or b10g11r11" \
+expect 2 "for filament: format is bc6h, it must be b10g11r11 or rgba16f" \
     bake in.exr -o out --for filament --format bc6h
 expect 2 "for babylon: the engine.s files have one format only, leave the format out" bake in.exr -o out.env --for babylon --format rgba16f
 expect 2 "three: size is 100, it must be a power of two from 16 to 4096" \

@@ -136,9 +136,12 @@ class Engine:
         self.mapping: str = struct.mapping.decode()  #: formula for the roughness of level k of n
         self.size: int = struct.size  #: default size of a cube face in texels
         self.level_count: int = struct.level_count  #: default number of levels
-        self.limit: float = struct.limit  #: largest radiance that the files hold
+        self.limit: float = struct.limit  #: largest radiance that the files hold in the default format
         self.proof: str = struct.proof.decode()  #: what the support is proved by
         self.tune: bool = struct.tune  #: True if tuned levels are the default
+        reason: Optional[bytes] = struct.format_reason
+        #: why the first format is the default; empty without a choice
+        self.format_reason: str = reason.decode() if reason else ""
 
     def __repr__(self) -> str:
         return "<kiln.Engine: %s>" % self.title
