@@ -58,7 +58,11 @@ typedef struct run {
 } run;
 
 enum {
-    PIECES = 16,             // number of pieces into which each half of a panorama row is cut
+    // MOST_PIECES: greatest number of pieces into which each half of a panorama row is cut. The
+    // texels of a piece and of the rows that a ring needs fit in a processor's first cache.
+    // PIECE_COLUMNS: number of columns that a piece has at least, where the panorama has as many.
+    MOST_PIECES = 16,
+    PIECE_COLUMNS = 64,
     RING_SET = 2 * KI_LANES, // number of latitude rings in a vector, two in each lane
 };
 
@@ -132,6 +136,12 @@ void ki_analysis_workspace_destroy(ki_analysis_workspace *workspace)
 
 // ---------------------------------------------------------------------------------------- the rows
 
+// Returns the number of pieces into which each half of a panorama row is cut.
+static int piece_count(const ki_analysis *a)
+{
+    return ki_max(1, ki_min(MOST_PIECES, a->size / PIECE_COLUMNS));
+}
+
 // Adds the weighted panorama rows of the run to one piece of a latitude ring. The two halves of a
 // row (`half` 0 and 1) are cut at the same places, so that a ring beyond a pole, half a turn away,
 // receives the same piece of the other half. The rows are added in their order, so that the sums do
@@ -141,7 +151,8 @@ static void add_to_piece(const run *r, int ring, int half, int piece, double *ac
     enum { MOST = 32 };
     const ki_analysis *a = r->analysis;
     const ki_rows *rows = &r->rows[ring >= a->rings.pair_count];
-    int size = a->size, from = piece * size / PIECES, count = (piece + 1) * size / PIECES - from;
+    int size = a->size, pieces = piece_count(a);
+    int from = piece * size / pieces, count = (piece + 1) * size / pieces - from;
     ptrdiff_t here = 3 * ((ptrdiff_t)half * size + from);
     ptrdiff_t there = 3 * ((ptrdiff_t)(1 - half) * size + from), offsets[MOST];
     double weights[MOST];
@@ -166,8 +177,9 @@ static void add_to_piece(const run *r, int ring, int half, int piece, double *ac
 static void add_to_rings(void *data, int index)
 {
     const run *r = data;
+    int pieces = piece_count(r->analysis);
     for (int ring = 0; ring < 2 * r->analysis->rings.pair_count; ring++)
-        add_to_piece(r, ring, index / PIECES, index % PIECES,
+        add_to_piece(r, ring, index / pieces, index % pieces,
                      r->work->rings + (ptrdiff_t)ring * r->analysis->size * 6);
 }
 
@@ -264,7 +276,7 @@ kiln_result ki_analysis_add_rows(const ki_analysis *analysis, ki_analysis_worksp
     ki_rows added = {rows, w->row_count, count};
     run r = {.analysis = analysis, .work = w, .rows = {added, added}};
     see_rows(&r);
-    ki_parallel_for(w->context, 2 * PIECES, add_to_rings, &r);
+    ki_parallel_for(w->context, 2 * piece_count(analysis), add_to_rings, &r);
     w->row_count += count;
     return KILN_OK;
 }
@@ -387,9 +399,10 @@ static void transform_rings(void *data, int worker, int index)
             w->rings ? w->rings + (size_t)number[j] * pitch : buffer + buffers + (size_t)j * pitch;
     if (!w->rings) {
         memset(rings[0], 0, RING_SET * pitch * sizeof(double));
-        for (int piece = 0; piece < 2 * PIECES; piece++)
+        int pieces = piece_count(a);
+        for (int piece = 0; piece < 2 * pieces; piece++)
             for (int j = 0; j < RING_SET; j++)
-                add_to_piece(r, number[j], piece / PIECES, piece % PIECES, rings[j]);
+                add_to_piece(r, number[j], piece / pieces, piece % pieces, rings[j]);
     }
     for (int j = 0; j < RING_SET; j++)
         subtract_suns(r, number[j], rings[j]);

@@ -200,6 +200,12 @@ static void add_weighted(double *accumulator, const float *rows, const ptrdiff_t
         for (ptrdiff_t n = 0; n < AT_ONCE; n++)
             store(accumulator + i + n * KI_WIDTH, sum[n]);
     }
+    for (; i + KI_WIDTH <= count; i += KI_WIDTH) {
+        vec sum = load(accumulator + i);
+        for (int k = 0; k < row_count; k++)
+            sum += weights[k] * widen(rows + offsets[k] + i);
+        store(accumulator + i, sum);
+    }
     for (; i < count; i++)
         for (int k = 0; k < row_count; k++)
             accumulator[i] += weights[k] * (double)rows[offsets[k] + i];

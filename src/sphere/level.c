@@ -296,10 +296,16 @@ static void place_orders(const ki_level *v, const double *orders, int vector, in
                          double *buffer)
 {
     int length = v->fft.length;
-    memset(buffer, 0, 16 * (size_t)length * sizeof *buffer);
+    // The orders that no ring of the vector has are 0: those between the highest positive and the
+    // highest negative order, and those that are skipped near the poles.
+    memset(buffer + 16 * (size_t)(v->degree + 1), 0,
+           16 * (size_t)(length - 2 * v->degree - 1) * sizeof *buffer);
     for (int m = 0; m <= v->degree; m++) {
-        if (vector < v->rings.first[m])
+        if (vector < v->rings.first[m]) {
+            memset(buffer + 16 * (size_t)m, 0, 16 * sizeof *buffer);
+            memset(buffer + 16 * (size_t)(m ? length - m : 0), 0, 16 * sizeof *buffer);
             continue;
+        }
         const double *even = orders + 192 * (size_t)m + 16 * (size_t)channel, *odd = even + 48;
         double *plus = buffer + 16 * (size_t)m, *minus = buffer + 16 * (size_t)(m ? length - m : 0);
         for (int j = 0; j < KI_LANES; j++) {
@@ -342,6 +348,29 @@ static const double *synthesize_orders(const run *r, int worker, int index)
     return orders;
 }
 
+enum { COLUMNS = 32 }; // number of columns that are stored in the grid at once
+
+// Stores columns of the rings of a vector in the rows of one channel of the grid. The Fourier transform
+// `z` has the values of eight southern and eight northern rings side by side. Few columns at a time keep
+// the rows in the first cache.
+static void store_columns(const ki_level *v, int vector, const double *z, int from, int to,
+                          float *plane)
+{
+    float values[COLUMNS][2 * KI_LANES];
+    for (int x = from; x < to; x++)
+        for (int j = 0; j < 2 * KI_LANES; j++)
+            values[x - from][j] = (float)z[2 * KI_LANES * x + j];
+    for (int j = 0; j < KI_LANES; j++) {
+        int k = KI_LANES * vector + j, last = PAD + 2 * v->rings.pair_count - 1;
+        float *north = plane + (size_t)(PAD + k) * v->pitch + from;
+        float *south = plane + (size_t)(last - k) * v->pitch + from;
+        for (int x = 0; x < to - from; x++) {
+            north[x] = values[x][KI_LANES + j];
+            south[x] = values[x][j];
+        }
+    }
+}
+
 // Task of one thread: Fourier-synthesises the latitude rings of two vectors and stores them in the
 // grid.
 static void fill_grid(void *data, int worker, int index)
@@ -350,25 +379,15 @@ static void fill_grid(void *data, int worker, int index)
     const ki_level *v = r->level;
     const double *orders = synthesize_orders(r, worker, index);
     double *buffer = r->scratch + (size_t)worker * v->scratch_size + 192 * (size_t)(v->degree + 1);
-    int length = v->fft.length, rings = 2 * v->rings.pair_count;
+    int length = v->fft.length;
     for (int half = 0; half < 2; half++)
         for (int c = 0; c < 3; c++) {
             int vector = 2 * index + half;
             place_orders(v, orders + 96 * (size_t)half, vector, c, buffer);
             const double *z = v->kernels->fft(&v->fft, buffer, buffer + 16 * (size_t)length);
-            // The transform leaves the values of eight rings side by side. They are transposed to
-            // rows of the grid in blocks that fit in the first-level cache.
             float *plane = r->grid + (size_t)c * v->plane + TAP_OFFSET;
-            for (int from = 0; from < length; from += 32)
-                for (int j = 0; j < KI_LANES; j++) {
-                    int k = KI_LANES * vector + j;
-                    float *north = plane + (size_t)(PAD + k) * v->pitch;
-                    float *south = plane + (size_t)(PAD + rings - 1 - k) * v->pitch;
-                    for (int x = from; x < ki_min(from + 32, length); x++) {
-                        north[x] = (float)z[16 * x + 8 + j];
-                        south[x] = (float)z[16 * x + j];
-                    }
-                }
+            for (int from = 0; from < length; from += COLUMNS)
+                store_columns(v, vector, z, from, ki_min(from + COLUMNS, length), plane);
         }
 }
 
