@@ -9,6 +9,7 @@
 #   load     measures the time from fetch to the first picture of pages of three.js that load kiln's files, and of pages
 #            that load panoramas, which three.js filters itself
 #   formats  measures the bytes and the errors of each format of each engine
+#   reflections  measures the errors of the ways to look reflections up, and the time of a frame of each way
 #   blocks   compares BC6H and UASTC HDR by kiln and by Basis Universal
 #   batch    bakes a library of 200 panoramas by kiln batch, and some of them by cmgen
 set -eu
@@ -119,6 +120,14 @@ blocks() {
         "$results/$($bin/bench --machine)/blocks.csv"
 }
 
+# Errors and cost of kiln render --reflections.
+reflections() {
+    machine=$results/$($bin/bench --machine)
+    printf '\nreflections: errors in steps of 255, and the time of a frame\n'
+    bench/reflections.sh | tee "$machine/reflections.csv"
+    $bin/bench_shading build/data/blender/courtyard.exr | tee "$machine/shading.csv"
+}
+
 status=0
 for name; do
     case $name in
@@ -149,6 +158,10 @@ for name; do
         ;;
     blocks)
         blocks || status=1
+        continue
+        ;;
+    reflections)
+        reflections || status=1
         continue
         ;;
     batch)

@@ -3,7 +3,7 @@
 #include "scene_setup.h"
 
 #include "headless.h"
-#include "reference.h"
+#include "render_error.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -16,6 +16,7 @@ enum {
     ALONE,
     BOUNCES,
     NOISE,
+    JSON,
     THREADS,
     QUIET,
     OPTIONS
@@ -28,8 +29,9 @@ typedef struct render {
     cli_arguments arguments;
     const char *output;
     int threads, bounces;
-    bool reference, errors, walk, alone, quiet;
+    bool reference, errors, walk, alone, json, quiet;
     double noise;
+    render_errors measured; // with --error
 } render;
 
 #define AT(field) offsetof(render, field)
@@ -44,9 +46,11 @@ static const cli_option options[OPTIONS + 1] = {
                            "from the texels of the environment, with the light that balls reflect "
                            "on one another, and without prefiltered levels or the split sum"},
     [ERRORS] = {"error", CLI_FLAG, AT(errors),
-                .help = "draw the error of the real-time picture against the reference, relative "
-                        "to the mean brightness of the balls: red is too bright, blue is too dark, "
-                        "and full colour is 25 %; an .exr file holds numbers with sign"},
+                .help = "print the error of the real-time picture against the reference for each "
+                        "ball and each way of --reflections; -o, which may be absent, draws the "
+                        "error relative to the mean brightness of the balls: red is too bright, "
+                        "blue is too dark, and full colour is 25 %; an .exr file holds numbers "
+                        "with sign"},
     [WALK] = {"walk", CLI_FLAG, AT(walk),
               .help = "compute the reference's reflections between microfacets, from the second "
                       "on, by random walks (Heitz et al. 2016) instead of by --method",
@@ -61,6 +65,7 @@ static const cli_option options[OPTIONS + 1] = {
          .unset = "no limit"},
     [NOISE] = {"noise", CLI_NUMBER, AT(noise), 1e-4, 1, 0.01, "E",
                .help = "stop the reference when the relative standard error of a pixel is E"},
+    [JSON] = {"json", CLI_FLAG, AT(json), .help = "print the errors of --error as JSON"},
     [THREADS] = CLI_THREADS_ROW(render),
     [QUIET] = CLI_QUIET_ROW(render),
 };
@@ -77,6 +82,8 @@ static int check_reference(const render *r)
         if (given[of_reference[i]])
             return cli_wrong(&cli_render, "--%s needs --reference or --error",
                              options[of_reference[i]].name);
+    if (r->json && !r->errors)
+        return cli_wrong(&cli_render, "--json needs --error, whose figures it prints");
     if (r->alone && given[BOUNCES])
         return cli_wrong(&cli_render, "--alone and --bounces contradict each other");
     if (r->walk && r->setup.options.scene == VIEW_SCENE_ASSIGNMENT)
@@ -94,9 +101,9 @@ static int read_options(render *r, const cli_call *call)
     int code = cli_read_arguments(&r->arguments, &cli_render, call, r);
     if (code != CLI_GO)
         return code;
-    if (!r->output)
+    if (!r->output && !r->errors)
         return cli_wrong(&cli_render, "no output: name it by -o FILE");
-    if (!cli_ends_in(r->output, "png") && !cli_ends_in(r->output, "exr") &&
+    if (r->output && !cli_ends_in(r->output, "png") && !cli_ends_in(r->output, "exr") &&
         !cli_ends_in(r->output, "hdr"))
         return cli_wrong(&cli_render, "--output %s: must end in .png, .exr or .hdr", r->output);
     code = scene_read(&r->arguments, false, &r->setup);
@@ -104,15 +111,16 @@ static int read_options(render *r, const cli_call *call)
         code = check_reference(r);
     if (code != CLI_GO)
         return code;
-    if (r->errors && cli_ends_in(r->output, "hdr"))
+    if (r->errors && r->output && cli_ends_in(r->output, "hdr"))
         return cli_wrong(&cli_render,
                          "--output %s: .hdr cannot hold negative errors, name an .exr or .png file",
                          r->output);
-    return cli_check_folder(r->output);
+    return r->output ? cli_check_folder(r->output) : CLI_GO;
 }
 
+// Draws the view by its own way to look reflections up, or with `each` by every way: images[way].
 static int draw(cli_work *work, const scene_setup *s, const kiln_map *source, bool linear,
-                char name[128], kiln_image *image)
+                bool each, char name[128], kiln_image *images)
 {
     view_headless *headless = NULL;
     view_renderer *renderer = NULL;
@@ -122,8 +130,13 @@ static int draw(cli_work *work, const scene_setup *s, const kiln_map *source, bo
         goto done;
     if (scene_has_environment(s) && scene_bake(work, s, source, renderer) != CLI_GO)
         goto done;
-    if (view_picture(renderer, &s->options, s->width, s->height, linear, image, &work->error))
-        goto done;
+    for (int i = 0; i < (each ? VIEW_REFLECTIONS_COUNT : 1); i++) {
+        view_options o = s->options;
+        if (each)
+            o.reflections = (view_reflections)i;
+        if (view_picture(renderer, &o, s->width, s->height, linear, &images[i], &work->error))
+            goto done;
+    }
     snprintf(name, 128, "%s", view_gl_name(renderer));
     code = CLI_GO;
 done:
@@ -133,7 +146,7 @@ done:
 }
 
 static int integrate(cli_work *work, const render *r, const kiln_map *source, bool linear,
-                     kiln_image *image, view_reference_report *report)
+                     kiln_image *image, kiln_image *deviation, view_reference_report *report)
 {
     const view_options *o = &r->setup.options;
     view_reference_def def = {.noise = r->noise,
@@ -141,6 +154,7 @@ static int integrate(cli_work *work, const render *r, const kiln_map *source, bo
                               .alone = r->alone,
                               .lights = &r->setup.taken,
                               .bounces = r->bounces,
+                              .deviation = deviation,
                               .thread_count = r->threads,
                               .progress = cli_progress,
                               .progress_user = work};
@@ -159,48 +173,71 @@ static int integrate(cli_work *work, const render *r, const kiln_map *source, bo
     return CLI_GO;
 }
 
+// Compares the real-time picture of every way to look reflections up with one reference. `image`
+// receives the differences of the view's own way.
+static int measure(cli_work *work, render *r, const kiln_map *source, bool colours,
+                   kiln_image *image)
+{
+    kiln_image drawn[VIEW_REFLECTIONS_COUNT] = {{0}}, truth = {0}, deviation = {0};
+    const view_options *o = &r->setup.options;
+    char name[128];
+    int code = draw(work, &r->setup, source, true, true, name, drawn);
+    if (code == CLI_GO)
+        code = integrate(work, r, source, true, &truth, &deviation, &r->measured.reference);
+    if (code == CLI_GO) {
+        for (int i = 0; i < VIEW_REFLECTIONS_COUNT; i++)
+            r->measured.by[i] = view_compare(o, &drawn[i], &truth, colours);
+        r->measured.noise = view_noise(o, &truth, &deviation);
+        *image = drawn[o->reflections];
+        drawn[o->reflections] = (kiln_image){0};
+    }
+    for (int i = 0; i < VIEW_REFLECTIONS_COUNT; i++)
+        kiln_image_free(&drawn[i]);
+    kiln_image_free(&deviation);
+    kiln_image_free(&truth);
+    return code;
+}
+
 // Renders or integrates the picture; `words` receives a description of the result.
-static int make(cli_work *work, render *r, bool linear, kiln_image *image, char words[256],
-                view_error *errors)
+static int make(cli_work *work, render *r, bool linear, kiln_image *image, char words[256])
 {
     kiln_map source = {0};
-    kiln_image truth = {0};
     view_reference_report report = {0};
     char name[128] = "";
     int code = scene_has_environment(&r->setup) ? scene_load(work, &r->setup, &source) : CLI_GO;
     if (code == CLI_GO && r->reference) {
-        code = integrate(work, r, &source, linear, image, &report);
+        code = integrate(work, r, &source, linear, image, NULL, &report);
         snprintf(words, 256, "integrated to a noise of %.2g, %.0f samples a ray", report.noise,
                  report.batches);
     } else if (code == CLI_GO && r->errors) {
-        view_error e = {0};
-        code = draw(work, &r->setup, &source, true, name, image);
-        if (code == CLI_GO)
-            code = integrate(work, r, &source, true, &truth, &report);
-        if (code == CLI_GO)
-            e = view_compare(&r->setup.options, image, &truth, !linear);
+        code = measure(work, r, &source, !linear, image);
+        const view_error *e = &r->measured.by[r->setup.options.reflections];
         snprintf(words, 256, "error RMS %.3g, largest %.3g, on screen %.2f of 255, noise %.2g",
-                 e.rms, e.largest, e.screen, report.noise);
-        if (code == CLI_GO)
-            *errors = e;
+                 e->rms, e->largest, e->screen, r->measured.reference.noise);
     } else if (code == CLI_GO) {
-        code = draw(work, &r->setup, &source, linear, name, image);
+        code = draw(work, &r->setup, &source, linear, false, name, image);
         snprintf(words, 256, "by %s", name);
     }
-    kiln_image_free(&truth);
     kiln_map_free(&source);
     return code;
 }
 
-static void print_errors(const view_options *o, const view_error *e)
+static void report(cli_work *work, const render *r, const char *words)
 {
-    view_ball balls[VIEW_MAX_BALLS];
-    view_balls(o, balls);
-    if (e->ball_count)
-        printf("  %9s %8s  %-12s %8s %9s\n", "roughness", "metallic", "method", "RMS", "of 255");
-    for (int i = 0; i < e->ball_count; i++)
-        printf("  %9.3g %8.3g  %-12s %8.3g %9.2f\n", balls[i].roughness, balls[i].metallic,
-               view_method_name((int)balls[i].method), e->ball[i], e->ball_screen[i]);
+    const scene_setup *s = &r->setup;
+    const char *name = r->output ? r->output : s->input;
+    cli_clear_progress(work);
+    if (r->json) {
+        render_print_json(s->input, &s->options, s->width, s->height, &r->measured);
+        return;
+    }
+    if (r->quiet)
+        return;
+    printf("%s: %s, %d x %d, %s, %.2f s\n", name ? cli_show(name).text : "sky",
+           view_scene_name((int)s->options.scene), s->width, s->height, words, cli_elapsed(work));
+    cli_print_lights(&s->taken);
+    if (r->errors)
+        render_print_errors(&s->options, &r->measured);
 }
 
 static int run(const cli_call *call)
@@ -209,22 +246,17 @@ static int run(const cli_call *call)
     render r = {.noise = 0};
     char words[256] = "";
     kiln_image image = {0};
-    view_error errors = {.rms = 0};
     int code = read_options(&r, call);
     if (code != CLI_GO)
         return code;
     code = cli_begin_work(&work, r.threads, r.quiet);
     if (code == CLI_GO)
-        code = make(&work, &r, !cli_ends_in(r.output, "png"), &image, words, &errors);
-    if (code == CLI_GO)
-        code = kiln_image_save(work.context, &image, r.output, &work.error) ? CLI_FAILED : CLI_DONE;
-    cli_clear_progress(&work);
-    if (code == CLI_DONE && !r.quiet) {
-        printf("%s: %s, %d x %d, %s, %.2f s\n", cli_show(r.output).text,
-               view_scene_name((int)r.setup.options.scene), r.setup.width, r.setup.height, words,
-               cli_elapsed(&work));
-        cli_print_lights(&r.setup.taken);
-        print_errors(&r.setup.options, &errors);
+        code = make(&work, &r, !r.output || !cli_ends_in(r.output, "png"), &image, words);
+    if (code == CLI_GO && r.output && kiln_image_save(work.context, &image, r.output, &work.error))
+        code = CLI_FAILED;
+    if (code == CLI_GO) {
+        report(&work, &r, words);
+        code = CLI_DONE;
     }
     kiln_image_free(&image);
     return cli_end_work(&work, code);
@@ -238,6 +270,8 @@ static const cli_example examples[] = {
      "the exact bake at the left, the textbook's bake at the right"},
     {"kiln render city.exr -o error.png --error --size 640x360",
      "the error of prefiltered levels and tables at each pixel"},
+    {"kiln render city.exr --error --json --alone",
+     "prints the error of each ball for each way to look reflections up"},
     {"kiln render city.exr -o sun.png --sun extract --ground",
      "the sun as a disc of its true size, and the shadows of the balls"},
     {"kiln render -o furnace.exr --scene furnace",

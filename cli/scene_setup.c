@@ -102,7 +102,6 @@ int scene_read(const cli_arguments *a, bool may_change, scene_setup *s)
     if (code == CLI_GO)
         code = scene_read_size(a->command, s->size, &s->width, &s->height);
     s->options.cube_diffuse = s->cube_diffuse;
-    s->options.bent = !s->straight;
     if (a->text[SCENE_LIGHTS_SHARE] && s->lights.share == 0)
         s->lights.share = KILN_ZERO; // the library reads 0 as its default, and KILN_ZERO as zero
     if (code == CLI_GO)

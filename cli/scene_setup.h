@@ -26,6 +26,7 @@ enum {
     SCENE_SPLIT,
     SCENE_AS_PRINTED,
     SCENE_OCCLUSION,
+    SCENE_REFLECTIONS,
     SCENE_STRAIGHT,
     SCENE_DIFFUSE,
     SCENE_BAKE_SIZE,
@@ -45,7 +46,6 @@ typedef struct scene_setup {
     int scene; ///< a view_scene; -1 if no option names a scene
     const char *size;
     int cube_diffuse;
-    bool straight;
     int width, height;
     int bake_size;     ///< edge of the environment's level 0 in texels
     int negative;      ///< a kiln_negative, which decides what becomes of negative texels
@@ -198,11 +198,20 @@ typedef struct scene_setup {
                                   "instead of the table of the average albedo"},                   \
     [SCENE_OCCLUSION] = {"occlusion", CLI_FLAG, offsetof(scene_setup, options.occlusion),          \
                          .help = "let balls shade one another from the light of the environment"}, \
-    [SCENE_STRAIGHT] =                                                                             \
-        {"straight", CLI_FLAG, offsetof(scene_setup, straight),                                    \
-         .help =                                                                                   \
-             "look the environment up in the mirror direction for rough balls too; without this "  \
-             "option the direction is bent towards the normal (Lagarde and de Rousiers 2014)"},    \
+    [SCENE_REFLECTIONS] =                                                                          \
+        {"reflections",                                                                            \
+         CLI_CHOICE,                                                                               \
+         offsetof(scene_setup, options.reflections),                                               \
+         .value = "WAY",                                                                           \
+         .word = view_reflections_name,                                                            \
+         .keep = true,                                                                             \
+         .help = "how reflections of rough balls are looked up in the environment's levels: "      \
+                 "straight, once in the mirror direction; bent, once in a direction bent towards " \
+                 "the normal (Lagarde and de Rousiers 2014); one, two or three, by as many "       \
+                 "lookups that are fitted to the lobe, and by spherical harmonics",                \
+         .unset = "bent"},                                                                         \
+    [SCENE_STRAIGHT] = {"straight", CLI_RENAMED,                                                   \
+                        .help = "this option is now --reflections straight"},                      \
     [SCENE_DIFFUSE] = {"diffuse",                                                                  \
                        CLI_CHOICE,                                                                 \
                        offsetof(scene_setup, cube_diffuse),                                        \

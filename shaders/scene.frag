@@ -6,16 +6,18 @@
 #include "brdf.glsl"
 #include "kulla_conty.glsl"
 #include "ibl.glsl"
+#include "lobes.glsl"
 #include "disc.glsl"
 #include "tone.glsl"
 
-// Names of scenes, methods of compensation, debug views and tone curves. The values are those of
-// viewer/viewer.h.
+// Names of scenes, methods of compensation, debug views, tone curves and ways to look reflections
+// up. The values are those of viewer/viewer.h.
 const int SCENE_ASSIGNMENT = 0, SCENE_FURNACE = 2, SCENE_COMPARE = 4;
 const int METHOD_KULLA_CONTY = 1, METHOD_HANDOUT = 2, METHOD_FDEZ_AGUERA = 3, METHOD_TURQUIN = 4;
 const int DEBUG_LEVEL = 1, DEBUG_TABLE_E = 2, DEBUG_TABLE_E_AVERAGE = 3, DEBUG_TABLE_SPLIT = 4,
           DEBUG_E = 5, DEBUG_F = 6;
 const int TONE_LINEAR = 0, TONE_ASSIGNMENT = 2;
+const int REFLECTIONS_STRAIGHT = 0, REFLECTIONS_BENT = 1, REFLECTIONS_ONE = 2;
 const int MAX_BALLS = 64, MAX_DISCS = 64, CANDIDATES = 8;
 
 layout(std140) uniform View
@@ -27,16 +29,16 @@ layout(std140) uniform View
     vec4 light;               // direction to the light; w: its radiance
     vec4 turn;                // cosine and sine of the environment's rotation; place of the handle
                               // between two compared halves, 0 to 1; roughness of the background
-    vec4 screen;              // width, height; z: 1 to bend reflections towards the normal
+    vec4 screen;              // width, height; z: one of the names REFLECTIONS
     vec4 handout_average; // copper's albedo, which figure 6 of the GAMES202 handout uses as E_avg
     ivec4 mode;               // scene, debug view, rays along a pixel's side, number of balls
     ivec4 flags;              // tone curve; 1 to draw figure 6 as printed; 1 with occlusion; 1 to
                               // take diffuse light from a cubemap instead of harmonics
     ivec4 levels;             // number of levels of the two environments; level that DEBUG_LEVEL
                               // shows; 1 to show debug tables of the handout's model
-    vec4 table_layout[7];     // layouts (see table_place) of E, E_avg and the split sum of the
-                              // handout's model, of the same three of the environment's model, and
-                              // of edge_sum
+    vec4 table_layout[8];     // layouts (see table_place) of E, E_avg and the split sum of the
+                              // handout's model, of the same three of the environment's model, of
+                              // edge_sum, and of the tables of lobes
     vec4 level_roughness[8];  // roughness of the levels of the two environments, 16 numbers each
     vec4 harmonics[18];       // 9 coefficients of each of the two environments
     vec4 balls[5 * MAX_BALLS]; // of each ball: centre, radius; f0, roughness; F_avg, method;
@@ -49,6 +51,8 @@ layout(std140) uniform View
 uniform highp samplerCube environment, environment_textbook, irradiance;
 uniform highp sampler2D handout_e, handout_e_average, handout_split;
 uniform highp sampler2D e, e_average, split_sum, edge_sum;
+// tables of lobes for the levels of the two environments
+uniform highp sampler2D lobes, lobes_textbook;
 
 out vec4 color;
 
@@ -78,18 +82,34 @@ vec3 turned(vec3 d)
     return vec3(d.x * turn.x - d.z * turn.y, d.y, d.z * turn.x + d.x * turn.y);
 }
 
-// Radiance of environment `slot`, 0 or 1, in direction d, filtered for a roughness.
-vec3 environment_seen(int slot, vec3 d, float roughness)
+// Radiance of a mip level of environment `slot`, 0 or 1, in direction d of the environment's frame.
+vec3 level_seen(int slot, vec3 d, float level)
 {
     if (mode.x == SCENE_FURNACE)
         return vec3(1.0);
+    return slot == 0 ? textureLod(environment, d, level).rgb
+                     : textureLod(environment_textbook, d, level).rgb;
+}
+
+// Radiance of environment `slot` in direction d of the scene, filtered for a roughness.
+vec3 environment_seen(int slot, vec3 d, float roughness)
+{
     vec4 of_level[4];
     for (int i = 0; i < 4; i++)
         of_level[i] = level_roughness[4 * slot + i];
-    float level = environment_level(of_level, levels[slot], roughness);
-    vec3 to = turned(d);
-    return slot == 0 ? textureLod(environment, to, level).rgb
-                     : textureLod(environment_textbook, to, level).rgb;
+    return level_seen(slot, turned(d), environment_level(of_level, levels[slot], roughness));
+}
+
+// Harmonics of the radiance of environment `slot`.
+void harmonics_of(int slot, out vec3 c[9])
+{
+    for (int i = 0; i < 9; i++)
+        c[i] = harmonics[9 * slot + i].rgb;
+    if (mode.x == SCENE_FURNACE) {
+        c[0] = vec3(2.0 * sqrt(PI));
+        for (int i = 1; i < 9; i++)
+            c[i] = vec3(0.0);
+    }
 }
 
 // Irradiance over pi of a surface with the normal n.
@@ -101,8 +121,7 @@ vec3 irradiance_at(int slot, vec3 n)
     if (flags.w != 0)
         return textureLod(irradiance, to, 0.0).rgb;
     vec3 c[9];
-    for (int i = 0; i < 9; i++)
-        c[i] = harmonics[9 * slot + i].rgb;
+    harmonics_of(slot, c);
     return max(sh_irradiance(c, to), 0.0);
 }
 
@@ -208,15 +227,35 @@ Albedo albedo_at(Ball ball, float nov)
     return to;
 }
 
+// Radiance that a mirror-like surface of this roughness shows: the factor of the split sum's albedo.
+vec3 reflected(int slot, vec3 n, vec3 v, float nov, float roughness)
+{
+    int way = int(screen.z), count = way - REFLECTIONS_ONE + 1;
+    vec3 r = 2.0 * nov * n - v;
+    if (way == REFLECTIONS_BENT)
+        r = bent_reflection(n, r, roughness);
+    if (count < 1)
+        return environment_seen(slot, r, roughness);
+    Lobes found = slot == 0 ? lobes_at(lobes, table_layout[7], count, nov, roughness)
+                            : lobes_at(lobes_textbook, table_layout[7], count, nov, roughness);
+    vec3 t = turned(lobe_tangent(n, v, nov)), normal = turned(n), sum = vec3(0.0), c[9];
+    vec3 lowest = vec3(1e30);
+    harmonics_of(slot, c);
+    for (int k = 0; k < count; k++) {
+        vec4 tap = found.tap[k];
+        vec3 seen = level_seen(slot, lobe_direction(normal, t, nov, tap.x), tap.y);
+        sum += tap.z * seen;
+        lowest = min(lowest, seen);
+    }
+    return lobes_sum(sum, lobes_rest(c, normal, t, found.rest), lowest);
+}
+
 // Radiance towards v from the environment. The specular part is the split sum: prefiltered radiance
 // times the lobe's albedo. Light of further bounces is added as diffuse light. `open` is the share
 // of diffuse light that other balls leave.
 vec3 lit_by_environment(int slot, Ball ball, Albedo to, vec3 n, vec3 v, float nov, float open)
 {
-    vec3 r = 2.0 * nov * n - v;
-    if (screen.z > 0.0)
-        r = bent_reflection(n, r, ball.roughness);
-    vec3 mirrored = environment_seen(slot, r, ball.roughness);
+    vec3 mirrored = reflected(slot, n, v, nov, ball.roughness);
     vec3 around = irradiance_at(slot, n) * open;
     float specular_open = open < 1.0 ? specular_occlusion(nov, open, ball.roughness) : 1.0;
     return mirrored * to.single * specular_open + around * (to.multiple + to.base);

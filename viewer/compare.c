@@ -86,22 +86,52 @@ static void finish(const sums *of, int count, view_error *e, double *mean)
     e->screen = all.count > 0 ? sqrt(all.screen / all.count) : 0;
 }
 
+// Returns the index of the ball that is seen at the centre of pixel `i` of a picture, or -1 if no
+// ball is seen there.
+static int ball_of(const view_options *o, const view_ball *balls, int count,
+                   const kiln_image *image, int i)
+{
+    int width = image->width, height = image->height, x = i % width, y = i / width;
+    double slope = tan(o->camera.fov / 2 * 0.017453292519943295);
+    return ball_at(balls, count, &o->camera, (2 * (x + 0.5) / width - 1) * slope * width / height,
+                   (1 - 2 * (y + 0.5) / height) * slope);
+}
+
+view_error view_noise(const view_options *o, const kiln_image *truth, const kiln_image *deviation)
+{
+    view_ball balls[VIEW_MAX_BALLS];
+    int count = view_balls(o, balls);
+    sums of[VIEW_MAX_BALLS] = {{.count = 0}};
+    view_error e = {.rms = 0};
+    double mean;
+    for (int i = 0; i < truth->width * truth->height; i++) {
+        int ball = ball_of(o, balls, count, truth, i);
+        float low[3], high[3];
+        for (size_t c = 0; c < 3; c++) {
+            // the difference between these two on the screen is the noise there
+            low[c] = truth->pixels[3 * (size_t)i + c] - 0.5F * deviation->pixels[3 * (size_t)i + c];
+            high[c] = low[c] + deviation->pixels[3 * (size_t)i + c];
+        }
+        if (ball >= 0)
+            add(o, high, low, &of[ball]);
+    }
+    finish(of, count, &e, &mean);
+    return e;
+}
+
 view_error view_compare(const view_options *o, kiln_image *image, const kiln_image *truth,
                         bool colours)
 {
     int width = image->width, height = image->height;
     view_ball balls[VIEW_MAX_BALLS];
     int count = view_balls(o, balls);
-    double slope = tan(o->camera.fov / 2 * 0.017453292519943295), mean;
+    double mean;
     sums of[VIEW_MAX_BALLS] = {{.count = 0}};
     view_error e = {.rms = 0};
     for (int i = 0; i < width * height; i++) {
-        int x = i % width, y = i / width;
         float *a = image->pixels + 3 * (size_t)i;
         const float *b = truth->pixels + 3 * (size_t)i;
-        int ball =
-            ball_at(balls, count, &o->camera, (2 * (x + 0.5) / width - 1) * slope * width / height,
-                    (1 - 2 * (y + 0.5) / height) * slope);
+        int ball = ball_of(o, balls, count, image, i);
         if (ball >= 0)
             add(o, a, b, &of[ball]);
         for (int c = 0; c < 3; c++) {

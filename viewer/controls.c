@@ -16,7 +16,7 @@ const char *const view_keys[] = {
     "b              blur the environment behind the balls more, or not at all again",
     "o              let balls shade one another, or not",
     "g              matte ground with the shadows of the balls, or none",
-    "v              bend reflections of rough balls towards the normal, or not",
+    "v              next way to look up reflections: straight, bent, one, two or three taps",
     "i              diffuse light from spherical harmonics or from the irradiance cube",
     "p              scene assignment with the mistake of the handout's figure 6, or without",
     "space          reset camera and settings of the scene",
@@ -74,7 +74,7 @@ static bool key_of_light(view_options *o, char key)
         o->occlusion = !o->occlusion;
         return true;
     case 'v':
-        o->bent = !o->bent;
+        o->reflections = (view_reflections)(((int)o->reflections + 1) % VIEW_REFLECTIONS_COUNT);
         return true;
     default:
         return false;

@@ -42,7 +42,7 @@ typedef struct job {
     view_plane ground;
     view_light light;
     view_energy energy;
-    kiln_image *image;
+    kiln_image *image, *deviation; // deviation: NULL if the caller wants none
     // one report for each row of pixels, which holds sums where the final report has means
     view_reference_report *rows;
     atomic_int next;
@@ -432,7 +432,7 @@ static void integrate(const job *j, const rays *r, view_random *random, tally *t
     report->noisy_count += needed > j->batch_limit;
 }
 
-static void pixel(job *j, int x, int y, view_reference_report *report, float *out)
+static void pixel(job *j, int x, int y, view_reference_report *report, float *out, float *deviation)
 {
     rays r;
     tally t = {0};
@@ -443,6 +443,8 @@ static void pixel(job *j, int x, int y, view_reference_report *report, float *ou
         integrate(j, &r, &random, &t, report);
     for (int c = 0; c < 3; c++)
         out[c] = (float)(r.waiting ? t.mean[c] : r.fixed[c]);
+    for (int c = 0; c < 3 && deviation && r.waiting; c++)
+        deviation[c] = (float)sqrt(t.squares[c] / (t.count - 1.0) / t.count);
 }
 
 // ----------------------------------------------------------------------------------------- threads
@@ -452,9 +454,11 @@ static bool take_row(job *j)
     int y = atomic_fetch_add(&j->next, 1);
     if (y >= j->height || atomic_load(&j->stop))
         return false;
-    float *row = j->image->pixels + (size_t)y * (size_t)j->width * 3;
-    for (int x = 0; x < j->width && !atomic_load(&j->stop); x++)
-        pixel(j, x, y, &j->rows[y], row + 3 * (size_t)x);
+    for (int x = 0; x < j->width && !atomic_load(&j->stop); x++) {
+        size_t at = ((size_t)y * (size_t)j->width + (size_t)x) * 3;
+        pixel(j, x, y, &j->rows[y], j->image->pixels + at,
+              j->deviation ? j->deviation->pixels + at : NULL);
+    }
     return true;
 }
 
@@ -510,6 +514,8 @@ kiln_result view_reference(kiln_context *context, const view_options *options,
     const view_reference_def none = {0};
     def = def ? def : &none;
     *image = (kiln_image){0};
+    if (def->deviation)
+        *def->deviation = (kiln_image){0};
     bool white = options->scene == VIEW_SCENE_FURNACE;
     job j = {
         .options = options,
@@ -526,6 +532,7 @@ kiln_result view_reference(kiln_context *context, const view_options *options,
         .alone = def->alone || white,
         .slope = tan(options->camera.fov / 2 * degree),
         .image = image,
+        .deviation = def->deviation,
     };
     view_camera_axes(&options->camera, j.eye, j.right, j.up, j.back);
     j.ball_count = view_balls(options, j.balls);
@@ -536,6 +543,8 @@ kiln_result view_reference(kiln_context *context, const view_options *options,
         j.balls[i].method = VIEW_METHOD_SINGLE;
     }
     kiln_result result = kiln_image_create(context, width, height, 3, image, error);
+    if (result == KILN_OK && def->deviation)
+        result = kiln_image_create(context, width, height, 3, def->deviation, error);
     j.rows = result == KILN_OK ? calloc((size_t)height, sizeof *j.rows) : NULL;
     if (result == KILN_OK && !j.rows)
         result = view_fail(error, KILN_ERROR_MEMORY, "out of memory");
@@ -553,6 +562,8 @@ kiln_result view_reference(kiln_context *context, const view_options *options,
         sum_up(&j, report);
     if (result != KILN_OK)
         kiln_image_free(image);
+    if (result != KILN_OK && def->deviation)
+        kiln_image_free(def->deviation);
     view_energy_free(&j.energy);
     view_light_free(&j.light);
     free(j.rows);

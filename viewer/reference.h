@@ -20,6 +20,9 @@ typedef struct view_reference_def {
     /// balls do not reflect one another, as in the real-time picture; with view_options.occlusion
     /// they look black to one another. The furnace scene always does this
     bool alone;
+    /// Receives the standard error of each pixel and channel, in the form of the picture; the caller
+    /// frees it. NULL if the standard errors are not wanted.
+    kiln_image *deviation;
     /// number of threads, 1 to 256; 0 for one thread per core. The picture is the same for every
     /// number of threads
     int thread_count;
@@ -54,6 +57,13 @@ typedef struct view_error {
     /// RMS difference within each ball of the tone-mapped values, in steps of 255
     double ball_screen[VIEW_MAX_BALLS];
 } view_error;
+
+/// The part of view_error's figures on the screen that the reference's noise causes, from the
+/// standard errors in view_reference_def.deviation. Errors and noise are independent, so a figure
+/// without the noise is the square root of the difference of the squares. Sets `screen` and
+/// `ball_screen` only.
+view_error view_noise(const view_options *options, const kiln_image *truth,
+                      const kiln_image *deviation);
 
 /// Replaces `image` by (image - truth) / mean of the truth, or with `colours` by a colour:
 /// blue for too dark, red for too bright, white for no difference, fully saturated from 25 % on.

@@ -12,7 +12,7 @@
 typedef struct block {
     float eye[4], right[4], up[4], back[4], light[4], turn[4], screen[4], handout_average[4];
     int32_t mode[4], flags[4], levels[4];
-    float table_layout[7][4];
+    float table_layout[8][4];
     float level_roughness[VIEW_SLOT_COUNT][KILN_MAX_LEVELS];
     float harmonics[VIEW_SLOT_COUNT][9][4];
     float balls[VIEW_MAX_BALLS][5][4];
@@ -22,14 +22,22 @@ typedef struct block {
 
 _Static_assert(offsetof(block, mode) == 128, "std140");
 _Static_assert(offsetof(block, table_layout) == 176, "std140");
-_Static_assert(offsetof(block, balls) == 704, "std140");
-_Static_assert(offsetof(block, discs) == 5824, "std140");
+_Static_assert(offsetof(block, balls) == 720, "std140");
+_Static_assert(offsetof(block, discs) == 5840, "std140");
 
 enum { TONE_LINEAR, TONE_NEUTRAL, TONE_ASSIGNMENT };
 
-// Texture unit of each sampler; the names in `samplers` are in the same order. The seven tables
-// begin at TABLES.
-enum { ENVIRONMENT, ENVIRONMENT_TEXTBOOK, IRRADIANCE, TABLES, EDGE = 6, TEXTURES = TABLES + 7 };
+// Texture unit of each sampler; the names in `samplers` are in the same order. The nine tables begin
+// at TABLES. EDGE and LOBES count from there.
+enum {
+    ENVIRONMENT,
+    ENVIRONMENT_TEXTBOOK,
+    IRRADIANCE,
+    TABLES,
+    EDGE = 6,
+    LOBES = 7,
+    TEXTURES = TABLES + LOBES + VIEW_SLOT_COUNT
+};
 static const char *const samplers[TEXTURES] = {"environment",
                                                "environment_textbook",
                                                "irradiance",
@@ -39,7 +47,9 @@ static const char *const samplers[TEXTURES] = {"environment",
                                                "e",
                                                "e_average",
                                                "split_sum",
-                                               "edge_sum"};
+                                               "edge_sum",
+                                               "lobes",
+                                               "lobes_textbook"};
 
 struct view_renderer {
     kiln_context *context;
@@ -47,6 +57,9 @@ struct view_renderer {
     GLuint program, vertices, buffer, texture[TEXTURES];
     bool has_float;
     kiln_lights lights;
+    // tables of lobes with 1 to 3 taps for the levels of each slot; without pixels where not made yet
+    kiln_table lobes[VIEW_SLOT_COUNT][KILN_MAX_TAPS];
+    const kiln_table *uploaded[VIEW_SLOT_COUNT]; // the table of lobes in each slot's texture
     block block;
     char name[128];
 };
@@ -62,7 +75,8 @@ static void set_table(view_renderer *r, int place, const kiln_table *table)
 {
     const kiln_image *image = &table->image;
     view_upload_image(&r->gl, TABLES + place, &r->texture[TABLES + place], image);
-    float *layout = r->block.table_layout[place];
+    // the tables of lobes, one for each slot, have the same layout
+    float *layout = r->block.table_layout[place < LOBES ? place : LOBES];
     layout[0] = (float)table->def.axis;
     if (table->def.axis == KILN_AXIS_GRAZING && table->def.model.g == KILN_G_SCHLICK_TEXT)
         // KILN_AXIS_GRAZING of KILN_G_SCHLICK_TEXT has a number of its own in the shader
@@ -165,6 +179,69 @@ static kiln_result make_tables(view_renderer *r, kiln_error *error)
     return result;
 }
 
+// Returns the number of taps, at most 0 where the view needs none.
+static int taps_of(const view_options *o)
+{
+    return (int)o->reflections - VIEW_REFLECTIONS_ONE + 1;
+}
+
+// Whether the table has the size, the taps and the levels of `def`.
+static bool suits(const kiln_table *table, const kiln_table_def *def)
+{
+    const kiln_table_def *has = &table->def;
+    return table->image.pixels && has->width == def->width && has->tap_count == def->tap_count &&
+           has->level_count == def->level_count &&
+           !memcmp(has->level_roughness, def->level_roughness, sizeof has->level_roughness);
+}
+
+// Sets the size, the taps and the levels of the table of lobes for a slot. A slot without an environment gets
+// equal steps of roughness, which VIEW_SCENE_FURNACE reads.
+static kiln_table_def lobes_def(const block *b, int slot, const view_options *o)
+{
+    enum { EQUAL_STEPS = 7, LOBES_SIZE = 32 };
+    int count = b->levels[slot] > 1 ? b->levels[slot] : EQUAL_STEPS;
+    kiln_table_def def = {.kind = KILN_TABLE_LOBES,
+                          .width = o->lobes_size ? o->lobes_size : LOBES_SIZE,
+                          .tap_count = taps_of(o),
+                          .level_count = count};
+    def.height = def.width;
+    for (int i = 0; i < count; i++)
+        def.level_roughness[i] =
+            b->levels[slot] > 1 ? b->level_roughness[slot][i] : (float)i / (EQUAL_STEPS - 1);
+    return def;
+}
+
+// Makes the table of lobes for the levels of one slot, or finds it among those of the other slot.
+static kiln_result make_lobes(view_renderer *r, int slot, const view_options *o, kiln_error *error)
+{
+    kiln_table_def def = lobes_def(&r->block, slot, o);
+    kiln_table *own = &r->lobes[slot][def.tap_count - 1];
+    kiln_table *other = &r->lobes[!slot][def.tap_count - 1];
+    const kiln_table *found = suits(own, &def) || !suits(other, &def) ? own : other;
+    if (!suits(found, &def)) {
+        kiln_table_free(own);
+        memset(r->uploaded, 0, sizeof r->uploaded);
+        kiln_result result = kiln_table_create(r->context, &def, own, error);
+        if (result != KILN_OK)
+            return result;
+    }
+    if (r->uploaded[slot] != found)
+        set_table(r, LOBES + slot, found);
+    r->uploaded[slot] = found;
+    return KILN_OK;
+}
+
+kiln_result view_prepare(view_renderer *r, const view_options *o, kiln_error *error)
+{
+    int slots = o->scene == VIEW_SCENE_COMPARE ? VIEW_SLOT_COUNT : 1;
+    kiln_result result = KILN_OK;
+    if (taps_of(o) < 1 || o->scene == VIEW_SCENE_ASSIGNMENT)
+        return KILN_OK;
+    for (int slot = 0; slot < slots && result == KILN_OK; slot++)
+        result = make_lobes(r, slot, o, error);
+    return result;
+}
+
 // Binds black textures: a sampler without a texture would be incomplete.
 static kiln_result make_darkness(view_renderer *r, kiln_error *error)
 {
@@ -221,6 +298,8 @@ kiln_result view_create(kiln_context *context, view_lookup *lookup, view_rendere
 
 void view_destroy(view_renderer *r)
 {
+    for (int i = 0; r && i < VIEW_SLOT_COUNT * KILN_MAX_TAPS; i++)
+        kiln_table_free(&r->lobes[i / KILN_MAX_TAPS][i % KILN_MAX_TAPS]);
     if (r && r->program) {
         const view_gl *gl = &r->gl;
         gl->DeleteTextures(TEXTURES, r->texture);
@@ -300,7 +379,7 @@ static void fill_block(block *b, const view_options *o, int width, int height, b
     b->turn[3] = (float)o->background;
     b->screen[0] = (float)width;
     b->screen[1] = (float)height;
-    b->screen[2] = o->bent;
+    b->screen[2] = (float)o->reflections;
     copy3(b->handout_average, view_handout_albedo);
     bool assignment = o->scene == VIEW_SCENE_ASSIGNMENT;
     b->mode[0] = (int32_t)o->scene;
@@ -384,6 +463,9 @@ kiln_result view_picture(view_renderer *r, const view_options *o, int width, int
             error, KILN_ERROR_UNSUPPORTED,
             "%s cannot draw into textures of floats, for which it needs EXT_color_buffer_float",
             r->name);
+    kiln_result result = view_prepare(r, o, error);
+    if (result != KILN_OK)
+        return result;
     GLuint frame = 0, buffer = 0;
     GLint before = 0;
     gl->GetIntegerv(GL_FRAMEBUFFER_BINDING, &before);
@@ -393,7 +475,6 @@ kiln_result view_picture(view_renderer *r, const view_options *o, int width, int
     gl->GenFramebuffers(1, &frame);
     gl->BindFramebuffer(GL_FRAMEBUFFER, frame);
     gl->FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, buffer);
-    kiln_result result = KILN_OK;
     if (gl->CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
         result =
             view_fail(error, KILN_ERROR_UNSUPPORTED,

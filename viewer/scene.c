@@ -19,6 +19,7 @@ static const char *const material_names[] = {"gold",     "copper", "aluminium", 
                                              "titanium", "white",  "handout",   "plastic", "chalk"};
 static const char *const debug_names[] = {"none",        "level", "table-e", "table-e-average",
                                           "table-split", "e",     "f"};
+static const char *const reflections_names[] = {"straight", "bent", "one", "two", "three"};
 
 const char *view_scene_name(int scene)
 {
@@ -38,6 +39,12 @@ const char *view_material_name(int material)
 const char *view_debug_name(int debug)
 {
     return debug >= 0 && debug < VIEW_DEBUG_COUNT ? debug_names[debug] : NULL;
+}
+
+const char *view_reflections_name(int reflections)
+{
+    return reflections >= 0 && reflections < VIEW_REFLECTIONS_COUNT ? reflections_names[reflections]
+                                                                    : NULL;
 }
 
 void view_describe(kiln_error *error, kiln_result result, const char *format, ...)
@@ -62,7 +69,7 @@ view_options view_defaults(view_scene scene)
         .camera = {.target = {20, 0, 0}, .elevation = 8, .distance = 330, .fov = 45},
         .split = 0.5,
         .samples = 4,
-        .bent = true,
+        .reflections = VIEW_REFLECTIONS_BENT,
     };
     if (scene == VIEW_SCENE_ASSIGNMENT) {
         // The GAMES202 assignment's camera stands at (0, 80, 300) and looks at the origin.

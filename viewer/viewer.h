@@ -56,6 +56,18 @@ typedef enum view_material {
     VIEW_METAL_COUNT = VIEW_MATERIAL_WHITE
 } view_material;
 
+/// How the reflection of a rough surface is looked up in the prefiltered levels.
+typedef enum view_reflections {
+    VIEW_REFLECTIONS_STRAIGHT, ///< in the mirror direction, as the split sum of Karis 2013
+    /// in a direction bent towards the normal (Lagarde and de Rousiers 2014)
+    VIEW_REFLECTIONS_BENT,
+    /// by one, two or three lookups and the harmonics (shaders/lobes.glsl)
+    VIEW_REFLECTIONS_ONE,
+    VIEW_REFLECTIONS_TWO,
+    VIEW_REFLECTIONS_THREE,
+    VIEW_REFLECTIONS_COUNT
+} view_reflections;
+
 /// The views that can be shown in place of the shaded balls, for debugging.
 typedef enum view_debug {
     VIEW_DEBUG_NONE,
@@ -100,7 +112,8 @@ typedef struct view_options {
     bool as_printed;
     bool one_row;   ///< leaves the upper row of balls out, as in the GAMES202 handout's figure 5
     bool occlusion; ///< true: balls block the environment's light from one another
-    bool bent;      ///< looks a rough ball's reflection up nearer to its normal
+    view_reflections reflections; ///< how the reflections of rough balls are looked up
+    int lobes_size; ///< width and height in texels of the tables of lobes; 0 for 32, else 2 to 64
     /// diffuse light comes from the irradiance cube instead of the spherical harmonics
     bool cube_diffuse;
     /// true: a matte ground lies under the balls of scenes with an environment (view_ground)
@@ -116,6 +129,7 @@ const char *view_scene_name(int scene);
 const char *view_method_name(int method);
 const char *view_material_name(int material);
 const char *view_debug_name(int debug);
+const char *view_reflections_name(int reflections);
 
 // ------------------------------------------------------------------------------------------- scene
 
@@ -223,6 +237,12 @@ KILN_CHECKED kiln_result view_set_tables(view_renderer *renderer, const kiln_tab
                                          const kiln_table *e_average, const kiln_table *split,
                                          kiln_error *error);
 
+/// Computes and uploads the tables that the view needs and that the renderer does not hold yet.
+/// These are the tables of KILN_TABLE_LOBES for VIEW_REFLECTIONS_ONE to VIEW_REFLECTIONS_THREE,
+/// which suit the levels of the environments that are set and take about a second. Call this before
+/// view_draw; view_picture calls it by itself.
+KILN_CHECKED kiln_result view_prepare(view_renderer *renderer, const view_options *options,
+                                      kiln_error *error);
 /// Draws into the framebuffer that is bound, tone-mapped for an 8-bit sRGB screen.
 void view_draw(view_renderer *renderer, const view_options *options, int width, int height);
 

@@ -304,6 +304,9 @@ static kiln_result loop(window *w, kiln_context *context, const view_window_def 
             if (w->dragging)
                 o.samples = 1;
             w->stale = false;
+            kiln_result result = view_prepare(renderer, &o, error);
+            if (result != KILN_OK)
+                return result;
             view_draw(renderer, &o, width, height);
             if (def->screenshot)
                 return shoot(context, width, height, def->screenshot, error);

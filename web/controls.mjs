@@ -16,6 +16,8 @@ export const NAMES = {
     debug: { none: 'The picture', error: 'Error of the picture', e: 'Reflected share on balls',
              f: 'Fresnel reflectance on balls', 'table-e': 'Table of the reflected share',
              'table-e-average': 'Table of its average', 'table-split': 'Table of the split sum' },
+    reflections: { straight: 'Where a mirror looks', bent: 'Bent towards the normal', one: 'One fitted place',
+                   two: 'Two fitted places', three: 'Three fitted places' },
 };
 
 // Keys whose entries are among `words`, as lil-gui wants a list: name to word.
@@ -71,9 +73,10 @@ function rows(words) {
          'The integration leaves out light that goes from one ball to another, as real-time shaders do.'],
         ['cubeDiffuse', 'Soft light from a cube',
          'Takes the light of matte surfaces from a small cube map instead of nine numbers (spherical harmonics).'],
-        ['bent', 'Correct rough reflections',
-         'A rough surface reflects from a direction nearer to its normal than a mirror does; this looks the ' +
-         'reflection up there.'],
+        ['reflections', 'Rough reflections',
+         'How a rough surface finds its reflection in the blurred levels: where a mirror would, nearer to its ' +
+         'normal, or as one, two or three places that are fitted to what it really reflects.',
+         list(NAMES.reflections, words.reflections)],
         ['asPrinted', 'Repeat a known mistake',
          'Draws the assignment\'s figure 6 with the mistake that it was printed with.'],
     ];
@@ -103,7 +106,7 @@ export function makeControls(container, state, words, changed) {
         auto: () => !bare(state.scene), ground: () => !bare(state.scene) && state.scene !== 'three',
         background: () => !bare(state.scene), occlusion: () => !bare(state.scene) && state.scene !== 'three',
         debug: () => state.scene !== 'three', cubeDiffuse: () => state.scene !== 'three',
-        bent: () => state.scene !== 'three',
+        reflections: () => !bare(state.scene) && state.scene !== 'three',
     };
     return {
         // Shows the present state, after it has changed elsewhere; hides controls without effect.

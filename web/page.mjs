@@ -87,7 +87,7 @@ function kindsOf(scene) {
         background: number(own.background, 0, 1),
         occlusion: flag(Boolean(own.occlusion)),
         cubeDiffuse: flag(Boolean(own.cubeDiffuse)),
-        bent: flag(Boolean(own.bent)),
+        reflections: word(own.reflections, ...words.reflections),
         ground: flag(Boolean(own.ground)),
         asPrinted: flag(Boolean(own.asPrinted)),
         auto: flag(true),

@@ -59,9 +59,11 @@ double *stage_numbers(stage *s)
 
 const char *stage_word(int kind, int index)
 {
-    static const char *(*const names[4])(int) = {view_scene_name, view_method_name,
-                                                 view_material_name, view_debug_name};
-    return kind < 0 || kind > 3 ? NULL : names[kind](index);
+    enum { KINDS = 5 };
+    static const char *(*const names[KINDS])(int) = {view_scene_name, view_method_name,
+                                                     view_material_name, view_debug_name,
+                                                     view_reflections_name};
+    return kind < 0 || kind >= KINDS ? NULL : names[kind](index);
 }
 
 // ------------------------------------------------------------------------------------------- views
@@ -96,10 +98,13 @@ const double *stage_ball(const stage *s, int index)
     return s->balls[index];
 }
 
-void stage_draw(stage *s, int width, int height)
+bool stage_draw(stage *s, int width, int height)
 {
     view_options options = view_from_numbers(s->numbers);
+    if (view_prepare(s->renderer, &options, &s->error))
+        return false;
     view_draw(s->renderer, &options, width, height);
+    return true;
 }
 
 bool stage_furnace(stage *s, int width, int height, double *off)

@@ -25,8 +25,8 @@ STAGE const char *stage_gl_name(const stage *s);
 STAGE double *stage_numbers(stage *s);
 /// Sets the array of view numbers to the scene's defaults.
 STAGE void stage_defaults(stage *s, int scene);
-/// Returns the name of entry `index` of the scenes (kind 0), methods (1), materials (2) or debug
-/// views (3); NULL for an index beyond the last entry.
+/// Returns the name of entry `index` of the scenes (kind 0), methods (1), materials (2), debug views
+/// (3) or ways to look reflections up (4); NULL for an index beyond the last entry.
 STAGE const char *stage_word(int kind, int index);
 
 /// Allocates an environment: six faces of RGB floats for each level (stage_texels; level -1 is the
@@ -48,7 +48,9 @@ STAGE int stage_balls(stage *s);
 /// the reflectance of a metal and the diffuse albedo of another material.
 STAGE const double *stage_ball(const stage *s, int index);
 
-STAGE void stage_draw(stage *s, int width, int height);
+/// Draws the view in stage_numbers. The first view with reflections by one, two or three lookups
+/// takes about a second longer, for their table.
+STAGE bool stage_draw(stage *s, int width, int height);
 /// Renders the furnace; off[0] receives the largest difference from 1 and off[1] the RMS, of the
 /// balls with compensation.
 STAGE bool stage_furnace(stage *s, int width, int height, double *off);

@@ -2,8 +2,8 @@
 const NUMBERS = ['scene', 'method', 'material', 'targetX', 'targetY', 'targetZ', 'azimuth',
                  'elevation', 'distance', 'fov', 'rotation', 'exposure', 'debug', 'level', 'split',
                  'background', 'samples', 'asPrinted', 'occlusion', 'cubeDiffuse',
-                 'bent', 'ground'];
-const WORDS = ['scene', 'method', 'material', 'debug'];
+                 'reflections', 'ground'];
+const WORDS = ['scene', 'method', 'material', 'debug', 'reflections'];
 
 // A view as the array of numbers that web/view_numbers.h names. `words` are Stage's.
 export function numbersOf(words, view) {
@@ -76,7 +76,8 @@ export class Stage {
 
     draw(view, width, height) {
         this.set(view);
-        this.module._stage_draw(this.self, width, height);
+        if (!this.module._stage_draw(this.self, width, height))
+            throw new Error(this.message());
     }
 
     // Uploads an environment, in the form that Baker.scenery() returns, to the exact or the sampled

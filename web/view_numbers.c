@@ -22,7 +22,7 @@ void view_to_numbers(const view_options *o, double n[STAGE_NUMBERS])
     n[STAGE_AS_PRINTED] = o->as_printed;
     n[STAGE_OCCLUSION] = o->occlusion;
     n[STAGE_CUBE_DIFFUSE] = o->cube_diffuse;
-    n[STAGE_BENT] = o->bent;
+    n[STAGE_REFLECTIONS] = (double)o->reflections;
     n[STAGE_GROUND] = o->ground;
 }
 
@@ -47,7 +47,7 @@ view_options view_from_numbers(const double n[STAGE_NUMBERS])
         .as_printed = n[STAGE_AS_PRINTED] != 0,
         .occlusion = n[STAGE_OCCLUSION] != 0,
         .cube_diffuse = n[STAGE_CUBE_DIFFUSE] != 0,
-        .bent = n[STAGE_BENT] != 0,
+        .reflections = (view_reflections)n[STAGE_REFLECTIONS],
         .ground = n[STAGE_GROUND] != 0,
     };
 }

@@ -27,7 +27,7 @@ typedef enum stage_number {
     STAGE_AS_PRINTED,
     STAGE_OCCLUSION,
     STAGE_CUBE_DIFFUSE,
-    STAGE_BENT,
+    STAGE_REFLECTIONS,
     STAGE_GROUND,
     STAGE_NUMBERS
 } stage_number;

@@ -46,8 +46,19 @@ expect 1 "nowhere.exr" render nowhere.exr -o a.png
 # The reference stops at its noise, and the error is told.
 expect 0 "" render sky.exr -o a.exr --reference --size 32x18 --samples 1 --noise 0.3
 grep -q 'integrated to a noise of' log/out || die "no noise is told"
-expect 0 "" render sky.exr -o a.png --error --size 32x18 --samples 1 --noise 0.3 --bake-size 16
+expect 0 "" render -o a.png --error --size 32x18 --samples 1
 grep -q 'error RMS' log/out || die "no error is told"
+grep -Eq '0\.55 +1 +single( +[0-9.]+){6}$' log/out || die "not six figures for a ball"
+# Figures without a picture, as JSON; the scene assignment needs no table of lobes.
+expect 0 "" render --error --json --size 32x18 --samples 1
+for way in straight bent one two three; do
+    grep -A5 "\"$way\":.{" log/out | tr -d '\t\n' >log/way
+    grep -Eq '"roughness":\[0.15, (0[.0-9]+, ){8}0.95\],.*"rms":\[([0-9.e-]+, ){9}[0-9.e-]+\],"all":[0-9.e-]+}' log/way ||
+        die "no ten balls of $way: $(cat log/way)"
+done
+expect 2 "json needs --error" render --json -o a.png
+expect 2 "no output" render
+expect 2 "is now --reflections straight" render --straight -o a.png
 expect 0 "" render -o a.png --reference --size 32x18
 
 # The sun as a disc, and the ground: the lights are told, and what does not fit together is refused.

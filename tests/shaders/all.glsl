@@ -1,5 +1,6 @@
 #include "../../shaders/brdf.glsl"
 #include "../../shaders/kulla_conty.glsl"
 #include "../../shaders/ibl.glsl"
+#include "../../shaders/lobes.glsl"
 #include "../../shaders/tone.glsl"
 #include "../../shaders/disc.glsl"

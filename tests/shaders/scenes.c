@@ -2,6 +2,8 @@
 // reference where both can be exact.
 #include "reference.h"
 
+#include "reflections.h"
+
 #include "drawing.h"
 
 // ---------------------------------------------------------------------------------- the assignment
@@ -217,6 +219,9 @@ int main(void)
         cmocka_unit_test(the_roughest_ball_has_the_handouts_colour),
         cmocka_unit_test(the_handouts_mistake_turns_the_colour),
         cmocka_unit_test(the_assignment_is_exact),
+        cmocka_unit_test(more_lookups_have_smaller_errors),
+        cmocka_unit_test(the_furnace_stays_white),
+        cmocka_unit_test(the_noise_is_that_of_the_reference),
         cmocka_unit_test(the_furnace_closes_with_a_warped_table),
         cmocka_unit_test(the_same_view_has_the_same_bits),
         cmocka_unit_test(pictures_out_of_range_are_refused),

@@ -256,6 +256,42 @@ static void c_bent_reflection(const double x[ARGUMENTS], double r[3])
         r[c] = x[c] * (1 - t) + x[3 + c] * t;
 }
 
+// Sets n, t and v of a surface seen at the cosine nov, from the angles of n and t.
+static void frame(const double angles[2], double nov, double n[3], double t[3], double v[3])
+{
+    double a = angles[0], b = angles[1], sine = sqrt(1 - nov * nov);
+    n[0] = sin(a), n[1] = 0, n[2] = cos(a);
+    t[0] = cos(b) * cos(a), t[1] = sin(b), t[2] = -cos(b) * sin(a);
+    for (int c = 0; c < 3; c++)
+        v[c] = nov * n[c] - sine * t[c];
+}
+#define FRAME(a, b)                                                                                \
+    "vec3 n = vec3(sin(" a "), 0.0, cos(" a "));\n"                                                \
+    "vec3 t = vec3(cos(" b ") * cos(" a "), sin(" b "), -cos(" b ") * sin(" a "));\n"
+
+static void c_lobe_tangent(const double x[ARGUMENTS], double r[3])
+{
+    double n[3], t[3], v[3];
+    frame(x, x[2], n, t, v);
+    for (int c = 0; c < 3; c++)
+        r[c] = 2 + t[c];
+}
+
+// The direction at the angle acos(n.v) - lean from n in the plane of n and t.
+static void c_lobe_direction(const double x[ARGUMENTS], double r[3])
+{
+    double n[3], t[3], v[3], angle = acos(x[2]) - x[3];
+    frame(x, x[2], n, t, v);
+    for (int c = 0; c < 3; c++)
+        r[c] = 2 + cos(angle) * n[c] + sin(angle) * t[c];
+}
+
+static void c_lobes_sum(const double x[ARGUMENTS], double r[3])
+{
+    for (int c = 0; c < 3; c++)
+        r[c] = fmax(x[c] + x[3 + c], 0);
+}
+
 static void c_tone_assignment(const double x[ARGUMENTS], double r[3])
 {
     view_tone(VIEW_SCENE_ASSIGNMENT, x, r);
@@ -467,6 +503,22 @@ static const function functions[] = {
      c_disc_hidden,
      {0, 0.05, 0.01},
      {0.6, 0.3, 0.9}},
+    {"lobe_tangent", // away from 0, where there is no relative error
+     FRAME("x[0]", "x[1]") "vec3 v = x[2] * n - sqrt((1.0 - x[2]) * (1.0 + x[2])) * t;\n"
+                           "r = 2.0 + lobe_tangent(n, v, x[2]);",
+     c_lobe_tangent,
+     {-3, -3, 0},
+     {3, 3, 0.99}},
+    {"lobe_direction", // likewise
+     FRAME("x[0]", "x[1]") "r = 2.0 + lobe_direction(n, t, x[2], x[3]);",
+     c_lobe_direction,
+     {-3, -3, 0, -1.5},
+     {3, 3, 1, 1.5}},
+    {"lobes_sum",
+     "r = lobes_sum(vec3(x[0], x[1], x[2]), vec3(x[3], x[4], x[5]), vec3(0.0));",
+     c_lobes_sum,
+     {0.5, 0.5, 0.5, -0.3, -0.3, -0.3},
+     {1, 1, 1, 1, 1, 1}},
     {"tone_assignment",
      "r = tone_assignment(vec3(x[0], x[1], x[2]));",
      c_tone_assignment,
@@ -486,27 +538,34 @@ static void glsl_agrees_with_c(void **unused)
         compare(&functions[i]);
 }
 
+// Draws nine coefficients of radiance, and writes the GLSL that declares them and then says `more`.
+static void draw_harmonics(kiln_sh *sh, char expression[2048], const char *more)
+{
+    size_t used = (size_t)snprintf(expression, 2048, "vec3 c[9];\n");
+    *sh = (kiln_sh){.bands = 3};
+    for (int i = 0; i < 9; i++) {
+        for (int k = 0; k < 3; k++)
+            sh->c[i][k] = (double)(float)(random_number(&seed) - 0.5);
+        used +=
+            (size_t)snprintf(expression + used, 2048 - used, "c[%d] = vec3(%.9f, %.9f, %.9f);\n", i,
+                             sh->c[i][0], sh->c[i][1], sh->c[i][2]);
+    }
+    assert_true(snprintf(expression + used, 2048 - used, "%s", more) < (int)(2048 - used));
+}
+
 // The series has no relative error where it crosses 0: against its largest value.
 static void harmonics_agree_with_c(void **unused)
 {
     (void)unused;
     static float x[COUNT][ARGUMENTS], result[COUNT][4];
-    kiln_sh sh = {.bands = 3, .irradiance = true};
-    char expression[1024] = "vec3 c[9];\n";
+    kiln_sh sh;
+    char expression[2048];
     static const double lobe[] = {1, 2.0 / 3, 2.0 / 3, 2.0 / 3, 0.25, 0.25, 0.25, 0.25, 0.25};
-    for (int i = 0; i < 9; i++) {
-        double c[3];
-        for (int k = 0; k < 3; k++) {
-            c[k] = (double)(float)(random_number(&seed) - 0.5);
-            sh.c[i][k] = lobe[i] * c[k];
-        }
-        size_t used = strlen(expression);
-        snprintf(expression + used, sizeof expression - used, "c[%d] = vec3(%.9f, %.9f, %.9f);\n",
-                 i, c[0], c[1], c[2]);
-    }
-    size_t used = strlen(expression);
-    snprintf(expression + used, sizeof expression - used,
-             "r = sh_irradiance(c, vec3(x[0], x[1], x[2]));");
+    draw_harmonics(&sh, expression, "r = sh_irradiance(c, vec3(x[0], x[1], x[2]));");
+    sh.irradiance = true;
+    for (int i = 0; i < 9; i++)
+        for (int k = 0; k < 3; k++)
+            sh.c[i][k] *= lobe[i];
     for (int i = 0; i < COUNT; i++) {
         double d[3];
         random_direction(&seed, d);
@@ -520,6 +579,111 @@ static void harmonics_agree_with_c(void **unused)
         for (int c = 0; c < 3; c++)
             CHECK_NEAR((double)result[i][c], value[c], 1e-6);
     }
+}
+
+// One degree of the radiance from direction (a + s b) / k.
+static double degree_at(const kiln_sh *sh, int degree, const double a[3], double s,
+                        const double b[3], double k, int channel)
+{
+    kiln_sh part = {.bands = 3};
+    double d[3], value[3];
+    for (int i = degree * degree; i < (degree + 1) * (degree + 1); i++)
+        memcpy(part.c[i], sh->c[i], sizeof part.c[i]);
+    for (int c = 0; c < 3; c++)
+        d[c] = (a[c] + s * b[c]) / k;
+    kiln_sh_evaluate(&part, d, value);
+    return value[channel];
+}
+
+// The six terms of lobes_rest, by values of the harmonics in directions: n'M t is half the difference
+// of d'M d at (n + t) / sqrt(2) and (n - t) / sqrt(2).
+static void the_rest_of_lobes_agrees_with_c(void **unused)
+{
+    (void)unused;
+    static float x[COUNT][ARGUMENTS], result[COUNT][4];
+    kiln_sh sh;
+    char expression[2048];
+    draw_harmonics(&sh, expression,
+                   FRAME("x[6]", "x[7]") "float rest[6];\n"
+                                         "for (int i = 0; i < 6; i++) rest[i] = x[i];\n"
+                                         "r = lobes_rest(c, n, t, rest);");
+    for (int i = 0; i < COUNT; i++)
+        for (int k = 0; k < ARGUMENTS; k++)
+            x[i][k] = (float)((k < 6 ? 1 : 3) * (2 * random_number(&seed) - 1));
+    render(expression, (const float(*)[ARGUMENTS])x, result);
+    for (int i = 0; i < COUNT; i++) {
+        double a[ARGUMENTS], n[3], t[3], v[3], root = sqrt(2);
+        for (int k = 0; k < ARGUMENTS; k++)
+            a[k] = (double)x[i][k];
+        frame(a + 6, 1, n, t, v);
+        const double b[3] = {n[1] * t[2] - n[2] * t[1], n[2] * t[0] - n[0] * t[2],
+                             n[0] * t[1] - n[1] * t[0]};
+        for (int c = 0; c < 3; c++) {
+            double mixed =
+                degree_at(&sh, 2, n, 1, t, root, c) - degree_at(&sh, 2, n, -1, t, root, c);
+            double across = degree_at(&sh, 2, t, 0, n, 1, c) - degree_at(&sh, 2, b, 0, n, 1, c);
+            double wanted = a[0] * degree_at(&sh, 1, n, 0, t, 1, c) +
+                            a[1] * degree_at(&sh, 1, t, 0, n, 1, c) +
+                            a[2] * degree_at(&sh, 2, n, 0, t, 1, c) + a[3] * mixed / 2 +
+                            a[4] * across + a[5] * degree_at(&sh, 0, n, 0, t, 1, c);
+            CHECK_NEAR((double)result[i][c], wanted, 3e-6);
+        }
+    }
+}
+
+// lobes_at between texels of random numbers, against kiln_table_lookup.
+static void check_lobes(int taps)
+{
+    static float x[COUNT][ARGUMENTS], result[COUNT][4];
+    enum { SIZE = 16 };
+    kiln_context *context = make_context(0);
+    kiln_error error = {0};
+    kiln_table table = {.def = {.kind = KILN_TABLE_LOBES, .tap_count = taps, .corners = taps % 2}};
+    GLuint texture = 0;
+    char expression[512];
+    table.def.width = table.def.height = SIZE;
+    table.def.depth = taps + 1;
+    CHECK_OK(kiln_image_create(context, SIZE, SIZE * (taps + 1), 4, &table.image, &error));
+    for (int i = 0; i < SIZE * SIZE * (taps + 1) * 4; i++)
+        table.image.pixels[i] = (float)random_number(&seed);
+    for (int i = 0; i < COUNT * ARGUMENTS; i++)
+        x[i / ARGUMENTS][i % ARGUMENTS] = (float)random_number(&seed);
+    view_upload_image(&gl, 1, &texture, &table.image);
+    // x[2] chooses three of the numbers
+    snprintf(expression, sizeof expression,
+             "Lobes l = lobes_at(table, vec4(0.0, %d.0, 0.0, 0.0), %d, x[0], x[1]);\n"
+             "int k = int(x[2] * %d.0);\n"
+             "r = x[3] < 0.5 ? l.tap[k].xyz : x[3] < 0.8 ? vec3(l.rest[0], l.rest[1], l.rest[2])\n"
+             "                              : vec3(l.rest[3], l.rest[4], l.rest[5]);",
+             table.def.corners, taps, taps);
+    table_unit = 1;
+    render(expression, (const float(*)[ARGUMENTS])x, result);
+    table_unit = 0;
+    for (int i = 0; i < COUNT; i++) {
+        double value[4 * (KILN_MAX_TAPS + 1)], rest[8], *wanted = value;
+        kiln_table_lookup(&table, (double)x[i][0], (double)x[i][1], 0, value);
+        for (int k = 0; k < taps; k++)
+            rest[k] = value[4 * k + 3];
+        memcpy(rest + taps, value + 4 * (size_t)taps, 4 * sizeof *rest);
+        rest[5] = 1;
+        for (int k = 0; k < taps; k++)
+            rest[5] -= value[4 * k + 2];
+        wanted = x[i][3] < 0.5F   ? value + 4 * (size_t)(x[i][2] * (float)taps)
+                 : x[i][3] < 0.8F ? rest
+                                  : rest + 3;
+        for (int c = 0; c < 3; c++)
+            CHECK_NEAR((double)result[i][c], wanted[c], 4e-6);
+    }
+    gl.DeleteTextures(1, &texture);
+    kiln_table_free(&table);
+    kiln_context_destroy(context);
+}
+
+static void lobes_are_read_as_c_reads_them(void **unused)
+{
+    (void)unused;
+    for (int taps = 1; taps <= KILN_MAX_TAPS; taps++)
+        check_lobes(taps);
 }
 
 // table_read between texels, of every axis and both places of texels, against kiln_table_lookup.
@@ -581,8 +745,8 @@ static void tables_are_read_as_c_reads_them(void **unused)
 static void no_function_is_left_out(void **unused)
 {
     (void)unused;
-    static const char *const others[] = {"ggx_root", "table_place", "table_read", "table_missing",
-                                         "sh_irradiance"};
+    static const char *const others[] = {"ggx_root",      "table_place",   "table_read",
+                                         "table_missing", "sh_irradiance", "lobes_rest"};
     int found = 0;
     for (const char *line = test_all_glsl; line; line = strchr(line, '\n')) {
         char type[16], name[64];
@@ -664,6 +828,8 @@ int main(void)
         cmocka_unit_test(no_function_is_left_out),
         cmocka_unit_test(harmonics_agree_with_c),
         cmocka_unit_test(tables_are_read_as_c_reads_them),
+        cmocka_unit_test(the_rest_of_lobes_agrees_with_c),
+        cmocka_unit_test(lobes_are_read_as_c_reads_them),
     };
     return cmocka_run_group_tests_name("shaders", tests, start, stop);
 }
