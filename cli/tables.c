@@ -15,6 +15,12 @@ static const char *kind_word(int index)
     return kiln_table_kind_names()[index];
 }
 
+static const char *engine_word(int index)
+{
+    const kiln_engine *engine = kiln_engine_at(index);
+    return engine ? engine->name : NULL;
+}
+
 static const char *axis_word(int index)
 {
     return kiln_axis_names()[index];
@@ -28,23 +34,27 @@ static const cli_option options[TABLES_OPTIONS + 1] = {
          .help =
              "the table as .ktx2, .exr, .hdr, .png or .raw (numbers only), or as source code in "
              ".h, .inc (halves) or .glsl; with --assignment a folder, which is created if missing"},
-    [TABLES_FOR] = {"for", CLI_CHOICE, AT(engine), 0, 0, -1, "ENGINE", .word = tables_engine_word,
-                    .help = "write the table that an engine can use instead of its own: a .png for "
-                            "PBRMaterial.environmentBRDFTexture of Babylon.js, or the dfg.inc from "
-                            "which Filament is built"},
+    [TABLES_FOR] = {"for", CLI_CHOICE, AT(engine), 0, 0, -1, "ENGINE", .word = engine_word,
+                    .help = "write the table that an engine can use instead of its own: for "
+                            "babylon a .png for PBRMaterial.environmentBRDFTexture, for filament "
+                            "the dfg.inc from which Filament is built; with --table lobes taps "
+                            "read the levels of any engine"},
     [TABLES_TABLE] =
         {"table", CLI_CHOICE, AT(def.kind), .value = "KIND", .word = kind_word,
          .help = "kind of table; docs/tables.md describes each kind",
-         .more = "e is the albedo of a specular lobe with F = 1, and eavg the cosine-weighted "
-                 "average of e. dfg holds A and B of the split sum. dfg-multiscatter holds B, A + "
-                 "B and the albedo of cloth in the order of Filament. sheen is the albedo of "
-                 "Charlie sheen. e-dielectric is e with the exact Fresnel term, for indices of "
-                 "refraction from 1 to 3. glass is the share of light that is reflected and "
-                 "transmitted, from outside and from inside, for the same indices. e-walk is the "
-                 "albedo that bounces after the first add to F0 A + B, computed by random walks "
-                 "for each F0. A lobe multiplied by 1 + e-walk / (F0 A + B) has the albedo of all "
-                 "bounces within 2e-3, if A and B are exact or from a table with --axis grazing "
-                 "--corners. Tables of e-walk always have that axis and corners."},
+         .more =
+             "e is the albedo of a specular lobe with F = 1, and eavg the cosine-weighted "
+             "average of e. dfg holds A and B of the split sum. dfg-multiscatter holds B, A + "
+             "B and the albedo of cloth in the order of Filament. sheen is the albedo of "
+             "Charlie sheen. e-dielectric is e with the exact Fresnel term, for indices of "
+             "refraction from 1 to 3. glass is the share of light that is reflected and "
+             "transmitted, from outside and from inside, for the same indices. e-walk is the "
+             "albedo that bounces after the first add to F0 A + B, computed by random walks "
+             "for each F0. A lobe multiplied by 1 + e-walk / (F0 A + B) has the albedo of all "
+             "bounces within 2e-3, if A and B are exact or from a table with --axis grazing "
+             "--corners. Tables of e-walk always have that axis and corners. lobes replaces the "
+             "single lookup of the split sum by 1 to 3 lookups and a correction from nine "
+             "harmonics, which reflect the true lobe of GGX more closely."},
     [TABLES_G] = CLI_G_ROW(tables, def.model.g),
     [TABLES_D] = CLI_D_ROW(tables, def.model.d),
     [TABLES_SHEEN] = {"sheen", CLI_CHOICE, AT(def.sheen), .value = "MASKING",
@@ -53,8 +63,8 @@ static const cli_option options[TABLES_OPTIONS + 1] = {
         {"size", CLI_TEXT, AT(size), .value = "SIZE",
          .help = "number of texels as N, WxH or WxHxD, each 1 to 4096; with --method textbook N is "
                  "2 to 4096, with --assignment 2 to 1024",
-         .unset =
-             "128, with 32 along a third axis; 40x32x20 for e-walk; 512 with --method textbook"},
+         .unset = "128, with 32 along a third axis; 40x32x20 for e-walk; 32x32 for lobes; 512 with "
+                  "--method textbook"},
     [TABLES_AXIS] = {"axis", CLI_CHOICE, AT(def.axis), .value = "AXIS", .word = axis_word,
                      .help = "the function of n.v that is the horizontal coordinate u; for the "
                              "kind e, interpolation has the least error with grazing",
@@ -79,12 +89,28 @@ static const cli_option options[TABLES_OPTIONS + 1] = {
              "with this average a white furnace has only the error of the interpolation"},
     [TABLES_LOOKUP] =
         {"lookup", CLI_FLAG, AT(lookup),
-         .help = "also write code that reads the table, to NAME_lookup.h and NAME_lookup.glsl"},
+         .help = "also write code that reads the table, to NAME_lookup.h and NAME_lookup.glsl, and "
+                 "for lobes to NAME_lookup.wgsl"},
     [TABLES_NAME] = {"name", CLI_TEXT, AT(save.name), .value = "NAME",
                      .help = "beginning of the names in source code",
                      .unset = "the name of the output file"},
     [TABLES_PATHS] = {"paths", CLI_INTEGER, AT(def.path_count), 16, 1 << 24, 0, "N",
                       .help = "number of random walks for each texel of e-walk", .unset = "8192"},
+    [TABLES_TAPS] = {"taps", CLI_INTEGER, AT(def.tap_count), 1, KILN_MAX_TAPS, 0, "N",
+                     .help = "with --table lobes: number of lookups", .unset = "1"},
+    [TABLES_LEVELS] = {"levels", CLI_TEXT, AT(levels), .value = "LEVELS",
+                       .help = "with --table lobes: the levels that the lookups read, as their "
+                               "number, with equal steps of roughness from 0 to 1, or as the "
+                               "roughness of each, R,R,...",
+                       .unset = "7, or those of the engine of --for"},
+    [TABLES_ERROR] = {"error", CLI_FILE, AT(error), .value = "FILE",
+                      .help = "with --table lobes: also draw the expected errors as a PNG",
+                      .more =
+                          "From left to right: the split sum's lookup in the mirror direction, "
+                          "the same in the bent direction, and the table. n.v goes from 0 to 1 "
+                          "to the right, roughness from 0 to 1 downwards. The colours are black "
+                          "below 1 %, then dark blue, blue, teal, green, orange and red for each "
+                          "doubling, and white from 64 % on."},
     [TABLES_ASSIGNMENT] = {"assignment", CLI_FLAG, AT(assignment),
                            .help = "write all tables of part 1 of assignment 4 of GAMES202 into "
                                    "the folder -o DIR, with their errors",
@@ -232,6 +258,8 @@ static const cli_example examples[] = {
      "a texture for PBRMaterial.environmentBRDFTexture of Babylon.js"},
     {"kiln tables -o walk.ktx2 --table e-walk --lookup",
      "the albedo that later bounces between microfacets add; takes about 2 s"},
+    {"kiln tables -o lobes.ktx2 --table lobes --taps 2 --for three --lookup",
+     "two lookups of the levels of three.js that reflect GGX's true lobe, and their code"},
     {"kiln tables -o e.h --table e --size 32 --axis grazing --corners",
      "an array in C for use without a texture"},
     {"kiln tables --assignment -o images",

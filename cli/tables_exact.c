@@ -55,6 +55,8 @@ static int name_lookup(tables *t)
     snprintf(t->lookup_path[0], sizeof t->lookup_path[0], "%.*s_lookup.h", (int)length, t->output);
     snprintf(t->lookup_path[1], sizeof t->lookup_path[1], "%.*s_lookup.glsl", (int)length,
              t->output);
+    snprintf(t->lookup_path[2], sizeof t->lookup_path[2], "%.*s_lookup.wgsl", (int)length,
+             t->output);
     return CLI_GO;
 }
 
@@ -69,11 +71,6 @@ static const struct {
 } engines[] = {{"babylon", "png", 256, KILN_TABLE_FORMAT_RGBD},
                {"filament", "inc", 128, KILN_TABLE_FORMAT_F16}};
 
-const char *tables_engine_word(int index)
-{
-    return index < (int)(sizeof engines / sizeof *engines) ? engines[index].name : NULL;
-}
-
 static int apply_engine(tables *t)
 {
     static const int decided[] = {TABLES_TABLE,   TABLES_D,          TABLES_G,     TABLES_SIZE,
@@ -82,18 +79,26 @@ static int apply_engine(tables *t)
     const cli_arguments *a = &t->arguments;
     if (t->engine < 0)
         return CLI_GO;
-    const char *name = engines[t->engine].name, *ending = engines[t->engine].ending;
+    const char *name = kiln_engine_at(t->engine)->name;
+    size_t at = 0, count = sizeof engines / sizeof *engines;
+    while (at < count && strcmp(engines[at].name, name) != 0)
+        at++;
+    if (at == count)
+        return cli_wrong(a->command,
+                         "--for %s: kiln has tables for babylon and filament; for the levels of "
+                         "other engines there is --table lobes",
+                         name);
     for (size_t k = 0; k < sizeof decided / sizeof *decided; k++)
         if (a->text[decided[k]])
             return cli_wrong(t->arguments.command,
                              "--for %s decides what --%s is, leave one of them out", name,
                              t->arguments.command->options[decided[k]].name);
-    if (!cli_ends_in(t->output, ending))
+    if (!cli_ends_in(t->output, engines[at].ending))
         return cli_wrong(t->arguments.command, "--output %s: --for %s writes .%s", t->output, name,
-                         ending);
+                         engines[at].ending);
     t->def.kind = KILN_TABLE_DFG_MULTISCATTER;
-    t->def.width = t->def.height = engines[t->engine].size;
-    t->save.format = engines[t->engine].format;
+    t->def.width = t->def.height = engines[at].size;
+    t->save.format = engines[at].format;
     return CLI_GO;
 }
 
@@ -109,10 +114,15 @@ static int check_kind(const tables *t)
         {TABLES_AVERAGE, 1U << KILN_TABLE_E},
         {TABLES_SHEEN, 1U << KILN_TABLE_SHEEN},
         {TABLES_PATHS, 1U << KILN_TABLE_E_WALK},
+        {TABLES_TAPS, 1U << KILN_TABLE_LOBES},
+        {TABLES_LEVELS, 1U << KILN_TABLE_LOBES},
+        {TABLES_ERROR, 1U << KILN_TABLE_LOBES},
+        {TABLES_AXIS, ~(1U << KILN_TABLE_LOBES)},
+        {TABLES_FLIP, ~(1U << KILN_TABLE_LOBES)},
         {TABLES_G, ~(1U << KILN_TABLE_SHEEN | 1U << KILN_TABLE_E_WALK)},
-        {TABLES_D, ~(1U << KILN_TABLE_SHEEN | 1U << KILN_TABLE_E_WALK)},
-        {TABLES_COMPLEMENT,
-         ~(1U << KILN_TABLE_DFG | 1U << KILN_TABLE_DFG_MULTISCATTER | 1U << KILN_TABLE_GLASS)},
+        {TABLES_D, ~(1U << KILN_TABLE_SHEEN | 1U << KILN_TABLE_E_WALK | 1U << KILN_TABLE_LOBES)},
+        {TABLES_COMPLEMENT, ~(1U << KILN_TABLE_DFG | 1U << KILN_TABLE_DFG_MULTISCATTER |
+                              1U << KILN_TABLE_GLASS | 1U << KILN_TABLE_LOBES)},
     };
     const cli_arguments *a = &t->arguments;
     for (size_t i = 0; i < sizeof only / sizeof *only; i++)
@@ -120,6 +130,12 @@ static int check_kind(const tables *t)
             return cli_wrong(t->arguments.command, "--%s is not for --table %s",
                              t->arguments.command->options[only[i].option].name,
                              kiln_table_kind_names()[t->def.kind]);
+    if (t->def.kind == KILN_TABLE_LOBES &&
+        (t->save.format == KILN_TABLE_FORMAT_U16 || t->save.format == KILN_TABLE_FORMAT_U8 ||
+         t->save.format == KILN_TABLE_FORMAT_RGBD))
+        return cli_wrong(t->arguments.command,
+                         "--table lobes has numbers below 0 and above 1, --format must be f16 or "
+                         "f32");
     if (t->def.kind == KILN_TABLE_E_WALK && a->text[TABLES_AXIS] &&
         t->def.axis != KILN_AXIS_GRAZING)
         return cli_wrong(t->arguments.command,
@@ -155,7 +171,9 @@ static int check_options(tables *t)
                          "--samples is for --assignment and --method textbook: what "
                          "--table makes is not sampled");
     if ((code = cli_check_source_name(a, TABLES_NAME)) != CLI_GO ||
-        (code = read_size(t)) != CLI_GO || (code = apply_engine(t)) != CLI_GO ||
+        (code = read_size(t)) != CLI_GO ||
+        (code = t->def.kind == KILN_TABLE_LOBES ? tables_read_lobes(t) : apply_engine(t)) !=
+            CLI_GO ||
         (code = check_kind(t)) != CLI_GO || (code = check_output(t, t->output)) != CLI_GO)
         return code;
     if (t->average && (code = check_output(t, t->average)) != CLI_GO)
@@ -166,6 +184,12 @@ static int check_options(tables *t)
 }
 
 // ------------------------------------------------------------------------------------------ report
+
+// Returns the number of files of code that --lookup writes.
+static int lookup_count(const tables *t)
+{
+    return !t->lookup ? 0 : t->def.kind == KILN_TABLE_LOBES ? 3 : 2;
+}
 
 static void report(const cli_work *work, const tables *t, const kiln_table *table)
 {
@@ -183,9 +207,12 @@ static void report(const cli_work *work, const tables *t, const kiln_table *tabl
            def->corners ? "corners" : "centres", cli_elapsed(work));
     if (t->average)
         printf("%s: the average of this table, 1024 texels\n", cli_show(t->average).text);
-    if (t->lookup)
-        printf("%s, %s: code that looks the table up\n", cli_show(t->lookup_path[0]).text,
-               cli_show(t->lookup_path[1]).text);
+    for (int i = 0; i < lookup_count(t); i++)
+        printf("%s%s", cli_show(t->lookup_path[i]).text,
+               i + 1 < lookup_count(t) ? ", " : ": code that looks the table up\n");
+    if (t->error)
+        printf("%s: expected errors of the split sum straight, bent, and of the table\n",
+               cli_show(t->error).text);
 }
 
 static void report_json(const cli_work *work, const tables *t, const kiln_table *table)
@@ -205,11 +232,20 @@ static void report_json(const cli_work *work, const tables *t, const kiln_table 
     json_bool(&j, "corners", def->corners);
     json_bool(&j, "complement", def->complement);
     json_bool(&j, "flip", def->flip);
+    if (def->kind == KILN_TABLE_LOBES) {
+        json_number(&j, "taps", def->tap_count);
+        json_array(&j, "roughness");
+        for (int i = 0; i < def->level_count; i++)
+            json_number(&j, NULL, (double)def->level_roughness[i]);
+        json_end(&j);
+    }
+    if (t->error)
+        json_text(&j, "error", t->error);
     if (t->average)
         json_text(&j, "average", t->average);
     if (t->lookup) {
         json_array(&j, "lookup");
-        for (int i = 0; i < 2; i++)
+        for (int i = 0; i < lookup_count(t); i++)
             json_text(&j, NULL, t->lookup_path[i]);
         json_end(&j);
     }
@@ -230,7 +266,9 @@ static kiln_result make(cli_work *work, const tables *t, kiln_table *table, kiln
         result = kiln_table_save(context, table, t->output, &t->save, &work->error);
     if (!result && t->average)
         result = kiln_table_save(context, average, t->average, &t->save, &work->error);
-    for (int i = 0; i < 2 && !result && t->lookup; i++)
+    if (!result && t->error)
+        result = tables_draw_error(work, t, table);
+    for (int i = 0; i < lookup_count(t) && !result; i++)
         result = kiln_table_lookup_save(context, &table->def, t->lookup_path[i], t->save.name,
                                         &work->error);
     return result;

@@ -42,6 +42,9 @@ static kiln_result check_model(const kiln_table_def *def, kiln_error *error)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
                        "a table of lobes needs the distribution GGX, but d is %d",
                        (int)def->model.d);
+    if (def->flip)
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "flip is true, a table of lobes begins with roughness 0");
     if (def->axis != KILN_AXIS_LINEAR)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
                        "axis of the table is %d, it must be %d for a table of lobes",

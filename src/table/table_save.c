@@ -195,14 +195,6 @@ static void encode_inc(const kiln_table *table, ki_writer *w)
                       (i + 1) % 12 && i + 1 < count ? " " : "\n");
 }
 
-static kiln_result fail_code(const char *path, kiln_error *error)
-{
-    return ki_fail(error, KILN_ERROR_UNSUPPORTED,
-                   "%s: kiln writes no code for tables of lobes; save an array as .h or a texture "
-                   "as .ktx2",
-                   path);
-}
-
 static kiln_result encode_code(const kiln_table *table, kiln_table_format format, const char *path,
                                const char *wanted_name, ki_writer *w, kiln_error *error)
 {
@@ -211,7 +203,10 @@ static kiln_result encode_code(const kiln_table *table, kiln_table_format format
     if (result != KILN_OK)
         return result;
     if (table->def.kind == KILN_TABLE_LOBES && !ki_ends_with(path, ".h"))
-        return fail_code(path, error);
+        return ki_fail(error, KILN_ERROR_ARGUMENT,
+                       "%s: a table of lobes is no constant array in GLSL; save a texture as .ktx2 "
+                       "and its lookup as .glsl",
+                       path);
     return ki_ends_with(path, ".h") ? ki_table_write_header(table, path, name.text, w, error)
                                     : ki_table_write_glsl(table, format, path, name.text, w, error);
 }
@@ -284,22 +279,34 @@ kiln_result kiln_table_save(kiln_context *context, const kiln_table *table, cons
     return put(result, path, &w, error);
 }
 
+static kiln_result find_language(const kiln_table_def *def, const char *path, ki_language *language,
+                                 kiln_error *error)
+{
+    static const char *const endings[] = {".h", ".glsl", ".wgsl"};
+    bool lobes = def->kind == KILN_TABLE_LOBES;
+    for (int i = 0; i < 2 + lobes; i++)
+        if (ki_ends_with(path, endings[i])) {
+            *language = (ki_language)i;
+            return KILN_OK;
+        }
+    return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: must end in .h or .glsl%s", path,
+                   lobes ? " or .wgsl" : "");
+}
+
 kiln_result kiln_table_lookup_save(kiln_context *context, const kiln_table_def *def,
                                    const char *path, const char *name, kiln_error *error)
 {
-    bool glsl = ki_ends_with(path, ".glsl");
-    if (!glsl && !ki_ends_with(path, ".h"))
-        return ki_fail(error, KILN_ERROR_ARGUMENT, "%s: must end in .h or .glsl", path);
+    ki_language language = KI_LANGUAGE_C;
+    kiln_result result = find_language(def, path, &language, error);
     ki_source_name made;
-    kiln_result result = check_def(def, error);
-    if (result == KILN_OK && def->kind == KILN_TABLE_LOBES)
-        return fail_code(path, error);
+    if (result == KILN_OK)
+        result = check_def(def, error);
     if (result == KILN_OK)
         result = ki_source_name_make(path, name, &made, error);
     if (result != KILN_OK)
         return result;
     ki_writer w = {.context = context};
-    ki_table_write_lookup(def, glsl, made.text, &w);
+    ki_table_write_lookup(def, language, made.text, &w);
     return put(KILN_OK, path, &w, error);
 }
 

@@ -6,6 +6,7 @@
 
 #include "codec/components.h"
 #include "codec/decimal.h"
+#include "table/lobes_code.h"
 #include "table/table_code.h"
 #include "table/table_text.h"
 
@@ -195,17 +196,23 @@ kiln_result ki_table_write_glsl(const kiln_table *table, kiln_table_format forma
     return result;
 }
 
-void ki_table_write_lookup(const kiln_table_def *def, bool glsl, const char *name, ki_writer *w)
+void ki_table_write_lookup(const kiln_table_def *def, ki_language language, const char *name,
+                           ki_writer *w)
 {
-    write_head(def,
-               glsl ? "Looks up a table in a texture, GLSL ES 3.00:"
-                    : "Looks up a table in an array, C99 and C++:",
-               w);
-    if (!glsl) {
+    static const char *const heads[] = {
+        [KI_LANGUAGE_C] = "Looks up a table in an array, C99 and C++:",
+        [KI_LANGUAGE_GLSL] = "Looks up a table in a texture, GLSL ES 3.00:",
+        [KI_LANGUAGE_WGSL] = "Looks up a table in a texture, WGSL:"};
+    bool c = language == KI_LANGUAGE_C;
+    write_head(def, heads[language], w);
+    if (c) {
         write_guard(name, "_LOOKUP_H", w);
         ki_write_text(w, "#include <math.h>\n\n");
     }
-    ki_table_write_code(def, glsl ? KI_TABLE_GLSL_TEXTURE : KI_TABLE_C, name, w);
-    if (!glsl)
+    if (def->kind == KILN_TABLE_LOBES)
+        ki_lobes_write_code(def, language, name, w);
+    else
+        ki_table_write_code(def, c ? KI_TABLE_C : KI_TABLE_GLSL_TEXTURE, name, w);
+    if (c)
         ki_write_text(w, "\n#endif\n");
 }

@@ -23,8 +23,11 @@ kiln_result ki_table_write_header(const kiln_table *table, const char *path, con
 /// and 8-bit numbers are packed into 32-bit words. `path` is used in error messages only.
 kiln_result ki_table_write_glsl(const kiln_table *table, kiln_table_format format, const char *path,
                                 const char *name, ki_writer *w, kiln_error *error);
-/// Appends the function that reads a table, without the table: a C header for an array of floats,
-/// or with `glsl` a function for a texture.
-void ki_table_write_lookup(const kiln_table_def *def, bool glsl, const char *name, ki_writer *w);
+/// The language of written source code. Only tables of lobes have code in WGSL.
+typedef enum ki_language { KI_LANGUAGE_C, KI_LANGUAGE_GLSL, KI_LANGUAGE_WGSL } ki_language;
+/// Appends the functions that read a table, without the table: a C header for an array of floats,
+/// or functions in GLSL or WGSL for a texture.
+void ki_table_write_lookup(const kiln_table_def *def, ki_language language, const char *name,
+                           ki_writer *w);
 
 #endif

@@ -72,7 +72,7 @@ BASH
     completes "none sharp soft" bake --tune =
     completes "" bake -o "fi"
     completes "" bake --size ""
-    completes "babylon filament" tables --for ""
+    completes "babylon babylon-dds" tables --for bab
     completes "schlick schlick-avg" eval schl
     completes "babylon babylon-dds" engines bab
     completes "bake" help bak

@@ -54,6 +54,29 @@ node -e '
 only t.ktx2 mean.ktx2 t_lookup.h t_lookup.glsl
 rm t.ktx2 mean.ktx2 t_lookup.h t_lookup.glsl
 
+# A table of lobes for an engine's levels, with its picture and code.
+expect 0 "" tables --table lobes -o l.ktx2 --size 4 --taps 2 --for babylon --lookup --error e.png --json
+node -e '
+    const r = JSON.parse(require("fs").readFileSync("log/out", "utf8"));
+    const levels = r.roughness;
+    if (!(r.table === "lobes" && r.taps === 2 && r.depth === 3 && r.lookup.length === 3 && r.error === "e.png" &&
+          levels.length > 3 && levels.at(-1) === 1 && levels.every((x, i) => !i || x > levels[i - 1])))
+        throw new Error(JSON.stringify(r));
+' || die "the report does not tell what was done"
+only l.ktx2 e.png l_lookup.h l_lookup.glsl l_lookup.wgsl
+expect 0 "" info l.ktx2
+grep -q "kind=lobes .*taps=2 levels=" log/out || die "info does not show the levels"
+rm l.ktx2 e.png l_lookup.h l_lookup.glsl l_lookup.wgsl
+expect 2 "not for --table dfg" tables --table dfg -o out.ktx2 --taps 2
+expect 2 "not for --table lobes" tables --table lobes -o out.ktx2 --axis sqrt
+expect 2 "must be f16 or f32" tables --table lobes -o out.png --format u16
+expect 2 "increasing roughness of each level" tables --table lobes -o out.ktx2 --levels 0,0.3,0.2
+expect 2 "decides the roughness of each level" tables --table lobes -o out.ktx2 --for three --levels 0,1
+expect 2 "filters the environment itself" tables --table lobes -o out.ktx2 --for godot
+expect 2 "must end in .png" tables --table lobes -o out.ktx2 --error e.exr
+expect 2 "kiln has tables for babylon and filament" tables -o out.png --for three
+expect 1 "below 0 and above 1" tables --table lobes -o out.png --size 4
+
 expect 2 "no output" tables --table dfg
 expect 2 "must end in" tables -o out.tga
 expect 2 "a .png file has no format f16" tables -o out.png --format f16
