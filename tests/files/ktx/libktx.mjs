@@ -51,7 +51,8 @@ const CUBE = 0x8513, POSITIVE_X = 0x8515, TEXTURE_2D = 0x0de1, TEXTURE_3D = 0x80
 function check(name) {
     const bytes = readFileSync(join(folder, name));
     // The texels as they are without zstd stand in the twin.
-    const file = read(bytes), plain = read(readFileSync(join(folder, name.replace("-zstd-", "-plain-"))));
+    const file = read(bytes), twin = name.replace("-zstd-", "-plain-");
+    const plain = twin === name ? file : read(readFileSync(join(folder, twin)));
     const texture = new lib.ktxTexture(bytes); // where it fails, all of its numbers are 0
     assert.deepEqual([texture.baseWidth, texture.baseHeight, texture.vkFormat],
                      [file.pixelWidth, file.pixelHeight, file.vkFormat]);
@@ -76,6 +77,10 @@ function check(name) {
         assert.deepEqual([call.width, call.height], [edge(file.pixelWidth), edge(file.pixelHeight)]);
         assert.equal(call.size ?? length, length);
         const wanted = plain.levels[call.level].levelData.subarray(face * length, (face + 1) * length);
+        if (plain === file && file.supercompressionScheme) { // a file without a twin
+            assert.equal(length, file.levels[call.level].uncompressedByteLength);
+            continue;
+        }
         assert.ok(copy(call.heap, call.at, length).equals(wanted), `level ${call.level}, face ${face} differs`);
     }
     texture.delete();

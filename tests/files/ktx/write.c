@@ -71,6 +71,29 @@ static kiln_result write_blocks(kiln_context *context, const char *folder, kiln_
     return result;
 }
 
+// The flat picture that three.js up to r186 reads, in UASTC HDR.
+static kiln_result write_flat(kiln_context *context, const char *folder, kiln_error *error)
+{
+    char path[512];
+    kiln_map sky = {0};
+    kiln_environment made = {0};
+    const kiln_bake_def def = {.levels = {.size = 64},
+                               .engine = kiln_engine_find("three-cubeuv"),
+                               .tune = KILN_TUNE_NONE,
+                               .irradiance_size = KILN_NO_IRRADIANCE};
+    snprintf(path, sizeof path, "%s/cubeuv.ktx2", folder);
+    kiln_result result =
+        kiln_sky(context, &(kiln_sky_def){.size = 64, .elevation = 20}, &sky, error);
+    if (result == KILN_OK)
+        result = kiln_bake(context, &sky, &def, &made, error);
+    if (result == KILN_OK)
+        result = kiln_engine_save(context, def.engine, &made.levels, &made.sh, KILN_FORMAT_UASTC,
+                                  path, NULL, error);
+    kiln_environment_free(&made);
+    kiln_map_free(&sky);
+    return result;
+}
+
 int main(int argc, char **argv)
 {
     kiln_context *context;
@@ -107,6 +130,8 @@ int main(int argc, char **argv)
     for (int i = 0; i < 60 && error.result == KILN_OK; i++)
         if (write_table(context, argv[1], i, &error))
             break;
+    if (!error.result && write_flat(context, argv[1], &error))
+        error.result = error.result ? error.result : KILN_ERROR_IO;
     if (!error.result && write_blocks(context, argv[1], &error))
         error.result = error.result ? error.result : KILN_ERROR_IO;
     kiln_context_destroy(context);
