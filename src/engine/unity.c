@@ -39,7 +39,7 @@ const ki_recipe ki_unity = {
          .limit = KI_HALF_MAX,
          .formats = {KILN_FORMAT_RGBA16F, KILN_FORMAT_BC6H},
          .format_reason =
-             "rgba16f: bc6h takes an eighth of the bytes, shows up to 1.2 times the error, and "
+             "rgba16f: bc6h takes an eighth of the bytes, shows up to 1.14 times the error, and "
              "most phones cannot show bc6h",
          .proof = "source of Unity's shaders, Graphics 0c658a0"},
     .axes = {{2, 1, 0}, {-1, 1, -1}},
