@@ -1,4 +1,4 @@
-import type { BakeOptions, Baked, Light } from 'kiln-ibl';
+import type { BakeOptions, Baked, Harmonics, Light } from 'kiln-ibl';
 
 /** An address, a File or Blob, or bytes. */
 export type Source = string | URL | Blob | ArrayBuffer | Uint8Array;
@@ -48,3 +48,26 @@ export interface LightOptions<C> {
  * light. Returns the lights. */
 export function addLights<C extends LightClasses>(
     scene: object, lights: readonly Light[] | { lights: readonly Light[] }, options?: LightOptions<C>): MadeLight<C>[];
+
+/** Classes of Babylon.js, from version 5 on, that change a material's shader. */
+export interface ReflectionClasses {
+    MaterialPluginBase: Class<any>;
+    RawTexture: Class<any>;
+}
+
+export interface TrueReflectionsOptions<C> {
+    /** Number of directions in which each pixel reads the environment; by default 2. */
+    taps?: 1 | 2 | 3;
+    /** Spherical harmonics of the environment's radiance, as `kiln bake --sh sh.json` writes them. Are needed for .dds
+     * files; .env files and bakeEnvironment() have them. */
+    sh?: Harmonics;
+    babylon?: C;
+}
+
+/** Makes a PBRMaterial, PBRMetallicRoughnessMaterial or PBRSpecularGlossinessMaterial reflect `environment`, which is the
+ * scene's environmentTexture or the material's reflectionTexture, by the lobe that a rough surface has in place of one
+ * round lobe. Adds a material plugin for WebGL 2. Is rejected with an error for anisotropic materials and for an
+ * environment without spherical harmonics. Call the function again after the environment has changed. Resolves to the
+ * material. */
+export function trueReflections<M extends object, C extends ReflectionClasses>(
+    material: M, environment: object, options?: TrueReflectionsOptions<C>): Promise<M>;

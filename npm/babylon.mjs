@@ -2,9 +2,13 @@
 //     scene.environmentTexture = await loadEnvironment('city.env', scene);  // a file that kiln baked
 //     scene.environmentTexture = await bakeEnvironment('city.hdr', scene);  // any panorama, baked in a worker
 //     addLights(scene, lights);                                             // lights taken out of the environment
+//     await trueReflections(material, scene.environmentTexture);            // the lobe of a rough surface as it is
 // The option `babylon` of each function holds Babylon's classes where they are not global, from babylonjs or
 // @babylonjs/core: CubeTexture for environments, and Color3, DirectionalLight, ShadowGenerator and Vector3 for lights.
 import { kindOf, openFile } from './fetch.mjs';
+import { harmonicsOf } from './lobes.mjs';
+
+export { trueReflections } from './babylon-lobes.mjs';
 
 function classesOf(babylon, ...names) {
     const missing = names.filter((name) => !babylon?.[name]);
@@ -15,6 +19,13 @@ function classesOf(babylon, ...names) {
 }
 
 const ENDINGS = { '.env': '.env', DDS: '.dds' };
+
+// The spherical harmonics that an .env file holds: the file begins with 8 bytes of magic numbers and with JSON that a
+// zero ends.
+function readHarmonics(bytes) {
+    const { irradiance } = JSON.parse(new TextDecoder().decode(bytes.subarray(8, bytes.indexOf(0, 8))));
+    return irradiance ? harmonicsOf(irradiance) : null;
+}
 
 // Makes a texture of a file's bytes, which Babylon.js loads from an address of their own. The address lasts as long as
 // the texture, since Babylon.js loads again when the browser has lost what was on the GPU.
@@ -32,6 +43,7 @@ function makeTexture({ name, bytes }, scene, { CubeTexture }) {
         const texture = new CubeTexture(url, scene, null, false, null, () => resolve(texture), fail, undefined, true,
                                         ending, true);
         texture.name = name;
+        texture.metadata = { kiln: { sh: kind === '.env' ? readHarmonics(bytes) : null } };
         texture.onDisposeObservable.add(free);
     });
 }
@@ -48,7 +60,7 @@ export async function bakeEnvironment(source, scene, { babylon = globalThis.BABY
     const { files, levels, sh, lights, report } = await bake(input.bytes, { name: input.name, for: 'babylon',
                                                                             ...options });
     const texture = await makeTexture(files[0], scene, classes);
-    texture.metadata = { ...texture.metadata, kiln: { levels, sh, lights, report } };
+    texture.metadata = { ...texture.metadata, kiln: { levels, sh: sh ?? texture.metadata.kiln.sh, lights, report } };
     return texture;
 }
 

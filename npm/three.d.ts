@@ -1,5 +1,5 @@
-import type { DirectionalLight, Scene, Texture } from 'three';
-import type { BakeOptions, Baked, Light } from 'kiln-ibl';
+import type { DirectionalLight, MeshStandardMaterial, Scene, Texture } from 'three';
+import type { BakeOptions, Baked, Harmonics, Light } from 'kiln-ibl';
 
 /** The engine of `kiln bake --for` whose files the running three.js shows. */
 export const engine: 'three' | 'three-cubeuv';
@@ -50,3 +50,19 @@ export interface LightOptions {
  * light. Returns the lights, which may be changed. */
 export function addLights(scene: Scene, lights: readonly Light[] | { lights: readonly Light[] },
                           options?: LightOptions): DirectionalLight[];
+
+export interface TrueReflectionsOptions {
+    /** Number of directions in which each pixel reads the environment; by default 2. */
+    taps?: 1 | 2 | 3;
+    /** Spherical harmonics of the environment's radiance, as `kiln bake --sh sh.json` writes them. Are needed where the
+     * environment has none: those of kiln's cubes, of CubeUV pictures in .exr files and of bakeEnvironment() have them. */
+    sh?: Harmonics;
+}
+
+/** Makes a MeshStandardMaterial or a MeshPhysicalMaterial reflect `environment`, which is the scene's environment or the
+ * material's envMap, by the lobe that a rough surface has in place of one round lobe. Changes the material's shader by
+ * onBeforeCompile, for WebGLRenderer of r150 to r187; is rejected with an error for other versions, for anisotropic
+ * materials, and for an environment without spherical harmonics. Call the function again after the environment or the
+ * number of taps has changed, and for clones of the material. Resolves to the material. */
+export function trueReflections<M extends MeshStandardMaterial>(
+    material: M, environment: Texture, options?: TrueReflectionsOptions): Promise<M>;

@@ -2,12 +2,15 @@
 //     scene.environment = await loadEnvironment('city.ktx2', renderer);   // a file that kiln baked
 //     scene.environment = await bakeEnvironment('city.hdr', renderer);    // any panorama, baked in a worker
 //     addLights(scene, lights);                                           // lights taken out of the environment
+//     await trueReflections(material, scene.environment);                 // the lobe of a rough surface as it is
 // From r187 on, three.js keeps a prefiltered environment in a cube map, before in one flat picture called CubeUV.
 // kiln's engines "three" and "three-cubeuv" write these two. A file of the wrong one would be shown black or be
 // filtered again, so the functions check the file and the running version, and throw an error.
 import { Color, CompressedTexture, CubeReflectionMapping, CubeTexture, DataTexture, DataUtils, DirectionalLight, HalfFloatType,
          LinearFilter, LinearMipmapLinearFilter, REVISION, RGBAFormat } from 'three';
 import { kindOf, openFile } from './fetch.mjs';
+
+export { trueReflections } from './three-lobes.mjs';
 
 // The first versions that show CubeUV files, CubeUV files in WebGPURenderer, and cubes; and the first whose KTX2Loader
 // reads UASTC HDR.
@@ -61,6 +64,19 @@ function checkRoughness(name, metadata, count) {
     if (found.some((r, k) => Math.abs(r - (1 - Math.sqrt(1 - k / (count - 1)))) > 1e-4))
         throw new Error(`${name}: the levels have the roughnesses ${found.map((r) => +r.toFixed(3)).join(' ')}, ` +
                         'which are not those of three.js; bake the file with --for three');
+}
+
+// The spherical harmonics of the radiance that the metadata hold in the axes of three.js, in kiln's axes, in which
+// bake() gives them: kiln's (x, y, z) is (z, y, -x) of three.js.
+function readHarmonics(metadata) {
+    const text = metadata.match(/kiln:sh\0bands 3\nirradiance 0\nwindow 0\n([\d.e+\- \n]+)/)?.[1];
+    if (!text)
+        return null;
+    const c = text.trim().split('\n').map((line) => line.split(' ').map(Number));
+    const minus = (a) => a.map((x) => -x), half = Math.sqrt(3) / 2;
+    const coefficients = [c[0], c[1], minus(c[3]), c[2], c[5], minus(c[4]), c[8].map((x, i) => half * x - c[6][i] / 2),
+                          minus(c[7]), c[6].map((x, i) => half * x + c[8][i] / 2)];
+    return { bands: 3, irradiance: false, window: 0, coefficients };
 }
 
 async function unzip(levels) {
@@ -193,8 +209,11 @@ async function makeCubeUv({ name, bytes }) {
 
 async function makeKtx2(file, renderer, options) {
     const { name } = file, ktx2 = readKtx2(file), { format, width, height, faces } = ktx2;
-    if (faces === 6)
-        return makeCube(file, ktx2, renderer, options);
+    if (faces === 6) {
+        const texture = await makeCube(file, ktx2, renderer, options);
+        texture.userData.kiln = { sh: readHarmonics(ktx2.metadata) };
+        return texture;
+    }
     if (engine !== 'three-cubeuv')
         throw new Error(`${name}: the KTX2 file holds a flat picture and not a cube; bake it with --for ${engine}`);
     checkCubeUv(name, width, height);
@@ -244,7 +263,7 @@ export async function bakeEnvironment(source, renderer, { size, ...options } = {
     const { files, levels, sh, lights, report } = await bake(input.bytes, { name: input.name, ...options, ...texels,
                                                                            for: engine });
     const texture = await makeTexture(files[0], renderer, {});
-    texture.userData.kiln = { levels, sh, lights, report };
+    texture.userData.kiln = { levels, sh: sh ?? texture.userData.kiln?.sh, lights, report };
     return texture;
 }
 

@@ -1,24 +1,27 @@
 // Makes the npm package. In: a folder to work in, and the two modules. Out: FOLDER/package, and FOLDER/kiln-ibl-VERSION.tgz
 // by npm pack, with the same bytes each time.
 //   node npm/tools/pack.mjs FOLDER WITH_VECTORS.wasm WITHOUT.wasm
-// The version and the list of engines are what the command in the module says.
+// The version and the list of engines are what the command in the module says, and the command makes the tables of
+// trueReflections().
 import { execFileSync } from 'node:child_process';
 import fs from 'node:fs';
 import path from 'node:path';
 import { run } from '../host.mjs';
 import { MemorySystem } from '../memory.mjs';
+import { makeLobes } from './lobes.mjs';
 
 const [folder, vectors, scalar] = process.argv.slice(2);
 const source = path.resolve(import.meta.dirname ?? path.dirname(new URL(import.meta.url).pathname), '..');
 const target = path.resolve(folder, 'package');
-const LEFT_OUT = new Set(['codecs', 'examples', 'tools', 'node_modules']);
+const LEFT_OUT = new Set(['codecs', 'examples', 'lobes', 'tools', 'node_modules']);
 
-function say(module, words) {
+function runOn(module, words) {
     const system = new MemorySystem([], words, undefined, () => {});
     if (run(module, words, system) !== 0)
         throw new Error(`kiln ${words.join(' ')}: ${new TextDecoder().decode(system.errors.take())}`);
-    return new TextDecoder().decode(system.output.take());
+    return system;
 }
+const say = (module, words) => new TextDecoder().decode(runOn(module, words).output.take());
 
 // Modules, types and pages of a folder and of the folders in it.
 function copy(from, to) {
@@ -67,6 +70,8 @@ fs.copyFileSync(path.join(source, '../LICENSE'), path.join(target, 'LICENSE'));
 fs.writeFileSync(path.join(target, 'LICENSES-OF-PARTS.txt'), licences());
 fs.writeFileSync(path.join(target, 'engines.mjs'), '// What the command says of itself.\n' +
     `export const version = ${JSON.stringify(version)};\nexport const engines = ${JSON.stringify(engines, null, 4)};\n`);
+makeLobes(path.join(target, 'lobes'), (words, output) =>
+    runOn(module, words).written().find(({ name }) => name === output).bytes);
 const about = JSON.parse(fs.readFileSync(path.join(source, 'package.json'), 'utf8'));
 fs.writeFileSync(path.join(target, 'package.json'), `${JSON.stringify({ ...about, version }, null, 4)}\n`);
 allow(target);

@@ -56,11 +56,15 @@ export const threeCubeUv = {
     }),
 };
 
-// Up to r180: A and B by a closed form, whose sum this is, and the reflection bent by r^2 instead of r^4.
-function approximateAlbedo(nov, r) {
+// Up to r180: A and B by a closed form, and the reflection bent by r^2 instead of r^4.
+export function approximateSplit(r, nov) {
     const [x, y, z, w] = [1 - r, 0.0425 - 0.0275 * r, 1.04 - 0.572 * r, 0.022 * r - 0.04];
     const a = Math.min(x * x, 2 ** (-9.28 * nov)) * x + y;
-    return -1.04 * a + z + (1.04 * a + w);
+    return [-1.04 * a + z, 1.04 * a + w];
+}
+function approximateAlbedo(nov, r) {
+    const [a, b] = approximateSplit(r, nov);
+    return a + b;
 }
 export const threeCubeUvApproximate = {
     ...threeCubeUv,

@@ -14,9 +14,10 @@ const here = import.meta.dirname ?? path.dirname(new URL(import.meta.url).pathna
 const docs = path.join(here, '../../docs/engines');
 const WIDTH = 300, HEIGHT = 200, PATIENCE = 120000;
 
-// Where the packages are installed, by what `npm install` is told.
+// Where the packages are installed, by what `npm install` is told. The built kiln-ibl also has the tables of
+// trueReflections().
 const PACKAGES = {
-    'kiln-ibl': '../../npm', 'three@0.183': 'node_modules/three-r183',
+    'kiln-ibl': process.env.KILN_PACKAGE ?? '../../npm', 'three@0.183': 'node_modules/three-r183',
     'cesium': 'cesium/node_modules/cesium', '@galacean/engine': 'galacean/node_modules/@galacean/engine',
     '@google/model-viewer': 'model-viewer/node_modules/@google/model-viewer',
 };
@@ -47,7 +48,8 @@ function pagesOf(name) {
         const lines = (start) => [...section.matchAll(new RegExp(`^    ${start} (.*)$`, 'gm'))].map(([, words]) => words.split(' '));
         if (!html)
             return [];
-        const packages = lines('npm install')[0], one = { name, html, packages, bakes: lines('kiln bake') };
+        const packages = lines('npm install')[0], heading = section.match(/^## (.*)/)?.[1] ?? '';
+        const one = { name, heading, html, packages, bakes: lines('kiln bake') };
         const also = packages.length === 1 ? ALSO[packages[0]] ?? [] : [];
         return [one, ...also.map((place) => ({ ...one, places: { [packages[0]]: place } }))];
     });
@@ -59,7 +61,7 @@ function makeFolder({ html, packages, bakes, places = PACKAGES }, site) {
     for (const each of packages) {
         const link = path.join(site, 'node_modules', each.replace(/(.)@.*/, '$1'));
         fs.mkdirSync(path.dirname(link), { recursive: true });
-        fs.symlinkSync(path.join(here, places[each] ?? `node_modules/${each}`), link);
+        fs.symlinkSync(path.resolve(here, places[each] ?? `node_modules/${each}`), link);
     }
     makePanorama(path.join(site, 'city.exr'));
     for (const words of bakes)
@@ -103,7 +105,7 @@ check(all.length >= 9, `docs/engines has ${all.length} whole pages`);
 const faults = [];
 fs.mkdirSync(folder, { recursive: true });
 for (const one of all.filter(({ name }) => !only.length || only.includes(name))) {
-    one.title = `${one.name}, ${Object.values(one.places ?? one.packages)}`;
+    one.title = `${one.name}, ${one.heading}, ${Object.values(one.places ?? one.packages)}`;
     const stem = path.join(folder, one.title.replace(/\W+/g, '-'));
     try {
         makeFolder(one, stem);

@@ -294,11 +294,20 @@ export async function bakePlain(size, roughness, from = panorama) {
 // Where pages find packages, loaders and themselves. The loaders are those of the sources, or of a built npm package,
 // which can bake.
 export const builtPackage = process.env.KILN_PACKAGE;
+function linkLoaders(place) {
+    if (builtPackage)
+        return fs.symlinkSync(path.resolve(builtPackage), place);
+    const sources = path.join(here, '../../npm'); // to which tables of trueReflections() may be added
+    fs.mkdirSync(place);
+    for (const file of fs.readdirSync(sources).filter((name) => name.endsWith('.mjs')))
+        fs.symlinkSync(path.join(sources, file), path.join(place, file));
+    return undefined;
+}
 export function makeSite(site) {
     fs.rmSync(site, { recursive: true, force: true });
     fs.mkdirSync(site, { recursive: true });
     fs.symlinkSync(path.join(here, 'node_modules'), path.join(site, 'npm'));
-    fs.symlinkSync(path.resolve(builtPackage ?? path.join(here, '../../npm')), path.join(site, 'loaders'));
+    linkLoaders(path.join(site, 'loaders'));
     fs.symlinkSync(here, path.join(site, 'pages'));
 }
 

@@ -35,10 +35,11 @@ async function draw(scene, camera, width, height) {
     return pixels;
 }
 
-// White metal, or, where a page is asked for it, white without any reflection: diffuse light alone.
-const white = (roughness, asked) => (asked.diffuse
-    ? new THREE.MeshPhysicalMaterial({ color: 0xffffff, metalness: 0, roughness, specularIntensity: 0 })
-    : new THREE.MeshStandardMaterial({ color: 0xffffff, metalness: 1, roughness }));
+// White metal, or, where a page is asked for it, white without any reflection: diffuse light alone. asked.physical: other
+// properties of the latter.
+const white = (roughness, asked) => (asked.diffuse || asked.physical
+    ? new THREE.MeshPhysicalMaterial({ color: 0xffffff, metalness: 0, roughness, specularIntensity: 0, ...asked.physical })
+    : new THREE.MeshStandardMaterial({ color: new THREE.Color(...asked.f0 ?? [1, 1, 1]), metalness: 1, roughness }));
 
 // The ball that casts its shadow on the patches.
 function makeBall({ centre, radius }) {
@@ -56,8 +57,9 @@ export async function filterPanorama(file) {
     return new THREE.PMREMGenerator(renderer).fromEquirectangular(panorama).texture;
 }
 
-// asked: diffuse, of materials; ball, which casts a shadow. light(scene) adds what else lights the scene.
-export async function drawPatches(environment, views, roughness, cell, asked = {}, light = () => {}) {
+// asked: diffuse or physical, of materials; turn, of the environment about y, from r162 on; f0, the colour of metal; ball, which casts a shadow. finish(scene) adds what else lights
+// the scene, and changes materials.
+export async function drawPatches(environment, views, roughness, cell, asked = {}, finish = () => {}) {
     const shown = [];
     for (const view of views) {
         const columns = view.normals.length, rows = roughness.length;
@@ -67,7 +69,8 @@ export async function drawPatches(environment, views, roughness, cell, asked = {
         scene.children.forEach((mesh) => { mesh.receiveShadow = true; });
         if (asked.ball)
             scene.add(makeBall(asked.ball));
-        light(scene);
+        scene.environmentRotation?.set(0, asked.turn ?? 0, 0);
+        await finish(scene);
         const camera = new THREE.OrthographicCamera(-columns / 2, columns / 2, rows / 2, -rows / 2, 1, 100);
         camera.position.fromArray(view.toEye).multiplyScalar(50);
         camera.up.fromArray(view.up);
