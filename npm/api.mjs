@@ -80,11 +80,19 @@ function outputOf(name, engineName, format) {
 
 // ------------------------------------------------------------------------------------------ errors
 
+const MOST_SIZE = 2048; // largest power of two whose cube with all levels fits into a module's 4 GB as half floats
+
+// What the command cannot know: its ranges of sizes are those of machines with more memory.
+function adviceOf({ size, irradianceSize }) {
+    return Math.max(Number(size) || 0, Number(irradianceSize) || 0) > 32768
+        ? `; in WebAssembly's 4 GB of memory, cubes of up to ${MOST_SIZE} fit` : '';
+}
+
 // The command's own sentence, without "kiln: " and without the hint at --help.
-function failureOf({ code, stderr }) {
+function failureOf({ code, stderr }, options) {
     const said = stderr.split('\n').filter((line) => /^kiln: (?!warning: |note: )/.test(line));
     const message = said[said.length - 1]?.slice('kiln: '.length) ?? `the command ended with the code ${code}`;
-    return Object.assign(new Error(message), { name: 'KilnError', exitCode: code, stderr });
+    return Object.assign(new Error(message + adviceOf(options)), { name: 'KilnError', exitCode: code, stderr });
 }
 
 const reasonOf = (signal) => signal.reason ?? Object.assign(new Error('the work was stopped'), { name: 'AbortError' });
@@ -170,7 +178,7 @@ export function makeApi(loadModule, startWorker) {
             words.push('--sh', HARMONICS);
         const result = await kiln(words, { ...options, files: named });
         if (result.code !== 0)
-            throw failureOf(result);
+            throw failureOf(result, options);
         const report = JSON.parse(new TextDecoder().decode(result.stdout));
         const text = result.files.find(({ name }) => name === plain(options.sh ?? HARMONICS));
         if (!options.sh) { // the caller did not ask for this file

@@ -77,6 +77,7 @@ for (const [words, wrong] of [[['--sise', '3'], { sise: 3 }], [['--size', '0'], 
     const error = await bake(sky, { name: 'a.exr', output: 'x.ktx2', ...wrong }).catch((caught) => caught);
     assert.deepEqual([error.name, error.exitCode, error.message.replace(/^(--sise)(?!=)/, '$1=3')], ['KilnError', code, said]);
 }
+await assert.rejects(bake(sky, { size: 40000 }), /must be from 1 to 32768; in WebAssembly's 4 GB of memory, cubes of up to 2048 fit$/);
 fs.writeFileSync(inFolder('cut.exr'), sky.subarray(0, 2000));
 const cut = runIn(folder, native, ['bake', 'cut.exr', '-o', 'x.ktx2']);
 await assert.rejects(bake(sky.subarray(0, 2000), { name: 'cut.exr' }),

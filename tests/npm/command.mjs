@@ -34,8 +34,8 @@ const round = bake('-o', 'round.ktx2');
 assert.deepEqual([round.code, round.stderr], [1, 'kiln: round.ktx2: cannot be created: Symbolic link loop\n']);
 fs.unlinkSync(inFolder('round.ktx2'));
 
-// kiln check says what the native command says, of a right file and of a mirror image.
-for (const [name, code, ...words] of [['right.ktx2', 0], ['mirror.ktx2', 1, '--mirror']]) {
+// kiln check says what the native command says, of a right file and of one that is too bright.
+for (const [name, code, ...words] of [['right.ktx2', 0], ['bright.ktx2', 1, '--exposure', '1']]) {
     kiln('bake', 'a.hdr', '-o', name, '--size', '32', '-q', ...words);
     const check = ['check', 'a.hdr', name, '--json'], said = runIn(folder, command, check);
     assert.deepEqual(said, runIn(folder, native, check));
