@@ -5,6 +5,7 @@
 #include "baker.h"
 
 #include "reference.h"
+#include "turn.h"
 #include "viewer.h"
 
 #include <emscripten.h>
@@ -125,6 +126,12 @@ void baker_options(baker *b, double yaw, double pitch, double roll, double expos
     };
 }
 
+void baker_place(baker *b, int up, bool mirror)
+{
+    b->def.levels.up = (kiln_up)up;
+    b->def.mirror = mirror;
+}
+
 bool baker_bake(baker *b, int size, int levels)
 {
     kiln_bake_def def = b->def;
@@ -138,9 +145,28 @@ bool baker_bake(baker *b, int size, int levels)
     return true;
 }
 
+// Mirrors and turns the source as the options say, except about the vertical axis.
+static bool turn_source(baker *b)
+{
+    const kiln_prefilter_def *levels = &b->def.levels;
+    kiln_map turned;
+    if (b->def.mirror)
+        kiln_map_mirror(&b->source);
+    if (levels->pitch == 0 && levels->roll == 0 && levels->up == KILN_UP_Y)
+        return true;
+    if (turn_map(b->context, &b->source, levels->pitch, levels->roll, levels->up, &turned,
+                 &b->error))
+        return false;
+    kiln_map_free(&b->source);
+    b->source = turned;
+    return true;
+}
+
 bool baker_sun(baker *b)
 {
     const kiln_bake_def *def = &b->def;
+    if (!turn_source(b))
+        return false;
     if (def->sun == KILN_SUN_EXTRACT)
         return !kiln_lights_extract(b->context, &b->source, &def->lights, &b->taken, &b->error);
     return def->sun != KILN_SUN_CLAMP ||

@@ -29,12 +29,17 @@ BAKER const float *baker_source_texels(const baker *b);
 /// --exposure, --sun (a kiln_sun) with --lights (0 for 1) and the radiance of clamp=, 0 for auto.
 BAKER void baker_options(baker *b, double yaw, double pitch, double roll, double exposure, int sun,
                          int light_count, double clamp);
+/// Sets --up (a kiln_up) and --mirror of all later bakes. Is called after baker_options, which sets
+/// both to none.
+BAKER void baker_place(baker *b, int up, bool mirror);
 /// Bakes as `kiln bake --size --levels` does, where 0 levels means all levels. On failure the
 /// previous bake stays.
 BAKER bool baker_bake(baker *b, int size, int levels);
 /// Takes lights out of the source or clamps the source, as the options say. baker_scenery and
-/// baker_truth then have the rest in the source, and baker_truth has the lights as discs. Until
-/// another source is opened, baker_bake would bake the rest.
+/// baker_truth then have the rest in the source, and baker_truth has the lights as discs. Before that,
+/// turns the source about all axes but the vertical one, and mirrors the source, as the options say;
+/// the view turns about the vertical axis. Until another source is opened, baker_bake would bake the
+/// rest, and turn what is turned already.
 BAKER bool baker_sun(baker *b);
 /// Returns the number of lights that baker_sun took out of the source, and light `index` as seven
 /// numbers: the direction to the light in the source, the irradiance of red, green and blue, and

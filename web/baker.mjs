@@ -4,6 +4,7 @@ import { Checker } from './checker.mjs';
 
 const TUNES = ['auto', 'none', 'sharp', 'soft'];
 const SUNS = ['keep', 'extract', 'clamp'];
+const UPS = ['y', 'z', '-z'];
 export const TABLES = ['e', 'eavg', 'dfg'];
 export const SHAPES = ['auto', 'panorama', 'cube', 'octahedron'];
 
@@ -73,9 +74,12 @@ export class Baker {
     }
 
     // Sets the options of later bakes, as the command has them. `sun` is 'keep', 'extract' or
-    // 'clamp'; `clamp` is the largest radiance, 0 for the baker's choice.
-    options({ yaw = 0, pitch = 0, roll = 0, exposure = 0, sun = 'keep', lights = 1, clamp = 0 } = {}) {
-        this.module._baker_options(this.self, yaw, pitch, roll, exposure, SUNS.indexOf(sun), lights, clamp);
+    // 'clamp'; `clamp` is the largest radiance, 0 for the baker's choice; `up` is 'y', 'z' or '-z'.
+    options({ yaw = 0, pitch = 0, roll = 0, exposure = 0, sun = 'keep', lights = 1, clamp = 0, up = 'y',
+              mirror = false } = {}) {
+        const { module, self } = this;
+        module._baker_options(self, yaw, pitch, roll, exposure, SUNS.indexOf(sun), lights, clamp);
+        module._baker_place(self, UPS.indexOf(up), mirror);
     }
 
     // Bakes the source with the options. Returns each level's size, roughness and texels, the
@@ -98,7 +102,7 @@ export class Baker {
         };
     }
 
-    // Takes lights out of the source or clamps the source, as the options say. Returns an array of
+    // Turns the source, and takes lights out of the source or clamps it, as baker_sun. Returns an array of
     // the lights that were taken out, each as the seven numbers of baker_light.
     sun() {
         const { module, self } = this;

@@ -35,6 +35,11 @@ function rows(words) {
     ];
     const bake = [
         ['turn', 'Rotation, degrees', 'Turns the surroundings about the vertical axis.', -180, 180, 1],
+        ['pitch', 'Pitch, degrees', 'Tilts the surroundings: what is ahead moves up.', -180, 180, 1],
+        ['roll', 'Roll, degrees', 'Tilts the surroundings sideways: what is above moves to the right.', -180, 180, 1],
+        ['up', 'Axis that points up', 'The axis of the picture\'s own directions that is up: programs such as Blender have z up.',
+         { Y: 'y', Z: 'z', '-Z': '-z' }],
+        ['mirror', 'Mirrored', 'Swaps left and right, for pictures that are seen from outside.'],
         ['stops', 'Exposure, stops', 'Makes the baked light brighter or darker: each stop doubles it.', -16, 16, 0.5],
         ['lamps', 'Sun and lamps',
          'What becomes of very bright, small lights: they can stay in the texture, be taken out to become a real ' +

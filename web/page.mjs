@@ -60,6 +60,10 @@ function kindsOf(scene) {
         haze: number(3, 1.7, 10),
         size: number(256, 16, 1024, 0),
         turn: number(0, -180, 180),
+        pitch: number(0, -180, 180),
+        roll: number(0, -180, 180),
+        up: word('y', 'y', 'z', '-z'),
+        mirror: flag(false),
         stops: number(0, -16, 16),
         lamps: word('keep', 'keep', 'extract', 'clamp'),
         count: number(1, 1, 16, 0), // largest number of lights that are taken out
@@ -114,11 +118,12 @@ function remember() {
 // The name of what is open without its ending, for the names of files and for lines of code.
 const stem = () => (opened ? opened.name.replace(/\.[^.]*$/, '').replace(/['"\\`]|\p{Cc}/gu, '_') : 'sky');
 
-const optionsOf = ({ turn, stops, lamps, count, clamp }) =>
-    ({ yaw: turn, exposure: stops, sun: lamps, lights: count, clamp });
+const optionsOf = ({ turn, pitch, roll, up, mirror, stops, lamps, count, clamp }) =>
+    ({ yaw: turn, pitch, roll, up, mirror, exposure: stops, sun: lamps, lights: count, clamp });
 
-// What names the open file or sky, and what the options do with its lights.
+// What names the open file or sky, and what the options do with its place and its lights.
 const keyOf = (file) => (file ? file.stamp : [state.sun, state.bearing, state.haze].join());
+const placeKey = ({ pitch, roll, up, mirror }) => [pitch, roll, up, mirror].join();
 const sunKey = ({ lamps, count, clamp, stops }) =>
     ({ keep: '', extract: `without ${count} lights`, clamp: `at most ${clamp} at ${stops} stops` })[lamps];
 
@@ -168,7 +173,7 @@ const bake = (file) => request(async () => {
     await engine.options(options);
     const made = await engine.bake({ size });
     performance.mark('baked');
-    const key = [keyOf(file), sunKey(state), size].join();
+    const key = [keyOf(file), placeKey(state), sunKey(state), size].join();
     if (stage.problem === '' && key !== lit) {
         const measured = await engine.histogram();
         const taken = await engine.sun(), scenery = await engine.scenery({ size });
@@ -198,7 +203,7 @@ const speak = (who) => (sentence) => {
     get('stop').hidden = !get('background').textContent;
 };
 
-const sourceKey = () => [keyOf(opened), sunKey(state)].join();
+const sourceKey = () => [keyOf(opened), placeKey(state), sunKey(state)].join();
 // Opens what is open here in another worker, with the page's options.
 const openWhole = async (worker) => {
     await (opened ? worker.open(opened.bytes, opened.name)
@@ -207,6 +212,13 @@ const openWhole = async (worker) => {
 };
 const openIn = async (worker) => {
     await openWhole(worker);
+    await worker.sun();
+};
+
+// The turned source with its lights, for three.js, which takes no lights out.
+const openTurned = async (worker) => {
+    await openWhole(worker);
+    await worker.options({ ...optionsOf(state), sun: 'keep' });
     await worker.sun();
 };
 
@@ -461,7 +473,7 @@ function refresh() {
 
 // ----------------------------------------------------------------------------------------- changing
 
-const BAKES = ['sun', 'bearing', 'haze', 'size', 'turn', 'stops', 'lamps', 'count', 'clamp'];
+const BAKES = ['sun', 'bearing', 'haze', 'size', 'turn', 'pitch', 'roll', 'up', 'mirror', 'stops', 'lamps', 'count', 'clamp'];
 
 // Called after state[name] has changed: bakes again if the bake depends on that value, and
 // refreshes.
@@ -502,7 +514,7 @@ const files = new Files({
                      open: openWhole }),
 });
 const three = new ThreeView({
-    box: get('stage'), open: openWhole, engines, key: () => keyOf(opened),
+    box: get('stage'), open: openTurned, engines, key: () => [keyOf(opened), placeKey(state)].join(),
     onFailure: (problem) => complain(problem.message),
     onNote: () => { if (state.scene === 'three') get('note').textContent = three.note; },
 });

@@ -138,10 +138,10 @@ async function theKeyboardSuffices(page, address) {
 }
 
 async function theAddressHoldsTheState(page, address) {
-    await visit(page, `${address}#sun=8&bearing=40&size=64&turn=33.5&stops=-2.5&shown=2&samples=1&size2=x`);
+    await visit(page, `${address}#sun=8&bearing=40&size=64&turn=33.5&pitch=12&roll=-20&up=z&mirror=1&stops=-2.5&shown=2&samples=1&size2=x`);
     await idle(page);
     kiln('sky', '-o', 'low.exr', '--elevation', '8', '--azimuth', '40');
-    const wanted = bakeByCommand('low.exr', '--size', '64', '--rotate', '33.5', '--exposure', '-2.5');
+    const wanted = bakeByCommand('low.exr', '--size', '64', '--rotate', '33.5,12,-20', '--up', 'z', '--mirror', '--exposure', '-2.5');
     checkSame((await cube(page)).bytes, wanted, 'the address\'s cube');
     check(await page.getAttribute('#levels li:nth-child(3) button', 'aria-pressed') === 'true',
           'level 2 is not the chosen one');
