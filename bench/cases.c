@@ -25,7 +25,8 @@ static bool bake_once(bench *b, kiln_context *context, const kiln_map *source,
 
 // ------------------------------------------------------------------------------------------- probe
 
-static bool probe_at(bench *b, kiln_context *context, const kiln_map *source, double tolerance)
+static bool probe_at(bench *b, kiln_context *context, const kiln_map *source, double tolerance,
+                     double fft)
 {
     kiln_bake_def def = {.levels = {.size = 64, .level_count = 7, .tolerance = tolerance},
                          .irradiance_size = KILN_NO_IRRADIANCE};
@@ -69,6 +70,9 @@ static bool probe_at(bench *b, kiln_context *context, const kiln_map *source, do
         snprintf(name, sizeof name, "plan execute, %g", tolerance);
         bench_row(b, name, "s", e);
         bench_aim("executing the plan, CPU time", 1e3 * e.median, "ms", 2);
+        snprintf(name, sizeof name, "plan over fft, %g", tolerance);
+        bench_value(b, name, "ratio", e.minimum / fft);
+        printf("  %-46s %10.2f\n", "the same / time of the Fourier transform", e.minimum / fft);
     }
     kiln_environment_free(&environment);
     kiln_plan_destroy(plan);
@@ -83,8 +87,15 @@ bool bench_probe(bench *b)
     kiln_map source = {0};
     bool done =
         !kiln_context_create(&one, &context, &b->error) && bench_city(b, context, 128, &source);
+    double fft = bench_fft_seconds(), peak = done ? bench_peak_flops(context) : 0;
+    printf(
+        "  yardsticks: a Fourier transform of %d complex doubles takes %.3f ms; one core does %.1f "
+        "thousand million\n  multiplications and additions a second (%s)\n",
+        BENCH_FFT_LENGTH, 1e3 * fft, 1e-9 * peak, done ? kiln_context_cpu(context) : "");
+    bench_value(b, "fft", "s", fft);
+    bench_value(b, "peak", "flops", peak);
     for (int i = 0; i < 3 && done; i++)
-        done = probe_at(b, context, &source, tolerances[i]);
+        done = probe_at(b, context, &source, tolerances[i], fft);
     kiln_map_free(&source);
     kiln_context_destroy(context);
     return done;
