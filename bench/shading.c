@@ -12,7 +12,7 @@
 #include <string.h>
 #include <time.h>
 
-enum { WIDTH = 1920, HEIGHT = 1080, ROUNDS = 9, BALL = 7 };
+enum { WIDTH = 1920, HEIGHT = 1080, ROUNDS = 5, BALL = 7 };
 
 typedef struct times {
     double cpu, wall;
