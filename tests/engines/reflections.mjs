@@ -214,7 +214,7 @@ export default [
         checkRefusals([[`${name}-three.ktx2`, {}, /changes shaders of WebGLRenderer, and this is the build.*WebGPURenderer/]],
                       draw, say) }),
     errorsOf('babylon', 'babylon.html', { engine: babylon, whole: true, more: brighten(GOLD),
-                                          bounds: { 1: 0.5, 2: 0.33, 3: 0.28 } }),
+                                          bounds: { 1: 0.55, 2: 0.36, 3: 0.3 } }),
     errorsOf('babylon 5', 'babylon.html?babylonjs-5', { engine: babylon, more: brighten(GOLD), bounds: { 2: 0.25 } }),
     threeOf('three-r186', threeCubeUv, readTable('three-r183'), true, { 1: 0.55, 2: 0.35, 3: 0.32 }),
     threeOf('three-r181', threeCubeUv, readTable('three-r183'), false, { 2: 0.35 }),
