@@ -57,7 +57,7 @@ void fuzz_table(const uint8_t *bytes, size_t size)
     make_input(bytes, size);
     if (kiln_table_load(context, "-", &table, &error) == KILN_OK) {
         const kiln_table_def *def = &table.def;
-        double values[4];
+        double values[KILN_MAX_TABLE_VALUES];
         fuzz_must(table.image.width == def->width && def->width >= 1 && def->depth >= 1 &&
                   table.image.height == def->height * def->depth);
         for (int i = 0; i <= 4; i++)

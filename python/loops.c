@@ -41,9 +41,11 @@ void kiln_each_table_texel(const kiln_table *table, double *nov, double *roughne
 void kiln_each_table_lookup(size_t count, const kiln_table *table, const double *nov,
                             const double *roughness, const double *third, double *values)
 {
+    size_t width = (size_t)table->image.channels;
+    if (table->def.kind == KILN_TABLE_LOBES)
+        width *= (size_t)table->def.depth;
     for (size_t i = 0; i < count; i++)
-        kiln_table_lookup(table, nov[i], roughness[i], third[i],
-                          &values[i * (size_t)table->image.channels]);
+        kiln_table_lookup(table, nov[i], roughness[i], third[i], &values[i * width]);
 }
 
 void kiln_each_fit_evaluate(size_t count, const kiln_fit *fit, const float *nov,

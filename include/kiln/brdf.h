@@ -245,8 +245,8 @@ typedef enum kiln_table_kind {
     KILN_TABLE_LOBES
 } kiln_table_kind;
 
-/// Greatest number of taps of KILN_TABLE_LOBES.
-enum { KILN_MAX_TAPS = 3 };
+/// Greatest number of taps of KILN_TABLE_LOBES, and of numbers that kiln_table_lookup sets.
+enum { KILN_MAX_TAPS = 3, KILN_MAX_TABLE_VALUES = 16 };
 
 /// How n.v depends on u. The nonlinear axes place more texels at grazing angles, where E changes
 /// fast.

@@ -1,7 +1,7 @@
 """Tables of integrals of reflection models, closed forms fitted to them, and random walks between microfacets."""
 
 import ctypes
-from typing import Any, List, NamedTuple, Optional, Tuple
+from typing import Any, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,6 +18,7 @@ class Table:
               Columns run along n.v, rows along roughness, slices along F0 or the index of refraction
     kind, d, g, sheen, axis   words: what the table holds
     corners, complement, flip   as for kiln.table
+    tap_count, level_roughness  for tables of lobes, else 0 and empty
     """
 
     def __init__(self, struct: Any) -> None:
@@ -36,6 +37,8 @@ class Table:
         self.complement: bool = definition.complement
         self.flip: bool = definition.flip
         self.path_count: int = definition.path_count
+        self.tap_count: int = definition.tap_count
+        self.level_roughness: Tuple[float, ...] = tuple(definition.level_roughness[:definition.level_count])
 
     def __repr__(self) -> str:
         return "<kiln.Table: %s, %s>" % (self.kind, " x ".join(str(n) for n in self.texels.shape))
@@ -43,9 +46,10 @@ class Table:
     def lookup(self, nov: ArrayLike, roughness: ArrayLike, third: ArrayLike = 0.0) -> np.ndarray:
         """The table's value between texels, as graphics hardware interpolates. The arguments broadcast; third is F0 or
         the ior of tables with slices. float64 of the arguments' shape, with a last dimension of the channels if there
-        are several. A stored complement is undone."""
+        are several, or of the 4 (tap_count + 1) numbers of all slices of a table of lobes. A stored complement is
+        undone."""
         shape, rows = broadcast([(nov, 1), (roughness, 1), (third, 1)])
-        channels = self._struct.image.channels
+        channels = self._struct.image.channels * (self.tap_count + 1 if self.kind == "lobes" else 1)
         values = np.empty((len(rows[0]), channels))
         library.kiln_each_table_lookup.restype = None
         loop(library.kiln_each_table_lookup, [ctypes.byref(self._struct)], rows, [values])
@@ -88,10 +92,12 @@ class Table:
 def table(kind: str = "e", *, d: str = "ggx", g: str = "smith", sheen: str = "ashikhmin", width: Optional[int] = None,
           height: Optional[int] = None, depth: Optional[int] = None, axis: str = "linear", corners: bool = False,
           complement: bool = False, flip: bool = False, path_count: Optional[int] = None,
+          tap_count: Optional[int] = None, level_roughness: Sequence[float] = (),
           progress: Optional[Progress] = None, context: Optional[Context] = None) -> Table:
     """Computes a table.
 
-    kind        "e", "eavg", "dfg", "dfg-multiscatter", "sheen", "e-dielectric", "glass" or "e-walk": docs/tables.md
+    kind        "e", "eavg", "dfg", "dfg-multiscatter", "sheen", "e-dielectric", "glass", "e-walk" or "lobes":
+                docs/tables.md
     d, g        the model, as in kiln.brdf
     sheen       "ashikhmin" or "estevez"
     width, height, depth   texels, 1 to 4096; None for 128 x 128, or 32 x 32 x 32 with slices
@@ -100,9 +106,16 @@ def table(kind: str = "e", *, d: str = "ggx", g: str = "smith", sheen: str = "as
     complement  True: stores 1 - value
     flip        True: row 0 holds roughness 1
     path_count  random walks per texel of "e-walk"; None for 8192
+    tap_count   lookups of "lobes", 1 to 3; None for 1
+    level_roughness   roughness of the levels that "lobes" reads, 2 to 16 increasing numbers; () for seven equal steps
     """
     definition = fill(c.kiln_table_def, kind=kind, sheen=sheen, width=width, height=height, depth=depth, axis=axis,
-                      corners=corners, complement=complement, flip=flip, path_count=path_count)
+                      corners=corners, complement=complement, flip=flip, path_count=path_count, tap_count=tap_count,
+                      level_count=len(level_roughness))
+    if len(level_roughness) > len(definition.level_roughness):
+        raise ValueError("level_roughness has %d numbers, at most %d are allowed"
+                         % (len(level_roughness), len(definition.level_roughness)))
+    definition.level_roughness[:len(level_roughness)] = [float(r) for r in level_roughness]
     definition.model = fill(c.kiln_model, d=d, g=g)
     made = c.kiln_table()
     with borrow(context) as used:
