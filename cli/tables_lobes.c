@@ -3,7 +3,7 @@
 // a kiln_table_def, and a picture of expected errors by roughness and n.v.
 #include "tables.h"
 
-#include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -129,6 +129,8 @@ kiln_result tables_draw_error(cli_work *work, const tables *t, const kiln_table 
     kiln_lobes_error *errors = malloc((size_t)count * sizeof *errors);
     kiln_image picture = {0};
     kiln_result result = nov && roughness && errors ? KILN_OK : KILN_ERROR_MEMORY;
+    if (result)
+        snprintf(work->error.message, sizeof work->error.message, "out of memory");
     for (int i = 0; i < count && !result; i++) {
         nov[i] = (i % points + 0.5) / points;
         roughness[i] = (i / points + 0.5) / points;

@@ -12,8 +12,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-// Roughness above which weights may be negative.
-static const double any_sign_from = 0.8;
 // Strength of the pull of neighbouring texels. With 0.02 and three sweeps the error halfway between
 // texels is at most a tenth above the error at texels, as RMS over the table.
 static const double pull_strength = 0.02;
@@ -119,11 +117,6 @@ static void make_target(void *data, int worker, int index)
 
 // ------------------------------------------------------------------------------------ first solution
 
-static bool any_sign(const fill_job *job, const ki_lobes_target *target)
-{
-    return job->def->tap_count > 1 && target->roughness > any_sign_from;
-}
-
 static void sort_taps(ki_lobes_taps *t)
 {
     for (int i = 1; i < t->count; i++)
@@ -149,7 +142,7 @@ static void search_freely(const fill_job *job, const ki_lobes_target *target, ki
             t.angle[i] = dominant + spread * (i - 0.5 * (t.count - 1));
             t.level[i] = level - 0.4 * (trial % 3);
         }
-        double error = ki_lobes_search(&job->chain, target, NULL, false, &t);
+        double error = ki_lobes_search(&job->chain, target, NULL, &t);
         if (error < least) {
             least = error;
             *taps = t;
@@ -199,7 +192,7 @@ static void fit_first(fill_job *job, int x, int y)
     ki_lobes_pull pull;
     mean_of(job, near, count, &pull);
     job->taps[index] = taps_at(&pull, target, job->def->tap_count);
-    ki_lobes_search(&job->chain, target, &pull, any_sign(job, target), job->taps + index);
+    ki_lobes_search(&job->chain, target, &pull, job->taps + index);
 }
 
 // Task of one thread: fits the texels of row y that are job->step steps away from the first texel.
@@ -246,7 +239,7 @@ static void smooth(fill_job *job, int x, int y)
             mean_of(job, near + n, 1, &one);
         if (n >= -1)
             t = taps_at(n < 0 ? &mean : &one, target, taps);
-        double error = ki_lobes_search(&job->chain, target, &mean, any_sign(job, target), &t);
+        double error = ki_lobes_search(&job->chain, target, &mean, &t);
         if (error < least) {
             least = error;
             best = t;

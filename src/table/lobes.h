@@ -111,10 +111,10 @@ typedef struct ki_lobes_pull {
 } ki_lobes_pull;
 
 /// Searches for taps of least error, from the angles and levels in *taps, by the simplex method of
-/// Nelder and Mead; weights are those of least error for each choice of angles and levels. `pull`
-/// may be NULL. With `any_sign` false no weight is negative. Returns the error with the pull.
+/// Nelder and Mead; weights are those of least error, none negative, for each choice of angles and
+/// levels. `pull` may be NULL. Returns the error with the pull.
 double ki_lobes_search(const ki_lobes_chain *chain, const ki_lobes_target *target,
-                       const ki_lobes_pull *pull, bool any_sign, ki_lobes_taps *taps);
+                       const ki_lobes_pull *pull, ki_lobes_taps *taps);
 
 /// Replaces zeros in the def of a table of KILN_TABLE_LOBES by default values and checks the fields
 /// that this kind of table has. Fails with KILN_ERROR_ARGUMENT.

@@ -124,9 +124,9 @@ static void solve(const form *f, const int *id, int count, double *w)
         w[id[i]] = m[i][count] / m[i][i];
 }
 
-// Sets the weights of least error. Without `any_sign`, the tap of the most negative weight is left
-// out until no weight is negative.
-static void weigh(const form *f, bool any_sign, double *w)
+// Sets the weights of least error of which none is negative: the tap of the most negative weight is
+// left out until no weight is negative.
+static void weigh(const form *f, double *w)
 {
     int id[KILN_MAX_TAPS], count = f->count;
     for (int i = 0; i < count; i++)
@@ -136,7 +136,7 @@ static void weigh(const form *f, bool any_sign, double *w)
         int worst = 0;
         for (int i = 1; i < count; i++)
             worst = w[id[i]] < w[id[worst]] ? i : worst;
-        if (any_sign || w[id[worst]] >= 0)
+        if (w[id[worst]] >= 0)
             return;
         w[id[worst]] = 0;
         memmove(id + worst, id + worst + 1, (size_t)(--count - worst) * sizeof *id);
@@ -147,7 +147,6 @@ typedef struct search_job {
     const ki_lobes_chain *chain;
     const ki_lobes_target *target;
     const ki_lobes_pull *pull;
-    bool any_sign;
     int count;
     double scale; // the error's order of magnitude
 } search_job;
@@ -180,7 +179,7 @@ static double judge(const search_job *job, const double *place, ki_lobes_taps *t
     }
     form f;
     make_form(job->chain, job->target, t, &f);
-    weigh(&f, job->any_sign, t->weight);
+    weigh(&f, t->weight);
     double pull = job->pull ? pull_of(job->pull, job->target->mirror, t) : 0;
     return form_value(&f, t->weight) + job->scale * (10 * outside + pull);
 }
@@ -269,9 +268,9 @@ static void begin(const search_job *job, const ki_lobes_taps *t, simplex *s)
 }
 
 double ki_lobes_search(const ki_lobes_chain *chain, const ki_lobes_target *target,
-                       const ki_lobes_pull *pull, bool any_sign, ki_lobes_taps *taps)
+                       const ki_lobes_pull *pull, ki_lobes_taps *taps)
 {
-    search_job job = {chain, target, pull, any_sign, taps->count, 0};
+    search_job job = {chain, target, pull, taps->count, 0};
     double level = ki_lobes_level(chain, target->roughness);
     job.scale =
         target_with(chain, target, target->mirror, level) + ki_lobes_bands_square(&target->bands);
