@@ -236,8 +236,11 @@ vec3 reflected(int slot, vec3 n, vec3 v, float nov, float roughness)
         r = bent_reflection(n, r, roughness);
     if (count < 1)
         return environment_seen(slot, r, roughness);
-    Lobes found = slot == 0 ? lobes_at(lobes, table_layout[7], count, nov, roughness)
-                            : lobes_at(lobes_textbook, table_layout[7], count, nov, roughness);
+    Lobes found; // WebGL has no ternary operator for structures
+    if (slot == 0)
+        found = lobes_at(lobes, table_layout[7], count, nov, roughness);
+    else
+        found = lobes_at(lobes_textbook, table_layout[7], count, nov, roughness);
     vec3 t = turned(lobe_tangent(n, v, nov)), normal = turned(n), sum = vec3(0.0), c[9];
     vec3 lowest = vec3(1e30);
     harmonics_of(slot, c);
