@@ -75,14 +75,15 @@ static void judge(void *data, int worker, int index)
     e->table = relative(job, &target, norm, &t, &bands);
 }
 
-static kiln_result check(const kiln_table *table, kiln_error *error)
+// Fails unless the table is one of lobes, and sets the numbers of its definition that are 0 to their
+// defaults.
+static kiln_result complete(kiln_table *table, kiln_error *error)
 {
-    kiln_table_def def = table->def;
     if (table->def.kind != KILN_TABLE_LOBES || !table->image.pixels)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
                        "the table's kind is %d, expected errors are those of kind %d",
                        (int)table->def.kind, KILN_TABLE_LOBES);
-    return ki_lobes_complete(&def, error);
+    return ki_lobes_complete(&table->def, error);
 }
 
 kiln_result kiln_lobes_errors(kiln_context *context, const kiln_table *table, const double *nov,
@@ -91,13 +92,14 @@ kiln_result kiln_lobes_errors(kiln_context *context, const kiln_table *table, co
 {
     for (int i = 0; i < count; i++)
         errors[i] = (kiln_lobes_error){0};
-    kiln_result result = check(table, error);
+    kiln_table whole = *table;
+    kiln_result result = complete(&whole, error);
     if (result)
         return result;
-    error_job job = {.table = table, .nov = nov, .roughness = roughness, .errors = errors};
+    error_job job = {.table = &whole, .nov = nov, .roughness = roughness, .errors = errors};
     size_t threads = (size_t)ki_context_threads(context);
-    size_t room = KI_LOBES_ANGLES * (size_t)table->def.level_count * sizeof *job.covariance;
-    result = ki_lobes_chain_create(context, &table->def, 3, &job.chain, error);
+    size_t room = KI_LOBES_ANGLES * (size_t)whole.def.level_count * sizeof *job.covariance;
+    result = ki_lobes_chain_create(context, &whole.def, 3, &job.chain, error);
     job.nodes = ki_alloc_raw(context, threads, sizeof *job.nodes);
     job.covariance = ki_alloc_raw(context, threads, room);
     if (!result && (!job.nodes || !job.covariance))

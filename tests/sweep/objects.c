@@ -534,6 +534,48 @@ static void engines(void **state)
     }
 }
 
+// Tables of lobes, and the errors that are expected of them at all numbers of n.v and roughness.
+static void lobes(void **state)
+{
+    (void)state;
+    kiln_table table;
+    kiln_error error;
+    static const kiln_table_def small = {.kind = KILN_TABLE_LOBES, .width = 4, .height = 4};
+#define LOBES(field, values, count)                                                                \
+    FIELD_OF(kiln_table_def, small, field, values, count, kiln_table_create(c, &def, &table, &e),  \
+             !table.image.owner, kiln_table_free(&table))
+    LOBES(tap_count, ints, INTS);
+    LOBES(level_count, ints, INTS);
+    LOBES(level_roughness[0], reals, REALS);
+    LOBES(level_roughness[1], reals, REALS);
+    double nov[REALS * REALS], roughness[REALS * REALS];
+    kiln_lobes_error errors[REALS * REALS];
+    for (int i = 0; i < REALS * REALS; i++) {
+        nov[i] = reals[i % REALS];
+        roughness[i] = reals[i / REALS];
+    }
+    sweep_prepare();
+    CHECK_OK(kiln_table_create(c, &small, &table, &error));
+    CHECK_OK(kiln_lobes_errors(c, &table, nov, roughness, REALS * REALS, errors, &error));
+    for (int i = 0; i < REALS * REALS; i++)
+        assert_true(errors[i].straight >= 0 && errors[i].bent >= 0 && errors[i].table >= 0);
+#define ERRORS_OF(field)                                                                           \
+    for (int at = 0; at < INTS; at++) {                                                            \
+        kiln_table other = table;                                                                  \
+        other.def.field = (__typeof__(other.def.field))ints[at];                                   \
+        if (other.def.field <= table.def.field)                                                    \
+            SWEEP(kiln_lobes_errors(c, &other, nov, roughness, 1, errors, &e),                     \
+                  errors[0].table == 0);                                                           \
+    }
+    ERRORS_OF(kind);
+    ERRORS_OF(tap_count);
+    ERRORS_OF(level_count);
+    EACH_INT (n)
+        SWEEP(kiln_lobes_errors(c, &table, nov, roughness, n < 2 ? n : 2, errors, &e),
+              errors[0].table == 0);
+    kiln_table_free(&table);
+}
+
 static void tables(void **state)
 {
     (void)state;
@@ -646,9 +688,9 @@ int main(void)
 {
 #define SWEPT(test) cmocka_unit_test_setup_teardown(test, begin, finish)
     const struct CMUnitTest tests[] = {
-        SWEPT(contexts), SWEPT(maps),          SWEPT(loads),  SWEPT(spectra),
-        SWEPT(bakes),    SWEPT(bakes_of_rows), SWEPT(lights), SWEPT(checks),
-        SWEPT(saves),    SWEPT(engines),       SWEPT(tables), SWEPT(courses),
+        SWEPT(contexts),      SWEPT(maps),   SWEPT(loads),   SWEPT(spectra), SWEPT(bakes),
+        SWEPT(bakes_of_rows), SWEPT(lights), SWEPT(checks),  SWEPT(saves),   SWEPT(engines),
+        SWEPT(lobes),         SWEPT(tables), SWEPT(courses),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
