@@ -48,10 +48,12 @@ double bench_wall(void);
 
 /// BENCH_FFT_LENGTH: number of complex doubles of the Fourier transform that serves as a yardstick.
 enum { BENCH_FFT_LENGTH = 65536 };
-/// Returns the seconds of CPU time of a Fourier transform of radix 2, without vectors, the least of 20.
+/// Returns the seconds of CPU time of a Fourier transform of radix 2, without vectors, the least of
+/// 20.
 double bench_fft_seconds(void);
-/// Returns the multiplications and additions of doubles that one core does in a second with the vectors
-/// of the context's instruction set and with no fused operations, which kiln's kernels do not use.
+/// Returns the multiplications and additions of doubles that one core does in a second with the
+/// vectors of the context's instruction set and with no fused operations, which kiln's kernels do
+/// not use.
 double bench_peak_flops(kiln_context *context);
 
 enum { BENCH_MAX_RUNS = 64 };

@@ -25,7 +25,8 @@ static double seconds(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-// Saves a cube five times, and sets *microseconds to the CPU time that the fastest of them took for each texel.
+// Saves a cube five times, and sets *microseconds to the CPU time that the fastest of them took for
+// each texel.
 static kiln_result time_save(kiln_context *context, const kiln_map *cube, const char *path,
                              const kiln_save_def *def, double *microseconds, kiln_error *error)
 {

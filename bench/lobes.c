@@ -3,11 +3,11 @@
 //
 //   bench_lobes PICTURE.png
 //
-// In: nothing. Out: a picture with a row for each roughness and n.v of `cases` and four columns: the
-// lobe f (n.l) / E, then one, two and three taps of levels at seven equal steps of roughness, with
-// their correction of bands 0 to 2. In a panel the angle in the plane of incidence runs from -90 to
-// 180 degrees to the right, 0 at the normal, positive towards the mirror direction; the angle out of
-// the plane runs from -90 to 90 degrees upwards.
+// In: nothing. Out: a picture with a row for each roughness and n.v of `cases` and four columns:
+// the lobe f (n.l) / E, then one, two and three taps of levels at seven equal steps of roughness,
+// with their correction of bands 0 to 2. In a panel the angle in the plane of incidence runs from
+// -90 to 180 degrees to the right, 0 at the normal, positive towards the mirror direction; the
+// angle out of the plane runs from -90 to 90 degrees upwards.
 #include <kiln/brdf.h>
 
 #include <math.h>

@@ -1,7 +1,7 @@
-// The program bench_shading: time of a frame of 1920 x 1080 that one metal ball fills, for each way to
-// look reflections up. In: a panorama. Out: lines of CSV with the milliseconds of processor time and of
-// wall-clock time of the fastest frame, and the lookups of the environment's cube at each pixel. Where
-// OpenGL is software (Mesa's llvmpipe), processor time is the time of the shader.
+// The program bench_shading: time of a frame of 1920 x 1080 that one metal ball fills, for each way
+// to look reflections up. In: a panorama. Out: lines of CSV with the milliseconds of processor time
+// and of wall-clock time of the fastest frame, and the lookups of the environment's cube at each
+// pixel. Where OpenGL is software (Mesa's llvmpipe), processor time is the time of the shader.
 #include "headless.h"
 #include "viewer.h"
 

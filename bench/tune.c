@@ -1,8 +1,8 @@
 // The cases tune and lights. In: eight panoramas, in the case lights without their suns and lamps,
-// which are added to both sides of the comparison as analytic discs. Out: the errors of what engines
-// show of exact and of tuned levels. An engine maps the roughness to a fractional level, mixes two
-// levels linearly, and reads each bilinearly. The result is compared with the exact environment at the
-// same roughness.
+// which are added to both sides of the comparison as analytic discs. Out: the errors of what
+// engines show of exact and of tuned levels. An engine maps the roughness to a fractional level,
+// mixes two levels linearly, and reads each bilinearly. The result is compared with the exact
+// environment at the same roughness.
 #include "bench.h"
 
 #include <math.h>
@@ -308,8 +308,9 @@ static bool check_environment(bench *b, tuning *d, const char *name)
     return done;
 }
 
-// With its lights as discs, a panorama shall err no more than courtyard, which has no lights, and night at
-// most twice as much. The lamps and windows of studio and forest are no discs, so that parts of these remain.
+// With its lights as discs, a panorama shall err no more than courtyard, which has no lights, and
+// night at most twice as much. The lamps and windows of studio and forest are no discs, so that
+// parts of these remain.
 static void compare_with_calm(bench *b, const tuning *d, const tuning *calm, const char *name)
 {
     double limit = strcmp(name, "night") == 0 ? 2 : 1;

@@ -1,6 +1,6 @@
 // Yardsticks: what the machine does in the moment of a measurement, so that times from machines of
-// different speed and load can be compared. Out: the time of a Fourier transform that is written here,
-// and the rate of arithmetic of one core.
+// different speed and load can be compared. Out: the time of a Fourier transform that is written
+// here, and the rate of arithmetic of one core.
 #include "bench.h"
 
 #include <math.h>
@@ -9,8 +9,9 @@
 
 enum { LENGTH = BENCH_FFT_LENGTH, TRIES = 20 };
 
-// Transforms `from`, interleaved complex numbers, by passes of radix 2 between two arrays (Stockham's
-// order). `roots` holds exp(-2 pi i k / LENGTH) for k < LENGTH / 2. Returns the array with the result.
+// Transforms `from`, interleaved complex numbers, by passes of radix 2 between two arrays
+// (Stockham's order). `roots` holds exp(-2 pi i k / LENGTH) for k < LENGTH / 2. Returns the array
+// with the result.
 static double *transform(double *from, double *to, const double *roots)
 {
     for (int stride = 1, half = LENGTH / 2; half >= 1; stride *= 2, half /= 2) {
@@ -55,8 +56,8 @@ double bench_fft_seconds(void)
     return best;
 }
 
-// Multiplies and adds doubles in 16 independent chains of `LANES` lanes for `count` rounds, and returns a
-// sum of the results. The file compiles this body for each width of vectors.
+// Multiplies and adds doubles in 16 independent chains of `LANES` lanes for `count` rounds, and
+// returns a sum of the results. The file compiles this body for each width of vectors.
 #define CHAINS 16
 #define ARITHMETIC(name, lanes, attribute)                                                         \
     attribute static double name(int count)                                                        \

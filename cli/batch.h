@@ -22,7 +22,7 @@ void *batch_keep(batch_store *store, size_t size);
 char *batch_keep_text(batch_store *store, const char *text, size_t length);
 void batch_store_free(batch_store *store);
 
-// -------------------------------------------------------------------------------------------- lines
+// ------------------------------------------------------------------------------------------- lines
 
 /// One option of bake with its text.
 typedef struct batch_setting {
@@ -54,7 +54,7 @@ int batch_add_manifest(batch_store *store, const char *path,
 /// Text of an option of the line, NULL for an absent option.
 const char *batch_line_text(const batch_line *line, int option);
 
-// --------------------------------------------------------------------------------------------- jobs
+// -------------------------------------------------------------------------------------------- jobs
 
 enum { BATCH_PATHS = 4 }; ///< options of bake that name a file to write
 
@@ -105,7 +105,7 @@ uint64_t batch_plan_key(const batch_job *job);
 bool batch_list_inputs(const batch_job *job, void (*file)(void *user, const char *path),
                        void *user);
 
-// ------------------------------------------------------------------------------------------ records
+// ----------------------------------------------------------------------------------------- records
 
 /// Why an environment is baked, or is not.
 typedef enum batch_reason {
@@ -154,7 +154,7 @@ void batch_record_watch(void *user, const char *path, const void *bytes, size_t 
 void batch_record_write(batch_record *record);
 void batch_record_free(batch_record *record);
 
-// --------------------------------------------------------------------------------------------- pool
+// -------------------------------------------------------------------------------------------- pool
 
 typedef struct batch batch;
 
@@ -261,15 +261,15 @@ void batch_pool_leave(batch_worker *worker, size_t bytes, bool alone);
 size_t batch_pool_need(batch *all, uint64_t key, int width, int height, size_t guess);
 void batch_pool_needed(batch *all, uint64_t key, int width, int height, size_t bytes);
 
-// ------------------------------------------------------------------------------------------- report
+// ------------------------------------------------------------------------------------------ report
 
 /// Holds the output of other threads back, clears the progress line, and releases them
 /// (cli_work.hold).
 void batch_hold(void *user, bool begins);
 /// Draws the progress line if it is due.
 void batch_draw(batch *all);
-/// Counts a job that has ended, and prints what became of it unless its bake has printed the result.
-/// `reason` says why a job is due; `problem` is the error message of a job that failed.
+/// Counts a job that has ended, and prints what became of it unless its bake has printed the
+/// result. `reason` says why a job is due; `problem` is the error message of a job that failed.
 void batch_report_job(batch *all, const batch_job *job, batch_reason reason, const char *problem);
 /// Prints the result of a bake (bake.report) as one line of JSON.
 void batch_report_bake(bake *b);

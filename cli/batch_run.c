@@ -49,16 +49,16 @@ static extent find_extent(batch_worker *worker, const batch_record *record)
     return found;
 }
 
-// A plan saves a tenth of the time of small bakes, and needs the whole picture in memory. From 4096 x
-// 2048 texels on, a bake whose rows pass by is as quick and holds a part of the picture.
+// A plan saves a tenth of the time of small bakes, and needs the whole picture in memory. From 4096
+// x 2048 texels on, a bake whose rows pass by is as quick and holds a part of the picture.
 static bool is_small(const extent *e)
 {
     return (double)e->width * e->height < 4096.0 * 2048.0;
 }
 
-// A guess from above at the memory that a bake needs, until the first bake of its kind has told: the
-// texels as floats and once more for what is made of them, or a part of the rows, the file, and the
-// levels with the spectrum behind them.
+// A guess from above at the memory that a bake needs, until the first bake of its kind has told:
+// the texels as floats and once more for what is made of them, or a part of the rows, the file, and
+// the levels with the spectrum behind them.
 static size_t guess_need(const extent *e, const bake *b)
 {
     bool rows = !is_small(e) && b->tuning == BAKE_EXACT && b->sun == KILN_SUN_KEEP && !b->textbook;

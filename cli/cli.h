@@ -149,8 +149,8 @@ const char *cli_ending(const char *path);
 /// Checks before the work that the folder of an output file exists. Returns CLI_GO or CLI_FAILED.
 int cli_check_folder(const char *path);
 /// Creates the folders of an output file that are missing, and adds their number to *made; without
-/// `make` only checks those that are there. Folders whose names hold patterns such as {face} are left
-/// to the library. Returns false, with a message, if a folder is a file or cannot be created.
+/// `make` only checks those that are there. Folders whose names hold patterns such as {face} are
+/// left to the library. Returns false, with a message, if a folder is a file or cannot be created.
 bool cli_make_folders(const char *path, bool make, int *made, kiln_error *error);
 
 // -------------------------------------------------------------------------------------------- help

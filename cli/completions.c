@@ -76,7 +76,8 @@ static void print_bash_values(const cli_command *command, const cli_option *opti
 {
     (void)command;
     if (option->kind == CLI_FLAG || option->alone)
-        // an option without a value, or with a value only after =, takes no value from the next word
+        // an option without a value, or with a value only after =, takes no value from the next
+        // word
         return;
     print_bash_names(option);
     if (option->kind == CLI_CHOICE) {

@@ -1,5 +1,6 @@
-// Writes JSON to standard output piece by piece, indented by tabs or on one line. Numbers have a decimal point in
-// every locale. Bytes of text that are not UTF-8 are replaced, so the output is always valid.
+// Writes JSON to standard output piece by piece, indented by tabs or on one line. Numbers have a
+// decimal point in every locale. Bytes of text that are not UTF-8 are replaced, so the output is
+// always valid.
 #ifndef KILN_CLI_JSON_H
 #define KILN_CLI_JSON_H
 

@@ -82,7 +82,8 @@ int os_reader_gone(int error)
 
 // ------------------------------------------------------------------------------------------ memory
 
-// A module's memory ends at 4 GiB; the code, the stack and the C library's own blocks take a part of that.
+// A module's memory ends at 4 GiB; the code, the stack and the C library's own blocks take a part
+// of that.
 size_t os_physical_memory(void)
 {
     return (size_t)4000 << 20;

@@ -245,8 +245,8 @@ typedef struct scene_setup {
 const char *scene_diffuse_word(int index);
 const char *scene_sun_word(int index);
 
-/// Reads the value of --size, "WIDTHxHEIGHT" in pixels; 1280 and 720 if it is NULL. Returns CLI_GO or an
-/// exit code.
+/// Reads the value of --size, "WIDTHxHEIGHT" in pixels; 1280 and 720 if it is NULL. Returns CLI_GO
+/// or an exit code.
 int scene_read_size(const cli_command *command, const char *size, int *width, int *height);
 /// Converts and checks the shared options after cli_read_arguments. `may_change`: the user can
 /// change the scene later, so an environment is accepted for a scene that uses none. Returns CLI_GO

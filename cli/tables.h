@@ -45,7 +45,8 @@ typedef struct tables {
     int engine; ///< index of the engine of --for, as in kiln_engine_at; -1 without --for
     int method, samples, threads;
     bool assignment, lookup, json, quiet;
-    /// Paths of the files in C, GLSL and, for tables of lobes, WGSL with the code that reads the table
+    /// Paths of the files in C, GLSL and, for tables of lobes, WGSL with the code that reads the
+    /// table
     char lookup_path[3][4096];
 } tables;
 

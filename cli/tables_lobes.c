@@ -93,7 +93,8 @@ static int point_count(const kiln_table *table)
     return points;
 }
 
-// Sets the colour of an error: bands of a factor of two, from black below 1 % to white from 64 % on.
+// Sets the colour of an error: bands of a factor of two, from black below 1 % to white from 64 %
+// on.
 static void color_of(double error, float rgb[3])
 {
     static const float colors[8][3] = {

@@ -1,5 +1,5 @@
-// Any bytes into a decoder. A decoder that describes a file without reading its texels must succeed wherever
-// reading succeeds; failures must name the file; texels must be finite after mending.
+// Any bytes into a decoder. A decoder that describes a file without reading its texels must succeed
+// wherever reading succeeds; failures must name the file; texels must be finite after mending.
 #include "fuzz.h"
 
 #include "codec/codec.h"
@@ -39,7 +39,8 @@ static void check_failure(kiln_result result, const kiln_error *error)
     fuzz_must(result == KILN_ERROR_MEMORY || strstr(error->message, "fuzz"));
 }
 
-// Describes and reads the file. Returns whether it can be read; *described says whether it can be described.
+// Describes and reads the file. Returns whether it can be read; *described says whether it can be
+// described.
 static bool decode(kiln_context *context, const uint8_t *bytes, size_t size, kiln_file_info *info,
                    kiln_result *described)
 {
@@ -95,7 +96,8 @@ static void lay_out(kiln_context *context, const uint8_t *bytes, size_t size)
 }
 
 // Reads the levels of a file that ki_decode only describes: of Babylon.js, glTF or Galacean Engine.
-// A file of Galacean Engine has no magic bytes: bytes that begin like another format are of that format.
+// A file of Galacean Engine has no magic bytes: bytes that begin like another format are of that
+// format.
 static void read_cube(kiln_context *context, const uint8_t *bytes, size_t size,
                       kiln_result described, const kiln_file_info *info)
 {
@@ -135,8 +137,8 @@ void fuzz_decode(const uint8_t *bytes, size_t size)
     fuzz_end(context);
 }
 
-// A file of Galacean Engine has no magic bytes. The first byte of the input chooses the size of a face, and the
-// file is made as long as this size demands.
+// A file of Galacean Engine has no magic bytes. The first byte of the input chooses the size of a
+// face, and the file is made as long as this size demands.
 void fuzz_galacean(const uint8_t *bytes, size_t size)
 {
     enum { HARMONICS = 108, SIZES = 4 };

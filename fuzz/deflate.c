@@ -1,4 +1,5 @@
-// Any bytes, packed whole and in parts, come back as they were; any bytes as packed data do no harm.
+// Any bytes, packed whole and in parts, come back as they were; any bytes as packed data do no
+// harm.
 #include "fuzz.h"
 
 #include "codec/deflate.h"

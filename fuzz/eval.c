@@ -1,6 +1,6 @@
-// The command `kiln eval`, whose arguments are words and whose input is lines of numbers on standard input. The functions
-// of cli/ that print sentences are replaced here by some that keep the last sentence, so that standard error stays free
-// for what the sanitizers say.
+// The command `kiln eval`, whose arguments are words and whose input is lines of numbers on
+// standard input. The functions of cli/ that print sentences are replaced here by some that keep
+// the last sentence, so that standard error stays free for what the sanitizers say.
 #include "fuzz.h"
 
 #include "cli.h"
@@ -45,7 +45,8 @@ bool os_is_terminal(os_stream stream)
     return false;
 }
 
-// Replaces a standard stream by a file without a name. Returns a descriptor of the stream's own file.
+// Replaces a standard stream by a file without a name. Returns a descriptor of the stream's own
+// file.
 static int replace(FILE *stream, FILE *file)
 {
     int descriptor = fileno(stream), kept = dup(descriptor);
@@ -61,7 +62,8 @@ static void restore(FILE *stream, int kept)
     close(kept);
 }
 
-// Checks that each line of a text is one number, and that the lines are one or as many as those of the input.
+// Checks that each line of a text is one number, and that the lines are one or as many as those of
+// the input.
 static void must_be_numbers(char *text, size_t count)
 {
     size_t lines = 0;
@@ -72,7 +74,8 @@ static void must_be_numbers(char *text, size_t count)
     fuzz_must(lines == count || lines == 1);
 }
 
-// Runs the command with words and with this standard input. Returns its exit code, and what it has printed.
+// Runs the command with words and with this standard input. Returns its exit code, and what it has
+// printed.
 static int evaluate(const char **words, int count, FILE *in, char *printed, size_t room)
 {
     static const cli_command *const commands[] = {&cli_eval, NULL};
@@ -92,9 +95,9 @@ static int evaluate(const char **words, int count, FILE *in, char *printed, size
     return code;
 }
 
-// The first line has the words of the command line, and up to 256 bytes after it are standard input, since some quantities
-// are integrals that take long. A run prints one number for each
-// line of its input, or for the words alone; or nothing, after a sentence.
+// The first line has the words of the command line, and up to 256 bytes after it are standard
+// input, since some quantities are integrals that take long. A run prints one number for each line
+// of its input, or for the words alone; or nothing, after a sentence.
 void fuzz_eval(const uint8_t *bytes, size_t size)
 {
     enum { WORDS = 12, ROOM = 1 << 16, INPUT = 256 };

@@ -1,7 +1,7 @@
-// Fuzz targets: functions that take any bytes. A target must return, must not use memory that is not its own, must
-// release what it allocates, and aborts if a result breaks a law that its comment states. libFuzzer calls a target
-// (entry.c) with bytes that libFuzzer changes to reach more code. The test `corpus` calls the targets (replay.c) with
-// the files that libFuzzer found earlier.
+// Fuzz targets: functions that take any bytes. A target must return, must not use memory that is
+// not its own, must release what it allocates, and aborts if a result breaks a law that its comment
+// states. libFuzzer calls a target (entry.c) with bytes that libFuzzer changes to reach more code.
+// The test `corpus` calls the targets (replay.c) with the files that libFuzzer found earlier.
 #ifndef KILN_FUZZ_H
 #define KILN_FUZZ_H
 
@@ -10,15 +10,16 @@
 typedef struct fuzz_target {
     const char *name;
     void (*run)(const uint8_t *bytes, size_t size);
-    // For a target that reads files of one format: the bytes by which kiln recognises the format. NULL for others.
+    // For a target that reads files of one format: the bytes by which kiln recognises the format.
+    // NULL for others.
     const char *first;
     size_t first_size;
 } fuzz_target;
 
 /// All targets; the last has no name.
 extern const fuzz_target fuzz_targets[];
-/// Runs a target with a copy of the bytes that begins with the target's first bytes, so that every input is a file of
-/// the target's format. Inputs shorter than the first bytes are left out.
+/// Runs a target with a copy of the bytes that begins with the target's first bytes, so that every
+/// input is a file of the target's format. Inputs shorter than the first bytes are left out.
 void fuzz_run(const fuzz_target *target, const uint8_t *bytes, size_t size);
 /// Returns the target with this name, or ends the program.
 const fuzz_target *fuzz_find(const char *name);
@@ -50,7 +51,8 @@ void fuzz_table_text(const uint8_t *bytes, size_t size);
 void fuzz_number(const uint8_t *bytes, size_t size);
 void fuzz_json(const uint8_t *bytes, size_t size);
 void fuzz_shown_text(const uint8_t *bytes, size_t size);
-// paths.c: what is read from a path: a table, standard input, the names of six faces, and a folder of faces.
+// paths.c: what is read from a path: a table, standard input, the names of six faces, and a folder
+// of faces.
 void fuzz_table(const uint8_t *bytes, size_t size);
 void fuzz_input(const uint8_t *bytes, size_t size);
 void fuzz_faces(const uint8_t *bytes, size_t size);
@@ -68,8 +70,8 @@ void fuzz_must(bool holds);
 kiln_context *fuzz_context(size_t memory_limit);
 /// Destroys a context, which must hold no memory any more.
 void fuzz_end(kiln_context *context);
-/// A copy with a NUL behind its last byte, to be released by free(). Its memory ends there, so that a read
-/// past the end is seen.
+/// A copy with a NUL behind its last byte, to be released by free(). Its memory ends there, so that
+/// a read past the end is seen.
 char *fuzz_text(const uint8_t *bytes, size_t size);
 void fuzz_must_be_finite(const float *values, size_t count);
 /// Checks that a text ends within its room.

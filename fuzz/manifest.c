@@ -20,8 +20,8 @@ static void must_be_value(const manifest_value *value, const char *bytes, const 
         must_be_inside(value->text, bytes, end);
 }
 
-// Reads all objects. Each takes at least its two braces, so that there are at most half as many objects as bytes. Lines
-// only grow, and a problem lies in one of the lines of the bytes.
+// Reads all objects. Each takes at least its two braces, so that there are at most half as many
+// objects as bytes. Lines only grow, and a problem lies in one of the lines of the bytes.
 void fuzz_manifest(const uint8_t *bytes, size_t size)
 {
     static manifest_member members[MANIFEST_MEMBERS];

@@ -1,5 +1,6 @@
-// What lies inside of files: packed texels, profiles, gain maps and metadata. Each is put into a file that is
-// otherwise whole, or handed to its reader alone, so that every input reaches that reader.
+// What lies inside of files: packed texels, profiles, gain maps and metadata. Each is put into a
+// file that is otherwise whole, or handed to its reader alone, so that every input reaches that
+// reader.
 #include "fuzz.h"
 
 #include "codec/codec.h"
@@ -53,8 +54,9 @@ static void add_channels(ki_writer *w, const channel *channels)
     ki_writer_free(&list);
 }
 
-// An EXR file of one chunk. The input's byte 0 chooses the compression, byte 1 the channels and whether the file has
-// tiles, and bytes 2 and 3 the width and the height. The input's other bytes are the chunk's packed texels.
+// An EXR file of one chunk. The input's byte 0 chooses the compression, byte 1 the channels and
+// whether the file has tiles, and bytes 2 and 3 the width and the height. The input's other bytes
+// are the chunk's packed texels.
 void fuzz_exr_chunk(const uint8_t *bytes, size_t size)
 {
     static const int lines[10] = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
@@ -130,8 +132,8 @@ void fuzz_icc(const uint8_t *bytes, size_t size)
 
 // --------------------------------------------------------------------------------------- gain maps
 
-// Byte 0 divides the rest into numbers of ISO 21496-1 and text of XMP. Numbers that are accepted give finite
-// values.
+// Byte 0 divides the rest into numbers of ISO 21496-1 and text of XMP. Numbers that are accepted
+// give finite values.
 void fuzz_gain_map(const uint8_t *bytes, size_t size)
 {
     enum { SIDE = 4 };

@@ -1,5 +1,6 @@
-// What is read from a path: a table, standard input, six faces, whose names alone matter here, and a folder of six
-// faces. The bytes of files lie in a file without a name, or for the folder in a folder under /tmp.
+// What is read from a path: a table, standard input, six faces, whose names alone matter here, and
+// a folder of six faces. The bytes of files lie in a file without a name, or for the folder in a
+// folder under /tmp.
 #include "fuzz.h"
 
 #include "codec/faces.h"
@@ -69,8 +70,8 @@ void fuzz_table(const uint8_t *bytes, size_t size)
     fuzz_end(context);
 }
 
-// Returns the line that begins at *text, ends the line by a NUL, and moves *text behind the line. Returns "" at the end
-// of the text.
+// Returns the line that begins at *text, ends the line by a NUL, and moves *text behind the line.
+// Returns "" at the end of the text.
 static char *next_line(char **text)
 {
     char *line = *text, *end = strchr(line, '\n');
@@ -80,8 +81,8 @@ static char *next_line(char **text)
     return line;
 }
 
-// Lines of text as the names of six faces, and the first as a pattern of names. The order is one of the six,
-// each once.
+// Lines of text as the names of six faces, and the first as a pattern of names. The order is one of
+// the six, each once.
 void fuzz_faces(const uint8_t *bytes, size_t size)
 {
     char *text = fuzz_text(bytes, size), *rest = text, *paths[6];
@@ -137,9 +138,9 @@ static void remove_all(const workplace *w)
     fuzz_must(rmdir(w->folder) == 0);
 }
 
-// Lines with the names of at most twelve files, an empty line, and the bytes that each of these files has. The six
-// faces that are found are six of these files, and the folder is the same cube, or fails with the same result, as the
-// six paths one by one.
+// Lines with the names of at most twelve files, an empty line, and the bytes that each of these
+// files has. The six faces that are found are six of these files, and the folder is the same cube,
+// or fails with the same result, as the six paths one by one.
 void fuzz_folder(const uint8_t *bytes, size_t size)
 {
     char *text = fuzz_text(bytes, size), *rest = text, *name;

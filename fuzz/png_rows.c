@@ -1,5 +1,5 @@
-// Rows of a PNG, with any filters, of any colour type, depth, interlacing and palette: packed into a file
-// that is whole, they must be read.
+// Rows of a PNG, with any filters, of any colour type, depth, interlacing and palette: packed into
+// a file that is whole, they must be read.
 #include "fuzz.h"
 
 #include "codec/codec.h"

@@ -1,7 +1,8 @@
-// Runs the whole command on files that were changed at random: process KILN SEEDS FINDS SECONDS [SEED].
-// KILN is the command, built with sanitizers. SEEDS has whole small files in folders, one for each kind. Each
-// run must end within 20 seconds with exit code 0, 1 or 2, without a sanitizer's find; a failure must print a
-// sentence of kiln's, and leave no output. The inputs of runs that break this are copied to FINDS.
+// Runs the whole command on files that were changed at random: process KILN SEEDS FINDS SECONDS
+// [SEED]. KILN is the command, built with sanitizers. SEEDS has whole small files in folders, one
+// for each kind. Each run must end within 20 seconds with exit code 0, 1 or 2, without a
+// sanitizer's find; a failure must print a sentence of kiln's, and leave no output. The inputs of
+// runs that break this are copied to FINDS.
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -151,7 +152,8 @@ static size_t change(int folder, uint8_t *bytes, size_t size)
 
 // -------------------------------------------------------------------------------------------- runs
 
-// Arguments of the command; "IN" stands for the input, and a line with "-" reads it from standard input.
+// Arguments of the command; "IN" stands for the input, and a line with "-" reads it from standard
+// input.
 static const char *const lines[][11] = {
     {"info", "IN"},
     {"info", "IN", "--json"},

@@ -1,5 +1,6 @@
-// Calls every fuzz target with the files that fuzzing has found for it: replay FOLDER, with the files of each
-// target in FOLDER/TARGET. A law that is broken, or a sanitizer's find, ends the program.
+// Calls every fuzz target with the files that fuzzing has found for it: replay FOLDER, with the
+// files of each target in FOLDER/TARGET. A law that is broken, or a sanitizer's find, ends the
+// program.
 #include "fuzz.h"
 
 #include <dirent.h>

@@ -1,5 +1,6 @@
-// Any bytes as a file whose rows are decoded one after the other. The rows must be those of the whole picture, and the
-// report that of loading the whole picture; a file that cannot be loaded must not be read by rows either.
+// Any bytes as a file whose rows are decoded one after the other. The rows must be those of the
+// whole picture, and the report that of loading the whole picture; a file that cannot be loaded
+// must not be read by rows either.
 #include "fuzz.h"
 
 #include "codec/row_file.h"

@@ -1,5 +1,6 @@
-// Writes seeds for the fuzz targets: small whole files of every kind that kiln reads, made by kiln's own
-// writers, by OpenEXRCore and, byte by byte, here. In: a folder. Out: FOLDER/TARGET/NAME.
+// Writes seeds for the fuzz targets: small whole files of every kind that kiln reads, made by
+// kiln's own writers, by OpenEXRCore and, byte by byte, here. In: a folder. Out:
+// FOLDER/TARGET/NAME.
 #include "seeds.h"
 
 #include "codec/codec.h"
@@ -294,8 +295,8 @@ static void write_exr_compressions(void)
             }
 }
 
-// Panoramas, which can be read by rows: scan lines and tiles, in several orders, with a window that is not the picture,
-// and in the second of two parts.
+// Panoramas, which can be read by rows: scan lines and tiles, in several orders, with a window that
+// is not the picture, and in the second of two parts.
 static void write_panoramas(void)
 {
     static const exr_make_channel channels[3] = {{"B", EXR_PIXEL_HALF, 0, false},

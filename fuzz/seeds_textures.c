@@ -1,5 +1,5 @@
-// Seeds for the readers of KTX2, DDS and KTX 1: cubes and pictures of 2 x 2 texels as other programs write
-// them, in every format, and files for engines.
+// Seeds for the readers of KTX2, DDS and KTX 1: cubes and pictures of 2 x 2 texels as other
+// programs write them, in every format, and files for engines.
 #include "seeds.h"
 
 #include "codec/deflate.h"

@@ -1,5 +1,5 @@
-// Lines of text, numbers, JSON, and text that is shown. Numbers are compared with strtod, and tables'
-// descriptions with what was written of them again.
+// Lines of text, numbers, JSON, and text that is shown. Numbers are compared with strtod, and
+// tables' descriptions with what was written of them again.
 #include "fuzz.h"
 
 #include "codec/decimal.h"
@@ -92,7 +92,8 @@ static void walk(ki_json *json, int depth)
     }
 }
 
-// JSON whose values are read by their kind. An object or array that is read so can be skipped as a whole.
+// JSON whose values are read by their kind. An object or array that is read so can be skipped as a
+// whole.
 void fuzz_json(const uint8_t *bytes, size_t size)
 {
     kiln_context *context = fuzz_context(0);

@@ -1,6 +1,6 @@
-// Blocks of UASTC HDR. The bytes are taken for blocks: a block is refused and black, or its texels are
-// finite, and the block's content, written again, gives the same texels. Then the bytes are taken for
-// half floats of a picture, whose blocks the decoder must know.
+// Blocks of UASTC HDR. The bytes are taken for blocks: a block is refused and black, or its texels
+// are finite, and the block's content, written again, gives the same texels. Then the bytes are
+// taken for half floats of a picture, whose blocks the decoder must know.
 #include "fuzz.h"
 
 #include "codec/uastc.h"

@@ -1,6 +1,6 @@
-// Replacements that the linker takes instead of the library's own functions, so that checksums do not keep
-// random changes out: a change of a file behind a checksum would otherwise always be refused at the checksum.
-// The library itself has no such switch.
+// Replacements that the linker takes instead of the library's own functions, so that checksums do
+// not keep random changes out: a change of a file behind a checksum would otherwise always be
+// refused at the checksum. The library itself has no such switch.
 #include "codec/deflate.h"
 
 // The checksum of all ones stays wrong, so that what follows a wrong checksum is reached too.

@@ -1,6 +1,6 @@
-// Loops over arrays for the functions of kiln that take an object and numbers; header.py writes those for the
-// functions of numbers alone. `count` is the number of elements of each array, which are contiguous. The Python
-// package calls the loops without the interpreter's lock.
+// Loops over arrays for the functions of kiln that take an object and numbers; header.py writes
+// those for the functions of numbers alone. `count` is the number of elements of each array, which
+// are contiguous. The Python package calls the loops without the interpreter's lock.
 // SPDX-License-Identifier: MIT
 #include <kiln/brdf.h>
 
@@ -28,7 +28,8 @@ void kiln_each_map_direction(size_t count, const kiln_map *map, int level, doubl
         kiln_map_direction(map, level, i, directions[i]);
 }
 
-// One number in each of the three arrays for every texel of the table, slice after slice, row after row.
+// One number in each of the three arrays for every texel of the table, slice after slice, row after
+// row.
 void kiln_each_table_texel(const kiln_table *table, double *nov, double *roughness, double *third)
 {
     size_t at = 0;

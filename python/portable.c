@@ -1,6 +1,6 @@
-// Makes the shared library of the wheel run on Linux systems that are older than the one it was built on, and on
-// musl. In: calls of the C library as a new glibc names them. Out: hidden functions of the same names, which call
-// what every C library of the last ten years has:
+// Makes the shared library of the wheel run on Linux systems that are older than the one it was
+// built on, and on musl. In: calls of the C library as a new glibc names them. Out: hidden
+// functions of the same names, which call what every C library of the last ten years has:
 //   - stat, fstat and lstat are functions of glibc since 2.33 only, and become system calls;
 //   - pthread_create, pthread_join and pthread_attr_setstacksize moved to another version in glibc 2.34, and become
 //     calls of the versions before, and so does fmod of glibc 2.38;

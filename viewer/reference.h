@@ -20,8 +20,8 @@ typedef struct view_reference_def {
     /// balls do not reflect one another, as in the real-time picture; with view_options.occlusion
     /// they look black to one another. The furnace scene always does this
     bool alone;
-    /// Receives the standard error of each pixel and channel, in the form of the picture; the caller
-    /// frees it. NULL if the standard errors are not wanted.
+    /// Receives the standard error of each pixel and channel, in the form of the picture; the
+    /// caller frees it. NULL if the standard errors are not wanted.
     kiln_image *deviation;
     /// number of threads, 1 to 256; 0 for one thread per core. The picture is the same for every
     /// number of threads

@@ -27,8 +27,8 @@ _Static_assert(offsetof(block, discs) == 5840, "std140");
 
 enum { TONE_LINEAR, TONE_NEUTRAL, TONE_ASSIGNMENT };
 
-// Texture unit of each sampler; the names in `samplers` are in the same order. The nine tables begin
-// at TABLES. EDGE and LOBES count from there.
+// Texture unit of each sampler; the names in `samplers` are in the same order. The nine tables
+// begin at TABLES. EDGE and LOBES count from there.
 enum {
     ENVIRONMENT,
     ENVIRONMENT_TEXTBOOK,
@@ -57,7 +57,8 @@ struct view_renderer {
     GLuint program, vertices, buffer, texture[TEXTURES];
     bool has_float;
     kiln_lights lights;
-    // tables of lobes with 1 to 3 taps for the levels of each slot; without pixels where not made yet
+    // tables of lobes with 1 to 3 taps for the levels of each slot; without pixels where not made
+    // yet
     kiln_table lobes[VIEW_SLOT_COUNT][KILN_MAX_TAPS];
     const kiln_table *uploaded[VIEW_SLOT_COUNT]; // the table of lobes in each slot's texture
     block block;
@@ -194,8 +195,8 @@ static bool suits(const kiln_table *table, const kiln_table_def *def)
            !memcmp(has->level_roughness, def->level_roughness, sizeof has->level_roughness);
 }
 
-// Sets the size, the taps and the levels of the table of lobes for a slot. A slot without an environment gets
-// equal steps of roughness, which VIEW_SCENE_FURNACE reads.
+// Sets the size, the taps and the levels of the table of lobes for a slot. A slot without an
+// environment gets equal steps of roughness, which VIEW_SCENE_FURNACE reads.
 static kiln_table_def lobes_def(const block *b, int slot, const view_options *o)
 {
     enum { EQUAL_STEPS = 7, LOBES_SIZE = 32 };

@@ -36,10 +36,10 @@ BAKER void baker_place(baker *b, int up, bool mirror);
 /// previous bake stays.
 BAKER bool baker_bake(baker *b, int size, int levels);
 /// Takes lights out of the source or clamps the source, as the options say. baker_scenery and
-/// baker_truth then have the rest in the source, and baker_truth has the lights as discs. Before that,
-/// turns the source about all axes but the vertical one, and mirrors the source, as the options say;
-/// the view turns about the vertical axis. Until another source is opened, baker_bake would bake the
-/// rest, and turn what is turned already.
+/// baker_truth then have the rest in the source, and baker_truth has the lights as discs. Before
+/// that, turns the source about all axes but the vertical one, and mirrors the source, as the
+/// options say; the view turns about the vertical axis. Until another source is opened, baker_bake
+/// would bake the rest, and turn what is turned already.
 BAKER bool baker_sun(baker *b);
 /// Returns the number of lights that baker_sun took out of the source, and light `index` as seven
 /// numbers: the direction to the light in the source, the irradiance of red, green and blue, and
@@ -50,7 +50,8 @@ BAKER int baker_level_count(const baker *b);
 BAKER int baker_level_size(const baker *b, int level);
 BAKER double baker_roughness(const baker *b, int level);
 /// Returns sentence number `index`, without a full stop, about what was found in the source and
-/// what the last bake cut off and took out; NULL after the last sentence. The text stays until the next call.
+/// what the last bake cut off and took out; NULL after the last sentence. The text stays until the
+/// next call.
 BAKER const char *baker_note(baker *b, int index);
 /// Returns the six faces of a baked level, as RGB floats.
 BAKER const float *baker_texels(const baker *b, int level);
@@ -104,8 +105,9 @@ BAKER const unsigned char *baker_file_bytes(const baker *b, int index);
 BAKER size_t baker_file_size(const baker *b, int index);
 BAKER const char *baker_files_note(baker *b);
 
-/// The histogram's bin k, from 0 to BAKER_STOPS - 1, is for radiances from 2^(k + BAKER_FIRST_STOP) to
-/// 2^(k + 1 + BAKER_FIRST_STOP). Smaller radiances are in the first bin, greater ones in the last.
+/// The histogram's bin k, from 0 to BAKER_STOPS - 1, is for radiances from 2^(k + BAKER_FIRST_STOP)
+/// to 2^(k + 1 + BAKER_FIRST_STOP). Smaller radiances are in the first bin, greater ones in the
+/// last.
 enum { BAKER_STOPS = 40, BAKER_FIRST_STOP = -14 };
 /// Returns the part of the source's texels that falls into each bin by its largest channel. Texels
 /// of a panorama count by their solid angle.

@@ -10,15 +10,15 @@ typedef struct checker checker;
 
 /// Returns NULL if memory runs out.
 BAKER checker *checker_create(baker *b);
-/// Checks levels and harmonics of a file in emscripten's file system as `kiln check` does. `engine` is
-/// the index of the engine that the file is for, or -1: the file states its engine, or axes and
+/// Checks levels and harmonics of a file in emscripten's file system as `kiln check` does. `engine`
+/// is the index of the engine that the file is for, or -1: the file states its engine, or axes and
 /// roughness are found. The functions below return what was found, and nothing after a failure.
 BAKER bool checker_run(checker *c, const char *path, int engine);
 /// Returns the number of levels (0), of findings about levels and harmonics (1), and of bands of
 /// harmonics (2).
 BAKER int checker_count(const checker *c, int what);
-/// Returns a number of a level: its size (0), its roughness (1), the roughness that the level is most
-/// like (2), rms (3), largest (4), bias (5), energy (6) and seam (7) of kiln_check_level.
+/// Returns a number of a level: its size (0), its roughness (1), the roughness that the level is
+/// most like (2), rms (3), largest (4), bias (5), energy (6) and seam (7) of kiln_check_level.
 BAKER double checker_level(const checker *c, int level, int what);
 /// Returns the sentence of a finding, without a full stop.
 BAKER const char *checker_finding(const checker *c, int index);
@@ -31,8 +31,8 @@ BAKER double checker_error(const checker *c, int what);
 BAKER double checker_band(const checker *c, int band);
 /// Returns the picture of kiln_check_picture: 256 x (128 x levels) RGB floats.
 BAKER const float *checker_picture(const checker *c);
-/// Replaces the levels of the baker's scenery (baker_scenery) by those of the file, in the directions
-/// in which they are shown.
+/// Replaces the levels of the baker's scenery (baker_scenery) by those of the file, in the
+/// directions in which they are shown.
 BAKER bool checker_scenery(checker *c);
 
 #endif

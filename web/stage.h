@@ -1,5 +1,6 @@
 // Renderer for the web page: C functions over numbers and pointers, which stage.mjs calls. They
-// draw in a WebGL 2 context. A function that returns false leaves an error message in stage_message.
+// draw in a WebGL 2 context. A function that returns false leaves an error message in
+// stage_message.
 #ifndef STAGE_H
 #define STAGE_H
 
@@ -25,8 +26,8 @@ STAGE const char *stage_gl_name(const stage *s);
 STAGE double *stage_numbers(stage *s);
 /// Sets the array of view numbers to the scene's defaults.
 STAGE void stage_defaults(stage *s, int scene);
-/// Returns the name of entry `index` of the scenes (kind 0), methods (1), materials (2), debug views
-/// (3) or ways to look reflections up (4); NULL for an index beyond the last entry.
+/// Returns the name of entry `index` of the scenes (kind 0), methods (1), materials (2), debug
+/// views (3) or ways to look reflections up (4); NULL for an index beyond the last entry.
 STAGE const char *stage_word(int kind, int index);
 
 /// Allocates an environment: six faces of RGB floats for each level (stage_texels; level -1 is the

@@ -469,9 +469,9 @@ KILN_API KILN_CHECKED kiln_result kiln_table_load(kiln_context *context, const c
 /// Writes source code that looks up values in tables with the parameters `def`, the def of a
 /// kiln_table. The ending .h gives a C99 and C++ function on an array of floats. The ending .glsl
 /// gives a GLSL ES 3.00 function on a texture, whose sampler must filter linearly and clamp to the
-/// edge. For KILN_TABLE_LOBES the functions also return the taps' directions and the weights of nine
-/// harmonics (C) or reflected light (.glsl and .wgsl, from the table as a 3-D texture). Names begin
-/// with `name`; NULL for the file's own name without "_lookup".
+/// edge. For KILN_TABLE_LOBES the functions also return the taps' directions and the weights of
+/// nine harmonics (C) or reflected light (.glsl and .wgsl, from the table as a 3-D texture). Names
+/// begin with `name`; NULL for the file's own name without "_lookup".
 KILN_API KILN_CHECKED kiln_result kiln_table_lookup_save(kiln_context *context,
                                                          const kiln_table_def *def,
                                                          const char *path, const char *name,

@@ -53,10 +53,11 @@ typedef struct kiln_findings {
 /// Loads all levels of a prefiltered environment, whoever wrote it, in the axes of the file: a cube
 /// in a KTX, KTX2 or DDS file; an .env file of Babylon.js or of Galacean Engine; the first light of
 /// EXT_lights_image_based in a .glb file; an atlas of three.js (CubeUV) or of PlayCanvas, as a cube
-/// of what the engine's shader reads; any file or set of faces that kiln_map_load reads, where `{level}` or `%d` in the path stands for the level; or a folder with
-/// the faces that Filament's cmgen writes, m0_px.exr, ... `engine` says whose atlas a flat picture
-/// is, and may be NULL for other files and for atlases that kiln wrote. `report` may be NULL. The
-/// roughness of a level is -1 where the file does not state the roughness.
+/// of what the engine's shader reads; any file or set of faces that kiln_map_load reads, where
+/// `{level}` or `%d` in the path stands for the level; or a folder with the faces that Filament's
+/// cmgen writes, m0_px.exr, ... `engine` says whose atlas a flat picture is, and may be NULL for
+/// other files and for atlases that kiln wrote. `report` may be NULL. The roughness of a level is
+/// -1 where the file does not state the roughness.
 KILN_API KILN_CHECKED kiln_result kiln_levels_load(kiln_context *context, const char *path,
                                                    const kiln_engine *engine,
                                                    kiln_load_report *report, kiln_map *map,
@@ -64,8 +65,8 @@ KILN_API KILN_CHECKED kiln_result kiln_levels_load(kiln_context *context, const 
 
 /// How levels are checked. {0} finds out axes and roughness.
 typedef struct kiln_check_levels_def {
-    /// Engine that the levels are for, whose axes and roughness they should have. NULL: the axes are
-    /// found, and the roughness is that of the levels or found.
+    /// Engine that the levels are for, whose axes and roughness they should have. NULL: the axes
+    /// are found, and the roughness is that of the levels or found.
     const kiln_engine *engine;
     /// True: `roughness` of the map is what each level should be filtered for, unless `engine` says
     /// so. False: the mapping that fits best is found.
@@ -103,8 +104,8 @@ typedef struct kiln_check_levels_report {
     int level_count;
     kiln_check_level level[KILN_MAX_LEVELS];
     double worst; ///< largest `rms` of the levels
-    /// The file shows in direction e the light from the panorama's direction d, where d[i] = sign[i]
-    /// e[axis[i]].
+    /// The file shows in direction e the light from the panorama's direction d, where d[i] =
+    /// sign[i] e[axis[i]].
     int axis[3], sign[3];
     /// The axes that the file should have: those of the engine. Without an engine, those that were
     /// found where an engine has them, and those of kiln elsewhere.
@@ -132,8 +133,9 @@ KILN_API KILN_CHECKED kiln_result kiln_levels_unturn(kiln_context *context, cons
                                                      kiln_map *map, kiln_error *error);
 
 /// Draws the differences that kiln_check_levels returns: for each level a panorama of 256 x 128
-/// texels in sRGB from 0 to 1, one below the other. Grey is no difference, red is too bright, blue is
-/// too dark, and the full colours stand for three times the root mean square difference of the level.
+/// texels in sRGB from 0 to 1, one below the other. Grey is no difference, red is too bright, blue
+/// is too dark, and the full colours stand for three times the root mean square difference of the
+/// level.
 KILN_API KILN_CHECKED kiln_result kiln_check_picture(kiln_context *context,
                                                      const kiln_map *difference,
                                                      kiln_image *picture, kiln_error *error);
@@ -149,8 +151,9 @@ typedef struct kiln_check_shown_report {
     double all;   ///< root mean square of `rms`
     double worst; ///< largest of `rms`
     double worst_roughness;
-    /// Root mean square difference of x / (x + mean) over all roughnesses, for values x and the mean
-    /// of all values of the source. Such a curve shows any light between black, 0, and white, 1.
+    /// Root mean square difference of x / (x + mean) over all roughnesses, for values x and the
+    /// mean of all values of the source. Such a curve shows any light between black, 0, and white,
+    /// 1.
     double displayed;
     int direction_count;
 } kiln_check_shown_report;
@@ -172,16 +175,16 @@ typedef struct kiln_check_sh_report {
     /// Factor of each band between the file and the exact coefficients of what the file claims to
     /// hold, radiance or irradiance. All factors of a right file are 1.
     double band[KILN_MAX_BANDS];
-    /// Norm of the difference from the exact coefficients, divided by the norm of these, in the axes
-    /// that were found.
+    /// Norm of the difference from the exact coefficients, divided by the norm of these, in the
+    /// axes that were found.
     double rms;
     int axis[3], sign[3]; ///< axes of the file, as in kiln_check_levels_report
     kiln_findings findings;
 } kiln_check_sh_report;
 
 /// Compares spherical harmonics, in the axes of their file, with those of `source`, a map of any
-/// shape. `sh->irradiance` and `sh->window` say what the file claims to hold. `engine`, which may be
-/// NULL, is the engine whose axes are expected.
+/// shape. `sh->irradiance` and `sh->window` say what the file claims to hold. `engine`, which may
+/// be NULL, is the engine whose axes are expected.
 KILN_API KILN_CHECKED kiln_result kiln_check_sh(kiln_context *context, const kiln_map *source,
                                                 const kiln_sh *sh, const kiln_engine *engine,
                                                 kiln_check_sh_report *report, kiln_error *error);
@@ -221,8 +224,9 @@ typedef struct kiln_check_table_report {
 KILN_API KILN_CHECKED kiln_result kiln_check_table(kiln_context *context, const kiln_image *image,
                                                    bool flip, kiln_check_table_report *report,
                                                    kiln_error *error);
-/// Loads the numbers of a table as a file stores them: kiln_image_load, with the sRGB curve of a PNG
-/// file left out. *flip says whether a file that kiln wrote states that row 0 holds roughness 1.
+/// Loads the numbers of a table as a file stores them: kiln_image_load, with the sRGB curve of a
+/// PNG file left out. *flip says whether a file that kiln wrote states that row 0 holds roughness
+/// 1.
 KILN_API KILN_CHECKED kiln_result kiln_table_numbers_load(kiln_context *context, const char *path,
                                                           kiln_image *image, bool *flip,
                                                           kiln_error *error);

@@ -429,9 +429,10 @@ typedef struct kiln_file_info {
     kiln_layer_info layer[KILN_MAX_LAYERS];
 } kiln_file_info;
 
-/// Describes any file that kiln can read, and a folder or a pattern of six faces (see kiln_map_load) as
-/// a cube with the bytes of all faces. Of the files that kiln only writes, describes .env
-/// (Babylon.js), .glb with EXT_lights_image_based, atlases, and spherical harmonics as text.
+/// Describes any file that kiln can read, and a folder or a pattern of six faces (see
+/// kiln_map_load) as a cube with the bytes of all faces. Of the files that kiln only writes,
+/// describes .env (Babylon.js), .glb with EXT_lights_image_based, atlases, and spherical harmonics
+/// as text.
 KILN_API KILN_CHECKED kiln_result kiln_file_describe(kiln_context *context, const char *path,
                                                      kiln_file_info *info, kiln_error *error);
 
@@ -907,10 +908,10 @@ KILN_API double kiln_map_save_limit(const char *path, kiln_format format);
 /// gaps between rows. Returns 0 where kiln_map_pack fails.
 KILN_API size_t kiln_map_packed_size(const kiln_map *map, int level, kiln_format format);
 /// Packs a level in the layout that a graphics processor reads: rgba16f (also for
-/// KILN_FORMAT_AUTO), rgba32f, rgb9e5, b10g11r11, or bc6h or uastc blocks. Faces are stored one after
-/// the other. A row of texels or blocks begins `row_stride` bytes after the row before it; 0 for no
-/// gaps. Values above kiln_format_limit are stored as the limit. Fails if `destination_size` is too
-/// small.
+/// KILN_FORMAT_AUTO), rgba32f, rgb9e5, b10g11r11, or bc6h or uastc blocks. Faces are stored one
+/// after the other. A row of texels or blocks begins `row_stride` bytes after the row before it; 0
+/// for no gaps. Values above kiln_format_limit are stored as the limit. Fails if `destination_size`
+/// is too small.
 KILN_API KILN_CHECKED kiln_result kiln_map_pack(kiln_context *context, const kiln_map *map,
                                                 int level, kiln_format format, void *destination,
                                                 size_t row_stride, size_t destination_size,
@@ -983,8 +984,9 @@ struct kiln_engine {
     const char *name;  ///< short name, for example "three"
     const char *title; ///< full name and version, for example "three.js from r187 on"
     const char *files; ///< names of the written files, for example "NAME.ktx2"
-    /// Ending of the path for kiln_engine_save with the default format, for example "ktx2"; "" where
-    /// the path is the beginning of several file names. kiln_engine_ending knows the other formats.
+    /// Ending of the path for kiln_engine_save with the default format, for example "ktx2"; ""
+    /// where the path is the beginning of several file names. kiln_engine_ending knows the other
+    /// formats.
     const char *ending;
     /// Formula for the roughness r of level k of n, w being the size of level 0.
     const char *mapping;
@@ -1000,8 +1002,8 @@ struct kiln_engine {
     /// True if tuned levels (kiln_prefilter_def.tune_for) were measured to show less error in this
     /// engine than exact levels do. `kiln bake --for` then tunes by default.
     bool tune;
-    /// Why the first of `formats` is the default: the sizes and errors of the others beside its own,
-    /// as docs/engines/README.md lists them. NULL for engines without a choice.
+    /// Why the first of `formats` is the default: the sizes and errors of the others beside its
+    /// own, as docs/engines/README.md lists them. NULL for engines without a choice.
     const char *format_reason;
 };
 

@@ -75,9 +75,9 @@ struct kiln_plan {
 
 // ---------------------------------------------------------------------------------------- analysis
 
-// Finds the spectrum that `analysis`, to a low degree, computes from the panorama, or the spectrum of
-// the prefiltered levels if `analysis` is NULL. If `panorama` is NULL, the rows have passed by and the
-// spectrum is in the workspace already.
+// Finds the spectrum that `analysis`, to a low degree, computes from the panorama, or the spectrum
+// of the prefiltered levels if `analysis` is NULL. If `panorama` is NULL, the rows have passed by
+// and the spectrum is in the workspace already.
 static kiln_result find_spectrum(const plan_workspace *w, const ki_analysis *analysis,
                                  const ki_low_workspace *low, const kiln_map *panorama,
                                  const kiln_spectrum **spectrum, kiln_error *error)

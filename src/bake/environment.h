@@ -31,8 +31,9 @@ kiln_result ki_plan_create(kiln_context *context, const ki_plan_def *def, kiln_p
 /// tuned levels the call takes as long as an execution.
 kiln_result ki_plan_reserve(kiln_plan *plan, kiln_error *error);
 
-/// Returns whether an environment can be computed while the rows of the source pass by: the plan was
-/// made for rows, the source is a panorama whose lights stay, and no level needs the whole panorama.
+/// Returns whether an environment can be computed while the rows of the source pass by: the plan
+/// was made for rows, the source is a panorama whose lights stay, and no level needs the whole
+/// panorama.
 bool ki_plan_takes_rows(const kiln_plan *plan);
 /// Executes a plan as kiln_plan_execute does, with the same bits, and reads the source row by row.
 /// Only for plans that satisfy ki_plan_takes_rows.

@@ -48,9 +48,9 @@ static bool add_mismatch(const ki_region *region, double sum[KI_SH_COUNT][3])
     return true;
 }
 
-// Finds the normals of nine surfaces whose horizons pass through two lights: through the centres, and
-// half a radius above and below. Returns the number of normals, 0 if the lights are too close to each
-// other or opposite.
+// Finds the normals of nine surfaces whose horizons pass through two lights: through the centres,
+// and half a radius above and below. Returns the number of normals, 0 if the lights are too close
+// to each other or opposite.
 static int find_common_horizons(const kiln_light *one, const kiln_light *other,
                                 double normals[9][3])
 {
@@ -74,9 +74,9 @@ static int find_common_horizons(const kiln_light *one, const kiln_light *other,
     return 9;
 }
 
-// Returns whether the discs of all chosen lights together replace what is taken out, for surfaces that
-// have the last of these lights and another one on their horizon. Lights of
-// fewer than KI_SHAPED texels are left out.
+// Returns whether the discs of all chosen lights together replace what is taken out, for surfaces
+// that have the last of these lights and another one on their horizon. Lights of fewer than
+// KI_SHAPED texels are left out.
 static bool fits_others(const ki_search *search, const ki_region *const *chosen, int count)
 {
     const kiln_light *last = &chosen[count - 1]->light;

@@ -51,8 +51,8 @@ enum { KI_REJECTED = 65535 };
 /// Largest mismatch of one light, and of the sum of all lights that are taken out, so that the
 /// lights and the map that remains have the harmonics of the map to a thousandth.
 extern const double ki_light_mismatch, ki_lights_mismatch;
-/// Number of texels from which on a light has a shape. The edges of a light of fewer texels are those of
-/// its texels, and say nothing of the source.
+/// Number of texels from which on a light has a shape. The edges of a light of fewer texels are
+/// those of its texels, and say nothing of the source.
 enum { KI_SHAPED = 9 };
 /// Largest error of irradiance of one light, and of all lights together, as a part of the greatest
 /// irradiance. The bound is a thousandth less 5 %, because few surfaces are tried and the greatest
@@ -72,12 +72,12 @@ void ki_search_free(ki_search *search);
 /// `target` is not NULL, writes the surroundings to the region's texels in level 0 of `target`.
 void ki_region_measure(const ki_search *search, ki_region *region, kiln_map *target);
 /// Adds to the errors of `count` surfaces, given by their normals, those of a measured region: the
-/// irradiance by what is taken out of the region minus that by the light's disc, channel by channel, as a
-/// part of search->brightest.
+/// irradiance by what is taken out of the region minus that by the light's disc, channel by
+/// channel, as a part of search->brightest.
 void ki_region_add_errors(const ki_search *search, const ki_region *region,
                           const double (*normals)[3], int count, double (*errors)[3]);
-/// Returns whether the disc of a measured region replaces what is taken out of the region: the errors of
-/// surfaces are at most ki_light_error, or the region has no shape.
+/// Returns whether the disc of a measured region replaces what is taken out of the region: the
+/// errors of surfaces are at most ki_light_error, or the region has no shape.
 bool ki_region_is_disc(const ki_search *search, const ki_region *region);
 /// Adds the harmonics of a light's disc to coefficients.
 void ki_light_add_sh(const kiln_light *light, double c[KI_SH_COUNT][3]);

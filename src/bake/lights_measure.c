@@ -14,8 +14,8 @@
 // Harmonics of degree 1 of this disc agree with those of the texels, and those of other degrees are
 // compared. The mean distance decides how much of the light a surface receives whose horizon cuts
 // through the light. Faint glow around a sun widens the disc less than the root mean square of the
-// distance would. Light that is longer than wide, or brighter in the middle, gives such surfaces another
-// irradiance than the disc does, by up to a thousandth of the map's greatest irradiance.
+// distance would. Light that is longer than wide, or brighter in the middle, gives such surfaces
+// another irradiance than the disc does, by up to a thousandth of the map's greatest irradiance.
 #include "bake/lights.h"
 
 #include "image/texel.h"
@@ -221,12 +221,12 @@ void ki_region_measure(const ki_search *search, ki_region *region, kiln_map *tar
     compare_harmonics(search, &sums, region);
 }
 
-// ----------------------------------------------------------------------------------------- horizons
+// ---------------------------------------------------------------------------------------- horizons
 
-// Returns the irradiance by a disc, whose centre stands `height` radii over the horizon, as a part of
-// that of a surface that faces the disc. A disc that the horizon cuts is taken as flat. The integral of
-// height + y over the part of the unit disc above y = -height is height A + M, where A is the area of
-// that part and M its moment 2/3 (1 - height^2)^(3/2).
+// Returns the irradiance by a disc, whose centre stands `height` radii over the horizon, as a part
+// of that of a surface that faces the disc. A disc that the horizon cuts is taken as flat. The
+// integral of height + y over the part of the unit disc above y = -height is height A + M, where A
+// is the area of that part and M its moment 2/3 (1 - height^2)^(3/2).
 static double cut_disc(double height, double radius)
 {
     if (fabs(height) >= 1)
@@ -247,7 +247,8 @@ void ki_region_add_errors(const ki_search *search, const ki_region *region,
 {
     ring border;
     const kiln_light *light = &region->light;
-    // The irradiance of a disc without a radius would be that of a point; a millionth of a degree is.
+    // The irradiance of a disc without a radius would be that of a point; a millionth of a degree
+    // is.
     double radius = fmax(light->angular_radius, 1e-6) * (KI_PI / 180), scale[3];
     for (int c = 0; c < 3; c++)
         scale[c] = search->brightest[c] > 0 ? 1 / search->brightest[c] : 0;

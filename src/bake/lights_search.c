@@ -223,8 +223,8 @@ static bool list_texels(ki_search *search)
     return search->list && search->seed;
 }
 
-// Sets the norm of the map's harmonics and its greatest irradiance, which five bands have within 3 %, at
-// POINTS directions on a spiral of golden angles.
+// Sets the norm of the map's harmonics and its greatest irradiance, which five bands have within 3
+// %, at POINTS directions on a spiral of golden angles.
 static kiln_result find_norm(ki_search *search, kiln_error *error)
 {
     enum { POINTS = 1024 };

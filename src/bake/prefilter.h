@@ -59,8 +59,8 @@ kiln_result ki_prefilter_create(kiln_context *context, int panorama_size, const 
 kiln_result ki_prefilter_workspace_create(kiln_context *context, const ki_prefilter *prefilter,
                                           ki_prefilter_workspace *workspace, kiln_error *error);
 void ki_prefilter_workspace_free(ki_prefilter_workspace *workspace);
-/// Lets the analysis use the memory in which levels are interpolated afterwards. ki_prefilter_execute
-/// does this itself; allocates nothing after the workspace was made.
+/// Lets the analysis use the memory in which levels are interpolated afterwards.
+/// ki_prefilter_execute does this itself; allocates nothing after the workspace was made.
 kiln_result ki_prefilter_begin(const ki_prefilter *prefilter, ki_prefilter_workspace *workspace,
                                kiln_error *error);
 /// Computes the levels of `map`. `panorama` and `source` have the sizes that the prefilter was made

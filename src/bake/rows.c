@@ -1,8 +1,8 @@
 // The pass of a panorama's rows through a bake. In: a function that reads rows. Out: spectra and
-// mirror levels, with the same bits as from the whole panorama in memory. Method: rows are read from
-// both poles to the equator, because the analysis transforms each latitude ring together with the
-// ring at the same distance from the other pole. Two windows hold the rows that rings and texels
-// still need, one window for each hemisphere:
+// mirror levels, with the same bits as from the whole panorama in memory. Method: rows are read
+// from both poles to the equator, because the analysis transforms each latitude ring together with
+// the ring at the same distance from the other pole. Two windows hold the rows that rings and
+// texels still need, one window for each hemisphere:
 //
 //   north pole | forgotten | window | not read yet | window | forgotten | south pole
 //

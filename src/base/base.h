@@ -55,8 +55,8 @@ void *ki_alloc_raw(kiln_context *context, size_t count, size_t size);
 /// Frees memory from ki_alloc or ki_alloc_raw; the memory itself records its context. `memory` may
 /// be NULL.
 void ki_free(void *memory);
-/// Writes the error message "out of memory: WHAT: N more bytes are needed", with the context's memory limit if
-/// it has one.
+/// Writes the error message "out of memory: WHAT: N more bytes are needed", with the context's
+/// memory limit if it has one.
 void ki_describe_memory(kiln_context *context, kiln_error *error, const char *what,
                         size_t byte_count);
 /// Fails with the message of ki_describe_memory.
@@ -114,9 +114,9 @@ typedef void ki_task(void *data, int index);
 void ki_parallel_for(kiln_context *context, int count, ki_task *task, void *data);
 
 /// Runs tasks as ki_parallel_for does, for tasks that need scratch memory of their own. `worker` is
-/// less than ki_context_threads, and no two tasks run with the same worker at the same time. Repeats
-/// the last report of progress meanwhile, as ki_go_on does. Returns false if a report asked to stop;
-/// some tasks have then not run.
+/// less than ki_context_threads, and no two tasks run with the same worker at the same time.
+/// Repeats the last report of progress meanwhile, as ki_go_on does. Returns false if a report asked
+/// to stop; some tasks have then not run.
 bool ki_parallel_workers(kiln_context *context, int count,
                          void (*task)(void *data, int worker, int index), void *data);
 

@@ -48,8 +48,8 @@ kiln_result ki_file_set_make(kiln_context *context, ki_add_files *add, void *dat
 /// Creates a folder for files of the set, unless the folder exists. A set that fails removes the
 /// folder again.
 kiln_result ki_file_set_make_folder(ki_file_set *set, const char *path, kiln_error *error);
-/// Calls `watch` with the caller's path and the bytes of each file that is added to the set from now
-/// on. `watch` may be NULL.
+/// Calls `watch` with the caller's path and the bytes of each file that is added to the set from
+/// now on. `watch` may be NULL.
 void ki_file_set_watch(ki_file_set *set,
                        void (*watch)(void *user, const char *path, const void *bytes, size_t size),
                        void *user);

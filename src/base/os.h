@@ -43,8 +43,8 @@ uint64_t ki_os_size(int file);
 /// Read or write up to `size` bytes and return the number of bytes; reading returns 0 at the end of
 /// a file. A signal may interrupt either function, which then returns -1 with errno EINTR.
 ptrdiff_t ki_os_read(int file, void *bytes, size_t size);
-/// Reads as ki_os_read does, from byte `at` of the file on, on any thread. Returns -1 where the file
-/// or the system can only be read from the beginning to the end.
+/// Reads as ki_os_read does, from byte `at` of the file on, on any thread. Returns -1 where the
+/// file or the system can only be read from the beginning to the end.
 ptrdiff_t ki_os_read_at(int file, void *bytes, size_t size, uint64_t at);
 ptrdiff_t ki_os_write(int file, const void *bytes, size_t size);
 /// Waits until the written bytes of a file have reached the disk.

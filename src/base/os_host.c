@@ -1,6 +1,7 @@
-// The functions of os.h for the command as WebAssembly, by functions that the JavaScript program around the module
-// offers (npm/host.mjs). In: paths and descriptors. Out: what the program answers: a number of 0 or more, or the
-// negative number of an error, which becomes errno. There are no threads, and there is one locale.
+// The functions of os.h for the command as WebAssembly, by functions that the JavaScript program
+// around the module offers (npm/host.mjs). In: paths and descriptors. Out: what the program
+// answers: a number of 0 or more, or the negative number of an error, which becomes errno. There
+// are no threads, and there is one locale.
 #include "base/os.h"
 
 #include <errno.h>

@@ -259,8 +259,9 @@ float ki_os_read_float(const char *text)
 void *ki_os_allocate(size_t size)
 {
 #if defined(__linux__) && defined(MADV_HUGEPAGE)
-    // Large blocks get pages of 2 MiB where Linux grants them. Linux else stops at the first use of every
-    // 4 KiB. Only whole large pages are asked for, so that no block takes more memory than its size.
+    // Large blocks get pages of 2 MiB where Linux grants them. Linux else stops at the first use of
+    // every 4 KiB. Only whole large pages are asked for, so that no block takes more memory than
+    // its size.
     const size_t page = (size_t)1 << 21;
     if (size >= page) {
         void *memory = aligned_alloc(page, (size + page - 1) / page * page);

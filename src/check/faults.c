@@ -1,9 +1,9 @@
 // Faults that show in the texels of levels. In: levels and the exact levels. Out: sentences.
 //
-// Shifts: if a level has its texels beside their places, its error is a shift times the slope of the
-// exact level. The shift of least square error is found for two kinds: one shift (x, y) in texels
-// for all faces of a cube, and a small turn about each axis. A kind is named if it explains a good
-// part of the error of most levels, and about the same shift in each.
+// Shifts: if a level has its texels beside their places, its error is a shift times the slope of
+// the exact level. The shift of least square error is found for two kinds: one shift (x, y) in
+// texels for all faces of a cube, and a small turn about each axis. A kind is named if it explains
+// a good part of the error of most levels, and about the same shift in each.
 //
 // Clamped light: light is missing, and nearly all of what is missing is missing where the exact
 // level is many times as bright as its mean.
@@ -17,8 +17,8 @@
 
 // ------------------------------------------------------------------------------------------ slopes
 
-// SAMPLES: largest number of texels of a level at which slopes are measured. LEAST: smallest size of
-// a level whose shift is measured.
+// SAMPLES: largest number of texels of a level at which slopes are measured. LEAST: smallest size
+// of a level whose shift is measured.
 enum { SAMPLES = 6000, LEAST = 8, MOST_UNKNOWNS = 3 };
 
 // A shift of least square error: its components, and the part of the error that it explains.

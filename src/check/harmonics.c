@@ -1,9 +1,9 @@
 // kiln_check_sh. In: spherical harmonics of any tool, and the panorama. Out: a report. Method: the
-// exact coefficients are turned under each of the 48 axes, and multiplied by powers of the constants
-// of the basis functions. Each band of the file is compared with a multiple of the exact band, so
-// that neither brightness nor weights nor windows matter, and the axes and constants of least error
-// are taken. The factors of the bands then tell the weights (radiance, irradiance, or the cosine
-// applied twice) and the window.
+// exact coefficients are turned under each of the 48 axes, and multiplied by powers of the
+// constants of the basis functions. Each band of the file is compared with a multiple of the exact
+// band, so that neither brightness nor weights nor windows matter, and the axes and constants of
+// least error are taken. The factors of the bands then tell the weights (radiance, irradiance, or
+// the cosine applied twice) and the window.
 #include "check/check.h"
 
 #include "math/math.h"
@@ -112,7 +112,7 @@ static match find_match(const kiln_sh *file, const kiln_sh *exact, const ki_axes
     return best;
 }
 
-// ------------------------------------------------------------------------------------------ weights
+// ----------------------------------------------------------------------------------------- weights
 
 typedef enum weight { RADIANCE, IRRADIANCE, TWICE, WEIGHTS } weight;
 
@@ -263,8 +263,8 @@ static void say_basis(const match *m, kiln_findings *findings)
                 m->power > 1 ? " twice" : "");
 }
 
-// Says how the harmonics are turned. The sign (-1)^m of Condon and Shortley is the same as a turn by
-// 180 degrees about z.
+// Says how the harmonics are turned. The sign (-1)^m of Condon and Shortley is the same as a turn
+// by 180 degrees about z.
 static void say_axes(const ki_axes *found, const ki_axes *expected, kiln_findings *findings)
 {
     const ki_axes signs = {{0, 1, 2}, {-1, -1, 1}};

@@ -1,5 +1,6 @@
-// kiln_levels_load and kiln_table_numbers_load. In: a path to a file with levels, a pattern for one file or set of faces for
-// each level, or a folder. Out: a map with all levels in the axes of the file.
+// kiln_levels_load and kiln_table_numbers_load. In: a path to a file with levels, a pattern for one
+// file or set of faces for each level, or a folder. Out: a map with all levels in the axes of the
+// file.
 #include "check/check.h"
 
 #include "base/file.h"

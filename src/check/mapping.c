@@ -2,9 +2,10 @@
 // Out: for each level the roughness whose exact level is most like the level, and sentences about
 // the mapping from levels to roughness.
 //
-// Method: the panorama is filtered for a ladder of roughnesses. Between two rungs the exact level is
-// nearly a linear mixture of both, so that the mixture of least error gives the roughness. Errors
-// are means of ((level - exact) / (exact + mean))^2, in which a sun counts as any other texel.
+// Method: the panorama is filtered for a ladder of roughnesses. Between two rungs the exact level
+// is nearly a linear mixture of both, so that the mixture of least error gives the roughness.
+// Errors are means of ((level - exact) / (exact + mean))^2, in which a sun counts as any other
+// texel.
 #include "check/check.h"
 
 #include "image/image.h"

@@ -1,6 +1,7 @@
 // kiln_check_picture. In: the differences of levels from the exact levels. Out: a picture of one
-// panorama for each level, one below the other. Grey is no difference, red is too bright, blue is too
-// dark, and the full colours stand for three times the root mean square difference of the level.
+// panorama for each level, one below the other. Grey is no difference, red is too bright, blue is
+// too dark, and the full colours stand for three times the root mean square difference of the
+// level.
 #include "check/check.h"
 
 #include "image/image.h"

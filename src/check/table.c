@@ -1,12 +1,12 @@
-// kiln_check_table. In: a picture with a table of reflection models. Out: what its channels hold, in
-// which order, at which places and by which model, and the errors.
+// kiln_check_table. In: a picture with a table of reflection models. Out: what its channels hold,
+// in which order, at which places and by which model, and the errors.
 //
 // Method: at 12 x 12 texels all hypotheses are compared with exact integrals: rows and columns
 // swapped or reversed, a gamma curve, the axis of n.v, and the model. For each channel the function
 // of least error is taken: A, B, A + B, their complement, the albedo of sheen, or a constant. The
-// places of the texels are then found from the slopes of the exact functions: texels that lie beside
-// the centres (i + 1/2) / n give differences of slope times shift. At last the whole table is
-// compared with an exact table of the same size.
+// places of the texels are then found from the slopes of the exact functions: texels that lie
+// beside the centres (i + 1/2) / n give differences of slope times shift. At last the whole table
+// is compared with an exact table of the same size.
 #include "check/check.h"
 
 #include "image/image.h"
@@ -188,8 +188,9 @@ static void find_places(const table_check *c, const exact_grid *grid, guess *g)
             g->remains = g->error;
 }
 
-// Compares the table with the exact values of one model and one axis: in the four orders in which n.v
-// grows or falls along rows, or, if `swapped` is true, in the four in which n.v runs along columns.
+// Compares the table with the exact values of one model and one axis: in the four orders in which
+// n.v grows or falls along rows, or, if `swapped` is true, in the four in which n.v runs along
+// columns.
 static kiln_result try_model(kiln_context *context, table_check *c, bool swapped, bool sheen,
                              exact_grid *grid, guess *best, kiln_error *error)
 {

@@ -3,8 +3,8 @@
 // which texels belong to a line. Out: the line of least squares, or for each partition of BC6H the
 // variance that its two lines leave. Included by files that are compiled once for each instruction
 // set. The loops run over the sixteen texels or over the partitions, so that compilers vectorise
-// them. Sixteen numbers are always added up in the same order, so that all instruction sets give the
-// same bits.
+// them. Sixteen numbers are always added up in the same order, so that all instruction sets give
+// the same bits.
 #include "codec/bc6h.h"
 #include "image/pack.h"
 

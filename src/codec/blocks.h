@@ -1,4 +1,5 @@
-// Pictures as blocks of 4 x 4 texels in 16 bytes, row by row of blocks: what BC6H and UASTC HDR have in common.
+// Pictures as blocks of 4 x 4 texels in 16 bytes, row by row of blocks: what BC6H and UASTC HDR
+// have in common.
 #ifndef KI_BLOCKS_H
 #define KI_BLOCKS_H
 
@@ -26,8 +27,8 @@ typedef struct ki_bits {
     int at;
 } ki_bits;
 
-/// Writes the lowest `count` bits of `value`, the lowest one first. Bits are written once, to a block of
-/// zeros; `count` is below 64.
+/// Writes the lowest `count` bits of `value`, the lowest one first. Bits are written once, to a
+/// block of zeros; `count` is below 64.
 static inline void ki_bits_put(ki_bits *b, uint64_t value, int count)
 {
     value &= (UINT64_C(1) << count) - 1;

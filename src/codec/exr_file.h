@@ -1,5 +1,5 @@
-// An EXR file that is being read: what exr.c, which reads whole pictures, and exr_rows.c, which reads
-// rows of a picture, share.
+// An EXR file that is being read: what exr.c, which reads whole pictures, and exr_rows.c, which
+// reads rows of a picture, share.
 #ifndef KI_EXR_FILE_H
 #define KI_EXR_FILE_H
 

@@ -1,7 +1,8 @@
 // Galacean Engine's .env files. In: a cube and harmonics. Out: bytes of a file; or of a file that
-// is read, its description or its cube. A file is 27 floats of harmonics, the size of a face in 16 bits, and
-// the texels of all faces, level by level down to a single texel, four bytes each. A file has no
-// magic bytes, so that files are recognised by their length, which the size of a face decides.
+// is read, its description or its cube. A file is 27 floats of harmonics, the size of a face in 16
+// bits, and the texels of all faces, level by level down to a single texel, four bytes each. A file
+// has no magic bytes, so that files are recognised by their length, which the size of a face
+// decides.
 #include "codec/galacean_env.h"
 
 #include "codec/file_info.h"

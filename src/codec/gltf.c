@@ -1,8 +1,8 @@
 // Binary glTF 2.0 with the extension EXT_lights_image_based. In: a cube, harmonics and lights. Out:
-// bytes of a file; or of a file that is read, the description or the cube of its first light. A file is 12
-// bytes of header, a chunk of JSON padded with spaces, and a chunk of bytes padded with zeros. The
-// images of a light are PNG files in RGBD, level by level, face by face. The extension's figure has
-// v upward while glTF has v downward, so images are stored with the bottom row first.
+// bytes of a file; or of a file that is read, the description or the cube of its first light. A
+// file is 12 bytes of header, a chunk of JSON padded with spaces, and a chunk of bytes padded with
+// zeros. The images of a light are PNG files in RGBD, level by level, face by face. The extension's
+// figure has v upward while glTF has v downward, so images are stored with the bottom row first.
 #include "codec/gltf.h"
 
 #include "codec/decimal.h"

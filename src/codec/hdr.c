@@ -90,8 +90,8 @@ static size_t read_flat(const ki_hdr_file *f, const uint8_t *at, size_t left, ui
     return size;
 }
 
-// Decodes the line that begins at byte `start` of the file, or only finds its end if `texels` is NULL.
-// Returns the number of bytes read, 0 if the data are damaged or the held bytes end before.
+// Decodes the line that begins at byte `start` of the file, or only finds its end if `texels` is
+// NULL. Returns the number of bytes read, 0 if the data are damaged or the held bytes end before.
 static size_t read_line(const ki_hdr_file *f, uint64_t start, uint8_t *texels)
 {
     if (start < f->first || start - f->first > f->held)

@@ -1,6 +1,7 @@
-// Rows of a Radiance HDR file. In: an open file whose picture is a panorama with its lines from left
-// to right or right to left. Out: any rows of the picture. Method: one pass over the file, a few
-// megabytes at a time, finds where each line begins; each call then reads the bytes of its lines.
+// Rows of a Radiance HDR file. In: an open file whose picture is a panorama with its lines from
+// left to right or right to left. Out: any rows of the picture. Method: one pass over the file, a
+// few megabytes at a time, finds where each line begins; each call then reads the bytes of its
+// lines.
 #include "codec/hdr.h"
 #include "codec/row_file.h"
 

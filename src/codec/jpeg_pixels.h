@@ -10,8 +10,8 @@
 /// picture and of red, green and blue for three components. `head` must be the picture's own.
 kiln_result ki_jpeg_samples(kiln_context *context, ki_span picture, const ki_jpeg_head *head,
                             const char *name, uint8_t **samples, kiln_error *error);
-/// Appends a JPEG picture of 8-bit samples: grey ones for 1 channel, red, green and blue ones for 3,
-/// all at full resolution. `quality` is 1 to 100. The first segment, JFIF's, has 18 bytes.
+/// Appends a JPEG picture of 8-bit samples: grey ones for 1 channel, red, green and blue ones for
+/// 3, all at full resolution. `quality` is 1 to 100. The first segment, JFIF's, has 18 bytes.
 kiln_result ki_jpeg_write(const uint8_t *samples, int width, int height, int channels, int quality,
                           const char *name, ki_writer *writer, kiln_error *error);
 

@@ -1,7 +1,7 @@
 // KTX version 1. In: a cube to be stored as halves or as floats of 11, 11 and 10 bits. Out: bytes
 // of a file; or of a file that is read, all levels of its cube or level 0 of its picture, and the
-// engine, roughness and harmonics in its key-value pairs. A file is a header of 64 bytes, pairs of text, and the
-// levels, largest first.
+// engine, roughness and harmonics in its key-value pairs. A file is a header of 64 bytes, pairs of
+// text, and the levels, largest first.
 #include "codec/ktx1.h"
 
 #include "codec/engine_text.h"
@@ -257,9 +257,9 @@ static uint64_t level_bytes(const header *h, uint32_t k, int align)
     return ki_texels_size(&h->texels, width, height, align);
 }
 
-// Finds the texels of all levels in the file. Returns false if they are not all there. The stated size
-// is that of a face; some programs state the size of all six. Rows end at multiples of 4 bytes by
-// the KTX specification; Filament's mipgen writes them without such an end, as the size shows.
+// Finds the texels of all levels in the file. Returns false if they are not all there. The stated
+// size is that of a face; some programs state the size of all six. Rows end at multiples of 4 bytes
+// by the KTX specification; Filament's mipgen writes them without such an end, as the size shows.
 static bool find_levels(ki_reader *r, header *h)
 {
     for (uint32_t k = 0; k < h->level_count; k++) {

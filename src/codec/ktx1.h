@@ -9,7 +9,8 @@
 /// factors.
 kiln_result ki_ktx1_encode(const kiln_map *map, const kiln_sh *sh, const char *engine,
                            kiln_format format, ki_writer *writer, kiln_error *error);
-/// Decodes all levels of a cube, or level 0 of a picture. `decoded` may be NULL, `info` must not be.
+/// Decodes all levels of a cube, or level 0 of a picture. `decoded` may be NULL, `info` must not
+/// be.
 kiln_result ki_ktx1_decode(kiln_context *context, const uint8_t *bytes, size_t size,
                            const char *name, ki_decoded *decoded, kiln_file_info *info,
                            kiln_error *error);

@@ -1,6 +1,6 @@
-// The texels of KTX2 files, whichever program wrote the file, and flat pictures. In: an opened file.
-// Out: how its texels are stored, by its vkFormat and its data format descriptor; or a flat picture,
-// level 0 of a 2-D texture. Also the writing of an engine's flat picture.
+// The texels of KTX2 files, whichever program wrote the file, and flat pictures. In: an opened
+// file. Out: how its texels are stored, by its vkFormat and its data format descriptor; or a flat
+// picture, level 0 of a 2-D texture. Also the writing of an engine's flat picture.
 #include "codec/engine_text.h"
 #include "codec/ktx2.h"
 #include "codec/report.h"

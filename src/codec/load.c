@@ -163,8 +163,8 @@ kiln_result kiln_image_load(kiln_context *context, const char *path, kiln_image 
 
 // -------------------------------------------------------------------------------------- six files
 
-// Fails where a picture cannot be a face: all faces are squares of `size` texels, which is 0 for the
-// first face.
+// Fails where a picture cannot be a face: all faces are squares of `size` texels, which is 0 for
+// the first face.
 static kiln_result check_face_size(const char *path, int width, int height, int size,
                                    kiln_error *error)
 {
@@ -235,8 +235,8 @@ kiln_result kiln_map_load_faces(kiln_context *context, const char *const paths[6
     return result == KILN_OK ? load_faces(context, &files, def, map, error) : result;
 }
 
-// Finds six files if the path is that of a folder or a pattern. Sets *found to false, and `files` to
-// nothing, if the path is that of one file.
+// Finds six files if the path is that of a folder or a pattern. Sets *found to false, and `files`
+// to nothing, if the path is that of one file.
 static kiln_result find_faces(kiln_context *context, const char *path, ki_face_files *files,
                               bool *found, kiln_error *error)
 {
@@ -286,8 +286,8 @@ static kiln_result describe_file(kiln_context *context, const char *path, kiln_f
     return result;
 }
 
-// Describes six files of faces as a cube: the first face with the number of bytes of all faces, which
-// must be squares of the same size.
+// Describes six files of faces as a cube: the first face with the number of bytes of all faces,
+// which must be squares of the same size.
 static kiln_result describe_faces(kiln_context *context, const ki_face_files *files,
                                   kiln_file_info *info, kiln_error *error)
 {

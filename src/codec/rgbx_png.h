@@ -16,8 +16,9 @@ kiln_result ki_png_decode_as(kiln_context *context, const uint8_t *bytes, size_t
                              const char *name, ki_from_rgbx *unpack, kiln_image *image,
                              kiln_file_info *info, kiln_load_report *report, kiln_error *error);
 
-/// Decodes a PNG file in RGBD whose bottom row comes first, as Babylon.js and glTF store it, to face
-/// `index` % 6 of level `index` / 6 of a cube. Fails if the picture has another size than the face.
+/// Decodes a PNG file in RGBD whose bottom row comes first, as Babylon.js and glTF store it, to
+/// face `index` % 6 of level `index` / 6 of a cube. Fails if the picture has another size than the
+/// face.
 kiln_result ki_rgbd_png_decode_face(kiln_context *context, const uint8_t *bytes, size_t size,
                                     const char *name, int index, kiln_map *map, kiln_error *error);
 /// Fails if `byte_count` bytes are too few for the PNG files of six faces of `size` texels along an

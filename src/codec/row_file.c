@@ -1,5 +1,5 @@
-// Files whose rows pass by. In: the path of an EXR or HDR file with a panorama. Out: a function that
-// reads any rows of it, mended as ki_map_mend mends whole maps, and the same report as that of
+// Files whose rows pass by. In: the path of an EXR or HDR file with a panorama. Out: a function
+// that reads any rows of it, mended as ki_map_mend mends whole maps, and the same report as that of
 // kiln_map_load. Method: what was found in each row is stored for the row, so that rows may be read
 // in any order and more than once.
 #include "codec/row_file.h"
@@ -19,7 +19,7 @@ struct ki_row_file {
     atomic_bool needs_whole; // some row has values that are not a number
 };
 
-// --------------------------------------------------------------------------------------------- rows
+// -------------------------------------------------------------------------------------------- rows
 
 // Decodes rows, converts their colours and mends them. With `weigh`, sums the light of the rows.
 static kiln_result read_rows(ki_row_file *f, int first, int count, bool weigh, float *rgb,
@@ -76,7 +76,7 @@ static kiln_result weigh_rows(ki_row_file *f, kiln_error *error)
     return result;
 }
 
-// ------------------------------------------------------------------------------------------ opening
+// ----------------------------------------------------------------------------------------- opening
 
 static kiln_result open_decoder(ki_row_file *f, kiln_error *error)
 {

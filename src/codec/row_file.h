@@ -49,10 +49,10 @@ typedef struct ki_row_decoder {
     ki_matrix3 matrix;
 } ki_row_decoder;
 
-/// Open a file of the format of the function's name for decoding by rows. *decoder stays empty if the
-/// file cannot be decoded so, for example because it is damaged or holds no panorama; the file is
-/// then loaded as a whole, which explains what is wrong. Notes are added to *report. The function
-/// fails only if memory runs out or the caller asks to stop.
+/// Open a file of the format of the function's name for decoding by rows. *decoder stays empty if
+/// the file cannot be decoded so, for example because it is damaged or holds no panorama; the file
+/// is then loaded as a whole, which explains what is wrong. Notes are added to *report. The
+/// function fails only if memory runs out or the caller asks to stop.
 kiln_result ki_exr_rows_open(ki_row_input *input, ki_row_decoder *decoder, kiln_load_report *report,
                              kiln_error *error);
 kiln_result ki_hdr_rows_open(ki_row_input *input, ki_row_decoder *decoder, kiln_load_report *report,

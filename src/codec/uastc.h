@@ -71,10 +71,9 @@ int ki_uastc_quantize(int value, int range, int kept);
 /// values of ASTC's colour endpoint mode `ends`, 7 or 11, stand for.
 void ki_uastc_read_ends(const uint8_t value[6], int ends, int end[2][3]);
 /// Finds the values of the mode with the index `mode` whose endpoints are near `wanted` (numbers of
-/// 12 bits, between 0 and KI_UASTC_LAST_END), by the most precise layout that reaches. Sets `end` to
-/// the endpoints that the values give. Changes `wanted`, and may swap the two endpoints. Modes with a colour and a
-/// brightness store wanted[1] and the mean difference of the two
-/// endpoints.
+/// 12 bits, between 0 and KI_UASTC_LAST_END), by the most precise layout that reaches. Sets `end`
+/// to the endpoints that the values give. Changes `wanted`, and may swap the two endpoints. Modes
+/// with a colour and a brightness store wanted[1] and the mean difference of the two endpoints.
 void ki_uastc_write_ends(int mode, float wanted[2][3], uint8_t value[6], int end[2][3]);
 
 /// Writes a block's bits. All values must be in the mode's range of endpoint values.

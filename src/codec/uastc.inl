@@ -290,7 +290,8 @@ static void refine(const colors *b, const float mask[TEXELS], const candidate *k
     }
 }
 
-// Returns the endpoint of a mode of BC6H of `bits` bits to which a code is converted, within the range of the bits.
+// Returns the endpoint of a mode of BC6H of `bits` bits to which a code is converted, within the
+// range of the bits.
 static int to_bc6h(float code, int bits)
 {
     int number = (int)(code > 0 ? code < 63487 ? code : 63487 : 0);
@@ -303,8 +304,9 @@ static float of_bc6h(int value, int bits)
     return code_of_half(ki_bc6h_unquantize(value, bits) * 31 / 64);
 }
 
-// Moves the ends of a line in one channel to where a mode of BC6H of `bits` bits has endpoints. The error of the
-// channel is a parabola of the ends: tries three endpoints near *from, each with the best other end for that endpoint.
+// Moves the ends of a line in one channel to where a mode of BC6H of `bits` bits has endpoints. The
+// error of the channel is a parabola of the ends: tries three endpoints near *from, each with the
+// best other end for that endpoint.
 static void snap(const float share[TEXELS], const float in[TEXELS], const float x[TEXELS],
                  const float code[TEXELS], int bits, float *from, float *to)
 {
@@ -375,8 +377,8 @@ static void keep_settled(const colors *b, const float mask[TEXELS], const candid
         *best = settled;
 }
 
-// Tries a mode on lines. The lines are refined by least squares for the block alone, then moved to where BC6H has
-// endpoints, and the weights are settled for both formats.
+// Tries a mode on lines. The lines are refined by least squares for the block alone, then moved to
+// where BC6H has endpoints, and the weights are settled for both formats.
 static void try_mode(const colors *b, const float mask[TEXELS], const lines *ends, int mode,
                      int partition, candidate *best)
 {

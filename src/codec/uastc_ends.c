@@ -285,9 +285,10 @@ static void write_two_colors(float wanted[2][3], int range, uint8_t value[6], in
     write_direct(wanted, range, value, end);
 }
 
-// Writes the two ends of a line whose colours are multiples of one colour: the brighter end `high`, with
-// its largest channel first, and `less`, the logarithmic steps by which every channel of the darker end is
-// smaller. `number` is one of the layouts of ASTC's endpoint mode 7. Returns false if that layout cannot hold the ends.
+// Writes the two ends of a line whose colours are multiples of one colour: the brighter end `high`,
+// with its largest channel first, and `less`, the logarithmic steps by which every channel of the
+// darker end is smaller. `number` is one of the layouts of ASTC's endpoint mode 7. Returns false if
+// that layout cannot hold the ends.
 static bool write_scale(int number, const float high[3], float less, int largest, int range,
                         uint8_t value[4], int end[2][3])
 {

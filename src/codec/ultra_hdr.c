@@ -62,9 +62,9 @@ static double find_gain(double value)
     return ki_log(value / shown) / LOG2;
 }
 
-// Sets `exposure`, in stops, and `range`, in stops above 1. Pictures whose geometric mean is more than
-// NEAR stops from a middle grey of 0.18 are made darker or brighter for the tone curve. Other pictures
-// keep an exposure of 0, since gains of 1 need no decoding.
+// Sets `exposure`, in stops, and `range`, in stops above 1. Pictures whose geometric mean is more
+// than NEAR stops from a middle grey of 0.18 are made darker or brighter for the tone curve. Other
+// pictures keep an exposure of 0, since gains of 1 need no decoding.
 static void measure(ultra_hdr *u)
 {
     enum { NEAR = 2 };

@@ -1,6 +1,6 @@
 // Reading of atlases, the flat pictures that hold all levels in an engine's own arrangement. In: an
-// atlas and the function by which the engine's shader looks a direction up. Out: a cube whose texels
-// are what the shader reads in the directions of their centres.
+// atlas and the function by which the engine's shader looks a direction up. Out: a cube whose
+// texels are what the shader reads in the directions of their centres.
 #include "engine/engine.h"
 
 #include "math/math.h"

@@ -16,8 +16,8 @@ static void turn(const ki_axes *axes, const double direction[3], double turned[3
         turned[i] = axes->sign[i] * direction[axes->axis[i]];
 }
 
-// Returns the index, in a source level of size n, of the texel that comes to (x, y) of a face of the
-// turned level.
+// Returns the index, in a source level of size n, of the texel that comes to (x, y) of a face of
+// the turned level.
 static ptrdiff_t turned_texel(const ki_axes *axes, int n, int face, int x, int y)
 {
     double at[3], from[3], s, t;

@@ -1,10 +1,10 @@
 // three.js r150 to r186 and model-viewer: a cube and its levels go in, an atlas called CubeUV comes
-// out as an EXR picture, or in blocks of UASTC HDR as a KTX2 picture, which three.js reads from r170
-// on. cube_uv_reflection_fragment.glsl.js is the shader that reads the atlas.
-// Each level ("mip" m of M) has six faces with a border of one texel each: +X +Y +Z in a row, and
-// -X -Y -Z in the row above. Mips M to 4 have faces of 2^m texels and lie 4 (2^M - 2^m) texels
-// above the bottom. Mips 3 to -2 have faces of 16 texels and lie to the right of mip 4. At the base
-// size of 256 the atlas has 768 x 1024 texels.
+// out as an EXR picture, or in blocks of UASTC HDR as a KTX2 picture, which three.js reads from
+// r170 on. cube_uv_reflection_fragment.glsl.js is the shader that reads the atlas. Each level
+// ("mip" m of M) has six faces with a border of one texel each: +X +Y +Z in a row, and -X -Y -Z in
+// the row above. Mips M to 4 have faces of 2^m texels and lie 4 (2^M - 2^m) texels above the
+// bottom. Mips 3 to -2 have faces of 16 texels and lie to the right of mip 4. At the base size of
+// 256 the atlas has 768 x 1024 texels.
 //
 // three.js' panoramas have +X in the centre and +Z to the right of the centre.
 #include "engine/engine.h"

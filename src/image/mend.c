@@ -329,7 +329,7 @@ kiln_result ki_image_mend(kiln_context *context, const char *name, kiln_image *i
     return result;
 }
 
-// -------------------------------------------------------------------------------- rows that pass by
+// ------------------------------------------------------------------------------- rows that pass by
 
 void ki_row_mend(int size, int row, kiln_negative negative, bool weigh, float *rgb,
                  ki_row_finds *finds)

@@ -34,10 +34,10 @@ bool ki_resample_execute(kiln_context *context, const ki_resample_plan *plan, ki
 bool ki_resample_has_bands(const ki_resample_plan *plan);
 /// Returns the greatest number of source rows from which a texel of the target is computed.
 int ki_resample_reach(const ki_resample_plan *plan);
-/// Computes all texels whose last source row has a depth from `from` to `to` - 1, with the same bits
-/// as ki_resample_execute. rows[0] holds the rows from the north pole, rows[1] those from the south
-/// pole, as many of them up to this depth as ki_resample_reach says. `buffer` was reserved for the
-/// plan and keeps its content from the first band to ki_resample_end_bands.
+/// Computes all texels whose last source row has a depth from `from` to `to` - 1, with the same
+/// bits as ki_resample_execute. rows[0] holds the rows from the north pole, rows[1] those from the
+/// south pole, as many of them up to this depth as ki_resample_reach says. `buffer` was reserved
+/// for the plan and keeps its content from the first band to ki_resample_end_bands.
 void ki_resample_band(kiln_context *context, const ki_resample_plan *plan, ki_buffer *buffer,
                       const ki_rows rows[2], int from, int to, float *target);
 /// Completes the target after all bands.

@@ -314,8 +314,8 @@ ALWAYS_INLINE void prefetch(const ki_stencil_grid *grid, const ki_stencil_place 
             __builtin_prefetch(texels + (ptrdiff_t)12 * k);
 }
 
-// Sums one stencil. `line` is the panorama row in which the stencil's first row of weights lies, and
-// `stride` the distance from there to the next row.
+// Sums one stencil. `line` is the panorama row in which the stencil's first row of weights lies,
+// and `stride` the distance from there to the next row.
 ALWAYS_INLINE void gather_texel(const ki_stencil *s, const float *weights, const float *line,
                                 ptrdiff_t stride, int width, int column, bool mirror, float *out)
 {

@@ -1,5 +1,5 @@
-// The analysis of a panorama (docs/theory/spectral.md). In: the rows of a panorama as RGB floats: all
-// at once, from north to south, or from both poles to the equator. Out: its spherical-harmonic
+// The analysis of a panorama (docs/theory/spectral.md). In: the rows of a panorama as RGB floats:
+// all at once, from north to south, or from both poles to the equator. Out: its spherical-harmonic
 // coefficients up to a degree, and the list of suns left out of them. Method: rows are distributed
 // onto latitude rings by the transpose of an interpolation with eight weights, the suns are
 // subtracted, each ring is Fourier-transformed, and each order is summed over the rings with the
@@ -233,8 +233,8 @@ static void add_total(ki_analysis_workspace *w, int row, double solid)
 
 // Adds the light of the rows r->rows[0] to the total, and their brightest texels to the candidate
 // suns. The last bits of the total depend on the order in which rows are added. Texels that hold a
-// billionth less than the share sun_share are candidates too, and select_suns, which adds the rows from
-// north to south, decides.
+// billionth less than the share sun_share are candidates too, and select_suns, which adds the rows
+// from north to south, decides.
 static void gather_candidates(const run *r)
 {
     const double share = sun_share * (1 - 1e-9);

@@ -59,8 +59,8 @@ typedef struct ki_fft {
 /// they are farther than near_versine. It counts as near_count points if a direction is nearer, or
 /// if the plane perpendicular to a direction passes within `horizon` (in cos of the angle) of the
 /// sun, because the lobe has a kink there. It counts as close_count points if a direction is nearer
-/// than close_versine, where a narrow lobe changes within the sun's texel; for wide lobes close_versine
-/// is negative and close_count 0.
+/// than close_versine, where a narrow lobe changes within the sun's texel; for wide lobes
+/// close_versine is negative and close_count 0.
 typedef struct ki_sun_points {
     int count, near_count, close_count;
     double far_versine, near_versine, close_versine, horizon;
@@ -121,9 +121,9 @@ typedef struct ki_kernels {
     void (*suns_mixture)(const ki_sun_points *suns, const ki_mixture *mixture,
                          const double *directions, double *sum);
 
-    /// Sums weights times Legendre polynomials over `count` quadrature nodes, a multiple of 4, for the
-    /// degrees l to l + KI_DEGREES - 1: sums[k] is the sum of w[i] P_{l+k}(x[i]). p0 and p1 hold P_{l-1}
-    /// and P_l of each node, and are moved on by KI_DEGREES degrees.
+    /// Sums weights times Legendre polynomials over `count` quadrature nodes, a multiple of 4, for
+    /// the degrees l to l + KI_DEGREES - 1: sums[k] is the sum of w[i] P_{l+k}(x[i]). p0 and p1
+    /// hold P_{l-1} and P_l of each node, and are moved on by KI_DEGREES degrees.
     void (*sum_degrees)(const double *x, const double *w, ptrdiff_t count, int l, double *p0,
                         double *p1, double sums[KI_DEGREES]);
 } ki_kernels;

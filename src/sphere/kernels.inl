@@ -457,8 +457,8 @@ static inline void add_points(double a2, const double *directions, const double 
     }
 }
 
-// Chooses the points that represent a sun for eight directions, as kernels.h describes. Returns their
-// number.
+// Chooses the points that represent a sun for eight directions, as kernels.h describes. Returns
+// their number.
 static inline int choose_points(const ki_sun_points *suns, int i, const double *directions,
                                 const double (**points)[6])
 {
@@ -509,9 +509,9 @@ static inline vec look_up(const double *table, const int64_t *index)
 #endif
 }
 
-// Returns the weight of a mixture where 1 - cos of the angle is v: ki_mixture_weight in each lane. The
-// argument t of the cubics is found from the bits of a number in [1, 2), since few instruction sets
-// convert integers of 64 bits to doubles.
+// Returns the weight of a mixture where 1 - cos of the angle is v: ki_mixture_weight in each lane.
+// The argument t of the cubics is found from the bits of a number in [1, 2), since few instruction
+// sets convert integers of 64 bits to doubles.
 static inline vec mixture_weight(const ki_mixture *mixture, vec v)
 {
     const int rest = 52 - KI_MIXTURE_STEP_BITS;

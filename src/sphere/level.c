@@ -350,9 +350,9 @@ static const double *synthesize_orders(const run *r, int worker, int index)
 
 enum { COLUMNS = 32 }; // number of columns that are stored in the grid at once
 
-// Stores columns of the rings of a vector in the rows of one channel of the grid. The Fourier transform
-// `z` has the values of eight southern and eight northern rings side by side. Few columns at a time keep
-// the rows in the first cache.
+// Stores columns of the rings of a vector in the rows of one channel of the grid. The Fourier
+// transform `z` has the values of eight southern and eight northern rings side by side. Few columns
+// at a time keep the rows in the first cache.
 static void store_columns(const ki_level *v, int vector, const double *z, int from, int to,
                           float *plane)
 {

@@ -9,8 +9,8 @@
 /// The kernel is tabulated as cubics in x = 1 - cos theta + 2^-20: each octave of x is divided into
 /// KI_MIXTURE_STEPS ranges, and each range has a cubic.
 enum { KI_MIXTURE_STEPS = 32, KI_MIXTURE_OCTAVES = 21 };
-/// KI_MIXTURE_STEP_BITS: number of bits of a range's number within its octave, the first bits of the
-/// mantissa of x. KI_MIXTURE_FIRST: exponent of the first octave.
+/// KI_MIXTURE_STEP_BITS: number of bits of a range's number within its octave, the first bits of
+/// the mantissa of x. KI_MIXTURE_FIRST: exponent of the first octave.
 enum { KI_MIXTURE_STEP_BITS = 5, KI_MIXTURE_FIRST = -20 };
 
 /// The weight of a mixture is the sum of weights[i] times the GGX lobe of alphas[i] over its

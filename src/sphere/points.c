@@ -62,9 +62,9 @@ static void divide(const ki_sun *sun, int size, int n, const double *nodes, cons
 // be the size of the texel, k the lobe, and s the distance from the sun or the width of the lobe,
 // over which k varies. The relative error of one point is about (h/s)^2 / 24 times s^2 k'' / k,
 // which is 20 in the tail of GGX. The error of two by two Gauss nodes is (h/s)^4 / 4320 times s^4
-// k'''' / k, which is 840; that of four by four nodes is about 1e-4 (h/s)^8, which is below 1e-8 from
-// CLOSE texels on. Nearer, where a lobe may be narrower than the texel, cells of half the lobe's width
-// have four by four nodes each.
+// k'''' / k, which is 840; that of four by four nodes is about 1e-4 (h/s)^8, which is below 1e-8
+// from CLOSE texels on. Nearer, where a lobe may be narrower than the texel, cells of half the
+// lobe's width have four by four nodes each.
 static void choose_point_counts(const ki_zonal *zonal, int size, ki_sun_points *suns)
 {
     double texel = KI_PI / size, width = ki_lobe_width(&zonal->lobe);

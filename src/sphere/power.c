@@ -1,7 +1,8 @@
-// The harmonics of a spectrum's suns, and the power of each degree with the suns and without them. In: a
-// spectrum and its list of suns. Out: coefficients, or sums of their squares. Method: the harmonics of a
-// sun are integrated by Gauss quadrature over the height of the sun's texel, and exactly over its width.
-// Orders are handled one after the other, so that the coefficients of one order need to be stored only.
+// The harmonics of a spectrum's suns, and the power of each degree with the suns and without them.
+// In: a spectrum and its list of suns. Out: coefficients, or sums of their squares. Method: the
+// harmonics of a sun are integrated by Gauss quadrature over the height of the sun's texel, and
+// exactly over its width. Orders are handled one after the other, so that the coefficients of one
+// order need to be stored only.
 #include "sphere/spectrum.h"
 
 #include "math/math.h"
@@ -11,8 +12,8 @@
 
 enum { NODES = 4 }; // quadrature nodes over the height of a texel
 
-// The quadrature nodes of one sun. `start` is the node's weight times the solid angle and sin^m theta of
-// the order m that comes next.
+// The quadrature nodes of one sun. `start` is the node's weight times the solid angle and sin^m
+// theta of the order m that comes next.
 typedef struct sun_nodes {
     double sine[NODES], twice_cos[NODES], start[NODES];
 } sun_nodes;
@@ -33,9 +34,9 @@ static sun_nodes *place_nodes(const kiln_spectrum *s)
     return all;
 }
 
-// Adds the light of a sun at `count` degrees of one order. `light` has the real and imaginary part of each
-// channel's radiance, turned to the sun's longitude. q_l of legendre.h is linear in q_m, so that its
-// recurrence carries the nodes' weights.
+// Adds the light of a sun at `count` degrees of one order. `light` has the real and imaginary part
+// of each channel's radiance, turned to the sun's longitude. q_l of legendre.h is linear in q_m, so
+// that its recurrence carries the nodes' weights.
 static void add_order(const sun_nodes *nodes, const double light[KI_COMPONENTS], int count,
                       const double *f, const double *scale, double *out)
 {
@@ -53,8 +54,8 @@ static void add_order(const sun_nodes *nodes, const double light[KI_COMPONENTS],
     }
 }
 
-// Adds the suns' harmonics of order m, m to m + count - 1, to `out`, and makes the nodes ready for the
-// order m + 1.
+// Adds the suns' harmonics of order m, m to m + count - 1, to `out`, and makes the nodes ready for
+// the order m + 1.
 static void add_suns(const kiln_spectrum *s, sun_nodes *nodes, int m, int count, const double *f,
                      const double *scale, double *out)
 {
@@ -118,8 +119,8 @@ kiln_result ki_spectrum_add_suns(const kiln_spectrum *spectrum, int degree, doub
                                  (size_t)spectrum->sun_count * sizeof *nodes);
 }
 
-// Adds to power[l], for the degrees of order m, the squares of the coefficients in `row`. Coefficients of
-// the orders m > 0 stand for those of order -m too.
+// Adds to power[l], for the degrees of order m, the squares of the coefficients in `row`.
+// Coefficients of the orders m > 0 stand for those of order -m too.
 static void add_squares(const double *row, int m, int degree, double (*power)[3])
 {
     for (int l = m; l <= degree; l++, row += KI_COMPONENTS)

@@ -1,7 +1,8 @@
 // The plan of an analysis (docs/theory/spectral.md), which analysis.c executes. In: the number of
-// rows of a panorama, and the highest degree of its spherical-harmonic coefficients. Out: the tables
-// that an analysis needs, above all the weights with which each row of the panorama contributes to
-// the latitude rings, which are the transpose of an interpolation with eight weights.
+// rows of a panorama, and the highest degree of its spherical-harmonic coefficients. Out: the
+// tables that an analysis needs, above all the weights with which each row of the panorama
+// contributes to the latitude rings, which are the transpose of an interpolation with eight
+// weights.
 #include "sphere/spectrum.h"
 
 #include "math/math.h"

@@ -19,8 +19,8 @@ typedef struct ki_sun {
     float radiance[3];
 } ki_sun;
 
-/// Greatest number of texels that may be suns at a time. In one channel no more than 1000 texels can
-/// hold a thousandth of the light each.
+/// Greatest number of texels that may be suns at a time. In one channel no more than 1000 texels
+/// can hold a thousandth of the light each.
 enum { KI_MAX_SUNS = 4096 };
 
 struct kiln_spectrum {
@@ -85,9 +85,9 @@ kiln_result ki_analysis_workspace_create(kiln_context *context, const ki_analysi
                                          bool whole, ki_analysis_workspace **workspace,
                                          kiln_error *error);
 /// Lets a workspace work in two buffers, which are made large enough, in place of its own memory:
-/// `orders` for the Fourier coefficients of the rings, and `scratch` for the threads. The buffers may
-/// be used for other purposes between the executions, and may move if ki_analysis_borrow is called
-/// again before the next execution.
+/// `orders` for the Fourier coefficients of the rings, and `scratch` for the threads. The buffers
+/// may be used for other purposes between the executions, and may move if ki_analysis_borrow is
+/// called again before the next execution.
 kiln_result ki_analysis_borrow(const ki_analysis *analysis, ki_analysis_workspace *workspace,
                                ki_buffer *orders, ki_buffer *scratch, kiln_error *error);
 /// Frees a workspace. `workspace` may be NULL.
@@ -146,11 +146,12 @@ bool ki_analysis_sum_orders(const ki_analysis *analysis, ki_analysis_workspace *
 kiln_result ki_spectrum_add_suns(const kiln_spectrum *spectrum, int degree, double *a,
                                  kiln_error *error);
 
-/// Sums |a_lm|^2 over m for each channel and each degree from 0 to `degree`: in `calm` without the suns,
-/// in `all` with their harmonics. Above the degree of the spectrum only the suns are known.
+/// Sums |a_lm|^2 over m for each channel and each degree from 0 to `degree`: in `calm` without the
+/// suns, in `all` with their harmonics. Above the degree of the spectrum only the suns are known.
 kiln_result ki_spectrum_power(const kiln_spectrum *spectrum, int degree, double (*calm)[3],
                               double (*all)[3], kiln_error *error);
-/// Returns the number of bytes that ki_spectrum_power allocates for `count` suns more than for none.
+/// Returns the number of bytes that ki_spectrum_power allocates for `count` suns more than for
+/// none.
 size_t ki_suns_power_size(size_t count);
 
 #endif

@@ -115,7 +115,7 @@ static void make_target(void *data, int worker, int index)
                          target);
 }
 
-// ------------------------------------------------------------------------------------ first solution
+// ---------------------------------------------------------------------------------- first solution
 
 static void sort_taps(ki_lobes_taps *t)
 {
@@ -255,7 +255,7 @@ static void sweep(void *data, int y)
         smooth(job, x, y);
 }
 
-// ------------------------------------------------------------------------------------------- texels
+// ------------------------------------------------------------------------------------------ texels
 
 // Writes a texel's numbers: the spare fourth numbers of the taps' slices and then the last slice
 // hold the six coefficients.
@@ -283,7 +283,7 @@ static void write_texel(const fill_job *job, int index)
         to[i] = t.count + i < 6 ? (float)rest.c[t.count + i] : 0;
 }
 
-// ---------------------------------------------------------------------------------------------- fit
+// --------------------------------------------------------------------------------------------- fit
 
 static kiln_result reserve(kiln_context *context, fill_job *job, kiln_error *error)
 {

@@ -35,14 +35,14 @@ typedef struct ki_lobes_chain {
     double roughness[KILN_MAX_LEVELS];
     /// Legendre coefficients of degrees 1 and 2 of each level's lobe.
     double band[KILN_MAX_LEVELS][3];
-    /// Covariance, in the error's norm, of a level's lobe in one direction and of light from another
-    /// direction: [KI_LOBES_STEPS + 1][level_count].
+    /// Covariance, in the error's norm, of a level's lobe in one direction and of light from
+    /// another direction: [KI_LOBES_STEPS + 1][level_count].
     double *light;
     /// Covariance of the lobes of two levels i >= j: table i (i + 1) / 2 + j of KI_LOBES_STEPS + 1
     /// numbers.
     double *pair;
-    /// Covariance of light from two directions, cut off at degree 24 << (index + 1), for the norm of
-    /// a target of a given width.
+    /// Covariance of light from two directions, cut off at degree 24 << (index + 1), for the norm
+    /// of a target of a given width.
     double *self[KI_LOBES_CUTS];
 } ki_lobes_chain;
 
@@ -52,8 +52,9 @@ kiln_result ki_lobes_chain_create(kiln_context *context, const kiln_table_def *d
                                   ki_lobes_chain *chain, kiln_error *error);
 void ki_lobes_chain_free(ki_lobes_chain *chain);
 
-/// Light directions with weights that sum to 1. Each node stands for itself and for its mirror image
-/// with -y. The frame has x along the tangent towards the mirror direction and z along the normal.
+/// Light directions with weights that sum to 1. Each node stands for itself and for its mirror
+/// image with -y. The frame has x along the tangent towards the mirror direction and z along the
+/// normal.
 typedef struct ki_lobes_nodes {
     int count;
     double direction[KI_LOBES_NODES][3], weight[KI_LOBES_NODES];

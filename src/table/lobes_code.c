@@ -1,7 +1,8 @@
-// Writes source code in C, GLSL or WGSL that reads a table of KILN_TABLE_LOBES and turns its numbers
-// into directions and weights. In: a complete kiln_table_def, a name, the language. Out: text. Each
-// text below is the code for a table NAME with K taps, with $ in place of the name and @ in place of
-// K; the table's size stands in constants before the text. docs/theory/lobes.md derives the code.
+// Writes source code in C, GLSL or WGSL that reads a table of KILN_TABLE_LOBES and turns its
+// numbers into directions and weights. In: a complete kiln_table_def, a name, the language. Out:
+// text. Each text below is the code for a table NAME with K taps, with $ in place of the name and @
+// in place of K; the table's size stands in constants before the text. docs/theory/lobes.md derives
+// the code.
 #include "table/lobes_code.h"
 
 #include <string.h>

@@ -75,8 +75,8 @@ static void judge(void *data, int worker, int index)
     e->table = relative(job, &target, norm, &t, &bands);
 }
 
-// Fails unless the table is one of lobes, and sets the numbers of its definition that are 0 to their
-// defaults.
+// Fails unless the table is one of lobes, and sets the numbers of its definition that are 0 to
+// their defaults.
 static kiln_result complete(kiln_table *table, kiln_error *error)
 {
     if (table->def.kind != KILN_TABLE_LOBES || !table->image.pixels)

@@ -1,6 +1,6 @@
-// Searches for the taps that approximate a lobe best. In: a chain's tables, a target, a first guess.
-// Out: angle, level and weight of each tap. Method: for given angles and levels the error is a
-// quadratic function of the weights, whose least value solves a small linear system; the simplex
+// Searches for the taps that approximate a lobe best. In: a chain's tables, a target, a first
+// guess. Out: angle, level and weight of each tap. Method: for given angles and levels the error is
+// a quadratic function of the weights, whose least value solves a small linear system; the simplex
 // method of Nelder and Mead 1965 moves angles and levels. A guess may pull on the solution, which
 // keeps neighbouring texels of a table alike.
 #include "table/lobes.h"

@@ -1,8 +1,8 @@
 // The lobe that taps approximate. In: a masking model, a roughness and n.v. Out: quadrature nodes
 // over the lobe f(v, l) (n.l) / E with F = 1, the lobe's bands 0 to 2, and its covariance with each
-// level's lobe as a function of the level's direction. Method: half vectors are placed in the cap of
-// visible normals (brdf/sample.c), Gauss-Legendre along a radius and evenly around, up to the radius
-// at which the mirrored view leaves the hemisphere. On these nodes the integrand is smooth.
+// level's lobe as a function of the level's direction. Method: half vectors are placed in the cap
+// of visible normals (brdf/sample.c), Gauss-Legendre along a radius and evenly around, up to the
+// radius at which the mirrored view leaves the hemisphere. On these nodes the integrand is smooth.
 #include "table/lobes.h"
 
 #include "brdf/brdf.h"

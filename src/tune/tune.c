@@ -50,8 +50,8 @@ typedef struct run {
     // every level is computed to its highest degree, see ki_tune_execute
     bool rehearses;
     ki_mixtures mixtures;
-    // power of each degree of the norms and channel: [degree + 1] without the suns, then [degree + 1]
-    // with the suns
+    // power of each degree of the norms and channel: [degree + 1] without the suns, then [degree +
+    // 1] with the suns
     double (*power)[3];
     // the unfiltered environment: level 0 of `map`, and its means over ever larger texels
     // (ki_make_mirrors)
@@ -152,10 +152,10 @@ bool ki_tune_makes(const ki_tune *t, int level)
     return t->nodes.tuned[level];
 }
 
-// Continues the power without suns beyond the degree `known` of the spectrum, up to which no level is
-// computed, but to which the norms of the narrowest lobes and of the mirror reach. Panoramas have nearly the
-// same power at all high degrees, as uncorrelated texels have, so that the mean of the last TAIL degrees
-// stands for each further one.
+// Continues the power without suns beyond the degree `known` of the spectrum, up to which no level
+// is computed, but to which the norms of the narrowest lobes and of the mirror reach. Panoramas
+// have nearly the same power at all high degrees, as uncorrelated texels have, so that the mean of
+// the last TAIL degrees stands for each further one.
 static void continue_power(int known, int degree, double (*calm)[3], double (*all)[3])
 {
     enum { TAIL = 64 };

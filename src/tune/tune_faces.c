@@ -12,7 +12,8 @@ static size_t texel_index(const ki_faces *f, int x, int y)
     return (size_t)(y + 1) * (size_t)f->width + (size_t)(x + 1);
 }
 
-// Calls `use` for every texel of the rims of all faces, with the face that owns what the texel repeats.
+// Calls `use` for every texel of the rims of all faces, with the face that owns what the texel
+// repeats.
 static void visit_rims(const ki_faces *f, void (*use)(void *data, int owner, ki_rim_texel texel),
                        void *data)
 {

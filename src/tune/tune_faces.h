@@ -1,6 +1,6 @@
 // Cube faces in the memory layout in which tuning reads and solves levels: every channel of every
-// face is a plane of doubles of its own, with a rim one texel wide that repeats the nearest texels of
-// the neighbouring faces. Bilinear reads and sums over neighbouring texels then are plain loops
+// face is a plane of doubles of its own, with a rim one texel wide that repeats the nearest texels
+// of the neighbouring faces. Bilinear reads and sums over neighbouring texels then are plain loops
 // over a plane, with no special case at the edges of faces.
 #ifndef KI_TUNE_FACES_H
 #define KI_TUNE_FACES_H
@@ -36,7 +36,8 @@ void ki_faces_destroy(ki_faces *faces);
 size_t ki_faces_count(const ki_faces *faces);
 /// Returns the first texel, a corner of the rim, of a plane of `planes`.
 double *ki_faces_plane(const ki_faces *faces, double *planes, int plane);
-/// Copies the texels of one plane that rims of other planes of the same channel repeat, to those rims.
+/// Copies the texels of one plane that rims of other planes of the same channel repeat, to those
+/// rims.
 void ki_faces_fill_rims(const ki_faces *faces, double *planes, int plane);
 /// Adds what the rims of other planes hold to the texels of one plane that they repeat.
 void ki_faces_add_rims(const ki_faces *faces, double *planes, int plane);
@@ -51,8 +52,9 @@ typedef struct ki_face_tap {
 
 /// Sets taps[i] to where texel i of `edge` texels along a face's edge lies in a plane.
 void ki_face_taps_set(const ki_faces *faces, int edge, ki_face_tap *taps);
-/// Reads a plane bilinearly at row y of `edge` x `edge` points, whose taps ki_face_taps_set has set, and
-/// adds `factor` times the values to every third float of `to`. `line` has room for a row of the plane.
+/// Reads a plane bilinearly at row y of `edge` x `edge` points, whose taps ki_face_taps_set has
+/// set, and adds `factor` times the values to every third float of `to`. `line` has room for a row
+/// of the plane.
 void ki_faces_read_row(const ki_faces *faces, const double *plane, int edge,
                        const ki_face_tap *taps, int y, double factor, double *line, float *to);
 

@@ -29,7 +29,8 @@ typedef struct ki_norms {
     double *across;
 } ki_norms;
 
-/// Computes the norms of errors for an environment. `power` and `degree` are described at ki_mixtures_find.
+/// Computes the norms of errors for an environment. `power` and `degree` are described at
+/// ki_mixtures_find.
 kiln_result ki_norms_create(kiln_context *context, const ki_nodes *nodes,
                             const kiln_spectrum *spectrum, const double (*power)[3], int degree,
                             ki_norms *norms, kiln_error *error);

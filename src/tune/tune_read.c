@@ -24,8 +24,8 @@
 // Levels with faces of at most SMALL texels are one task, others a task for each plane.
 enum { STEPS = 14, ROUNDS = 3, SMALL = 32 };
 
-// The steps end when the squared residual, weighted by the inverse diagonal, is this part of what it was
-// before the first step.
+// The steps end when the squared residual, weighted by the inverse diagonal, is this part of what
+// it was before the first step.
 static const double near = 1e-5;
 
 // Elements of the symmetric matrix for a plane: of each texel with itself and with the four
@@ -118,8 +118,8 @@ static void add_scaled(double *to, const double *from, double factor, int count)
 }
 
 // Adds a row of points to the elements of the matrix of the two rows of texels between which the
-// points lie. `own` and `east` receive the row's sums over columns, for the products of each texel's
-// weights with themselves and with those of the eastern neighbour.
+// points lie. `own` and `east` receive the row's sums over columns, for the products of each
+// texel's weights with themselves and with those of the eastern neighbour.
 static void add_matrix_row(reads *r, int y, double *own, double *east)
 {
     int width = r->faces.width;
@@ -169,8 +169,8 @@ static void gather_row(const reads *r, const float *from, int y, double *line, d
     add_scaled(to + width, line, r->taps[y].share[1], width);
 }
 
-// Task of one thread: computes a plane of B' W goal, in which the rim has what belongs to the texels
-// of other faces.
+// Task of one thread: computes a plane of B' W goal, in which the rim has what belongs to the
+// texels of other faces.
 static void gather_plane(void *data, int plane)
 {
     const reads *r = data;
@@ -256,8 +256,8 @@ static row row_at(const reads *r, int plane, int y)
                  r->residual + at, r->direction + at, r->product + at};
 }
 
-// Task of one thread: computes the next search direction of the conjugate-gradient method in a plane,
-// and copies it to the rims that repeat the plane's texels.
+// Task of one thread: computes the next search direction of the conjugate-gradient method in a
+// plane, and copies it to the rims that repeat the plane's texels.
 static void turn_direction(void *data, int plane)
 {
     reads *r = data;
@@ -300,7 +300,8 @@ static void take_step(void *data, int plane)
     }
 }
 
-// Task of one thread: sets the residual of a plane, right - matrix x, and sums it as take_step does.
+// Task of one thread: sets the residual of a plane, right - matrix x, and sums it as take_step
+// does.
 static void begin_steps(void *data, int plane)
 {
     reads *r = data;
@@ -324,7 +325,7 @@ static void multiply_texels(void *data, int plane)
                    ki_faces_plane(&r->faces, r->product, plane));
 }
 
-// ---------------------------------------------------------------------------------------- the solver
+// -------------------------------------------------------------------------------------- the solver
 
 // Solves the normal equations by at most STEPS steps of preconditioned conjugate gradients in each
 // colour channel. Texels with `inverse` 0 keep the value 0 and have no equation.
@@ -406,8 +407,8 @@ static void set_up(reads *r)
     for_planes(r, begin_plane);
 }
 
-// Task of one thread: sums the right-hand side over a plane, which for each channel gives the mean of
-// the goal, up to the factor that sum_shown has too.
+// Task of one thread: sums the right-hand side over a plane, which for each channel gives the mean
+// of the goal, up to the factor that sum_shown has too.
 static void sum_goal(void *data, int plane)
 {
     reads *r = data;

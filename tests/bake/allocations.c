@@ -1,10 +1,11 @@
-// A plan executes without an allocation: of panoramas and cubes, exact and tuned levels, on one thread and
-// on several.
+// A plan executes without an allocation: of panoramas and cubes, exact and tuned levels, on one
+// thread and on several.
 #include "kit/kit.h"
 
 static kiln_error error;
 
-// The fill of a source: a sun and noise, black, white, light of the highest frequency, or many suns.
+// The fill of a source: a sun and noise, black, white, light of the highest frequency, or many
+// suns.
 static void fill(kiln_map *map, int kind)
 {
     size_t texels = kiln_map_texels(map, 0);

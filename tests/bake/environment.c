@@ -1,5 +1,5 @@
-// What kiln_bake promises: levels, irradiance and harmonics are those of the functions that make each
-// alone, whatever the source's shape, and a plan repeats them.
+// What kiln_bake promises: levels, irradiance and harmonics are those of the functions that make
+// each alone, whatever the source's shape, and a plan repeats them.
 #include "kit/context.h"
 
 static bool same_environment(const kiln_environment *a, const kiln_environment *b)

@@ -1,5 +1,6 @@
-// Lights that are taken out of a map and the map that remains are together as bright as the map: in every
-// harmonic of five bands and in the irradiance of every surface. Scenes whose lights are known, and kiln's sky.
+// Lights that are taken out of a map and the map that remains are together as bright as the map: in
+// every harmonic of five bands and in the irradiance of every surface. Scenes whose lights are
+// known, and kiln's sky.
 #include "bake/sky.h"
 #include "image/texel.h"
 #include "math/math.h"
@@ -29,7 +30,8 @@ static void normalize(double d[3])
         d[k] /= length;
 }
 
-// Side in degrees of a texel: the largest of a panorama and a cube, an average one of an octahedron.
+// Side in degrees of a texel: the largest of a panorama and a cube, an average one of an
+// octahedron.
 static double texel_degrees(const kiln_map *map)
 {
     static const double sides[] = {0, 180, 90, 203};
@@ -58,8 +60,8 @@ typedef struct known {
     double irradiance[3];
 } known;
 
-// Adds a disc of a radius in degrees and a radiance to a map, with a part of each texel at the disc's edge,
-// and adds the disc to what is known. `most` limits the texels.
+// Adds a disc of a radius in degrees and a radiance to a map, with a part of each texel at the
+// disc's edge, and adds the disc to what is known. `most` limits the texels.
 static void paint(kiln_map *map, const double centre[3], double radius, double radiance,
                   double most, known *k)
 {

@@ -1,5 +1,6 @@
-// Photographed panoramas: whatever lights are taken out, the rest and the lights are together as bright as the
-// panorama in every harmonic of five bands and in the irradiance of surfaces; each light is where its panorama shows it.
+// Photographed panoramas: whatever lights are taken out, the rest and the lights are together as
+// bright as the panorama in every harmonic of five bands and in the irradiance of surfaces; each
+// light is where its panorama shows it.
 #include "image/texel.h"
 
 #include "kit/lights.h"

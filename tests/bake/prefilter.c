@@ -1,4 +1,5 @@
-// The mirror levels of cubes and octahedra come from their source, and each level states its roughness.
+// The mirror levels of cubes and octahedra come from their source, and each level states its
+// roughness.
 #include "kit/context.h"
 
 static kiln_map mirror(const kiln_map *source, kiln_shape shape, int size, double rotation)

@@ -1,5 +1,5 @@
-// Bakes while rows pass by: the same bits as from the whole map, for every size, block of rows, shape of levels and
-// number of threads, with few rows in memory at a time.
+// Bakes while rows pass by: the same bits as from the whole map, for every size, block of rows,
+// shape of levels and number of threads, with few rows in memory at a time.
 #include "kit/context.h"
 
 #include <stdatomic.h>
@@ -82,8 +82,8 @@ static void sizes_and_blocks(void **state)
         }
 }
 
-// Suns in all rows: at both poles, on both sides of the equator, two in neighbouring rows, and so many that each ring
-// has one.
+// Suns in all rows: at both poles, on both sides of the equator, two in neighbouring rows, and so
+// many that each ring has one.
 static void suns(void **state)
 {
     (void)state;

@@ -1,5 +1,6 @@
-// One plan on several threads at a time: a prefilter is constant, so that threads with a context and
-// a workspace each may execute it together, exact and tuned levels, and write what one thread writes.
+// One plan on several threads at a time: a prefilter is constant, so that threads with a context
+// and a workspace each may execute it together, exact and tuned levels, and write what one thread
+// writes.
 #include "kit/kit.h"
 
 #include "bake/prefilter.h"

@@ -1,5 +1,5 @@
-// A system that starts fewer threads than a context asks for: the context works with those it has, says how many
-// these are, and gives the same bits. Long work asks its caller whether to go on.
+// A system that starts fewer threads than a context asks for: the context works with those it has,
+// says how many these are, and gives the same bits. Long work asks its caller whether to go on.
 #include "base/base.h"
 
 #include "kit/kit.h"
@@ -22,7 +22,8 @@ int __wrap_pthread_create(pthread_t *thread, const pthread_attr_t *attributes, v
 
 static kiln_error error;
 
-// Bakes a noisy panorama with `asked` threads, of which the system starts `started` beside the caller's.
+// Bakes a noisy panorama with `asked` threads, of which the system starts `started` beside the
+// caller's.
 static kiln_environment bake(int asked, int started)
 {
     kiln_context *context = NULL;
@@ -73,7 +74,8 @@ static void sleep_long(void *data, int worker, int index)
     ++*(int *)data;
 }
 
-// Loops of long tasks with scratch memory of their own ask after each task, and end when they are told to.
+// Loops of long tasks with scratch memory of their own ask after each task, and end when they are
+// told to.
 static void long_loops_ask(void **state)
 {
     (void)state;

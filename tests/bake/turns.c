@@ -1,10 +1,12 @@
-// Turns about any axis: what is turned is where the matrix says, and is as exact as what is not turned.
+// Turns about any axis: what is turned is where the matrix says, and is as exact as what is not
+// turned.
 #include "kit/context.h"
 #include "kit/random.h"
 
 enum { ROWS = 64, SIZE = 32 };
 
-// The direction of the input that a turned environment shows in direction d, by docs/conventions.md.
+// The direction of the input that a turned environment shows in direction d, by
+// docs/conventions.md.
 static void source_of(const kiln_prefilter_def *def, const double d[3], double from[3])
 {
     double yaw = def->rotation * pi / 180, pitch = def->pitch * pi / 180,
@@ -58,8 +60,9 @@ static kiln_environment bake(const kiln_map *source, const kiln_prefilter_def *t
     return made;
 }
 
-// Filtered levels, with their sun, against brute force over the texels of the untilted panorama in the directions
-// that the matrix names. The bound is that of the tests of levels that are not turned.
+// Filtered levels, with their sun, against brute force over the texels of the untilted panorama in
+// the directions that the matrix names. The bound is that of the tests of levels that are not
+// turned.
 static void levels_are_those_of_brute_force(void **state)
 {
     (void)state;
@@ -97,7 +100,8 @@ static void levels_are_those_of_brute_force(void **state)
 static const float filtered[] = {0.25f, 0.4f, 0.6f, 1};
 static const kiln_prefilter_def unturned = {.size = 16, .roughness = filtered};
 
-// Harmonics and irradiance of a turned environment against those of the unturned one, in turned directions.
+// Harmonics and irradiance of a turned environment against those of the unturned one, in turned
+// directions.
 static void harmonics_and_irradiance_turn_along(void **state)
 {
     (void)state;
@@ -138,7 +142,8 @@ static void harmonics_and_irradiance_turn_along(void **state)
     }
 }
 
-// A cube turned by quarter turns keeps its texels bit by bit, each in the direction that the matrix names.
+// A cube turned by quarter turns keeps its texels bit by bit, each in the direction that the matrix
+// names.
 static void quarter_turns_move_texels(void **state)
 {
     (void)state;
@@ -188,7 +193,8 @@ static void the_mirror_image_turns_along(void **state)
                 double d[3], from[3];
                 kiln_map_direction(&made.levels, 0, i, d);
                 source_of(&turns[t], d, from);
-                // Half the size of a texel of the panorama, and what the mean over a texel differs from its centre.
+                // Half the size of a texel of the panorama, and what the mean over a texel differs
+                // from its centre.
                 for (size_t c = 0; c < 3; c++)
                     CHECK_NEAR((double)made.levels.level[0][3 * i + c], 2 + from[c],
                                pi / 256 + 1e-3);
@@ -197,7 +203,8 @@ static void the_mirror_image_turns_along(void **state)
         }
     fill_constant(&source, 0);
     texel_at(&source, 40, 50)[1] = 1000;
-    // Light that is sorted into texels of another width moves by half the difference of the widths at most.
+    // Light that is sorted into texels of another width moves by half the difference of the widths
+    // at most.
     const double apart = (2.0 / 64 - pi / 128 * sin(50.5 / 128 * pi)) / 2;
     double place[3], x = (40.5 / 128 - 1) * pi, z = 50.5 / 128 * pi;
     place[0] = sin(z) * sin(x), place[1] = cos(z), place[2] = -sin(z) * cos(x);
@@ -231,9 +238,9 @@ static kiln_prefilter_def random_turn(uint64_t *random)
                                 .roll = 720 * random_number(random) - 360};
 }
 
-// The angles of the inverse turn. By the formulas of source_of a turn maps d to m d, where m has the third row
-// (cos pitch sin yaw, -sin pitch, cos pitch cos yaw) and the second column (-sin roll cos pitch, cos roll cos pitch,
-// -sin pitch). The inverse has the transposed matrix.
+// The angles of the inverse turn. By the formulas of source_of a turn maps d to m d, where m has
+// the third row (cos pitch sin yaw, -sin pitch, cos pitch cos yaw) and the second column (-sin roll
+// cos pitch, cos roll cos pitch, -sin pitch). The inverse has the transposed matrix.
 static kiln_prefilter_def inverse_of(const kiln_prefilter_def *turn)
 {
     double m[3][3];
@@ -260,9 +267,10 @@ static kiln_map panorama_of(const kiln_sh *sh, int rows)
     return map;
 }
 
-// A panorama of four bands is turned by a bake; the panorama of the turned harmonics is turned back by a second bake.
-// Everything is as in the bake of the first panorama. Texels are constant, which makes the harmonics of degree l
-// smaller by l (l + 1) / 24 h^2 for texels of the size h, in each of the two panoramas, or less at the poles.
+// A panorama of four bands is turned by a bake; the panorama of the turned harmonics is turned back
+// by a second bake. Everything is as in the bake of the first panorama. Texels are constant, which
+// makes the harmonics of degree l smaller by l (l + 1) / 24 h^2 for texels of the size h, in each
+// of the two panoramas, or less at the poles.
 static void a_turn_and_its_inverse_cancel(void **state)
 {
     (void)state;
@@ -296,9 +304,10 @@ static void a_turn_and_its_inverse_cancel(void **state)
     kiln_map_free(&first);
 }
 
-// The angles (yaw + 180, 180 - pitch, roll + 180) are the turn (yaw, pitch, roll). Levels and harmonics are the same up
-// to rounding, which is that of floats for a sun of 5000 in a picture of about 2; so is a bake without a turn and one
-// turned by (180, 180, 180), which takes the ways of turned bakes.
+// The angles (yaw + 180, 180 - pitch, roll + 180) are the turn (yaw, pitch, roll). Levels and
+// harmonics are the same up to rounding, which is that of floats for a sun of 5000 in a picture of
+// about 2; so is a bake without a turn and one turned by (180, 180, 180), which takes the ways of
+// turned bakes.
 static void angles_of_the_same_turn_bake_alike(void **state)
 {
     (void)state;

@@ -186,8 +186,8 @@ static void flux_agrees_with_brute_force(void **unused)
         s.roughness = fmax(s.roughness, 0.3);
         compare(&s);
     }
-    // Other seeds meet points near roughness 0.05 where the rule of 101 nodes errs by 4e-6; with 161 nodes
-    // the rule agrees with the library there to 1e-7.
+    // Other seeds meet points near roughness 0.05 where the rule of 101 nodes errs by 4e-6; with
+    // 161 nodes the rule agrees with the library there to 1e-7.
     uint64_t seed = 2;
     for (int i = 0; i < 160; i++) {
         double x[4];

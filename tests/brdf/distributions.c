@@ -1,5 +1,5 @@
-// Distributions D and maskings G: D integrates to 1, G is a symmetric share with its published values, and the
-// specular lobe is reciprocal.
+// Distributions D and maskings G: D integrates to 1, G is a symmetric share with its published
+// values, and the specular lobe is reciprocal.
 #include "kit/kit.h"
 #include "kit/quadrature.h"
 

@@ -13,7 +13,7 @@ static const kiln_model models[MASKINGS] = {{KILN_D_GGX, KILN_G_SMITH},
                                             {KILN_D_GGX, KILN_G_SCHLICK_K2},
                                             {KILN_D_GGX, KILN_G_SCHLICK_TEXT}};
 
-// ---------------------------------------------------------------------------- the two-dimensional rule
+// ------------------------------------------------------------------------ the two-dimensional rule
 
 typedef struct point {
     double roughness, nov;
@@ -113,7 +113,7 @@ static void roughness_one_is_known_in_closed_form(void **unused)
     }
 }
 
-// ------------------------------------------------------------------------------------------ average
+// ----------------------------------------------------------------------------------------- average
 
 typedef struct mean {
     const kiln_model *model;
@@ -140,7 +140,7 @@ static void average_is_the_mean_over_the_cosine(void **unused)
         }
 }
 
-// ------------------------------------------------------------------------------------------ furnace
+// ----------------------------------------------------------------------------------------- furnace
 
 typedef struct furnace {
     const kiln_model *model;
@@ -229,7 +229,7 @@ static void furnace_closes_through_a_table(void **unused)
     kiln_context_destroy(context);
 }
 
-// ------------------------------------------------------------------------------------------- tables
+// ------------------------------------------------------------------------------------------ tables
 
 static void texels_are_the_integrals(void **unused)
 {

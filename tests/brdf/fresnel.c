@@ -1,5 +1,5 @@
-// Fresnel terms F: their values at both ends, metals by their measured indices, averages against quadrature, and
-// the errors of fits.
+// Fresnel terms F: their values at both ends, metals by their measured indices, averages against
+// quadrature, and the errors of fits.
 #include "kit/kit.h"
 #include "kit/quadrature.h"
 

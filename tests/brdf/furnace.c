@@ -1,4 +1,5 @@
-// Compensations of lost energy in the white furnace, where a surface that absorbs nothing is invisible.
+// Compensations of lost energy in the white furnace, where a surface that absorbs nothing is
+// invisible.
 #include "kit/kit.h"
 #include "kit/quadrature.h"
 

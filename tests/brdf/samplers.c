@@ -146,7 +146,7 @@ static void half_vectors(void **state)
                           i ? 1e-5 : 1e-11);
 }
 
-// ---------------------------------------------------------------------------------- visible normals
+// --------------------------------------------------------------------------------- visible normals
 
 static void sample_visible(const sampler *s, const double xi[2], double w[3])
 {

@@ -28,8 +28,9 @@ static kiln_check_levels_report checked(const kiln_map *map, const kiln_engine *
     return report;
 }
 
-// Atlases are read as cubes of what the engine's shader reads: the levels have the roughness that the engine expects,
-// and the engine shows no more error than it would of the cube that the atlas was made from, up to the interpolation.
+// Atlases are read as cubes of what the engine's shader reads: the levels have the roughness that
+// the engine expects, and the engine shows no more error than it would of the cube that the atlas
+// was made from, up to the interpolation.
 static void atlases_are_right(void **state)
 {
     (void)state;
@@ -74,8 +75,8 @@ static void atlases_are_right(void **state)
     }
 }
 
-// Under a source of 1, whose mean is 1, a cube of 2 is shown as 2 / (2 + 1) in place of 1 / (1 + 1): too bright by 1/6
-// of white on a display, and by 1 relative to the source.
+// Under a source of 1, whose mean is 1, a cube of 2 is shown as 2 / (2 + 1) in place of 1 / (1 +
+// 1): too bright by 1/6 of white on a display, and by 1 relative to the source.
 static void displayed_errors_are_of_values_on_a_display(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-// An environment for checks of files: smooth and sharp lights of random colours at random places, so that no turn and
-// no mirror image is like the environment itself, and a sun of one texel.
+// An environment for checks of files: smooth and sharp lights of random colours at random places,
+// so that no turn and no mirror image is like the environment itself, and a sun of one texel.
 #ifndef KILN_CHECK_BLOBS_H
 #define KILN_CHECK_BLOBS_H
 

@@ -1,5 +1,5 @@
-// kiln_check_levels on levels that kiln baked, as they are or with one planted fault each: right levels pass, and each
-// fault is named in words and nothing else is called a fault.
+// kiln_check_levels on levels that kiln baked, as they are or with one planted fault each: right
+// levels pass, and each fault is named in words and nothing else is called a fault.
 #include "image/image.h"
 
 #include <kiln/check.h>
@@ -61,7 +61,7 @@ static void expect_right(const kiln_check_levels_report *report, double worst)
     }
 }
 
-// ---------------------------------------------------------------------------------------------------- right levels
+// ------------------------------------------------------------------------------------ right levels
 
 static void exact_floats_are_right(void **state)
 {
@@ -87,8 +87,8 @@ static void other_shapes_are_right(void **state)
     }
 }
 
-// Files for engines, read as any other tool's: the axes and levels of the engine are those expected, and the errors are
-// those of the files' formats.
+// Files for engines, read as any other tool's: the axes and levels of the engine are those
+// expected, and the errors are those of the files' formats.
 static void engines_files_are_right(void **state)
 {
     (void)state;
@@ -124,7 +124,8 @@ static void engines_files_are_right(void **state)
     source = &scene;
 }
 
-// Without a statement, the axes and the roughness of the levels are those of the engines that have both.
+// Without a statement, the axes and the roughness of the levels are those of the engines that have
+// both.
 static void unstated_levels_are_recognised(void **state)
 {
     (void)state;
@@ -142,7 +143,8 @@ static void unstated_levels_are_recognised(void **state)
     kiln_map_free(&map);
 }
 
-// Writes the file `w.` with its ending: the file `name` with `to` in place of the first `from`, of the same length.
+// Writes the file `w.` with its ending: the file `name` with `to` in place of the first `from`, of
+// the same length.
 static const char *edited(const char *name, const char *from, const char *to)
 {
     static unsigned char bytes[1 << 18];
@@ -237,7 +239,7 @@ static void faces_of_each_level_are_loaded(void **state)
     kiln_map_free(&map);
 }
 
-// -------------------------------------------------------------------------------------------------- planted faults
+// ---------------------------------------------------------------------------------- planted faults
 
 static void a_mirror_image_is_named(void **state)
 {
@@ -260,7 +262,8 @@ static void a_mirror_image_is_named(void **state)
     kiln_map_free(&map);
 }
 
-// A picture of differences: a face that is too bright is red, one that is too dark is blue, and nothing is grey.
+// A picture of differences: a face that is too bright is red, one that is too dark is blue, and
+// nothing is grey.
 static void the_picture_has_the_colour_of_the_error(void **state)
 {
     (void)state;
@@ -276,7 +279,8 @@ static void the_picture_has_the_colour_of_the_error(void **state)
     assert_int_equal(picture.height, 2 * 128);
     const float *right = picture.pixels + 3 * (64 * 256 + 192), *left = right - 3 * 128;
     const float *ahead = right - 3 * 64, *below = right + 3 * 128 * 256;
-    // The root mean square is sqrt((4 + 1/4) / 6) = 0.84: 2 is 0.79 of three times that, and 1/2 is 0.2.
+    // The root mean square is sqrt((4 + 1/4) / 6) = 0.84: 2 is 0.79 of three times that, and 1/2 is
+    // 0.2.
     CHECK_NEAR((double)right[0], 0.5 + 0.5 * 0.79, 0.01);
     CHECK_NEAR((double)right[2], 0.5 - 0.5 * 0.79, 0.01);
     CHECK_NEAR((double)left[2], 0.5 + 0.5 * 0.198, 0.01);
@@ -345,7 +349,8 @@ static void a_shift_of_half_a_texel_is_named(void **state)
     kiln_map_free(&from);
 }
 
-// The panorama is read half a texel to the right, which turns everything by 90 / 128 degrees about y.
+// The panorama is read half a texel to the right, which turns everything by 90 / 128 degrees about
+// y.
 static void a_shifted_panorama_is_named(void **state)
 {
     (void)state;

@@ -1,4 +1,5 @@
-// Checks whose n-th allocation fails: they fail with a message, free what they hold, and zero what they report.
+// Checks whose n-th allocation fails: they fail with a message, free what they hold, and zero what
+// they report.
 #include <kiln/check.h>
 
 #include "kit/kit.h"

@@ -40,7 +40,7 @@ static kiln_image ordered(const kiln_image *from, bool transposed, bool columns,
     return to;
 }
 
-// --------------------------------------------------------------------------------------------------- right tables
+// ------------------------------------------------------------------------------------ right tables
 
 static void right_tables_are_right(void **state)
 {
@@ -94,7 +94,7 @@ static void files_are_read_as_stored(void **state)
     kiln_table_free(&table);
 }
 
-// -------------------------------------------------------------------------------------------------- planted faults
+// ---------------------------------------------------------------------------------- planted faults
 
 static void orders_are_named(void **state)
 {

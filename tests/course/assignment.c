@@ -64,8 +64,9 @@ static void exact_is_exact(void **state)
     CHECK_NEAR(kiln_energy_average(&text, 0), 0.84569, 1e-5);
 }
 
-// Random points err by the root of their number: a fourth at 16 times as many. Hammersley's err less, by
-// N^-0.68 (Smith's G) to N^-0.87 (the text's), though the worst texel, at grazing angles, by the root too.
+// Random points err by the root of their number: a fourth at 16 times as many. Hammersley's err
+// less, by N^-0.68 (Smith's G) to N^-0.87 (the text's), though the worst texel, at grazing angles,
+// by the root too.
 static void importance_converges(void **state)
 {
     (void)state;
@@ -124,8 +125,8 @@ static void split_sum_adds_up(void **state)
     }
 }
 
-// Over independent runs the mean is the integral, within the standard error that the runs show. Below
-// roughness 0.3 a rare hit holds so much that a few runs show nothing of the kind.
+// Over independent runs the mean is the integral, within the standard error that the runs show.
+// Below roughness 0.3 a rare hit holds so much that a few runs show nothing of the kind.
 static void monte_carlo_is_unbiased(void **state)
 {
     (void)state;

@@ -1,4 +1,5 @@
-// The samples of the textbook's methods: radical inverses, half vectors that follow GGX, and Schlick's masking.
+// The samples of the textbook's methods: radical inverses, half vectors that follow GGX, and
+// Schlick's masking.
 #include "brdf/brdf.h"
 
 #include "kit/context.h"

@@ -1,5 +1,5 @@
-// The textbook's prefiltered levels and irradiance do what they say, and err where docs/theory/textbook.md says
-// that they do.
+// The textbook's prefiltered levels and irradiance do what they say, and err where
+// docs/theory/textbook.md says that they do.
 #include <kiln/course.h>
 
 #include "kit/context.h"
@@ -34,8 +34,8 @@ static void looked(const kiln_map *map, int level, size_t index, double d[3])
     panorama_direction(size, u * width, v * size, d);
 }
 
-// The mean through GGX of the picture as the textbook reads it: size - 1 rows of 2 size - 1 columns stretched over
-// the sphere.
+// The mean through GGX of the picture as the textbook reads it: size - 1 rows of 2 size - 1 columns
+// stretched over the sphere.
 static double stretched_mean(const kiln_map *map, double alpha, const double d[3], int n)
 {
     return ggx_mean(map, 2 * map->size - 1, map->size - 1, alpha, d, n);
@@ -81,8 +81,8 @@ static void white_prefiltered_stays_white(void **state)
 }
 
 // Directions arrive where they belong, on every shape. The bounds are the textbook's own: a mirror
-// reads texels whose centres are up to 1.5 texels away both ways, half for rounding down and one for
-// the stretching, on a picture whose slope is 1.
+// reads texels whose centres are up to 1.5 texels away both ways, half for rounding down and one
+// for the stretching, on a picture whose slope is 1.
 static double worst_on_gradient(kiln_shape shape, int source_size, bool irradiance)
 {
     kiln_map source = gradient(source_size), map;
@@ -188,8 +188,8 @@ static void level_zero_is_the_nearest_texel(void **state)
     kiln_map source = make_noise(context, KILN_SHAPE_PANORAMA, SIZE, 17), map;
     kiln_textbook_def def = {.size = SIZE, .level_count = 1, .sample_count = 4};
     CHECK_OK(kiln_textbook_prefilter(context, &source, &def, &map, &error));
-    // The textbook looks at the texels' very edges, so rounding may take the one before; u = 1 is the
-    // last column, which nothing else reads.
+    // The textbook looks at the texels' very edges, so rounding may take the one before; u = 1 is
+    // the last column, which nothing else reads.
     int same = 0;
     for (int y = 0; y < SIZE; y++)
         for (int x = 0; x < 2 * SIZE; x++) {

@@ -1,4 +1,5 @@
-// What is written for each engine is described as what it is: format, layout, levels, roughness, harmonics.
+// What is written for each engine is described as what it is: format, layout, levels, roughness,
+// harmonics.
 #include "codec/formats.h"
 #include "engine/engine.h"
 
@@ -200,9 +201,9 @@ static double light_of_block(const kiln_image *image, int x, int y)
     return sum;
 }
 
-// The rows of the KTX2 picture stand from below in the file, and are read from the top like those of
-// the EXR picture: both have the same black blocks, and block compression loses a few percent of the
-// light at most.
+// The rows of the KTX2 picture stand from below in the file, and are read from the top like those
+// of the EXR picture: both have the same black blocks, and block compression loses a few percent of
+// the light at most.
 static void the_atlas_is_the_same_in_blocks(void **state)
 {
     (void)state;

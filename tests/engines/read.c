@@ -59,8 +59,8 @@ static void direction_at(double u, double v, double d[3])
 typedef void (*looks)(const double world[3], double roughness, int level_count, double way[3],
                       double *lod);
 
-// bevy_pbr/src/light_probe/environment_map.wgsl, compute_radiances: the direction's z is negated, the
-// level is the roughness times that of the last level.
+// bevy_pbr/src/light_probe/environment_map.wgsl, compute_radiances: the direction's z is negated,
+// the level is the roughness times that of the last level.
 static void bevy_looks(const double world[3], double roughness, int level_count, double way[3],
                        double *lod)
 {
@@ -85,7 +85,8 @@ static void bevy_shows(const double world[3], double d[3])
     memcpy(d, world, 3 * sizeof *d);
 }
 
-// Skybox-Panoramic.shader, ToRadialCoords: (0.5, 1) - (atan2(z, x) / 2 pi, acos(y) / pi), v upwards.
+// Skybox-Panoramic.shader, ToRadialCoords: (0.5, 1) - (atan2(z, x) / 2 pi, acos(y) / pi), v
+// upwards.
 static void unity_shows(const double world[3], double d[3])
 {
     direction_at(0.5 - atan2(world[2], world[0]) / (2 * pi), acos(world[1]) / pi, d);
@@ -95,8 +96,9 @@ static void check_shown(const char *name, const kiln_map *map, kiln_format forma
                         void (*shows)(const double[3], double[3]))
 {
     const kiln_engine *engine = kiln_engine_find(name);
-    // Texels of the coarsest level that is read are an eighth of a face wide. A block of BC6H is then
-    // half a face, over which its few colours cannot follow three axes: finer levels are its proof.
+    // Texels of the coarsest level that is read are an eighth of a face wide. A block of BC6H is
+    // then half a face, over which its few colours cannot follow three axes: finer levels are its
+    // proof.
     const double finest = format == KILN_FORMAT_BC6H ? 2 : KILN_MAX_LEVELS;
     for (int j = 0; j <= LEVELS_SHOWN; j++)
         for (int i = 0; i < WAYS; i++) {
@@ -154,9 +156,9 @@ static void unity_reads_each_level_where_it_lies(void **state)
     unlink(in_folder("u.dds"));
 }
 
-// Godot's sky.glsl: SKY_COORDS = (atan2(x, -z) / 2 pi, wrapped to 0 to 1; acos(y) / pi). The picture that
-// lies in these coordinates is the one that was baked: kiln's direction of the same (u, v). Unreal's file
-// has the same pixels.
+// Godot's sky.glsl: SKY_COORDS = (atan2(x, -z) / 2 pi, wrapped to 0 to 1; acos(y) / pi). The
+// picture that lies in these coordinates is the one that was baked: kiln's direction of the same
+// (u, v). Unreal's file has the same pixels.
 static void panoramas_lie_as_they_were_read(void **state)
 {
     (void)state;

@@ -1,4 +1,5 @@
-// A cube and harmonics turned to an engine's axes hold the same light, and a cube is read smoothly across edges.
+// A cube and harmonics turned to an engine's axes hold the same light, and a cube is read smoothly
+// across edges.
 #include "engine/engine.h"
 
 #include "kit/context.h"

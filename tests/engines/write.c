@@ -1,9 +1,9 @@
 // Writes an engine's file of known content. engine_write ENGINE WHAT SIZE PATH [FORMAT]
 //   coded  level k in direction d has the radiance (1 + k) (2 + d): red has d.x, green d.y, blue d.z
 //   white  1 everywhere
-// Where an engine's files hold less than the coded cube's largest radiance, both are written DIM times darker, and
-// the page lets the engine multiply its light by DIM.
-// engine_write ENGINE default PANORAMA PATH: the levels that kiln bake --for ENGINE makes, as a cube of floats.
+// Where an engine's files hold less than the coded cube's largest radiance, both are written DIM
+// times darker, and the page lets the engine multiply its light by DIM. engine_write ENGINE default
+// PANORAMA PATH: the levels that kiln bake --for ENGINE makes, as a cube of floats.
 #include <kiln/kiln.h>
 
 #include <stdio.h>

@@ -1,11 +1,11 @@
-// Three panoramas of npm's @pmndrs/assets, which much of the web shows. Their lossy compression left
-// negative texels with 0.5 to 11 % of the light. Levels and harmonics are compared with brute force over
-// the numbers as the decoder leaves them.
+// Three panoramas of npm's @pmndrs/assets, which much of the web shows. Their lossy compression
+// left negative texels with 0.5 to 11 % of the light. Levels and harmonics are compared with brute
+// force over the numbers as the decoder leaves them.
 #include "codec/codec.h"
 #include "kit/context.h"
 
-// Compares 24 texels of each level with the sum over all texels of the panorama, 0 standing for sums
-// below zero.
+// Compares 24 texels of each level with the sum over all texels of the panorama, 0 standing for
+// sums below zero.
 static double level_error(const kiln_map *panorama, const kiln_map *map, int level)
 {
     enum { COUNT = 24 };

@@ -69,7 +69,7 @@ static void bits_are_where_the_tables_have_them(void **state)
     }
 }
 
-// ----------------------------------------------------------------------------------------- encoding
+// ---------------------------------------------------------------------------------------- encoding
 
 // What becomes of a block given as codes of half floats.
 static void there_and_back(int code[TEXELS][3], int back[TEXELS][3])
@@ -110,8 +110,8 @@ static void constant_blocks_are_exact(void **state)
     }
 }
 
-// A slope along a line: half of the sixteenth that an index steps by, and half a step of the ends, which
-// is 15.5 codes in the coarsest mode whose differences must reach here.
+// A slope along a line: half of the sixteenth that an index steps by, and half a step of the ends,
+// which is 15.5 codes in the coarsest mode whose differences must reach here.
 static void gradients_err_by_half_a_step(void **state)
 {
     (void)state;
@@ -130,8 +130,8 @@ static void gradients_err_by_half_a_step(void **state)
         }
 }
 
-// The mode of absolute ends and ten bits, a corner of the box of all colours to the opposite one, for
-// each of its diagonals, and for each texel the best of sixteen.
+// The mode of absolute ends and ten bits, a corner of the box of all colours to the opposite one,
+// for each of its diagonals, and for each texel the best of sixteen.
 static double plain_error(int code[TEXELS][3])
 {
     double least = HUGE_VAL;
@@ -195,8 +195,8 @@ static void random_blocks_beat_a_plain_encoder(void **state)
     CHECK_BELOW(ours, 0.75 * plain);
 }
 
-// Two colours, whatever the partition: what two subsets are for. The lattice of ends 15.5 codes apart
-// where the colours are near, and 62 where the mode must be absolute.
+// Two colours, whatever the partition: what two subsets are for. The lattice of ends 15.5 codes
+// apart where the colours are near, and 62 where the mode must be absolute.
 static void two_colours_are_two_lines(void **state)
 {
     (void)state;
@@ -221,7 +221,7 @@ static void two_colours_are_two_lines(void **state)
     }
 }
 
-// -------------------------------------------------------------------------------------- whole pictures
+// ---------------------------------------------------------------------------------- whole pictures
 
 // The levels of a sky with its sun: root of the mean squared difference in codes, of which 10 are
 // nearly a per cent.

@@ -1,5 +1,6 @@
-// What holds for every format of blocks of 4 x 4 texels: the same bits on every machine, and pictures of any size.
-// The encoder of UASTC HDR gives up some accuracy for blocks that are accurate after conversion to BC6H.
+// What holds for every format of blocks of 4 x 4 texels: the same bits on every machine, and
+// pictures of any size. The encoder of UASTC HDR gives up some accuracy for blocks that are
+// accurate after conversion to BC6H.
 #include "codec/bc6h.h"
 #include "codec/uastc.h"
 #include "kit/kit.h"
@@ -54,7 +55,8 @@ static void same_bits_for_every_machine_and_thread_count(void **state)
     free(next);
 }
 
-// Texels beyond the edge cost nothing: sizes that are no multiples of 4 come back as well as others.
+// Texels beyond the edge cost nothing: sizes that are no multiples of 4 come back as well as
+// others.
 static void any_size_comes_back(void **state)
 {
     (void)state;

@@ -119,7 +119,8 @@ static uint64_t long_word(const ki_writer *w, size_t at)
     return word(w, at) | (uint64_t)word(w, at + 4) << 32;
 }
 
-// The size that a frame of zstd states, as libzstd reads the frame. Without libzstd no level is compressed.
+// The size that a frame of zstd states, as libzstd reads the frame. Without libzstd no level is
+// compressed.
 static uint64_t frame_size(const uint8_t *frame, size_t size)
 {
 #if KILN_TEST_ZSTD

@@ -1,5 +1,5 @@
-// Decimal numbers in files: their value to 15 digits from the smallest to the largest double, and the text at
-// which a number ends.
+// Decimal numbers in files: their value to 15 digits from the smallest to the largest double, and
+// the text at which a number ends.
 #include "codec/decimal.h"
 
 #include "kit/kit.h"

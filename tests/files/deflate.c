@@ -1,5 +1,5 @@
-// zlib data: what zlib packs comes back, what kiln packs is read by zlib, and what is damaged does not
-// pass for whole.
+// zlib data: what zlib packs comes back, what kiln packs is read by zlib, and what is damaged does
+// not pass for whole.
 #include "codec/deflate.h"
 
 #include <zlib.h>
@@ -147,7 +147,8 @@ static void check_packed(const uint8_t *packed, size_t length, const uint8_t *pl
     assert_memory_equal(back, plain, size);
 }
 
-// zlib reads what is packed, which is about as short as zlib's own data, and fits exactly or not at all.
+// zlib reads what is packed, which is about as short as zlib's own data, and fits exactly or not at
+// all.
 static void zlib_inflates_what_is_deflated(void **state)
 {
     (void)state;
@@ -202,8 +203,8 @@ static void parts_are_one_stream(void **state)
     ki_deflater_free(deflater);
 }
 
-// Noise whose highest bit is more often set in every other stretch. Each stretch becomes a block of its
-// own, and no block becomes shorter than its stored form.
+// Noise whose highest bit is more often set in every other stretch. Each stretch becomes a block of
+// its own, and no block becomes shorter than its stored form.
 static void fill_stretches(uint8_t *plain, size_t size, size_t stretch)
 {
     uint64_t seed = 1;
@@ -215,7 +216,8 @@ static void fill_stretches(uint8_t *plain, size_t size, size_t stretch)
     }
 }
 
-// The room of the bound is enough for data that cannot be compressed, whatever its number of blocks.
+// The room of the bound is enough for data that cannot be compressed, whatever its number of
+// blocks.
 static void the_bound_is_enough_for_many_blocks(void **state)
 {
     (void)state;

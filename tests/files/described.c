@@ -1,4 +1,5 @@
-// Files that kiln describes without reading their pixels, in hostile hands: cut off, damaged, and made to lie.
+// Files that kiln describes without reading their pixels, in hostile hands: cut off, damaged, and
+// made to lie.
 #include "codec/engine_text.h"
 #include "codec/env.h"
 #include "codec/gltf.h"

@@ -1,5 +1,6 @@
-// OpenEXR files as they are read: what OpenEXRCore writes in every compression, windows, channels, strange values,
-// and what cannot be read is said. Threads do not matter, and memory is little more than the picture.
+// OpenEXR files as they are read: what OpenEXRCore writes in every compression, windows, channels,
+// strange values, and what cannot be read is said. Threads do not matter, and memory is little more
+// than the picture.
 #include "codec/codec.h"
 #include "exr_make.h"
 #include "image/pack.h"
@@ -166,9 +167,10 @@ static void check_refused(const exr_make *make, kiln_result wanted, const char *
     free(bytes);
 }
 
-// Rip levels halve width and height independently. OpenEXRCore 3.1.5 cannot write such levels, and the files
-// are from OpenEXR's C++ library, as the plain files are. Each level but the first holds the value 9.
-// The files stand in a folder of their own: cut in a later level, which is not read, they are still read.
+// Rip levels halve width and height independently. OpenEXRCore 3.1.5 cannot write such levels, and
+// the files are from OpenEXR's C++ library, as the plain files are. Each level but the first holds
+// the value 9. The files stand in a folder of their own: cut in a later level, which is not read,
+// they are still read.
 static void the_first_rip_level_is_read(void **state)
 {
     (void)state;

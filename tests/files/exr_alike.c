@@ -1,5 +1,5 @@
-// kiln's EXR reader beside OpenEXRCore's: every compression, type of sample, order of chunks and kind of
-// window, to the same bits.
+// kiln's EXR reader beside OpenEXRCore's: every compression, type of sample, order of chunks and
+// kind of window, to the same bits.
 #include "codec/codec.h"
 #include "exr_make.h"
 #include "exr_witness.h"

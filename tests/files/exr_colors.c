@@ -1,6 +1,6 @@
-// The colours and places of EXR files: chromaticities, luminance and chroma, and environment maps. Witnesses
-// are OpenEXR's own reader of luminance and chroma (RgbaInputFile), and files that OpenEXR's exrenvmap has
-// written.
+// The colours and places of EXR files: chromaticities, luminance and chroma, and environment maps.
+// Witnesses are OpenEXR's own reader of luminance and chroma (RgbaInputFile), and files that
+// OpenEXR's exrenvmap has written.
 #include "codec/codec.h"
 #include "exr_plain.h"
 #include "image/image.h"
@@ -36,7 +36,7 @@ static void check_note(const kiln_load_report *report, int index, kiln_note_kind
     assert_string_equal(note.text, text);
 }
 
-// ----------------------------------------------------------------------------------- chromaticities
+// ---------------------------------------------------------------------------------- chromaticities
 
 static float color[3];
 
@@ -70,8 +70,8 @@ static void check_color(const plain_file *file, double red, double green, double
     kiln_map_free(&map);
 }
 
-// The matrix of ACES in Rec. 709 by Bradford, as the Academy's aces-dev has it in AP1 to Rec. 709 (its
-// utility transforms), to six digits.
+// The matrix of ACES in Rec. 709 by Bradford, as the Academy's aces-dev has it in AP1 to Rec. 709
+// (its utility transforms), to six digits.
 static void primaries_become_those_of_rec709(void **state)
 {
     (void)state;
@@ -114,8 +114,8 @@ static void a_file_of_rec709_keeps_its_bits(void **state)
     }
 }
 
-// The colour with the chromaticity of D50 becomes white in a file whose neutral white is D50. Its red, green and
-// blue are XYZ of D50, (0.96421, 1, 0.82519), times the matrix of IEC 61966-2-1.
+// The colour with the chromaticity of D50 becomes white in a file whose neutral white is D50. Its
+// red, green and blue are XYZ of D50, (0.96421, 1, 0.82519), times the matrix of IEC 61966-2-1.
 static void the_adopted_neutral_becomes_white(void **state)
 {
     (void)state;
@@ -145,7 +145,8 @@ static void strange_colours_are_kept_or_refused(void **state)
     plain_file file = constant_file(0, 1, 0);
     file.chromaticities = acescg;
     check_color(&file, -0.621792, 1.140805, -0.128969, 2e-6);
-    // An infinite red becomes 65504; no colour can be computed for the texel, whose other channels stay.
+    // An infinite red becomes 65504; no colour can be computed for the texel, whose other channels
+    // stay.
     kiln_load_report report = {0};
     kiln_map map;
     file = constant_file(0, 1, 1);
@@ -201,7 +202,7 @@ static void the_shape_of_pixels_is_told_and_ignored(void **state)
     kiln_map_free(&map);
 }
 
-// ------------------------------------------------------------------------------ luminance and chroma
+// ---------------------------------------------------------------------------- luminance and chroma
 
 enum { YC_W = 64, YC_H = 32 };
 
@@ -252,8 +253,8 @@ static void read_witness(const char *path, ImfRgba *pixels)
     must(ImfCloseInputFile(file));
 }
 
-// OpenEXR rounds to a half after each of its steps, so that a result differs by some halfs' last bits
-// of the largest channel.
+// OpenEXR rounds to a half after each of its steps, so that a result differs by some halfs' last
+// bits of the largest channel.
 static void luminance_and_chroma_are_read_as_openexr_reads_them(void **state)
 {
     (void)state;
@@ -331,8 +332,8 @@ static void check_chroma(const float *chromaticities, int sampling, const int32_
     kiln_map_free(&map);
 }
 
-// The weights of luminance are those of the file's primaries, with chroma in every texel or in every second; also
-// where the display window cuts the data window.
+// The weights of luminance are those of the file's primaries, with chroma in every texel or in
+// every second; also where the display window cuts the data window.
 static void luminance_has_the_weights_of_the_primaries(void **state)
 {
     (void)state;
@@ -343,7 +344,7 @@ static void luminance_has_the_weights_of_the_primaries(void **state)
     }
 }
 
-// ----------------------------------------------------------------------------------- environment maps
+// -------------------------------------------------------------------------------- environment maps
 
 // The radiance, in kiln's axes, that exrenvmap was given as a panorama of 256 x 128.
 static double radiance(const double d[3], int c)
@@ -399,7 +400,8 @@ static void maps_of_exrenvmap_are_read_in_place(void **state)
     }
 }
 
-// The radiance at texel (x, y) of a panorama of 128 x 64, whose first and last columns are both at the seam.
+// The radiance at texel (x, y) of a panorama of 128 x 64, whose first and last columns are both at
+// the seam.
 static float border_panorama(int part, const char *channel, int x, int y)
 {
     (void)part;

@@ -1,5 +1,5 @@
-// EXR files of several layers and parts: which of these is the picture, what is said about the choice,
-// and what is refused. A sample's value tells its part and channel.
+// EXR files of several layers and parts: which of these is the picture, what is said about the
+// choice, and what is refused. A sample's value tells its part and channel.
 #include "codec/codec.h"
 #include "codec/file_info.h"
 #include "exr_plain.h"

@@ -1,6 +1,6 @@
-// EXR files that ask for much work or memory by few bytes: what is refused, and that every loop over the content of a
-// file asks the caller whether to go on. The number of these questions is counted, since the time that the work
-// takes says nothing on a busy machine.
+// EXR files that ask for much work or memory by few bytes: what is refused, and that every loop
+// over the content of a file asks the caller whether to go on. The number of these questions is
+// counted, since the time that the work takes says nothing on a busy machine.
 #include "codec/codec.h"
 #include "exr_plain.h"
 
@@ -194,7 +194,8 @@ static void the_part_outside_the_display_window_is_told(void **state)
     ki_writer_free(&w);
 }
 
-// Decodes with a progress callback that stops at one of its calls. Returns the number of calls until the end.
+// Decodes with a progress callback that stops at one of its calls. Returns the number of calls
+// until the end.
 static int count_calls(const ki_writer *w, int left, kiln_result wanted)
 {
     countdown count = {.left = left};
@@ -209,7 +210,8 @@ static int count_calls(const ki_writer *w, int left, kiln_result wanted)
     return count.calls;
 }
 
-// Whether to go on is asked after each 1024 attributes, channels or parts, and the work stops at any of these.
+// Whether to go on is asked after each 1024 attributes, channels or parts, and the work stops at
+// any of these.
 static void check_stops(const header *h, int questions, kiln_result result)
 {
     ki_writer w = {.context = context};

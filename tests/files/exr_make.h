@@ -34,11 +34,11 @@ typedef struct exr_make {
 /// Bytes to be released by free().
 uint8_t *exr_make_file(const exr_make *make, size_t *size);
 
-/// A line >= 0 that may stand for line `y` of a chunk in OpenEXRCore's pipelines: every sampling that
-/// the tests use divides the difference. OpenEXRCore 3.1.6 to 3.1.13 and 3.2 count one line too many
-/// of a subsampled channel whose chunk begins at an odd distance above line 0 or ends there
-/// (compute_sampled_lines in internal_util.h rounds towards 0, where it means down); their PIZ encoder
-/// then writes behind its buffer, and their decoder frees the buffer of its caller.
+/// A line >= 0 that may stand for line `y` of a chunk in OpenEXRCore's pipelines: every sampling
+/// that the tests use divides the difference. OpenEXRCore 3.1.6 to 3.1.13 and 3.2 count one line
+/// too many of a subsampled channel whose chunk begins at an odd distance above line 0 or ends
+/// there (compute_sampled_lines in internal_util.h rounds towards 0, where it means down); their
+/// PIZ encoder then writes behind its buffer, and their decoder frees the buffer of its caller.
 int exr_make_safe_line(int y);
 
 #endif

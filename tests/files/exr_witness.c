@@ -44,8 +44,8 @@ typedef struct target {
     float *pixels;
 } target;
 
-// Where the samples of a channel go: a plane of floats, or of integers for a channel of these; NULL for
-// a channel other than R, G and B.
+// Where the samples of a channel go: a plane of floats, or of integers for a channel of these; NULL
+// for a channel other than R, G and B.
 static float *ask_for_plane(exr_coding_channel_info_t *channel, const exr_chunk_info_t *info)
 {
     if (channel->channel_name[1] || !strchr("RGB", channel->channel_name[0]))
@@ -76,8 +76,8 @@ static void take_plane(const target *t, const exr_coding_channel_info_t *channel
     }
 }
 
-// Prepares to decode a chunk as if it began at a line that OpenEXRCore counts from without error, and
-// with the size that its channels then have.
+// Prepares to decode a chunk as if it began at a line that OpenEXRCore counts from without error,
+// and with the size that its channels then have.
 static bool begin(const target *t, const exr_chunk_info_t *at, exr_decode_pipeline_t *pipeline)
 {
     exr_chunk_info_t info = *at;

@@ -1,5 +1,5 @@
-// OpenEXR files as they are written: what kiln writes comes back, is the same by any number of threads, needs no
-// more memory than there is, and can be stopped.
+// OpenEXR files as they are written: what kiln writes comes back, is the same by any number of
+// threads, needs no more memory than there is, and can be stopped.
 #include "codec/codec.h"
 #include "image/pack.h"
 

@@ -1,4 +1,5 @@
-// Names of six faces: the same cube comes from a folder, a pattern and a list, whichever names the files have.
+// Names of six faces: the same cube comes from a folder, a pattern and a list, whichever names the
+// files have.
 #include <sys/stat.h>
 
 #include "kit/context.h"
@@ -30,8 +31,8 @@ static void save_faces(const kiln_map *cube, const char *before, const char *con
     }
 }
 
-// Loads the six files as a folder, by a pattern and as a list in another order, and checks that each way gives
-// the cube and a note with this text, or no note.
+// Loads the six files as a folder, by a pattern and as a list in another order, and checks that
+// each way gives the cube and a note with this text, or no note.
 static void check_ways(const kiln_map *cube, const char *before, const char *const words[6],
                        const char *after, const char *said)
 {
@@ -102,8 +103,9 @@ static void names_tell_the_faces(void **state)
     kiln_map_free(&cube);
 }
 
-// The direction of the point (s, t) of a side of a sky in Quake II and in Source, where s grows to the right and t
-// upwards, for the sides rt lf up dn ft bk. In these engines x and y are level and z is up.
+// The direction of the point (s, t) of a side of a sky in Quake II and in Source, where s grows to
+// the right and t upwards, for the sides rt lf up dn ft bk. In these engines x and y are level and
+// z is up.
 static void quake_direction(int side, double s, double t, double d[3])
 {
     const double directions[6][3] = {{1, -s, t},  {-1, s, t},  {-t, -s, 1},

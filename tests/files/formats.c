@@ -1,4 +1,5 @@
-// The table of formats: what an ending may hold is asked and saved by one rule, in letters of either case.
+// The table of formats: what an ending may hold is asked and saved by one rule, in letters of
+// either case.
 #include <kiln/brdf.h>
 
 #include "kit/context.h"
@@ -11,7 +12,8 @@ static kiln_map make_ramp(kiln_shape shape)
     return map;
 }
 
-// Every ending, shape, format and compression: the question has the answer, and the sentence, of the work.
+// Every ending, shape, format and compression: the question has the answer, and the sentence, of
+// the work.
 static void saving_does_what_the_check_says(void **state)
 {
     (void)state;
@@ -39,8 +41,8 @@ static void saving_does_what_the_check_says(void **state)
                 }
             kiln_map_free(&map);
         }
-    // A cube: KTX2 7 formats without zstd, and with zstd if the build has it, DDS 6, EXR, folder and pattern 3 each, HDR 1, PNG 4.
-    // Another shape: EXR and folder 3 each, HDR 1, PNG 4.
+    // A cube: KTX2 7 formats without zstd, and with zstd if the build has it, DDS 6, EXR, folder
+    // and pattern 3 each, HDR 1, PNG 4. Another shape: EXR and folder 3 each, HDR 1, PNG 4.
     assert_int_equal(good, 7 * (1 + KILN_TEST_ZSTD) + 6 + 3 * 3 + 1 + 4 + 2 * (2 * 3 + 1 + 4));
     assert_int_equal(good + bad, 12 * 3 * 11 * 2);
 }

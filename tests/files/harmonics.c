@@ -1,4 +1,5 @@
-// Files of spherical harmonics: the texts that are written, and what is described of texts and of KTX2 files.
+// Files of spherical harmonics: the texts that are written, and what is described of texts and of
+// KTX2 files.
 #include "codec/ktx1.h"
 
 #include "kit/describe.h"
@@ -59,7 +60,8 @@ static void irradiance_is_not_called_radiance(void **state)
     kiln_map_free(&map);
 }
 
-// Every text that kiln writes harmonics as, with each number of bands: what was saved is what is said.
+// Every text that kiln writes harmonics as, with each number of bands: what was saved is what is
+// said.
 static void harmonics_in_text_are_described(void **state)
 {
     (void)state;

@@ -123,8 +123,8 @@ static void check_colors(const char *header, const ki_matrix3 *a, const char *te
     ki_decoded_free(&decoded);
 }
 
-// The matrix of primaries is that of ki_rec709_from_rgb, which has tests with published numbers. The
-// matrix of XYZ is written here to its seventh digit.
+// The matrix of primaries is that of ki_rec709_from_rgb, which has tests with published numbers.
+// The matrix of XYZ is written here to its seventh digit.
 static void colors_are_converted_to_rec709(void **state)
 {
     static const ki_matrix3 one = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
@@ -237,8 +237,8 @@ static void flat_texels_may_look_like_run_lengths(void **state)
     }
 }
 
-// Lines of 4 texels may have no new runs. A picture whose first texel is (2, 2, 0, 4) is flat if the
-// file has the size of a flat picture; with another size the lines are runs.
+// Lines of 4 texels may have no new runs. A picture whose first texel is (2, 2, 0, 4) is flat if
+// the file has the size of a flat picture; with another size the lines are runs.
 static void short_lines_are_flat_or_runs(void **state)
 {
     static const uint8_t flat[4][4] = {

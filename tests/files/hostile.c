@@ -106,7 +106,8 @@ static void bad_files_are_refused(void **state)
     kiln_context *context = failing_context(&f);
     for (int i = 0; i < count; i++) {
         kiln_result result = decode(context, &f, bad[i].bytes, bad[i].size, bad[i].name);
-        // Without zstd, what is compressed by it (scheme 2 at byte 44 of a KTX2 file) may be refused as such.
+        // Without zstd, what is compressed by it (scheme 2 at byte 44 of a KTX2 file) may be
+        // refused as such.
         bool lacks_zstd = !KILN_TEST_ZSTD && strstr(bad[i].name, ".ktx2") && bad[i].size > 44 &&
                           bad[i].bytes[44] == 2 && result == KILN_ERROR_UNSUPPORTED;
         if (result != KILN_ERROR_FORMAT && !lacks_zstd)

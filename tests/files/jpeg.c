@@ -1,5 +1,5 @@
-// JPEG: samples are those of libjpeg-turbo, made linear by sRGB or by an ICC profile; gain maps by XMP
-// and by ISO 21496-1 are applied by their formula, which is computed here by libm; and what is
+// JPEG: samples are those of libjpeg-turbo, made linear by sRGB or by an ICC profile; gain maps by
+// XMP and by ISO 21496-1 are applied by their formula, which is computed here by libm; and what is
 // refused. All files are made here.
 #include "codec/codec.h"
 #include "image/color.h"
@@ -273,8 +273,8 @@ static void gain_maps_by_xmp_are_applied(void **state)
     }
 }
 
-// Adds the numbers of ISO 21496-1 with a common denominator of 1000, or with denominators of 100 and
-// 3 in turn.
+// Adds the numbers of ISO 21496-1 with a common denominator of 1000, or with denominators of 100
+// and 3 in turn.
 static void add_iso(ki_writer *w, const gain *g, int channels, bool common, double base_headroom,
                     double other_headroom)
 {
@@ -329,8 +329,8 @@ static void gain_maps_by_iso_21496_are_applied(void **state)
     }
 }
 
-// A map of a quarter of the size is read between the centres of its samples. A map whose samples grow
-// evenly by a step has the same slope after that, up to its outermost centres.
+// A map of a quarter of the size is read between the centres of its samples. A map whose samples
+// grow evenly by a step has the same slope after that, up to its outermost centres.
 static void small_gain_maps_are_read_between_samples(void **state)
 {
     static const gain g = {{0}, {4, 4, 4}, {1, 1, 1}, {0}, {0}};

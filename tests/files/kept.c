@@ -1,5 +1,6 @@
-// What a writer owes to a folder: an overwritten file keeps its mode, a link stays, long names work, the folder
-// is synchronised after the renames, and neither a full disk nor killed or simultaneous writers damage or leave anything.
+// What a writer owes to a folder: an overwritten file keeps its mode, a link stays, long names
+// work, the folder is synchronised after the renames, and neither a full disk nor killed or
+// simultaneous writers damage or leave anything.
 #include "base/file.h"
 
 #include <dirent.h>
@@ -16,15 +17,15 @@
 
 enum { N = 8, LEVELS = 2, FILES = 6 * LEVELS, MOMENTS = 200, ROUNDS = 40 };
 
-// ------------------------------------------------------------------------- calls of the system, recorded
+// ------------------------------------------------------------------- calls of the system, recorded
 
-// The linker sends the library's calls of write, fsync and rename here: F for a synchronised file, D for a folder,
-// R for a renamed file.
+// The linker sends the library's calls of write, fsync and rename here: F for a synchronised file,
+// D for a folder, R for a renamed file.
 static char calls[256];
 static size_t call_count;
 
-// What the disk refuses. `room`: bytes that the disk still takes, -1 for any number. `calls_left`: calls of fsync and
-// rename before the disk fails for good, -1 for any number.
+// What the disk refuses. `room`: bytes that the disk still takes, -1 for any number. `calls_left`:
+// calls of fsync and rename before the disk fails for good, -1 for any number.
 static struct {
     ssize_t room;
     int calls_left;
@@ -80,7 +81,7 @@ int __wrap_rename(const char *from, const char *to)
     return record('R') ? __real_rename(from, to) : -1;
 }
 
-// ------------------------------------------------------------------------------------------- single files
+// ------------------------------------------------------------------------------------ single files
 
 static void write_text(const char *path, const char *text)
 {
@@ -184,7 +185,7 @@ static void the_folder_is_synchronised_after_the_renames(void **state)
     assert_string_equal(calls, "FFFRRRDD"); // the folder of "a" and "sub", then "sub"
 }
 
-// ----------------------------------------------------------------------------------------------- leftovers
+// --------------------------------------------------------------------------------------- leftovers
 
 static void leftovers_are_removed_unless_their_writer_lives(void **state)
 {
@@ -268,8 +269,8 @@ static pid_t start_writer(float first, float step, int count)
     _exit(!good);
 }
 
-// Checks that saving failed with a sentence that ends in `reason`, and that the folder holds whole pictures and nothing
-// else, of which `fresh` have the value 2 and all others the value 1.
+// Checks that saving failed with a sentence that ends in `reason`, and that the folder holds whole
+// pictures and nothing else, of which `fresh` have the value 2 and all others the value 1.
 static void check_refused(bool saved, const char *reason, int fresh)
 {
     assert_false(saved);
@@ -296,8 +297,8 @@ static void a_full_disk_damages_nothing(void **state)
     assert_true(saved);
 }
 
-// A disk that fails from one of the 12 synchronisations or 12 renames on. A synchronisation that fails keeps the old
-// set; a rename that fails keeps the new files that were renamed before.
+// A disk that fails from one of the 12 synchronisations or 12 renames on. A synchronisation that
+// fails keeps the old set; a rename that fails keeps the new files that were renamed before.
 static void a_failing_disk_damages_no_file(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-// A picture that holds a whole environment: cubes as crosses and strips, the layout that a picture's sides or
-// its reader say, and faces that are neighbours in a cross and on the sphere.
+// A picture that holds a whole environment: cubes as crosses and strips, the layout that a
+// picture's sides or its reader say, and faces that are neighbours in a cross and on the sphere.
 #include "codec/codec.h"
 
 #include "kit/context.h"

@@ -1,5 +1,6 @@
-// Reading takes time that is linear in the size of a file, and can be stopped at any point of it: metadata and JSON of
-// KTX2, KTX 1, .glb and .env files and of harmonics, and folders of many faces.
+// Reading takes time that is linear in the size of a file, and can be stopped at any point of it:
+// metadata and JSON of KTX2, KTX 1, .glb and .env files and of harmonics, and folders of many
+// faces.
 #include <time.h>
 
 #include "base/bytes.h"
@@ -126,7 +127,8 @@ static double seconds_of(const char *path)
     return least;
 }
 
-// Four times the bytes may take six times the time, and two milliseconds; work of squared size would take 16 times.
+// Four times the bytes may take six times the time, and two milliseconds; work of squared size
+// would take 16 times.
 static void check_times(const char *name, double once, double fourfold)
 {
     printf("%-14s %8.2f ms, four times as large %8.2f ms\n", name, 1e3 * once, 1e3 * fourfold);

@@ -1,5 +1,6 @@
-// Inside a program whose locale has another decimal mark, "," or U+066B, kiln writes the same bytes, reads the same
-// numbers and says the same sentences. The locales are made by localedef, which belongs to the C library.
+// Inside a program whose locale has another decimal mark, "," or U+066B, kiln writes the same
+// bytes, reads the same numbers and says the same sentences. The locales are made by localedef,
+// which belongs to the C library.
 #include <locale.h>
 #include <sys/stat.h>
 
@@ -11,8 +12,8 @@ enum { MOST = 400 };
 
 static char home[64];
 
-// Makes a locale NAME in the folder of this test whose decimal mark is the UTF-8 bytes `mark`, a character of the
-// map below.
+// Makes a locale NAME in the folder of this test whose decimal mark is the UTF-8 bytes `mark`, a
+// character of the map below.
 static void make_locale(const char *name, const char *code)
 {
     static const char map[] = "<code_set_name> TINY\n<comment_char> %\n<escape_char> /\n"

@@ -1,5 +1,5 @@
-// Files in memory are the files that saving writes, for maps and for every engine, and memory that runs out
-// leaves nothing.
+// Files in memory are the files that saving writes, for maps and for every engine, and memory that
+// runs out leaves nothing.
 #include <unistd.h>
 
 #include "kit/context.h"

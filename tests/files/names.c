@@ -1,5 +1,5 @@
-// The names of files: a set of faces and levels is saved under names that say both, and is found again by a
-// folder, a pattern or a path.
+// The names of files: a set of faces and levels is saved under names that say both, and is found
+// again by a folder, a pattern or a path.
 #include <sys/stat.h>
 #include <unistd.h>
 

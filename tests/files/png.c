@@ -1,5 +1,5 @@
-// PNG: every colour type, depth, filter and interlacing as libpng writes them, as linear floats; what kiln
-// writes, as libpng reads it; and what is damaged.
+// PNG: every colour type, depth, filter and interlacing as libpng writes them, as linear floats;
+// what kiln writes, as libpng reads it; and what is damaged.
 #include "codec/codec.h"
 #include "codec/deflate.h"
 #include "codec/rgbx.h"
@@ -241,8 +241,8 @@ static void radiance_in_four_bytes_comes_back(void **state)
     kiln_map_free(&map);
 }
 
-// Eight and sixteen bits of one to four channels, larger than a part that is packed at once, as libpng
-// reads them.
+// Eight and sixteen bits of one to four channels, larger than a part that is packed at once, as
+// libpng reads them.
 static void libpng_reads_what_is_written(void **state)
 {
     (void)state;

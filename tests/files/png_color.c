@@ -600,9 +600,9 @@ static void profiles_that_kiln_cannot_use_count_as_srgb(void **state)
 
 // -------------------------------------------------------------------------- radiance in four bytes
 
-// A picture that kiln saved as RGBM, RGBD or RGBP loads as radiance. A byte of a root is off by half
-// a step, 1/510 of the texel's scale; the scale is near the largest root of the texel, and is at
-// least 1 in RGBD and RGBP.
+// A picture that kiln saved as RGBM, RGBD or RGBP loads as radiance. A byte of a root is off by
+// half a step, 1/510 of the texel's scale; the scale is near the largest root of the texel, and is
+// at least 1 in RGBD and RGBP.
 static void radiance_in_four_bytes_is_read_back(void **state)
 {
     static const struct {
@@ -659,7 +659,7 @@ static void radiance_needs_four_bytes(void **state)
     ki_writer_free(&w);
 }
 
-// ------------------------------------------------------------------------------- the picture as a whole
+// -------------------------------------------------------------------------- the picture as a whole
 
 static void add_at_end(ki_writer *w, const char *type, const uint8_t *data, size_t size)
 {
@@ -679,8 +679,8 @@ static void add_at_end(ki_writer *w, const char *type, const uint8_t *data, size
     ki_write(w, end, sizeof end);
 }
 
-// Where the stored picture's first row and first column are in the upright picture, for the orientations of Exif; the
-// chunk may stand before and after the data.
+// Where the stored picture's first row and first column are in the upright picture, for the
+// orientations of Exif; the chunk may stand before and after the data.
 static void orientations_are_honoured(void **state)
 {
     static const char *const first[8] = {"top left", "top right", "bottom right", "bottom left",

@@ -1,11 +1,12 @@
-// Light probes, mirror balls and panoramas of any sides: what is drawn into them by their formulas comes back in
-// its own directions.
+// Light probes, mirror balls and panoramas of any sides: what is drawn into them by their formulas
+// comes back in its own directions.
 #include "codec/codec.h"
 
 #include "kit/context.h"
 #include "kit/random.h"
 
-// The direction that a point of a probe or ball shows, from docs/conventions.md. Returns false outside the disc.
+// The direction that a point of a probe or ball shows, from docs/conventions.md. Returns false
+// outside the disc.
 static bool direction_of(kiln_layout layout, double u, double v, double d[3])
 {
     double r = sqrt(u * u + v * v), c = sqrt(fmax(0, 1 - r * r));
@@ -56,8 +57,9 @@ static float *draw(kiln_layout layout, int n, float outside)
     return pixels;
 }
 
-// The bounds are a step of one texel of the picture, which is the error of a picture whose texels are uniform; at
-// the rim of a ball one texel spans up to 2 acos(1 - 2 / n) from the point behind the ball.
+// The bounds are a step of one texel of the picture, which is the error of a picture whose texels
+// are uniform; at the rim of a ball one texel spans up to 2 acos(1 - 2 / n) from the point behind
+// the ball.
 static void a_smooth_function_comes_back(void **state)
 {
     (void)state;
@@ -124,7 +126,8 @@ static void a_constant_stays(void **state)
     }
 }
 
-// A single bright texel: its light is its value times its solid angle, which follows from the formulas.
+// A single bright texel: its light is its value times its solid angle, which follows from the
+// formulas.
 static void a_lamp_keeps_its_light_and_direction(void **state)
 {
     (void)state;

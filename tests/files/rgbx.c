@@ -24,8 +24,8 @@ static void store(const float packed[4], float stored[4])
     }
 }
 
-// What radiance the colours are shares of; with `less`, by the alpha that makes it smaller next, 0 where
-// there is none.
+// What radiance the colours are shares of; with `less`, by the alpha that makes it smaller next, 0
+// where there is none.
 static double scale_of(const coding *k, const float packed[4], int less)
 {
     float full[4] = {1, 1, 1, packed[3]}, rgb[3];
@@ -42,7 +42,8 @@ static double root(const coding *k, double value)
     return pow(value, 1 / k->power);
 }
 
-// Each channel's root is as near as 8 bits of its scale's allow, and no smaller scale holds the texel.
+// Each channel's root is as near as 8 bits of its scale's allow, and no smaller scale holds the
+// texel.
 static void roots_come_back_to_half_a_step(void **state)
 {
     (void)state;
@@ -66,8 +67,8 @@ static void roots_come_back_to_half_a_step(void **state)
     }
 }
 
-// The largest channel errs by less than 1 % from 1 up: of its root by 1/510 of the scale, which is above
-// the root by one step of alpha at most, and for RGBD twice the radiance at most.
+// The largest channel errs by less than 1 % from 1 up: of its root by 1/510 of the scale, which is
+// above the root by one step of alpha at most, and for RGBD twice the radiance at most.
 static void bright_channels_are_good(void **state)
 {
     (void)state;

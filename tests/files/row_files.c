@@ -1,5 +1,5 @@
-// Files that are baked while their rows pass by: the same environments, reports and error messages as of files that
-// are loaded as a whole.
+// Files that are baked while their rows pass by: the same environments, reports and error messages
+// as of files that are loaded as a whole.
 #include "exr_make.h"
 
 #include "base/bytes.h"
@@ -69,7 +69,7 @@ static void save(const char *path, uint8_t *bytes, size_t size)
     free(bytes);
 }
 
-// ---------------------------------------------------------------------------------------------------------------- EXR
+// --------------------------------------------------------------------------------------------- EXR
 
 // Noise with some values below zero.
 static float noise(int x, int y, const char *channel)
@@ -153,7 +153,8 @@ static float strange(int x, int y, const char *channel)
     return here ? strange_value : fabsf(noise(x, y, channel));
 }
 
-// Infinite values, values that are not a number, and values below zero: near a pole, in the middle, and everywhere.
+// Infinite values, values that are not a number, and values below zero: near a pole, in the middle,
+// and everywhere.
 static void values_that_are_no_radiance(void **state)
 {
     (void)state;
@@ -203,7 +204,8 @@ static void damage(void **state)
     free(bytes);
 }
 
-// What is read as a whole: other layouts, sides of another ratio, and a file that is no regular file.
+// What is read as a whole: other layouts, sides of another ratio, and a file that is no regular
+// file.
 static void other_pictures(void **state)
 {
     (void)state;
@@ -223,7 +225,7 @@ static void other_pictures(void **state)
     assert_false(passes("/dev/null", &(kiln_load_def){0}));
 }
 
-// ---------------------------------------------------------------------------------------------------------------- HDR
+// --------------------------------------------------------------------------------------------- HDR
 
 // Lines of the three encodings, in four orientations, with and without conversions.
 static void every_hdr(void **state)

@@ -1,6 +1,7 @@
-// The reading of a picture can be stopped while its data are inflated, its colours converted and its faces turned. Each
-// conversion of a picture of 64 rows asks at least once a row more than the reading of the same picture without the
-// conversion; texels of cubes are converted and turned in strips of 64 rows.
+// The reading of a picture can be stopped while its data are inflated, its colours converted and
+// its faces turned. Each conversion of a picture of 64 rows asks at least once a row more than the
+// reading of the same picture without the conversion; texels of cubes are converted and turned in
+// strips of 64 rows.
 #include "codec/codec.h"
 #include "codec/deflate.h"
 #include "image/pack.h"
@@ -120,7 +121,8 @@ static void put_cube(ki_writer *w, int size, kiln_format format)
     kiln_map_free(&cube);
 }
 
-// The texels of a face are unpacked in strips of 64 rows: one strip for a cube of 64, four for a cube of 256.
+// The texels of a face are unpacked in strips of 64 rows: one strip for a cube of 64, four for a
+// cube of 256.
 static void put_small_cube(ki_writer *w)
 {
     put_cube(w, 64, KILN_FORMAT_B10G11R11);
@@ -201,9 +203,9 @@ static kiln_result decode(const ki_writer *w, int left, kiln_map *map)
     return kiln_map_decode(own, w->bytes, w->size, "a", NULL, map, &error);
 }
 
-// Returns the number of questions while a file is read, at each of which the reading can be stopped. Work in steps asks
-// once more after each twentieth of a second, so that on a busy machine one reading may ask more often than the next: the
-// least number counts.
+// Returns the number of questions while a file is read, at each of which the reading can be
+// stopped. Work in steps asks once more after each twentieth of a second, so that on a busy machine
+// one reading may ask more often than the next: the least number counts.
 static int count_questions(void (*put)(ki_writer *w))
 {
     ki_writer w = {.context = context};
@@ -257,9 +259,10 @@ static void put_chunk(ki_writer *w, const char *type, const uint8_t *data, uint3
     ki_write(w, number, 4);
 }
 
-// A PNG of 82 million bytes, the last of which are missing: if inflating could not be stopped, each of these
-// readings would end with that damage. The block of deflate has fixed codes: a literal 0, then matches of 258 bytes
-// at distance 1, of 13 bits each. After the block's 3 bits and the literal's 8 the next 8 * 13 bits repeat.
+// A PNG of 82 million bytes, the last of which are missing: if inflating could not be stopped, each
+// of these readings would end with that damage. The block of deflate has fixed codes: a literal 0,
+// then matches of 258 bytes at distance 1, of 13 bits each. After the block's 3 bits and the
+// literal's 8 the next 8 * 13 bits repeat.
 static void inflating_can_be_stopped(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-// The texts in files of tables: names of arrays, made from the names of files, and the line that says which
-// table a file holds, which is parsed strictly.
+// The texts in files of tables: names of arrays, made from the names of files, and the line that
+// says which table a file holds, which is parsed strictly.
 #include "codec/codec.h"
 #include "lookup/tables.h"
 #include "table/table_text.h"

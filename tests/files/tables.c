@@ -1,5 +1,5 @@
-// Tables as files: every format there and back, which tables and formats a file cannot hold, and which files
-// hold no table.
+// Tables as files: every format there and back, which tables and formats a file cannot hold, and
+// which files hold no table.
 #include "lookup/tables.h"
 #include "image/pack.h"
 #include "table/table_text.h"

@@ -1,5 +1,5 @@
-// What files say of themselves in texts: a PNG holds texts and stays the same picture, and the name of the
-// writer ends before control characters.
+// What files say of themselves in texts: a PNG holds texts and stays the same picture, and the name
+// of the writer ends before control characters.
 #include "codec/ktx1.h"
 #include "codec/png_text.h"
 
@@ -7,7 +7,8 @@
 
 #include "kit/context.h"
 
-// A text goes between the header and the pixels, which stay what they were, and any reader passes over it.
+// A text goes between the header and the pixels, which stay what they were, and any reader passes
+// over it.
 static void texts_stand_in_a_png(void **state)
 {
     (void)state;
@@ -39,8 +40,8 @@ static void texts_stand_in_a_png(void **state)
     kiln_map_free(&map);
 }
 
-// The writer that a file names is printed on terminals, which obey control characters: the name ends
-// before the first of them, in every format that has such a name.
+// The writer that a file names is printed on terminals, which obey control characters: the name
+// ends before the first of them, in every format that has such a name.
 static void control_characters_end_a_writers_name(void **state)
 {
     (void)state;

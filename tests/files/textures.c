@@ -1,5 +1,6 @@
-// Cubes and pictures in KTX2, DDS and KTX 1 files as other programs write them: each file is put together here, byte by
-// byte from the specifications, and each texel that is read has the value that was written.
+// Cubes and pictures in KTX2, DDS and KTX 1 files as other programs write them: each file is put
+// together here, byte by byte from the specifications, and each texel that is read has the value
+// that was written.
 #include "codec/codec.h"
 #include "codec/deflate.h"
 
@@ -53,7 +54,8 @@ static void put_channel(ki_writer *w, const sample_file *f, uint32_t bits)
         ki_write_u16(w, (uint16_t)(f->channel == HALF ? half : bits));
 }
 
-// Number of the channel of texel t at position c of its bytes, in the order red, green, blue of all texels.
+// Number of the channel of texel t at position c of its bytes, in the order red, green, blue of all
+// texels.
 static size_t index_of(const sample_file *f, size_t t, int c)
 {
     return 3 * t + (size_t)(f->blue_first ? 2 - c : c);
@@ -175,7 +177,8 @@ static void write_ktx2(ki_writer *w, const sample_file *f)
     size_t index = w->size;
     for (int i = 0; i < 8 + 6 * f->levels; i++)
         ki_write_u32(w, 0);
-    // The basic descriptor block without samples: model 1, primaries 1 (BT.709), and the transfer function.
+    // The basic descriptor block without samples: model 1, primaries 1 (BT.709), and the transfer
+    // function.
     ki_patch_u32(w, index, (uint32_t)w->size);
     ki_patch_u32(w, index + 4, 28);
     put_words(
@@ -266,7 +269,8 @@ static void every_format_is_read(void **state)
         check_file(&files[i]);
 }
 
-// A 2-D texture of two to one is a panorama, and a cut one is refused before its memory is allocated.
+// A 2-D texture of two to one is a panorama, and a cut one is refused before its memory is
+// allocated.
 static void a_flat_texture_is_a_panorama(void **state)
 {
     (void)state;

@@ -121,7 +121,7 @@ static void partitions_are_those_of_astc(void **state)
                              subset_of(ki_uastc_partitions[p].number, i % 4, i / 4));
 }
 
-// ----------------------------------------------------------------------------------------- encoding
+// ---------------------------------------------------------------------------------------- encoding
 
 // What becomes of a block given as half floats' bits.
 static int there_and_back(int code[TEXELS][3], int back[TEXELS][3])
@@ -204,10 +204,10 @@ static void a_bright_texel_keeps_its_light(void **state)
     }
 }
 
-// A texel of 65504, the largest half float, among texels that are 2^step darker. Ends that lie up to
-// 8 factors of two apart are stored in steps of 4 of 128 numbers for each factor of two, of which
-// the last finite one is 64256. Ends further apart are stored in steps of 16, in blue of 32: 60416
-// and 55296 are the last ones.
+// A texel of 65504, the largest half float, among texels that are 2^step darker. Ends that lie up
+// to 8 factors of two apart are stored in steps of 4 of 128 numbers for each factor of two, of
+// which the last finite one is 64256. Ends further apart are stored in steps of 16, in blue of 32:
+// 60416 and 55296 are the last ones.
 static void the_brightest_texel_keeps_its_light(void **state)
 {
     (void)state;
@@ -225,8 +225,8 @@ static void the_brightest_texel_keeps_its_light(void **state)
         }
 }
 
-// A value is rounded to the nearest number of a range among those that are equal in the upper bits, by a search over all
-// numbers. All modes have one of these ranges.
+// A value is rounded to the nearest number of a range among those that are equal in the upper bits,
+// by a search over all numbers. All modes have one of these ranges.
 static void values_are_rounded_to_the_nearest(void **state)
 {
     (void)state;
@@ -273,7 +273,7 @@ static void noise_errs_less_than_its_range(void **state)
     }
 }
 
-// -------------------------------------------------------------------------------------- whole pictures
+// ---------------------------------------------------------------------------------- whole pictures
 
 // The levels of a sky with its sun: the error relative to the RMS radiance. Level 0 has the sun,
 // whose block spans so many factors of two that its ends are 8 steps apart for each. The other

@@ -40,8 +40,8 @@ static void a_ramp_keeps_its_values(void **state)
         image.pixels[i] = color[i % 3] * exp2f(24.0f * (float)(i / 3 % WIDTH) / (WIDTH - 1) - 14);
     ki_writer w = encode(&image);
     kiln_image again = read_again(&w);
-    // A JPEG of this quality changes codes of sRGB by 3 at most. Above 0.6 the picture is brighter than 0.36
-    // in its darkest channel, where 3 codes are 4 %.
+    // A JPEG of this quality changes codes of sRGB by 3 at most. Above 0.6 the picture is brighter
+    // than 0.36 in its darkest channel, where 3 codes are 4 %.
     for (int i = 0; i < 3 * WIDTH * HEIGHT; i++) {
         float wanted = image.pixels[i], shown = again.pixels[i];
         float codes = 255 * fabsf(ki_srgb_from_linear(shown) - ki_srgb_from_linear(wanted));
@@ -88,7 +88,8 @@ static void negative_values_become_black(void **state)
     ki_writer_free(&w);
 }
 
-// The index of pictures, the directory and the numbers of the gain map say where and what things are.
+// The index of pictures, the directory and the numbers of the gain map say where and what things
+// are.
 static void the_parts_are_where_the_file_says(void **state)
 {
     (void)state;

@@ -1,12 +1,12 @@
-// The bits that kiln makes on every machine, by every compiler, with every instruction set: one hash a line
-// of hashes.txt, which this program computes and compares.
+// The bits that kiln makes on every machine, by every compiler, with every instruction set: one
+// hash a line of hashes.txt, which this program computes and compares.
 //
 //   golden HASHES           computes every hash with each instruction set of this processor, compares
 //   golden HASHES --quick   leaves the long ones out, for processors that are emulated
 //   golden HASHES --update  writes the file anew; then CHANGELOG.md says under Output what changed
 //
-// It sees the public headers only and needs no test framework, so that it is built wherever kiln is. Files
-// are written to the current folder and removed.
+// It sees the public headers only and needs no test framework, so that it is built wherever kiln
+// is. Files are written to the current folder and removed.
 #include "kit/scene.h"
 
 #include <kiln/brdf.h>
@@ -29,7 +29,7 @@ static void check(kiln_result result, const char *what)
 
 #define CHECK(call) check((call), #call)
 
-// --------------------------------------------------------------------------------------------- hashes
+// ------------------------------------------------------------------------------------------ hashes
 
 static const uint64_t fnv_begin = 14695981039346656037u, fnv_prime = 1099511628211u; // FNV-1a
 
@@ -74,7 +74,7 @@ static uint64_t hash_file(const char *name)
     return hash;
 }
 
-// -------------------------------------------------------------------------------------- what is hashed
+// ---------------------------------------------------------------------------------- what is hashed
 
 static kiln_map make_panorama(kiln_context *context, int size, uint32_t seed)
 {
@@ -84,7 +84,8 @@ static kiln_map make_panorama(kiln_context *context, int size, uint32_t seed)
     return map;
 }
 
-// A tall spectrum, a width that is no power of two, a lobe too narrow for the spectrum: every kernel.
+// A tall spectrum, a width that is no power of two, a lobe too narrow for the spectrum: every
+// kernel.
 static const int sizes[] = {40, 128, 98};
 
 static uint64_t levels(kiln_context *context)
@@ -319,7 +320,7 @@ static entry entries[] = {
 };
 enum { ENTRIES = sizeof entries / sizeof *entries };
 
-// ------------------------------------------------------------------------------------------- the file
+// ---------------------------------------------------------------------------------------- the file
 
 static void read_hashes(const char *path)
 {
@@ -349,8 +350,8 @@ static void write_hashes(const char *path)
     fclose(file);
 }
 
-// Number of threads for an instruction set: a different number for each, because the bits must not depend on it. The
-// two sets that every processor has run with three threads and with one.
+// Number of threads for an instruction set: a different number for each, because the bits must not
+// depend on it. The two sets that every processor has run with three threads and with one.
 static int threads_for(int cpu)
 {
 #if defined(__EMSCRIPTEN__) // built without threads
@@ -364,8 +365,8 @@ static int threads_for(int cpu)
 
 typedef enum golden_mode { COMPARE, QUICK, UPDATE } golden_mode;
 
-// Computes hashes with one instruction set; returns how many are wrong. With UPDATE the first set, scalar,
-// says what is right.
+// Computes hashes with one instruction set; returns how many are wrong. With UPDATE the first set,
+// scalar, says what is right.
 static int compare(kiln_context *context, golden_mode mode)
 {
     const char *set = kiln_context_cpu(context);

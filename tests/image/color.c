@@ -136,9 +136,10 @@ static void pictures_are_converted(void **unused)
     kiln_context_destroy(context);
 }
 
-// Rows of 150 texels have two stretches that the library multiplies at once, and a rest. Every texel
-// has the bits of the three sums in double precision, also next to texels with a channel that is
-// infinite or not a number, which stay, and to products beyond the largest float, which become it.
+// Rows of 150 texels have two stretches that the library multiplies at once, and a rest. Every
+// texel has the bits of the three sums in double precision, also next to texels with a channel that
+// is infinite or not a number, which stay, and to products beyond the largest float, which become
+// it.
 static void every_texel_has_the_bits_of_its_sums(void **unused)
 {
     enum { WIDTH = 150, HEIGHT = 4, COUNT = WIDTH * HEIGHT };

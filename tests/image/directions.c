@@ -1,5 +1,5 @@
-// Texels and directions: each is found by the other, faces and seams join, and turning and mirroring a map moves
-// each texel to its place.
+// Texels and directions: each is found by the other, faces and seams join, and turning and
+// mirroring a map moves each texel to its place.
 #include "kit/kit.h"
 
 #include "image/image.h"

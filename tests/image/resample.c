@@ -246,8 +246,8 @@ static void compare(kiln_shape from, int source_size, kiln_shape to, int size, d
     kiln_context_destroy(context);
 }
 
-// The bounds allow for the slow sum's own error, which falls as its count of sub-samples grows: tried
-// up to 4009 a side.
+// The bounds allow for the slow sum's own error, which falls as its count of sub-samples grows:
+// tried up to 4009 a side.
 static void texels_are_means_of_what_lies_under_them(void **state)
 {
     (void)state;

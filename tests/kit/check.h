@@ -1,4 +1,5 @@
-// Includes cmocka with the headers that cmocka needs, and defines checks that print what they compare.
+// Includes cmocka with the headers that cmocka needs, and defines checks that print what they
+// compare.
 #ifndef KILN_CHECK_H
 #define KILN_CHECK_H
 

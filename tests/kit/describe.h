@@ -6,8 +6,8 @@
 
 #include <stddef.h>
 
-/// Describes a file in memory, in the context of context.h, without reading its pixels. Checks that a message
-/// of the error names the file.
+/// Describes a file in memory, in the context of context.h, without reading its pixels. Checks that
+/// a message of the error names the file.
 kiln_result describe(const void *bytes, size_t size, const char *name, kiln_file_info *info);
 
 #endif

@@ -1,5 +1,5 @@
-// A context whose memory is watched: blocks and bytes are counted, the n-th allocation may fail, and what is
-// released is overwritten, so that a later read of it shows.
+// A context whose memory is watched: blocks and bytes are counted, the n-th allocation may fail,
+// and what is released is overwritten, so that a later read of it shows.
 #ifndef KILN_KIT_FAILING_H
 #define KILN_KIT_FAILING_H
 

@@ -25,11 +25,12 @@ void folder_remove(void);
 /// The number of files and folders in a folder, hidden files included.
 int file_count(const char *path);
 
-/// The bytes of a file and a 0 behind them, to be released by free(). Fails if the file cannot be read.
+/// The bytes of a file and a 0 behind them, to be released by free(). Fails if the file cannot be
+/// read.
 uint8_t *read_file(const char *path, size_t *size);
 
-/// The bytes of a panorama of npm's @pmndrs/assets under `folder`, to be released by free(). The panorama is a data
-/// URL inside of a module of JavaScript.
+/// The bytes of a panorama of npm's @pmndrs/assets under `folder`, to be released by free(). The
+/// panorama is a data URL inside of a module of JavaScript.
 uint8_t *read_asset(const char *folder, const char *name, size_t *size);
 
 typedef struct folder_file {
@@ -38,7 +39,8 @@ typedef struct folder_file {
     size_t size;
 } folder_file;
 
-/// Reads all files of a folder that are not hidden, in any order, at most `most`. Returns their number.
+/// Reads all files of a folder that are not hidden, in any order, at most `most`. Returns their
+/// number.
 int read_folder(const char *path, folder_file *files, int most);
 
 /// Writes a file of these bytes, or replaces it.

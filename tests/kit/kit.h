@@ -1,5 +1,6 @@
-// The kit that all test programs share: one include for checks, random numbers, contexts, maps, files and
-// scenes. context.h adds a context for a whole program, quadrature.h the integrals of reflection models.
+// The kit that all test programs share: one include for checks, random numbers, contexts, maps,
+// files and scenes. context.h adds a context for a whole program, quadrature.h the integrals of
+// reflection models.
 #ifndef KILN_KIT_H
 #define KILN_KIT_H
 

@@ -23,7 +23,7 @@ void check_light_harmonics(kiln_context *context, const kiln_map *map, const kil
             CHECK_NEAR(rest.c[k][c] + taken.c[k][c], whole.c[k][c], 1e-3 * sqrt(squares / 3));
 }
 
-// --------------------------------------------------------------------------------------- irradiance
+// -------------------------------------------------------------------------------------- irradiance
 
 // number of surfaces that have one light on their horizon or close to the horizon
 enum { CUT = 24 };
@@ -47,7 +47,8 @@ static void find_frame(const double d[3], double a[3], double b[3])
         b[k] = d[(k + 1) % 3] * a[(k + 2) % 3] - d[(k + 2) % 3] * a[(k + 1) % 3];
 }
 
-// Sets `at` to the direction that lies at an angle from d, whose cosine is `height`, and at the angle phi around d.
+// Sets `at` to the direction that lies at an angle from d, whose cosine is `height`, and at the
+// angle phi around d.
 static void turn_from(const double d[3], double height, double phi, double at[3])
 {
     double a[3], b[3], away = sqrt(1 - height * height);
@@ -73,7 +74,8 @@ static void add_disc(const kiln_light *light, const double normal[3], double irr
         irradiance[c] += light->irradiance[c] / (pi * sine * sine) * sum * solid;
 }
 
-// Sets the direction of the surface that is brightest in a channel, by harmonics, among many directions.
+// Sets the direction of the surface that is brightest in a channel, by harmonics, among many
+// directions.
 static void find_brightest(const kiln_sh *irradiance, int channel, double d[3])
 {
     double most = -1;
@@ -89,8 +91,8 @@ static void find_brightest(const kiln_sh *irradiance, int channel, double d[3])
     }
 }
 
-// Sets the greatest irradiance of a surface in each channel: that of the surface which harmonics of five bands find,
-// summed over texels as points.
+// Sets the greatest irradiance of a surface in each channel: that of the surface which harmonics of
+// five bands find, summed over texels as points.
 static void find_most(kiln_context *context, const kiln_map *map, double most[3])
 {
     kiln_error error;
@@ -133,8 +135,9 @@ static void add_taken(const kiln_map *map, const kiln_map *left, size_t i, surfa
     }
 }
 
-// Sets surfaces that have light k on their horizon: CUT whose horizon passes through the light's centre, or half a
-// radius above or below, and for every other light one whose horizon passes through both centres. Returns the number.
+// Sets surfaces that have light k on their horizon: CUT whose horizon passes through the light's
+// centre, or half a radius above or below, and for every other light one whose horizon passes
+// through both centres. Returns the number.
 static int place_surfaces(const kiln_lights *lights, int k, surface *surfaces)
 {
     const kiln_light *light = &lights->light[k];

@@ -23,8 +23,8 @@ kiln_map make_panorama(kiln_context *context, int size);
 /// A map of one level of noise, uniform in (0, 1).
 kiln_map make_noise(kiln_context *context, kiln_shape shape, int size, uint64_t seed);
 
-/// A map whose first 2048 values of a level all differ, from 0 to 256 in steps of 1/8, which half floats hold
-/// exactly. Level k has the roughness k / (level_count - 1).
+/// A map whose first 2048 values of a level all differ, from 0 to 256 in steps of 1/8, which half
+/// floats hold exactly. Level k has the roughness k / (level_count - 1).
 kiln_map make_steps(kiln_context *context, kiln_shape shape, int size, int level_count);
 
 /// What kiln_bake makes of a sky of 32 rows: levels of size 16, irradiance of size 4, three bands.
@@ -39,8 +39,8 @@ void fill_constant(kiln_map *map, float value);
 /// Sets every value of level 0 to noise, uniform in (low, high).
 void fill_noise(kiln_map *map, uint64_t seed, double low, double high);
 
-/// Sets the colour of every texel of a level to factor (2 + d), where d is the texel's direction: three
-/// linear functions on the sphere, all positive.
+/// Sets the colour of every texel of a level to factor (2 + d), where d is the texel's direction:
+/// three linear functions on the sphere, all positive.
 void fill_gradient(kiln_map *map, int level, double factor);
 
 /// The texel in column x, row y of level 0 of a panorama.

@@ -25,8 +25,8 @@ void half_rule(double a, double b, double nodes[HALF_NODES], double weights[HALF
     }
 }
 
-// The range of the half vector's angle theta to n, cut where the integrand changes its form: at half the
-// view's elevation, and at `width` times powers of STRETCH. Returns the number of panels.
+// The range of the half vector's angle theta to n, cut where the integrand changes its form: at
+// half the view's elevation, and at `width` times powers of STRETCH. Returns the number of panels.
 static int half_cuts(double theta_v, double width, double cuts[MAX_CUTS])
 {
     enum { STRETCH = 30 };
@@ -48,8 +48,8 @@ static int half_cuts(double theta_v, double width, double cuts[MAX_CUTS])
     return count;
 }
 
-// For angles theta of h to n below half the view's elevation, the azimuth phi runs over the full circle;
-// above that, up to where n.l = 0, at cos phi = -cot theta_v cot 2 theta.
+// For angles theta of h to n below half the view's elevation, the azimuth phi runs over the full
+// circle; above that, up to where n.l = 0, at cos phi = -cot theta_v cot 2 theta.
 void half_integrate(double nov, double width, void (*f)(const void *user, const half *h, double *x),
                     const void *user, int x_count, double *sums)
 {

@@ -1,5 +1,6 @@
-// Random numbers for tests: the same on every machine, well mixed for every seed, 0 included. Needs no
-// test framework, so that the programs which write files for other programs use these numbers too.
+// Random numbers for tests: the same on every machine, well mixed for every seed, 0 included. Needs
+// no test framework, so that the programs which write files for other programs use these numbers
+// too.
 #ifndef KILN_KIT_RANDOM_H
 #define KILN_KIT_RANDOM_H
 
@@ -8,8 +9,8 @@
 
 static const double pi = 3.14159265358979323846;
 
-/// 64 bits that look random, as a function of 64 bits: the output function of SplitMix64 (Steele, Lea and
-/// Flood 2014, "Fast splittable pseudorandom number generators").
+/// 64 bits that look random, as a function of 64 bits: the output function of SplitMix64 (Steele,
+/// Lea and Flood 2014, "Fast splittable pseudorandom number generators").
 static inline uint64_t random_hash(uint64_t value)
 {
     value = (value ^ value >> 30) * 0xbf58476d1ce4e5b9u;

@@ -9,7 +9,8 @@ kiln_map scene_panorama(kiln_context *context, int size, uint32_t seed)
     return map;
 }
 
-// The lobe's integral over the texel in column x between the cosines `top` and `bottom`, in n x n equal areas.
+// The lobe's integral over the texel in column x between the cosines `top` and `bottom`, in n x n
+// equal areas.
 static double ggx_weight(double alpha, const double d[3], int n, double top, double bottom,
                          double x, double columns)
 {
@@ -77,7 +78,8 @@ double filtered_furnace_error(kiln_context *context, int size, int face, enum ki
     kiln_map in = make_panorama(context, size), out;
     fill_constant(&in, 0.75f);
     kiln_prefilter_def def = {.size = face, .lobe = lobe};
-    // At roughness 0 the lobes of Phong and Charlie are so narrow that they cost much and run no other code.
+    // At roughness 0 the lobes of Phong and Charlie are so narrow that they cost much and run no
+    // other code.
     static const float roughness[] = {0.3f, 0.4f, 0.5f, 0.6f, 0.7f, 0.8f, 1};
     if (lobe > KILN_LOBE_LAMBERT)
         def.roughness = roughness;

@@ -9,9 +9,9 @@
 /// A panorama with the scene of scene.h.
 kiln_map scene_panorama(kiln_context *context, int size, uint32_t seed);
 
-/// The mean of channel 0 of a picture laid over the whole sphere, seen through the GGX lobe of width alpha around
-/// the direction d: each texel is cut into n x n equal areas, by libm and without the library. The picture is the first
-/// `columns` x `rows` texels of a panorama.
+/// The mean of channel 0 of a picture laid over the whole sphere, seen through the GGX lobe of
+/// width alpha around the direction d: each texel is cut into n x n equal areas, by libm and
+/// without the library. The picture is the first `columns` x `rows` texels of a panorama.
 double ggx_mean(const kiln_map *map, int columns, int rows, double alpha, const double d[3], int n);
 
 typedef struct scene_errors {
@@ -22,8 +22,8 @@ typedef struct scene_errors {
 scene_errors scene_compare(kiln_context *context, const kiln_map *panorama, const kiln_map *result,
                            int level, const kiln_lobe *lobe, double rotation, int count);
 
-/// White furnace: a uniform environment of `size` rows stays uniform. Returns the largest relative error over all
-/// levels of a cube with `face` x `face` texels in level 0, filtered by `lobe`.
+/// White furnace: a uniform environment of `size` rows stays uniform. Returns the largest relative
+/// error over all levels of a cube with `face` x `face` texels in level 0, filtered by `lobe`.
 double filtered_furnace_error(kiln_context *context, int size, int face, enum kiln_lobe_kind lobe);
 
 #endif

@@ -29,8 +29,8 @@ static inline void scene_fill(kiln_map *map, uint32_t seed)
         map->level[0][3 * sun + (size_t)c] = 5000;
 }
 
-/// Fills a panorama of more than 9 rows with whole numbers from 0 to 16, and one texel of sun with radiance 5000,
-/// 4300 and 3600.
+/// Fills a panorama of more than 9 rows with whole numbers from 0 to 16, and one texel of sun with
+/// radiance 5000, 4300 and 3600.
 static inline void scene_checks(kiln_map *map)
 {
     int width = 2 * map->size;

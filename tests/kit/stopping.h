@@ -9,8 +9,8 @@ typedef struct countdown {
     int calls; // number of reports until now
 } countdown;
 
-/// A progress callback of a context whose user pointer is a countdown. Checks that there is a stage and that the
-/// fraction is in [0, 1].
+/// A progress callback of a context whose user pointer is a countdown. Checks that there is a stage
+/// and that the fraction is in [0, 1].
 bool count_down(void *user, const char *stage, double fraction);
 
 #endif

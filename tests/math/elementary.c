@@ -1,4 +1,5 @@
-// Elementary functions, error functions and the beta function agree with libm, up to the ends of their ranges.
+// Elementary functions, error functions and the beta function agree with libm, up to the ends of
+// their ranges.
 #include "kit/kit.h"
 
 #include "math/math.h"

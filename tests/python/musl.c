@@ -1,4 +1,5 @@
-// Loads the wheel's library by musl's loader and bakes with two threads: musl.c LIBRARY prints "0.2.0 1.0000".
+// Loads the wheel's library by musl's loader and bakes with two threads: musl.c LIBRARY prints
+// "0.2.0 1.0000".
 #include <dlfcn.h>
 #include <kiln/kiln.h>
 #include <stdio.h>

@@ -36,7 +36,7 @@ static void set(const kiln_map *map, const kiln_lights *lights)
     view_set_lights(renderer, lights);
 }
 
-// ------------------------------------------------------------------------------ sums over the points
+// ---------------------------------------------------------------------------- sums over the points
 
 enum { POINTS = 2048, GROUND = 10, SKY = 11, PARTS = 12 };
 
@@ -80,8 +80,8 @@ static double meet(const view_ball *ball, const double from[3], const double d[3
     return rest > 0 ? -along - sqrt(rest) : -1;
 }
 
-// Returns what the centre of pixel (x, y) shows: the index of a ball, GROUND or SKY. Sets *p to the point of the
-// ball or of the ground.
+// Returns what the centre of pixel (x, y) shows: the index of a ball, GROUND or SKY. Sets *p to the
+// point of the ball or of the ground.
 static int seen_at(const view *w, int x, int y, view_point *p)
 {
     double d[3], slope = tan(w->options->camera.fov * pi / 360), reach = 1e30;
@@ -209,8 +209,8 @@ static void measure(const view_options *o, const kiln_lights *lights, difference
 }
 
 // A view under one disc, with the errors of the method that docs/lights.md states: on balls the RMS
-// difference over the RMS value and the difference of sums, and on the ground the largest and the RMS
-// difference over the value that nothing shades.
+// difference over the RMS value and the difference of sums, and on the ground the largest and the
+// RMS difference over the value that nothing shades.
 static const struct {
     view_material material;
     double radius, ball, ball_sum, ground, ground_rms;
@@ -259,10 +259,10 @@ static void discs_are_sums_over_their_points(void **unused)
     }
 }
 
-// The sums of all pixels of each ball and of the ground. They differ from the reference by the errors
-// of the method, by the ground's light of the sky, of which balls that hide one another take up to
-// 0.4 % too much, and by noise: by 4 standard errors at most, if each channel has the noise of the
-// worst channel, and no pixel's noise depends on another's.
+// The sums of all pixels of each ball and of the ground. They differ from the reference by the
+// errors of the method, by the ground's light of the sky, of which balls that hide one another take
+// up to 0.4 % too much, and by noise: by 4 standard errors at most, if each channel has the noise
+// of the worst channel, and no pixel's noise depends on another's.
 static void discs_are_the_references(void **unused)
 {
     (void)unused;
@@ -339,9 +339,9 @@ static void the_ground_has_its_values(void **unused)
 }
 
 // The reference draws as many samples for each pixel as a wanted noise needs, which must not favour
-// bright or dark estimates: four fifths of the draws from the light hit the disc, and a pixel in which
-// more of them did would have a smaller estimated noise. The mean of all pixels has the standard error
-// noise / sqrt(number of pixels).
+// bright or dark estimates: four fifths of the draws from the light hit the disc, and a pixel in
+// which more of them did would have a smaller estimated noise. The mean of all pixels has the
+// standard error noise / sqrt(number of pixels).
 static void the_reference_is_right_in_the_mean(void **unused)
 {
     (void)unused;

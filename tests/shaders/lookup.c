@@ -151,8 +151,8 @@ static void measure(int index, double off[2])
     kiln_table_free(&table);
 }
 
-// On neighbours that differ by up to 1 and 7 texels a side: floats err by some 1e-6 then, and filters
-// of texture units may have weights of 8 bits.
+// On neighbours that differ by up to 1 and 7 texels a side: floats err by some 1e-6 then, and
+// filters of texture units may have weights of 8 bits.
 static void lookups_agree(void **unused)
 {
     (void)unused;

@@ -1,11 +1,11 @@
-// Metals by their measured indices: against published colours, against the form that the shader has,
-// and the third term of the split sum against a sum over half vectors.
+// Metals by their measured indices: against published colours, against the form that the shader
+// has, and the third term of the split sum against a sum over half vectors.
 #include "internal.h"
 
 #include "kit/context.h"
 
-// F0 in linear Rec. 709 as Akenine-Moller et al. print it (Real-Time Rendering, 4th edition 2018, table
-// 9.2), from other samples of these metals; our red is cut to 1.
+// F0 in linear Rec. 709 as Akenine-Moller et al. print it (Real-Time Rendering, 4th edition 2018,
+// table 9.2), from other samples of these metals; our red is cut to 1.
 static void colours_are_as_published(void **unused)
 {
     (void)unused;
@@ -29,8 +29,8 @@ static void colours_are_as_published(void **unused)
     }
 }
 
-// The form of the shader, through F at 0 and 82 degrees, errs by up to 0.021 and in the mean by 0.008;
-// Schlick's by 0.19.
+// The form of the shader, through F at 0 and 82 degrees, errs by up to 0.021 and in the mean by
+// 0.008; Schlick's by 0.19.
 static void the_shaders_form_is_near(void **unused)
 {
     (void)unused;

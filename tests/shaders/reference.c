@@ -19,7 +19,8 @@ static void make_environment(kiln_map *map)
     }
 }
 
-// The mean of 1 / pdf is the sphere, of radiance / pdf the total, of d radiance / pdf the first moment.
+// The mean of 1 / pdf is the sphere, of radiance / pdf the total, of d radiance / pdf the first
+// moment.
 static void light_is_drawn_where_it_is(void **unused)
 {
     (void)unused;
@@ -30,7 +31,8 @@ static void light_is_drawn_where_it_is(void **unused)
     make_environment(&map);
     CHECK_OK(view_light_create(context, &map, 30, &light, &error));
     light_means means = draw_light(&light, COUNT, 1);
-    // By a fine grid, turned as the light is: azimuth a is seen where the source has a + 30 degrees.
+    // By a fine grid, turned as the light is: azimuth a is seen where the source has a + 30
+    // degrees.
     enum { FINE = 512 };
     for (int y = 0; y < FINE; y++)
         for (int x = 0; x < 2 * FINE; x++) {
@@ -76,8 +78,8 @@ static void white_balls_vanish_in_the_furnace(void **unused)
     kiln_image_free(&image);
 }
 
-// The same with the walk in place of Kulla and Conty's lobe, for each ball and in the mean; and with a
-// metal, whose albedo is the library's own walk's.
+// The same with the walk in place of Kulla and Conty's lobe, for each ball and in the mean; and
+// with a metal, whose albedo is the library's own walk's.
 static void walks_lose_nothing(void **unused)
 {
     (void)unused;
@@ -106,7 +108,7 @@ static void walks_lose_nothing(void **unused)
     view_light_free(&white);
 }
 
-// ---------------------------------------------------------------------------------------- brute force
+// ------------------------------------------------------------------------------------- brute force
 
 static void normalize(double a[3])
 {
@@ -225,7 +227,8 @@ static double draw_direction(double roughness, const double v[3], double which, 
     return (kiln_pdf_cosine(fmax(l[2], 0)) + specular) / 2;
 }
 
-// Light among the balls, by the plainest of path tracers: no light is drawn, every path goes to its end.
+// Light among the balls, by the plainest of path tracers: no light is drawn, every path goes to its
+// end.
 static void trace(const view_ball *balls, int count, const view_energy *energy, double at[3],
                   double d[3], view_random *random, double sum[3])
 {

@@ -1,5 +1,6 @@
-// Laws of the ways to look reflections up: a white furnace stays white, and more lookups have smaller
-// errors against the reference. The reflections of all ways have one environment and one reference.
+// Laws of the ways to look reflections up: a white furnace stays white, and more lookups have
+// smaller errors against the reference. The reflections of all ways have one environment and one
+// reference.
 #include "reflections.h"
 
 #include "reference.h"
@@ -31,7 +32,8 @@ static void light_up(const kiln_map *map)
     kiln_environment_free(&e);
 }
 
-// Mean over the balls with one bounce and a roughness of 0.35 to 0.95, without the reference's noise.
+// Mean over the balls with one bounce and a roughness of 0.35 to 0.95, without the reference's
+// noise.
 static double mean_of(const view_options *o, const view_error *e, const view_error *noise)
 {
     view_ball balls[VIEW_MAX_BALLS];

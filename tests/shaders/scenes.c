@@ -58,8 +58,8 @@ static void the_camera_is_the_handouts(void **unused)
     CHECK_NEAR(balls[9].f0[0], pow(0.7216, 2.2), 1e-15);
 }
 
-// The handout's figures 5 and 6 read (63, 40, 18) where the ball is brightest, more often than any other
-// colour, and (60, 38, 17) where it faces the camera, by one more or less.
+// The handout's figures 5 and 6 read (63, 40, 18) where the ball is brightest, more often than any
+// other colour, and (60, 38, 17) where it faces the camera, by one more or less.
 static void the_roughest_ball_has_the_handouts_colour(void **unused)
 {
     (void)unused;

@@ -18,7 +18,7 @@ static int table_unit; // of `table`, beside the arguments
 
 static uint64_t seed = 1;
 
-// ------------------------------------------------------------------------------------------- render
+// ------------------------------------------------------------------------------------------ render
 
 static int start(void **unused)
 {
@@ -324,9 +324,10 @@ static void at_half(double k, double to[2])
     to[1] = (1 - k) * (1 + k) / (1 + k * k);
 }
 
-// The integral of (x dy - y dx) / (alpha^2 + x^2 + y^2) along the border of a disc of light, divided by 2 pi, which
-// ggx_disc of shaders/disc.glsl computes. Here the slopes x, y of the half vectors are taken relative to 0, in double
-// precision; the shader takes them relative to the slope of the disc's centre, which floats need.
+// The integral of (x dy - y dx) / (alpha^2 + x^2 + y^2) along the border of a disc of light,
+// divided by 2 pi, which ggx_disc of shaders/disc.glsl computes. Here the slopes x, y of the half
+// vectors are taken relative to 0, in double precision; the shader takes them relative to the slope
+// of the disc's centre, which floats need.
 static double border_integral(double alpha, const double v[3], const double l[3], double sine)
 {
     enum { NODES = 48 };
@@ -595,8 +596,8 @@ static double degree_at(const kiln_sh *sh, int degree, const double a[3], double
     return value[channel];
 }
 
-// The six terms of lobes_rest, by values of the harmonics in directions: n'M t is half the difference
-// of d'M d at (n + t) / sqrt(2) and (n - t) / sqrt(2).
+// The six terms of lobes_rest, by values of the harmonics in directions: n'M t is half the
+// difference of d'M d at (n + t) / sqrt(2) and (n - t) / sqrt(2).
 static void the_rest_of_lobes_agrees_with_c(void **unused)
 {
     (void)unused;

@@ -1,12 +1,12 @@
-// The window shows what the headless renderer draws (with --screen, where there is one), and keys and
-// mouse do what they say.
+// The window shows what the headless renderer draws (with --screen, where there is one), and keys
+// and mouse do what they say.
 #include "window.h"
 #include "controls.h"
 #include "headless.h"
 
 #include "kit/context.h"
 
-// ----------------------------------------------------------------------------------------- controls
+// ---------------------------------------------------------------------------------------- controls
 
 static void a_whole_turn_leads_back(void **unused)
 {
@@ -55,7 +55,7 @@ static void keys_do_what_they_say(void **unused)
     assert_false(view_key(&o, 'x', all));
 }
 
-// -------------------------------------------------------------------------------------------- window
+// ------------------------------------------------------------------------------------------ window
 
 static int on_screen;
 

@@ -49,7 +49,8 @@ static void check_levels(const kiln_map *panorama, const char *name)
         }
     }
     printf("%-10s mirror           rms %.1e\n", name, sqrt(square / whole));
-    // The sum above is the less exact of the two: a column of points more or less at a texel's edge.
+    // The sum above is the less exact of the two: a column of points more or less at a texel's
+    // edge.
     CHECK_BELOW(sqrt(square / whole), 5e-3);
     kiln_map_free(&out);
 }

@@ -1,4 +1,5 @@
-// The basis of spherical harmonics is orthonormal, and harmonics that are filtered are those of a spectrum.
+// The basis of spherical harmonics is orthonormal, and harmonics that are filtered are those of a
+// spectrum.
 #include "math/math.h"
 #include "sphere/sh.h"
 

@@ -5,7 +5,8 @@
 
 #include "kit/context.h"
 
-// GGX at all pairs of sizes, the other lobes at the smallest; test_sphere_lobes has their large sizes.
+// GGX at all pairs of sizes, the other lobes at the smallest; test_sphere_lobes has their large
+// sizes.
 static void white_furnace_stays_white(void **state)
 {
     (void)state;
@@ -239,7 +240,8 @@ static void power_is_that_of_the_environment(void **state)
     kiln_map_free(&in);
 }
 
-// A sun on black: above its degree a spectrum has the power of the sun, which a spectrum of that degree has.
+// A sun on black: above its degree a spectrum has the power of the sun, which a spectrum of that
+// degree has.
 static void suns_have_power_above_the_degree(void **state)
 {
     (void)state;

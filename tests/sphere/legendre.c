@@ -1,4 +1,5 @@
-// Associated Legendre functions are orthonormal, and the rings that each order leaves out hold nothing.
+// Associated Legendre functions are orthonormal, and the rings that each order leaves out hold
+// nothing.
 #include "sphere/legendre.h"
 #include "math/math.h"
 #include "sphere/grid.h"
@@ -39,8 +40,8 @@ static void legendre_functions_are_orthonormal(void **state)
     ki_legendre_destroy(&legendre);
 }
 
-// Skipped orders must not matter: the largest |P_lm| on the rings left out stays below 1e-12 of what
-// it reaches elsewhere (about sqrt(degree)).
+// Skipped orders must not matter: the largest |P_lm| on the rings left out stays below 1e-12 of
+// what it reaches elsewhere (about sqrt(degree)).
 static void skipped_rings_hold_nothing(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-// What costs many lobes and long sums: every lobe against brute force, the narrowest lobes and a single
-// bright texel among them, and the white furnace of the lobes other than GGX.
+// What costs many lobes and long sums: every lobe against brute force, the narrowest lobes and a
+// single bright texel among them, and the white furnace of the lobes other than GGX.
 #include "bake/reference.h"
 #include "math/math.h"
 

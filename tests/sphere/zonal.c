@@ -1,4 +1,5 @@
-// Zonal series of lobes: closed forms, the sum of a series, the size of its tail, and lobes out of range.
+// Zonal series of lobes: closed forms, the sum of a series, the size of its tail, and lobes out of
+// range.
 #include "sphere/zonal.h"
 #include "math/math.h"
 #include "sphere/lobe.h"

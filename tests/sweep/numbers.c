@@ -1,5 +1,5 @@
-// The sweep over the functions of numbers, which cannot fail: reflection models, samplers, tables, lobes,
-// harmonics and engines.
+// The sweep over the functions of numbers, which cannot fail: reflection models, samplers, tables,
+// lobes, harmonics and engines.
 #include "sweep.h"
 
 #include <kiln/course.h>
@@ -37,7 +37,8 @@ static void names_end(void **state)
     }
 }
 
-// Every string of up to two bytes and every code point: the text that remains is UTF-8 that a terminal shows.
+// Every string of up to two bytes and every code point: the text that remains is UTF-8 that a
+// terminal shows.
 static void text_is_cleaned(void **state)
 {
     (void)state;

@@ -1,12 +1,13 @@
-// The sweep over the functions that can fail: contexts, maps, spectra, bakes, files, tables and courses. Each
-// argument and each field of a definition takes every number in turn, the others keep their defaults.
+// The sweep over the functions that can fail: contexts, maps, spectra, bakes, files, tables and
+// courses. Each argument and each field of a definition takes every number in turn, the others keep
+// their defaults.
 #include "sweep.h"
 
 #include <kiln/check.h>
 #include <kiln/course.h>
 
-// Sizes and numbers of samples for the methods of courses: large valid ones take long, because these methods
-// look at the clock between rows only.
+// Sizes and numbers of samples for the methods of courses: large valid ones take long, because
+// these methods look at the clock between rows only.
 static const int counts[] = {INT_MIN, -1, 0, 1, 2, 3, 16, 1 << 21, 1 << 30, INT_MAX - 1, INT_MAX};
 enum { COUNTS = sizeof counts / sizeof *counts };
 

@@ -1,5 +1,6 @@
-// What a sweep over all public functions shares: the numbers that every argument takes, and what must hold of
-// each result. The sweep runs under the undefined-behaviour sanitizer in the preset asan.
+// What a sweep over all public functions shares: the numbers that every argument takes, and what
+// must hold of each result. The sweep runs under the undefined-behaviour sanitizer in the preset
+// asan.
 #ifndef KILN_SWEEP_H
 #define KILN_SWEEP_H
 

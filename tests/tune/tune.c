@@ -1,5 +1,6 @@
-// Levels for what an engine shows: nearer to the truth than exact ones, by brute force. That their bits are the
-// same for every instruction set and number of threads is held by the hash "tuned" of tests/golden.
+// Levels for what an engine shows: nearer to the truth than exact ones, by brute force. That their
+// bits are the same for every instruction set and number of threads is held by the hash "tuned" of
+// tests/golden.
 #include "kit/kit.h"
 
 static kiln_error error;
@@ -56,8 +57,8 @@ static void white_stays_white(void **state)
     kiln_context_destroy(context);
 }
 
-// A sun on black is the hardest: kernels have negative parts. The first level is the plain mirror, bit
-// for bit, and no light is won or lost.
+// A sun on black is the hardest: kernels have negative parts. The first level is the plain mirror,
+// bit for bit, and no light is won or lost.
 static void nothing_is_negative_under_a_sun(void **state)
 {
     (void)state;
@@ -126,7 +127,8 @@ static void choose_directions(double alpha, int size, double (*directions)[3], d
     }
 }
 
-// What is off and what the whole is, squared: over all directions, and farther than .1415 from the sun.
+// What is off and what the whole is, squared: over all directions, and farther than .1415 from the
+// sun.
 typedef struct sums {
     double off[2], whole[2];
 } sums;
@@ -153,8 +155,8 @@ static sums compare_shown(int size, const double (*directions)[3], const double 
     return sum;
 }
 
-// Relative rms over roughness, `from` to 1, of what is shown of each of two maps: everywhere, and farther than
-// .1415 from the sun. The truth, by brute force, is computed once for both.
+// Relative rms over roughness, `from` to 1, of what is shown of each of two maps: everywhere, and
+// farther than .1415 from the sun. The truth, by brute force, is computed once for both.
 static void displayed_errors(kiln_context *context, const kiln_map *source, const char *engine,
                              const kiln_map maps[2], double from, double error_of[2][2])
 {
@@ -209,7 +211,8 @@ static void tuned_levels_show_less_error(void **state)
     kiln_context_destroy(context);
 }
 
-// Light of 2^112 times the strength, whose sums are too large for floats, makes the same levels times 2^112.
+// Light of 2^112 times the strength, whose sums are too large for floats, makes the same levels
+// times 2^112.
 static void strong_light_makes_strong_levels(void **state)
 {
     (void)state;

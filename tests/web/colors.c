@@ -1,5 +1,5 @@
-// Prints a picture as a browser would show it: colors FILE writes red, green and blue of each pixel, encoded
-// by the curve of sRGB in 8 bits, to standard output.
+// Prints a picture as a browser would show it: colors FILE writes red, green and blue of each
+// pixel, encoded by the curve of sRGB in 8 bits, to standard output.
 #include "image/pack.h"
 
 #include <kiln/kiln.h>

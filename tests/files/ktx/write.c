@@ -1,5 +1,5 @@
-// Writes KTX2 cubes and tables of every format, with and without zstd, for check.mjs and libktx.mjs, and
-// for oiiotool a DDS of random blocks, with what kiln reads of it.
+// Writes KTX2 cubes and tables of every format, with and without zstd, for check.mjs and
+// libktx.mjs, and for oiiotool a DDS of random blocks, with what kiln reads of it.
 #include "kit/random.h"
 
 #include <kiln/brdf.h>
@@ -43,7 +43,8 @@ static kiln_result write_table(kiln_context *context, const char *folder, int in
 
 enum { BLOCKS = 32, SIZE = 4 * BLOCKS }; // along an edge
 
-// Whatever bits blocks may have: six faces of one level, and the same as a picture, face below face.
+// Whatever bits blocks may have: six faces of one level, and the same as a picture, face below
+// face.
 static kiln_result write_blocks(kiln_context *context, const char *folder, kiln_error *error)
 {
     char dds[512], exr[512];

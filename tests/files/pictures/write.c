@@ -1,6 +1,6 @@
-// Writes pictures for other programs to read: write FOLDER makes PNG files of every coding and number of
-// channels, plain_N.exr with the values that their 8 bits stand for, fine_N.exr with those of 16 bits, and
-// half_N.exr beside float_N.exr.
+// Writes pictures for other programs to read: write FOLDER makes PNG files of every coding and
+// number of channels, plain_N.exr with the values that their 8 bits stand for, fine_N.exr with
+// those of 16 bits, and half_N.exr beside float_N.exr.
 #include "codec/codec.h"
 #include "image/pack.h"
 #include "kit/random.h"
