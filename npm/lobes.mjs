@@ -99,14 +99,16 @@ vec3 kilnReflection( const in vec3 v, const in vec3 n, const in float roughness,
 	vec3 side = dot( n, v ) * n - v + 1e-6 * ( abs( n.x ) < 0.5 ? vec3( 1.0, 0.0, 0.0 ) : vec3( 0.0, 1.0, 0.0 ) );
 	vec3 t = turn * normalize( side - dot( side, n ) * n ), N = turn * n, b = cross( N, t );
 	float mirror = acos( nov );
-	vec3 sum = vec3( 0.0 );
+	vec3 sum = vec3( 0.0 ), lowest = vec3( 1e30 ), light;
 	vec4 tap, last = kilnSlice( ${taps}.0, place );
 	float angle, weight = 0.0, rest[ 3 ];
 	${Array.from({ length: taps }, (_, k) => `
 	tap = kilnSlice( ${k}.0, place );
 	angle = mirror - tap.x;
 	weight += tap.z;
-	sum += tap.z * kilnChain( cos( angle ) * N + sin( angle ) * t, tap.y );
+	light = kilnChain( cos( angle ) * N + sin( angle ) * t, tap.y );
+	sum += tap.z * light;
+	lowest = min( lowest, light );
 	rest[ ${k} ] = tap.w;`).join('')}
 	${[`float c10 = rest[ 0 ], c11 = last.x, c20 = last.y, c21 = last.z, c22 = last.w;`,
        `float c10 = rest[ 0 ], c11 = rest[ 1 ], c20 = last.x, c21 = last.y, c22 = last.z;`,
@@ -114,6 +116,8 @@ vec3 kilnReflection( const in vec3 v, const in vec3 n, const in float roughness,
 	vec3 e = c10 * N + c11 * t;
 	sum += ( 1.0 - weight ) * kilnLight[ 0 ] + e.x * kilnLight[ 1 ] + e.y * kilnLight[ 2 ] + e.z * kilnLight[ 3 ];
 	sum += c20 * kilnSquare( N, N ) + c21 * kilnSquare( N, t ) + c22 * ( kilnSquare( t, t ) - kilnSquare( b, b ) );
-	return max( sum, vec3( 0.0 ) );
+	// The sum can be negative beside bright light. It is kept above 0.6 times what the darkest tap would give with the
+	// weights of all.
+	return max( sum, 0.6 * clamp( weight, 0.0, 1.0 ) * lowest );
 }
 `;

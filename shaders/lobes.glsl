@@ -16,11 +16,12 @@
 //         sum += lobes.tap[k].z * c;
 //         lowest = min(lowest, c);
 //     }
-//     vec3 specular = (f0 * A + B) * lobes_sum(sum, lobes_rest(harmonics, n, t, lobes.rest), lowest);
+//     vec3 specular = (f0 * A + B) * lobes_sum(sum, lobes_rest(harmonics, n, t, lobes.rest), lowest,
+//                                             lobes.rest[5]);
 //
 // SPDX-License-Identifier: MIT
 
-// Smallest part of the darkest tap that lobes_sum returns.
+// Smallest part of the darkest tap, times the weights' sum, that lobes_sum returns.
 const float LOBES_LEAST = 0.6;
 
 // What a table holds for one n.v and one roughness.
@@ -100,8 +101,9 @@ vec3 lobes_rest(vec3 c[9], vec3 n, vec3 t, float rest[6])
 }
 
 // The radiance of all taps, each times its weight, and of `rest`, which is lobes_rest's. The sum can
-// be negative beside bright light. It is therefore kept above a part of the darkest tap, `lowest`.
-vec3 lobes_sum(vec3 taps, vec3 rest, vec3 lowest)
+// be negative beside bright light. It is therefore kept above a part of what the darkest tap,
+// `lowest`, would give alone with the weights of all. `lacking` is 1 minus all weights, Lobes.rest[5].
+vec3 lobes_sum(vec3 taps, vec3 rest, vec3 lowest, float lacking)
 {
-    return max(taps + rest, LOBES_LEAST * lowest);
+    return max(taps + rest, LOBES_LEAST * clamp(1.0 - lacking, 0.0, 1.0) * lowest);
 }

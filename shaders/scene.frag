@@ -250,7 +250,7 @@ vec3 reflected(int slot, vec3 n, vec3 v, float nov, float roughness)
         sum += tap.z * seen;
         lowest = min(lowest, seen);
     }
-    return lobes_sum(sum, lobes_rest(c, normal, t, found.rest), lowest);
+    return lobes_sum(sum, lobes_rest(c, normal, t, found.rest), lowest, found.rest[5]);
 }
 
 // Radiance towards v from the environment. The specular part is the split sum: prefiltered radiance

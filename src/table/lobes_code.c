@@ -106,7 +106,7 @@ static const char glsl_text[] =
     "               float roughness)\n"
     "{\n"
     "    float nov = dot(n, v), c[5], rest = 1.0;\n"
-    "    vec3 t = nov * n - v, sum = vec3(0.0);\n"
+    "    vec3 t = nov * n - v, sum = vec3(0.0), lowest = vec3(1e30);\n"
     "    float sine = length(t);\n"
     "    vec3 other = abs(n.x) < 0.5 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);\n"
     "    t = sine > 1e-4 ? t / sine : normalize(other - dot(other, n) * n);\n"
@@ -114,7 +114,9 @@ static const char glsl_text[] =
     "        vec4 tap = $_slice(table, nov, roughness, k);\n"
     "        float cosine = cos(tap.x), lean = sin(tap.x);\n"
     "        vec3 d = (nov * cosine + sine * lean) * n + (sine * cosine - nov * lean) * t;\n"
-    "        sum += tap.z * textureLod(levels, d, tap.y).rgb;\n"
+    "        vec3 light = textureLod(levels, d, tap.y).rgb;\n"
+    "        sum += tap.z * light;\n"
+    "        lowest = min(lowest, light);\n"
     "        rest -= tap.z;\n"
     "        c[k] = tap.w;\n"
     "    }\n"
@@ -130,7 +132,10 @@ static const char glsl_text[] =
     "    sum += 1.09254843 * (m[0][1] * sh[4] + m[1][2] * sh[5] + m[0][2] * sh[7]);\n"
     "    sum += 0.31539157 * (2.0 * m[2][2] - m[0][0] - m[1][1]) * sh[6];\n"
     "    sum += 0.54627422 * (m[0][0] - m[1][1]) * sh[8];\n"
-    "    return max(sum, vec3(0.0));\n"
+    "    // The sum can be negative beside bright light. It is kept above 0.6 times what the "
+    "darkest\n"
+    "    // tap would give with the weights of all.\n"
+    "    return max(sum, 0.6 * clamp(1.0 - rest, 0.0, 1.0) * lowest);\n"
     "}\n";
 
 static const char wgsl_text[] =
@@ -159,6 +164,7 @@ static const char wgsl_text[] =
     "    let other = select(vec3<f32>(0.0, 1.0, 0.0), vec3<f32>(1.0, 0.0, 0.0), abs(n.x) < 0.5);\n"
     "    let t = normalize(select(other - dot(other, n) * n, flat, sine > 1e-4));\n"
     "    var sum = vec3<f32>(0.0);\n"
+    "    var lowest = vec3<f32>(1e30);\n"
     "    var rest = 1.0;\n"
     "    var c = array<f32, 5>();\n"
     "    for (var k = 0; k < $_taps; k++) {\n"
@@ -166,7 +172,9 @@ static const char wgsl_text[] =
     "        let cosine = cos(tap.x);\n"
     "        let lean = sin(tap.x);\n"
     "        let d = (nov * cosine + sine * lean) * n + (sine * cosine - nov * lean) * t;\n"
-    "        sum += tap.z * textureSampleLevel(levels, linear, d, tap.y).rgb;\n"
+    "        let light = textureSampleLevel(levels, linear, d, tap.y).rgb;\n"
+    "        sum += tap.z * light;\n"
+    "        lowest = min(lowest, light);\n"
     "        rest -= tap.z;\n"
     "        c[k] = tap.w;\n"
     "    }\n"
@@ -187,7 +195,10 @@ static const char wgsl_text[] =
     "    sum += 1.09254843 * (s.x * sh[4] + s.y * sh[5] + s.z * sh[7]);\n"
     "    sum += 0.31539157 * (2.0 * d.z - d.x - d.y) * sh[6];\n"
     "    sum += 0.54627422 * (d.x - d.y) * sh[8];\n"
-    "    return max(sum, vec3<f32>(0.0));\n"
+    "    // The sum can be negative beside bright light. It is kept above 0.6 times what the "
+    "darkest\n"
+    "    // tap would give with the weights of all.\n"
+    "    return max(sum, 0.6 * clamp(1.0 - rest, 0.0, 1.0) * lowest);\n"
     "}\n";
 
 // Writes a text with the name in place of each $ and the number of taps in place of each @.

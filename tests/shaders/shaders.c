@@ -288,8 +288,9 @@ static void c_lobe_direction(const double x[ARGUMENTS], double r[3])
 
 static void c_lobes_sum(const double x[ARGUMENTS], double r[3])
 {
+    double weights = fmin(fmax(1 - x[7], 0), 1);
     for (int c = 0; c < 3; c++)
-        r[c] = fmax(x[c] + x[3 + c], 0);
+        r[c] = fmax(x[c] + x[3 + c], 0.6 * weights * x[6]);
 }
 
 static void c_tone_assignment(const double x[ARGUMENTS], double r[3])
@@ -516,10 +517,10 @@ static const function functions[] = {
      {-3, -3, 0, -1.5},
      {3, 3, 1, 1.5}},
     {"lobes_sum",
-     "r = lobes_sum(vec3(x[0], x[1], x[2]), vec3(x[3], x[4], x[5]), vec3(0.0));",
+     "r = lobes_sum(vec3(x[0], x[1], x[2]), vec3(x[3], x[4], x[5]), vec3(x[6]), x[7]);",
      c_lobes_sum,
-     {0.5, 0.5, 0.5, -0.3, -0.3, -0.3},
-     {1, 1, 1, 1, 1, 1}},
+     {0.5, 0.5, 0.5, -0.3, -0.3, -0.3, 0, -0.5},
+     {1, 1, 1, 1, 1, 1, 2, 1.2}},
     {"tone_assignment",
      "r = tone_assignment(vec3(x[0], x[1], x[2]));",
      c_tone_assignment,
