@@ -50,7 +50,9 @@ static kiln_result check_model(const kiln_table_def *def, kiln_error *error)
     return KILN_OK;
 }
 
-static kiln_result check_counts(const kiln_table_def *def, kiln_error *error)
+// Checks the numbers of taps, levels and texels, and sets the default of the depth, which is one more
+// than the number of taps.
+static kiln_result check_counts(kiln_table_def *def, kiln_error *error)
 {
     if (def->tap_count < 1 || def->tap_count > KILN_MAX_TAPS)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "tap_count is %d, it must be 1 to %d, or 0",
@@ -62,6 +64,7 @@ static kiln_result check_counts(const kiln_table_def *def, kiln_error *error)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
                        "the table is %d x %d, both must be 2 to %d for a table of lobes",
                        def->width, def->height, MOST);
+    def->depth = def->depth ? def->depth : def->tap_count + 1;
     if (def->depth != def->tap_count + 1)
         return ki_fail(error, KILN_ERROR_ARGUMENT,
                        "depth of the table is %d, a table of lobes with %d taps has %d slices",
@@ -86,7 +89,6 @@ kiln_result ki_lobes_complete(kiln_table_def *def, kiln_error *error)
     def->level_count = def->level_count ? def->level_count : 7;
     def->width = def->width ? def->width : 32;
     def->height = def->height ? def->height : 32;
-    def->depth = def->depth ? def->depth : def->tap_count + 1;
     def->corners = true;
     def->path_count = 0;
     kiln_result result = check_model(def, error);
