@@ -84,13 +84,13 @@ static double approximation(const profile *p, const double *values, int taps, do
 {
     double list[8], rest = 1, sum = 0;
     for (int k = 0; k < taps; k++) {
-        double angle = acos(nov) - values[4 * k];
-        sum += values[4 * k + 2] *
-               read_profile(p, values[4 * k + 1], d[0] * sin(angle) + d[2] * cos(angle));
-        rest -= values[4 * k + 2];
-        list[k] = values[4 * k + 3];
+        const double *tap = values + 4 * (size_t)k;
+        double angle = acos(nov) - tap[0];
+        sum += tap[2] * read_profile(p, tap[1], d[0] * sin(angle) + d[2] * cos(angle));
+        rest -= tap[2];
+        list[k] = tap[3];
     }
-    memcpy(list + taps, values + 4 * taps, 4 * sizeof *list);
+    memcpy(list + taps, values + 4 * (size_t)taps, 4 * sizeof *list);
     double two = list[2] * (1.5 * d[2] * d[2] - 0.5) + 1.5 * list[3] * d[0] * d[2] +
                  1.5 * list[4] * (d[0] * d[0] - d[1] * d[1]);
     return sum + (rest + 3 * (list[0] * d[2] + list[1] * d[0]) + 5 * two) / (4 * pi);

@@ -16,7 +16,8 @@ static double *transform(double *from, double *to, const double *roots)
 {
     for (int stride = 1, half = LENGTH / 2; half >= 1; stride *= 2, half /= 2) {
         for (int p = 0; p < half; p++) {
-            double re = roots[2 * p * stride], im = roots[2 * p * stride + 1];
+            const double *root = roots + 2 * (size_t)stride * (size_t)p;
+            double re = root[0], im = root[1];
             const double *a = from + 2 * (size_t)stride * (size_t)p;
             const double *b = a + 2 * (size_t)stride * (size_t)half;
             double *sum = to + 4 * (size_t)stride * (size_t)p, *turned = sum + 2 * (size_t)stride;
@@ -41,9 +42,10 @@ double bench_fft_seconds(void)
     volatile double sink = 0;
     for (int i = 0; data && i < TRIES; i++) {
         double *work = data + (size_t)2 * LENGTH, *roots = work + (size_t)2 * LENGTH;
-        for (int k = 0; k < LENGTH / 2; k++) {
-            roots[2 * k] = cos(2 * acos(-1) * k / LENGTH);
-            roots[2 * k + 1] = -sin(2 * acos(-1) * k / LENGTH);
+        for (size_t k = 0; k < LENGTH / 2; k++) {
+            double angle = 2 * acos(-1) * (double)k / LENGTH;
+            roots[2 * k] = cos(angle);
+            roots[2 * k + 1] = -sin(angle);
         }
         for (int k = 0; k < 2 * LENGTH; k++)
             data[k] = k % 7 - 3;
@@ -62,7 +64,7 @@ double bench_fft_seconds(void)
 #define ARITHMETIC(name, lanes, attribute)                                                         \
     attribute static double name(int count)                                                        \
     {                                                                                              \
-        typedef double vec __attribute__((vector_size(8 * lanes)));                                \
+        typedef double vec __attribute__((vector_size(8 * (lanes))));                              \
         vec x[CHAINS], factor = (vec){0} + 0.999, term = (vec){0} + 0.001;                         \
         for (int k = 0; k < CHAINS; k++)                                                           \
             x[k] = (vec){0} + k;                                                                   \
@@ -71,7 +73,7 @@ double bench_fft_seconds(void)
                 x[k] = x[k] * factor + term;                                                       \
         double sum = 0;                                                                            \
         for (int k = 0; k < CHAINS; k++)                                                           \
-            for (int j = 0; j < lanes; j++)                                                        \
+            for (int j = 0; j < (lanes); j++)                                                      \
                 sum += x[k][j];                                                                    \
         return sum;                                                                                \
     }

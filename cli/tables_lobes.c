@@ -117,7 +117,7 @@ static void draw(const kiln_lobes_error *errors, int points, kiln_image *picture
                 pixel[0] = pixel[1] = pixel[2] = 0.5f;
                 continue;
             }
-            const kiln_lobes_error *e = errors + (y / dot) * points + column;
+            const kiln_lobes_error *e = errors + (size_t)(y / dot) * (size_t)points + column;
             color_of(square == 0 ? e->straight : square == 1 ? e->bent : e->table, pixel);
         }
 }
@@ -133,8 +133,9 @@ kiln_result tables_draw_error(cli_work *work, const tables *t, const kiln_table 
     if (result)
         snprintf(work->error.message, sizeof work->error.message, "out of memory");
     for (int i = 0; i < count && !result; i++) {
+        int row = i / points;
         nov[i] = (i % points + 0.5) / points;
-        roughness[i] = (i / points + 0.5) / points;
+        roughness[i] = (row + 0.5) / points;
     }
     if (!result)
         result =

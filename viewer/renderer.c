@@ -190,9 +190,11 @@ static int taps_of(const view_options *o)
 static bool suits(const kiln_table *table, const kiln_table_def *def)
 {
     const kiln_table_def *has = &table->def;
-    return table->image.pixels && has->width == def->width && has->tap_count == def->tap_count &&
-           has->level_count == def->level_count &&
-           !memcmp(has->level_roughness, def->level_roughness, sizeof has->level_roughness);
+    bool same = table->image.pixels && has->width == def->width &&
+                has->tap_count == def->tap_count && has->level_count == def->level_count;
+    for (int i = 0; i < def->level_count && same; i++)
+        same = has->level_roughness[i] == def->level_roughness[i];
+    return same;
 }
 
 // Sets the size, the taps and the levels of the table of lobes for a slot. A slot without an

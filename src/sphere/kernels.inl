@@ -567,7 +567,7 @@ static void sum_degrees(const double *x, const double *w, ptrdiff_t count, int l
 #else
     typedef vec part;
 #endif
-    enum { LANES = 4, STEP = sizeof(part) / sizeof(double) };
+    enum { LANES = 4, STEP = KI_WIDTH > 4 ? 4 : KI_WIDTH };
     double a[KI_DEGREES], b[KI_DEGREES], lanes[KI_DEGREES][LANES];
     for (int k = 0; k < KI_DEGREES; k++) {
         a[k] = (2 * (l + k) + 1.0) / (l + k + 1);

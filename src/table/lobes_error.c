@@ -26,10 +26,11 @@ static void read_table(const kiln_table *table, double nov, double roughness, ki
     kiln_table_lookup(table, nov, roughness, 0, values);
     taps->count = count;
     for (int i = 0; i < count; i++) {
-        taps->angle[i] = ki_acos(nov) - values[4 * i];
-        taps->level[i] = ki_clamp(values[4 * i + 1], 0, table->def.level_count - 1);
-        taps->weight[i] = values[4 * i + 2];
-        list[i] = values[4 * i + 3];
+        const double *tap = values + 4 * (size_t)i;
+        taps->angle[i] = ki_acos(nov) - tap[0];
+        taps->level[i] = ki_clamp(tap[1], 0, table->def.level_count - 1);
+        taps->weight[i] = tap[2];
+        list[i] = tap[3];
     }
     for (int i = 0; i < 4; i++)
         list[count + i] = values[4 * count + i];

@@ -32,7 +32,8 @@ static double cubic(double y0, double y1, double y2, double y3, double t)
 static double target_with(const ki_lobes_chain *chain, const ki_lobes_target *target, double angle,
                           double level)
 {
-    int levels = chain->level_count, last = KI_LOBES_ANGLES - 1;
+    ptrdiff_t levels = chain->level_count;
+    int last = KI_LOBES_ANGLES - 1;
     double share, at = ki_clamp((angle - target->from) / target->step, 0, last), sum = 0;
     int a = ki_min((int)at, last - 1), i = split_level(chain, level, &share);
     int before = ki_max(a - 1, 0), after = ki_min(a + 2, last);
@@ -128,7 +129,7 @@ static void solve(const form *f, const int *id, int count, double *w)
 // left out until no weight is negative.
 static void weigh(const form *f, double *w)
 {
-    int id[KILN_MAX_TAPS], count = f->count;
+    int id[KILN_MAX_TAPS] = {0}, count = f->count;
     for (int i = 0; i < count; i++)
         id[i] = i;
     while (count) {
@@ -196,7 +197,7 @@ static double judge(const search_job *job, const double *place, ki_lobes_taps *t
     double from = job->target->from, to = job->target->mirror > 1e-6 ? KI_PI / 2 : 0;
     from = to > 0 ? from : 0;
     for (int i = 0; i < job->count; i++) {
-        double angle = place[2 * i], level = place[2 * i + 1];
+        double angle = *place++, level = *place++;
         t->angle[i] = ki_clamp(angle, from, to);
         t->level[i] = ki_clamp(level, 0, highest);
         outside += fabs(angle - t->angle[i]) + fabs(level - t->level[i]);
@@ -300,7 +301,7 @@ double ki_lobes_search(const ki_lobes_chain *chain, const ki_lobes_target *targe
     double level = ki_lobes_level(chain, target->roughness);
     job.scale =
         target_with(chain, target, target->mirror, level) + ki_lobes_bands_square(&target->bands);
-    simplex s;
+    simplex s = {0};
     begin(&job, taps, &s);
     for (int i = 0; i < 200 * taps->count; i++) {
         rank(&s);

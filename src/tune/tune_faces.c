@@ -139,7 +139,7 @@ void ki_faces_read_row(const ki_faces *f, const double *plane, int edge, const k
     double a = factor * taps[y].share[0], b = factor * taps[y].share[1];
     for (int x = 0; x < f->width; x++)
         line[x] = a * above[x] + b * below[x];
-    for (int x = 0; x < edge; x++) {
+    for (ptrdiff_t x = 0; x < edge; x++) {
         const double *at = line + taps[x].first;
         to[3 * x] += (float)(taps[x].share[0] * at[0] + taps[x].share[1] * at[1]);
     }

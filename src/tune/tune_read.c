@@ -158,7 +158,7 @@ static void gather_row(const reads *r, const float *from, int y, double *line, d
     int width = r->faces.width;
     const double *solid = r->solid + (size_t)r->edge * (size_t)y;
     memset(line, 0, (size_t)width * sizeof *line);
-    for (int x = 0; x < r->edge; x++) {
+    for (ptrdiff_t x = 0; x < r->edge; x++) {
         const ki_face_tap *tap = &r->taps[x];
         double value = (double)from[3 * x] * solid[x];
         line[tap->first] += tap->share[0] * value;

@@ -662,7 +662,7 @@ static void check_lobes(int taps)
     render(expression, (const float(*)[ARGUMENTS])x, result);
     table_unit = 0;
     for (int i = 0; i < COUNT; i++) {
-        double value[4 * (KILN_MAX_TAPS + 1)], rest[8], *wanted = value;
+        double value[4 * (KILN_MAX_TAPS + 1)], rest[8], *wanted;
         kiln_table_lookup(&table, (double)x[i][0], (double)x[i][1], 0, value);
         for (int k = 0; k < taps; k++)
             rest[k] = value[4 * k + 3];

@@ -118,7 +118,7 @@ static void bands_to_two_are_exact(void **state)
     for (int taps = 1; taps <= 3; taps++) {
         kiln_table table = tables[taps];
         for (size_t p = 0; p < sizeof places / sizeof *places; p++) {
-            double nov, roughness, third, tap[3][3], coefficient[6], sum[5], truth[5];
+            double nov, roughness, third, tap[3][3] = {{0}}, coefficient[6], sum[5], truth[5];
             kiln_table_texel(&table, places[p][0], places[p][1], 0, &nov, &roughness, &third);
             read(&table, nov, roughness, tap, coefficient);
             memcpy(sum, coefficient, sizeof sum);
@@ -139,12 +139,12 @@ static void weights_are_not_negative(void **state)
         for (int y = 0; y < SIZE; y++)
             for (int x = 0; x < SIZE; x++)
                 for (int k = 0; k < taps; k++) {
-                    size_t texel = (size_t)((k * SIZE + y) * SIZE + x);
+                    size_t texel = ((size_t)k * SIZE + (size_t)y) * SIZE + (size_t)x;
                     const float *tap = table.image.pixels + 4 * texel;
                     assert_true(tap[2] >= 0);
                     assert_true(tap[1] >= 0 && tap[1] <= 4);
                     if (x == SIZE - 1)
-                        CHECK_NEAR(tap[0], 0, 1e-6);
+                        CHECK_NEAR((double)tap[0], 0, 1e-6);
                 }
     }
 }
