@@ -132,7 +132,7 @@ static void weigh(const form *f, double *w)
     int id[KILN_MAX_TAPS] = {0}, count = f->count;
     for (int i = 0; i < count; i++)
         id[i] = i;
-    while (count) {
+    while (count > 0) {
         solve(f, id, count, w);
         int worst = 0;
         for (int i = 1; i < count; i++)
@@ -235,7 +235,7 @@ static void rank(simplex *s)
 static double move(const search_job *job, simplex *s, const double *centre, const double *from,
                    double by, double limit)
 {
-    double place[PLACES];
+    double place[PLACES] = {0};
     ki_lobes_taps t;
     for (int i = 0; i < s->sides; i++)
         place[i] = centre[i] + by * (centre[i] - from[i]);
