@@ -3,24 +3,8 @@
 # what kiln_table_lookup does; its GLSL is valid.
 #   check.sh WRITE_PROGRAM
 set -eu
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-"$1" "$work"
-cd "$work"
-warnings="-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror"
-# shellcheck disable=SC2086 # flags are words
-cc -std=c99 -O1 $warnings main.c -o c -lm
-./c
-if command -v c++ >/dev/null; then
-    cp main.c main.cpp
-    # shellcheck disable=SC2086
-    c++ -std=c++11 -O0 $warnings main.cpp -o cpp -lm
-    ./cpp
-fi
-if ! command -v glslangValidator >/dev/null; then
-    echo "glslangValidator is missing: install glslang-tools"
-    exit 1
-fi
+# shellcheck source=compile.sh
+. "$(dirname "$0")/compile.sh"
 count=0
 for table in t*_lookup.glsl; do
     name=${table%_lookup.glsl}
