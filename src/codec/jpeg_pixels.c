@@ -4,6 +4,7 @@
 #include "codec/jpeg_pixels.h"
 
 #include "codec/file_info.h"
+#include "codec/jpeg_block.h"
 
 #include <setjmp.h>
 #include <stdio.h>
@@ -67,6 +68,55 @@ static void begin(decoder *d, kiln_context *context)
     d->jpeg.client_data = d;
 }
 
+// Calls ki_jpeg_block_limit for all blocks of a component if `change` is true. Otherwise returns
+// whether all of them fit.
+static bool visit_blocks(decoder *d, jpeg_component_info *component, jvirt_barray_ptr blocks,
+                         bool change)
+{
+    const uint16_t *steps = component->quant_table->quantval;
+    for (JDIMENSION y = 0; y < component->height_in_blocks; y++) {
+        JBLOCKARRAY row =
+            d->jpeg.mem->access_virt_barray((j_common_ptr)&d->jpeg, blocks, y, 1, change);
+        watch((j_common_ptr)&d->jpeg);
+        for (JDIMENSION x = 0; x < component->width_in_blocks; x++) {
+            if (change)
+                ki_jpeg_block_limit(row[0][x], steps);
+            else if (!ki_jpeg_block_fits(row[0][x], steps))
+                return false;
+        }
+    }
+    return true;
+}
+
+// Brings all coefficients to a range in which libjpeg-turbo gives the same samples on every
+// processor. Coefficients of other pictures than coarse or damaged ones stay as they are.
+static void limit_blocks(decoder *d)
+{
+    jvirt_barray_ptr *blocks = jpeg_read_coefficients(&d->jpeg);
+    bool fit = true;
+    for (int i = 0; i < d->jpeg.num_components && fit; i++)
+        if (d->jpeg.comp_info[i].quant_table) // else there are no data of this component
+            fit = visit_blocks(d, &d->jpeg.comp_info[i], blocks[i], false);
+    for (int i = 0; i < d->jpeg.num_components && !fit; i++) {
+        JQUANT_TBL *table = d->jpeg.comp_info[i].quant_table; // the component's own copy
+        if (!table)
+            continue;
+        visit_blocks(d, &d->jpeg.comp_info[i], blocks[i], true);
+        for (int k = 0; k < DCTSIZE2; k++)
+            table->quantval[k] = 1;
+    }
+}
+
+// Reads the coefficients of all scans.
+static void read_scans(decoder *d)
+{
+    int event;
+    do {
+        watch((j_common_ptr)&d->jpeg);
+        event = jpeg_consume_input(&d->jpeg);
+    } while (event != JPEG_REACHED_EOI && event != JPEG_SUSPENDED);
+}
+
 // Decodes a picture to `samples`. Returns false if libjpeg stopped with an error.
 static bool decode(decoder *d, ki_span picture, const ki_jpeg_head *head, uint8_t *samples)
 {
@@ -80,8 +130,14 @@ static bool decode(decoder *d, ki_span picture, const ki_jpeg_head *head, uint8_
     jpeg_mem_src(jpeg, picture.bytes, picture.size);
     jpeg_read_header(jpeg, TRUE);
     jpeg->out_color_space = head->components == 1 ? JCS_GRAYSCALE : JCS_RGB;
-    jpeg->dct_method = JDCT_ISLOW; // gives the same bits on every processor
+    jpeg->dct_method = JDCT_ISLOW; // gives the same bits on every processor, see limit_blocks
+    // Smoothing invents coefficients that a progressive file lacks, differently in each version.
+    jpeg->do_block_smoothing = FALSE;
+    jpeg->buffered_image = TRUE; // all coefficients are read before the first is transformed
     jpeg_start_decompress(jpeg);
+    read_scans(d);
+    limit_blocks(d);
+    jpeg_start_output(jpeg, jpeg->input_scan_number);
     if (jpeg->output_width != (JDIMENSION)head->width ||
         jpeg->output_height != (JDIMENSION)head->height ||
         jpeg->output_components != head->components)
@@ -91,6 +147,7 @@ static bool decode(decoder *d, ki_span picture, const ki_jpeg_head *head, uint8_
         JSAMPROW row = samples + line * jpeg->output_scanline;
         jpeg_read_scanlines(jpeg, &row, 1);
     }
+    jpeg_finish_output(jpeg);
     jpeg_finish_decompress(jpeg);
     return true;
 }
@@ -114,9 +171,9 @@ kiln_result ki_jpeg_samples(kiln_context *context, ki_span picture, const ki_jpe
     size_t count = (size_t)head->width * (size_t)head->height * (size_t)head->components;
     decoder *d = ki_alloc(context, 1, sizeof *d);
     *samples = ki_alloc_raw(context, count, 1);
-    // libjpeg takes the coefficients of a progressive picture from malloc. A block of their size,
-    // which nobody touches, makes the context's memory limit count them.
-    uint8_t *reserve = head->progressive ? ki_alloc_raw(context, count, 2) : *samples;
+    // libjpeg takes the picture's coefficients from malloc. A block of their size, which nobody
+    // touches, makes the context's memory limit count them.
+    uint8_t *reserve = ki_alloc_raw(context, count, 2);
     kiln_result result = KILN_OK;
     if (!d || !*samples || !reserve) {
         result = ki_fail_memory(context, error, name, 3 * count);
@@ -128,8 +185,7 @@ kiln_result ki_jpeg_samples(kiln_context *context, ki_span picture, const ki_jpe
             result = fail(d, name, error);
         jpeg_destroy_decompress(&d->jpeg);
     }
-    if (reserve != *samples)
-        ki_free(reserve);
+    ki_free(reserve);
     if (result != KILN_OK) {
         ki_free(*samples);
         *samples = NULL;
