@@ -8,7 +8,7 @@ cd "$(dirname "$0")/.."
 echo "panorama,noise,straight,bent,one,two,three"
 for panorama in build/data/blender/*.exr; do
     build/release/bin/kiln render "$panorama" --error --alone --noise 0.01 --size 192x108 \
-        --bake-size 512 2>/dev/null |
+        --fov 45 --distance 330 --bake-size 512 2>/dev/null |
         awk -v name="$(basename "$panorama" .exr)" '
             $3 == "single" && $1 > 0.3 { n++; for (i = 4; i <= 9; i++) sum[i] += $i }
             END { printf "%s", name; for (i = 4; i <= 9; i++) printf ",%.2f", sum[i] / n; print "" }'

@@ -42,11 +42,9 @@ export class StageClient extends Remote {
         this.onDrawn(drawn);
     }
 
-    // A scene's default view with a field of view that shows balls as balls, except for the scene of
-    // the assignment, whose camera is given.
+    // A scene's default view.
     view(scene) {
-        const view = this.defaults[scene];
-        return scene === 'assignment' ? view : { ...view, fov: 24 };
+        return this.defaults[scene];
     }
 
     // The distance at which all balls are whole, or `least` if that is farther.
