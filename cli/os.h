@@ -1,6 +1,8 @@
 // What the command needs from the operating system: terminals, signals, memory, folders, a clock.
 // os_posix.c, os_windows.c, and os_host.c for WebAssembly implement these functions. The command's
-// other files do not depend on the system.
+// other files do not depend on the system. Some functions are like those of the library's
+// src/base/os.h, which the command cannot call: the command uses the library by its public headers
+// alone, as any other program does.
 #ifndef KILN_CLI_OS_H
 #define KILN_CLI_OS_H
 

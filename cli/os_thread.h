@@ -1,5 +1,6 @@
 // Threads of the command, implemented in os_thread_posix.c and os_thread_windows.c. WebAssembly has
-// none.
+// none. The threads of the library (src/base/os.h) are no part of its public headers, to which the
+// command keeps.
 #ifndef KILN_CLI_OS_THREAD_H
 #define KILN_CLI_OS_THREAD_H
 

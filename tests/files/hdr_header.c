@@ -4,6 +4,7 @@
 #include "image/color.h"
 
 #include "kit/context.h"
+#include "kit/notes.h"
 
 enum { W = 3, H = 2 };
 
@@ -25,16 +26,6 @@ static kiln_result decode(const char *header, const char *resolution, ki_decoded
     kiln_result result = ki_decode(context, w.bytes, w.size, "a.hdr", decoded, info, &error);
     ki_writer_free(&w);
     return result;
-}
-
-static void check_note(const kiln_load_report *report, int index, kiln_note_kind kind, bool warning,
-                       const char *text)
-{
-    kiln_note note;
-    assert_true(kiln_load_report_note(report, index, &note));
-    assert_string_equal(note.text, text);
-    assert_int_equal(note.kind, kind);
-    assert_int_equal(note.warning, warning);
 }
 
 // Checks that each value is the stored one divided by `divisor`, and that `count` notes exist, of

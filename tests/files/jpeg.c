@@ -5,6 +5,7 @@
 #include "image/color.h"
 
 #include "kit/context.h"
+#include "kit/notes.h"
 
 #include <jpeglib.h>
 
@@ -107,16 +108,6 @@ static double sample_of(const picture *p, int x, int y, int c)
 static double srgb(double x)
 {
     return x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4);
-}
-
-static void check_note(const kiln_load_report *report, int index, kiln_note_kind kind, bool warning,
-                       const char *text)
-{
-    kiln_note note;
-    assert_true(kiln_load_report_note(report, index, &note));
-    assert_string_equal(note.text, text);
-    assert_int_equal(note.kind, kind);
-    assert_int_equal(note.warning, warning);
 }
 
 static void samples_become_linear_by_srgb(void **state)

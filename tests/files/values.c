@@ -3,6 +3,7 @@
 #include "codec/codec.h"
 #include "image/pack.h"
 #include "kit/context.h"
+#include "kit/notes.h"
 
 #include <float.h>
 
@@ -48,16 +49,6 @@ static kiln_result load(const float *rgb, bool half, kiln_negative negative,
     kiln_result result = kiln_map_decode(context, w.bytes, w.size, "a.exr", &def, map, &error);
     ki_writer_free(&w);
     return result;
-}
-
-static void check_note(const kiln_load_report *report, int index, kiln_note_kind kind, bool warning,
-                       const char *text)
-{
-    kiln_note note;
-    assert_true(kiln_load_report_note(report, index, &note));
-    assert_string_equal(note.text, text);
-    assert_int_equal(note.kind, kind);
-    assert_int_equal(note.warning, warning);
 }
 
 static void check_end(const kiln_load_report *report, int count)
