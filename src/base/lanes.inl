@@ -40,3 +40,14 @@ static inline vec positive(vec x)
     return (vec)((mask)x & (mask)(x > 0));
 #endif
 }
+
+// Returns the lesser of x and y in each lane.
+static inline vec lesser(vec x, vec y)
+{
+#if KI_WIDTH == 1
+    return x < y ? x : y;
+#else
+    mask less = x < y;
+    return (vec)(((mask)x & less) | ((mask)y & ~less));
+#endif
+}

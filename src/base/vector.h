@@ -31,10 +31,21 @@ typedef uint8_t ki_bytes16 __attribute__((vector_size(16)));
 #if defined(__clang__) || __GNUC__ >= 12
 #define KI_SHUFFLE4(a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
 #define KI_SHUFFLE16(a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
+#define KI_SHUFFLE_DOUBLES2(a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
+#define KI_SHUFFLE_DOUBLES4(a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
+#define KI_JOIN_DOUBLES4(a, b) __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7)
 #else
 typedef int32_t ki_index4 __attribute__((vector_size(16)));
 #define KI_SHUFFLE4(a, b, ...) __builtin_shuffle(a, b, (ki_index4){__VA_ARGS__})
 #define KI_SHUFFLE16(a, b, ...) __builtin_shuffle(a, b, (ki_bytes16){__VA_ARGS__})
+typedef int64_t ki_index_doubles2 __attribute__((vector_size(16)));
+typedef int64_t ki_index_doubles4 __attribute__((vector_size(32)));
+#define KI_SHUFFLE_DOUBLES2(a, b, ...) __builtin_shuffle(a, b, (ki_index_doubles2){__VA_ARGS__})
+#define KI_SHUFFLE_DOUBLES4(a, b, ...) __builtin_shuffle(a, b, (ki_index_doubles4){__VA_ARGS__})
+#define KI_JOIN_DOUBLES4(a, b)                                                                     \
+    {                                                                                              \
+        a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3]                                             \
+    }
 #endif
 
 /// Converts four RGB texels of three floats each to vectors of red, green and blue.

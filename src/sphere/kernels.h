@@ -58,11 +58,15 @@ typedef struct ki_fft {
 /// directions are farther than far_versine (1 - cos of the angle) from the sun, and as 4 points if
 /// they are farther than near_versine. It counts as near_count points if a direction is nearer, or
 /// if the plane perpendicular to a direction passes within `horizon` (in cos of the angle) of the
-/// sun, because the lobe has a kink there. It counts as close_count points if a direction is nearer
+/// sun, because the lobe has a kink there. With
+/// `few_across` it counts as 4 points at that kink, unless it is near. The error of the 4 points is
+/// at most 0.022 texels times the lobe's slope at the horizon, in a band as wide as a texel. It counts as close_count points if a direction is nearer
 /// than close_versine, where a narrow lobe changes within the sun's texel; for wide lobes
-/// close_versine is negative and close_count 0.
+/// close_versine is negative and close_count 0. It counts as no point if it is farther than
+/// `horizon` below the horizon of every direction, where lobes are 0.
 typedef struct ki_sun_points {
     int count, near_count, close_count;
+    bool few_across;
     double far_versine, near_versine, close_versine, horizon;
     // Points {x, y, z, r, g, b} of all suns: `centre` has 1 point for each sun, `pairs` 2 x 2
     // points, `near` near_count points, `close` close_count points.

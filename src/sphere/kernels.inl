@@ -8,6 +8,7 @@
 #include "sphere/kernels.h"
 
 #include "base/lanes.inl"
+#include "base/vector.h"
 
 #include <math.h>
 #include <string.h>
@@ -462,27 +463,36 @@ static inline void add_points(double a2, const double *directions, const double 
 static inline int choose_points(const ki_sun_points *suns, int i, const double *directions,
                                 const double (**points)[6])
 {
-    double distances[KI_LANES], nearest = 2, edge = 2;
-    for (int h = 0; h < KI_LANES; h += KI_WIDTH)
-        store(distances + h, versine(directions, h, suns->centre[i]));
-    for (int j = 0; j < KI_LANES; j++) {
-        double above = distances[j] < 1 ? 1 - distances[j] : distances[j] - 1;
+    vec least = splat(4), least_above = splat(4);
+    for (int h = 0; h < KI_LANES; h += KI_WIDTH) {
+        vec distance = versine(directions, h, suns->centre[i]), cosine = 1 - distance;
+        least = lesser(distance, least);
+        least_above = lesser(positive(cosine) + positive(-cosine), least_above);
+    }
+    double distances[KI_WIDTH], above[KI_WIDTH], nearest = 4, edge = 4;
+    store(distances, least);
+    store(above, least_above);
+    for (int j = 0; j < KI_WIDTH; j++) {
         nearest = distances[j] < nearest ? distances[j] : nearest;
-        edge = above < edge ? above : edge;
+        edge = above[j] < edge ? above[j] : edge;
     }
     size_t sun = (size_t)i;
+    *points = (const double(*)[6])suns->centre + sun;
+    if (nearest >= 1 + suns->horizon)
+        return 0;
     if (nearest < suns->close_versine) {
         *points = (const double(*)[6])suns->close + (size_t)suns->close_count * sun;
         return suns->close_count;
     }
-    if (edge < suns->horizon || nearest < suns->near_versine) {
+    bool across = edge < suns->horizon;
+    if ((across && !suns->few_across) || nearest < suns->near_versine) {
         *points = (const double(*)[6])suns->near + (size_t)suns->near_count * sun;
         return suns->near_count;
     }
-    bool far = !(nearest < suns->far_versine);
-    *points =
-        far ? (const double(*)[6])suns->centre + sun : (const double(*)[6])suns->pairs + 4 * sun;
-    return far ? 1 : 4;
+    if (!across && !(nearest < suns->far_versine))
+        return 1;
+    *points = (const double(*)[6])suns->pairs + 4 * sun;
+    return 4;
 }
 
 static void suns_ggx(const ki_sun_points *suns, double alpha, const double *directions, double *sum)
@@ -494,18 +504,53 @@ static void suns_ggx(const ki_sun_points *suns, double alpha, const double *dire
     }
 }
 
-// Returns entries `index` of a table, one for each lane.
-static inline vec look_up(const double *table, const int64_t *index)
+#if KI_WIDTH >= 4
+typedef double four __attribute__((vector_size(32), may_alias));
+
+static inline four load_four(const double *p)
+{
+    four v;
+    memcpy(&v, p, sizeof v);
+    return v;
+}
+
+// Loads four cubics, and sets c[k] to the coefficients k of all of them.
+static inline void load_four_cubics(const double (*cubics)[4], const int64_t *row, four c[4])
+{
+    four r0 = load_four(cubics[row[0]]), r1 = load_four(cubics[row[1]]);
+    four r2 = load_four(cubics[row[2]]), r3 = load_four(cubics[row[3]]);
+    four even01 = KI_SHUFFLE_DOUBLES4(r0, r1, 0, 4, 2, 6);
+    four even23 = KI_SHUFFLE_DOUBLES4(r2, r3, 0, 4, 2, 6);
+    four odd01 = KI_SHUFFLE_DOUBLES4(r0, r1, 1, 5, 3, 7);
+    four odd23 = KI_SHUFFLE_DOUBLES4(r2, r3, 1, 5, 3, 7);
+    c[0] = KI_SHUFFLE_DOUBLES4(even01, even23, 0, 1, 4, 5);
+    c[1] = KI_SHUFFLE_DOUBLES4(odd01, odd23, 0, 1, 4, 5);
+    c[2] = KI_SHUFFLE_DOUBLES4(even01, even23, 2, 3, 6, 7);
+    c[3] = KI_SHUFFLE_DOUBLES4(odd01, odd23, 2, 3, 6, 7);
+}
+#endif
+
+// Loads the cubic row[j] for each lane j, and sets c[k] to the coefficients k of all lanes. Each
+// cubic is loaded whole, with fewer instructions than loading each coefficient by itself.
+static inline void load_cubics(const double (*cubics)[4], const int64_t *row, vec c[4])
 {
 #if KI_WIDTH == 1
-    return table[index[0]];
+    for (int k = 0; k < 4; k++)
+        c[k] = cubics[row[0]][k];
 #elif KI_WIDTH == 2
-    return (vec){table[index[0]], table[index[1]]};
+    for (int k = 0; k < 4; k += 2) {
+        vec a = load(cubics[row[0]] + k), b = load(cubics[row[1]] + k);
+        c[k] = KI_SHUFFLE_DOUBLES2(a, b, 0, 2);
+        c[k + 1] = KI_SHUFFLE_DOUBLES2(a, b, 1, 3);
+    }
 #elif KI_WIDTH == 4
-    return (vec){table[index[0]], table[index[1]], table[index[2]], table[index[3]]};
+    load_four_cubics(cubics, row, c);
 #else
-    return (vec){table[index[0]], table[index[1]], table[index[2]], table[index[3]],
-                 table[index[4]], table[index[5]], table[index[6]], table[index[7]]};
+    four low[4], high[4];
+    load_four_cubics(cubics, row, low);
+    load_four_cubics(cubics, row + 4, high);
+    for (int k = 0; k < 4; k++)
+        c[k] = (vec)KI_JOIN_DOUBLES4(low[k], high[k]);
 #endif
 }
 
@@ -527,14 +572,13 @@ static inline vec mixture_weight(const ki_mixture *mixture, vec v)
     vec x = (vec)((mask)v & (mask)(v < 1)) + 0x1p-20, t;
     mask bits = (mask)x;
 #endif
-    mask row = ((bits >> rest) - first) * 4,
-         argument = ((bits & low) << KI_MIXTURE_STEP_BITS) | one;
+    mask row = (bits >> rest) - first, argument = ((bits & low) << KI_MIXTURE_STEP_BITS) | one;
     memcpy(index, &row, sizeof index);
     memcpy(&t, &argument, sizeof t);
     t -= 1;
-    const double *c = mixture->cubic[0];
-    vec high = look_up(c + 2, index) + t * look_up(c + 3, index);
-    return positive(1 - v) * (look_up(c, index) + t * (look_up(c + 1, index) + t * high));
+    vec c[4];
+    load_cubics(mixture->cubic, index, c);
+    return positive(1 - v) * (c[0] + t * (c[1] + t * (c[2] + t * c[3])));
 }
 
 static void suns_mixture(const ki_sun_points *suns, const ki_mixture *mixture,

@@ -54,7 +54,9 @@ typedef struct reads {
     double length[3], turn[3];
 } reads;
 
-enum { CUBES = 7 };
+// CLEARED: number of cubes that begin as zeros: those that are added to before they are written,
+// and those that multiply_plane reads beyond their planes.
+enum { CUBES = 7, CLEARED = 3 };
 
 static kiln_result allocate(reads *r, kiln_error *error)
 {
@@ -65,11 +67,12 @@ static kiln_result allocate(reads *r, kiln_error *error)
     r->solid = ki_alloc_raw(k, edge * edge, sizeof *r->solid);
     r->matrix = ki_alloc(k, NEIGHBOURS * f->stride + f->guard, sizeof *r->matrix);
     r->lines = ki_alloc_raw(k, KI_PLANES * (size_t)f->width, sizeof *r->lines);
-    double **cubes[CUBES] = {&r->right,    &r->share,     &r->inverse, &r->x,
-                             &r->residual, &r->direction, &r->product};
+    double **cubes[CUBES] = {&r->right,   &r->x,        &r->direction, &r->share,
+                             &r->inverse, &r->residual, &r->product};
     bool done = r->taps && r->solid && r->matrix && r->lines;
     for (int i = 0; i < CUBES; i++) {
-        *cubes[i] = ki_alloc(k, each, sizeof(double));
+        *cubes[i] =
+            i < CLEARED ? ki_alloc(k, each, sizeof(double)) : ki_alloc_raw(k, each, sizeof(double));
         done = done && *cubes[i];
     }
     return done ? KILN_OK
