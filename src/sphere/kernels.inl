@@ -458,16 +458,49 @@ static inline void add_points(double a2, const double *directions, const double 
     }
 }
 
-// Chooses the points that represent a sun for eight directions, as kernels.h describes. Returns
-// their number.
-static inline int choose_points(const ki_sun_points *suns, int i, const double *directions,
-                                const double (**points)[6])
+// A ball that holds the eight unit directions of a call. The cosine of the angle from any of them to
+// a sun differs from the scalar product of the sun's direction and `centre` by at most `radius`.
+typedef struct bound {
+    double centre[3], radius;
+} bound;
+
+static inline bound bound_directions(const double *directions)
 {
+    bound b;
+    double squared = 0;
+    for (ptrdiff_t k = 0; k < 3; k++)
+        b.centre[k] = sum_lanes(directions + 8 * k) / KI_LANES;
+    for (ptrdiff_t j = 0; j < KI_LANES; j++) {
+        double x = directions[j] - b.centre[0], y = directions[8 + j] - b.centre[1],
+               z = directions[16 + j] - b.centre[2], distance = x * x + y * y + z * z;
+        squared = distance > squared ? distance : squared;
+    }
+    // The second term is greater than the rounding errors of the cosines that are compared.
+    b.radius = sqrt(squared) + 1e-12;
+    return b;
+}
+
+// Chooses the points that represent a sun for eight directions, as kernels.h describes. Returns
+// their number. Most suns lie far from the bound of the directions, on one side of the horizon, and
+// need no distance for each direction.
+static inline int choose_points(const ki_sun_points *suns, int i, const double *directions,
+                                const bound *b, const double (**points)[6])
+{
+    size_t sun = (size_t)i;
+    const double *centre = suns->centre[i];
+    double cosine = centre[0] * b->centre[0] + centre[1] * b->centre[1] + centre[2] * b->centre[2];
+    double surely = 1 - cosine - b->radius; // no direction is nearer
+    *points = (const double(*)[6])suns->centre + sun;
+    if (cosine + b->radius <= -suns->horizon)
+        return 0;
+    if (cosine - b->radius >= suns->horizon && surely >= suns->far_versine &&
+        surely >= suns->near_versine && surely >= suns->close_versine)
+        return 1;
     vec least = splat(4), least_above = splat(4);
     for (int h = 0; h < KI_LANES; h += KI_WIDTH) {
-        vec distance = versine(directions, h, suns->centre[i]), cosine = 1 - distance;
+        vec distance = versine(directions, h, centre), below = 1 - distance;
         least = lesser(distance, least);
-        least_above = lesser(positive(cosine) + positive(-cosine), least_above);
+        least_above = lesser(positive(below) + positive(-below), least_above);
     }
     double distances[KI_WIDTH], above[KI_WIDTH], nearest = 4, edge = 4;
     store(distances, least);
@@ -476,8 +509,6 @@ static inline int choose_points(const ki_sun_points *suns, int i, const double *
         nearest = distances[j] < nearest ? distances[j] : nearest;
         edge = above[j] < edge ? above[j] : edge;
     }
-    size_t sun = (size_t)i;
-    *points = (const double(*)[6])suns->centre + sun;
     if (nearest >= 1 + suns->horizon)
         return 0;
     if (nearest < suns->close_versine) {
@@ -497,9 +528,10 @@ static inline int choose_points(const ki_sun_points *suns, int i, const double *
 
 static void suns_ggx(const ki_sun_points *suns, double alpha, const double *directions, double *sum)
 {
+    bound b = bound_directions(directions);
     for (int i = 0; i < suns->count; i++) {
         const double(*points)[6];
-        int count = choose_points(suns, i, directions, &points);
+        int count = choose_points(suns, i, directions, &b, &points);
         add_points(alpha * alpha, directions, points, count, sum);
     }
 }
@@ -584,9 +616,10 @@ static inline vec mixture_weight(const ki_mixture *mixture, vec v)
 static void suns_mixture(const ki_sun_points *suns, const ki_mixture *mixture,
                          const double *directions, double *sum)
 {
+    bound b = bound_directions(directions);
     for (int i = 0; i < suns->count; i++) {
         const double(*points)[6];
-        int count = choose_points(suns, i, directions, &points);
+        int count = choose_points(suns, i, directions, &b, &points);
         for (int h = 0; h < KI_LANES; h += KI_WIDTH) {
             vec red = load(sum + h), green = load(sum + 8 + h), blue = load(sum + 16 + h);
             for (int n = 0; n < count; n++) {
