@@ -95,16 +95,18 @@ const cli_option bake_options[OPTIONS + 1] = {
              .help = "this option is --tune sharp, --tune soft or "
                      "--tune none since version 0.2"},
     [SIZE] = {"size", CLI_INTEGER, AT(size), 1, KILN_MAX_SIZE, 256, "N",
-              .help = "texels along the edge of a face, or rows of a panorama"},
+              .help = "texels along the edge of a face, or rows of a panorama",
+              .unset = "256, or the engine's with --for"},
     [LEVELS] = {"levels", CLI_INTEGER, AT(level_count), 1, KILN_MAX_LEVELS, 0, "N",
-                .help = "mip levels to write", .unset = "all, down to 1 texel"},
+                .help = "mip levels to write",
+                .unset = "all, down to 1 texel, or the engine's with --for"},
     [SHAPE] = {"shape", CLI_CHOICE, AT(shape), 0, 0, KILN_SHAPE_CUBE - KILN_SHAPE_PANORAMA, "SHAPE",
                .words = bake_shapes + KILN_SHAPE_PANORAMA, .help = "the kind of map to write"},
     [FORMAT] =
         {"format", CLI_CHOICE, AT(format), .value = "FORMAT", .word = format_word,
          .help = "how texels are stored in KTX2 and DDS; rgba16f and rgba32f are half and "
                  "float in EXR too; rgbm, rgbd and rgbp are for PNG",
-         .unset = "rgba16f",
+         .unset = "rgba16f, or the engine's with --for, which auto stands for too",
          .more = "bc6h and uastc take one byte for each texel and have errors of about a per cent; "
                  "uastc (UASTC HDR 4x4) is for KTX2 and for web engines. rgbm, rgbd and rgbp hold "
                  "radiance up to 64, 255 and 64 in four bytes. Each engine of --for has a default "

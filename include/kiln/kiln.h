@@ -1,7 +1,7 @@
 // kiln: exact image-based lighting. A panorama goes in, prefiltered radiance comes out.
 //
-// The sections of this header follow the light:
-//   context -> maps -> load -> sky -> lobe -> spectrum -> prefilter -> spherical harmonics.
+// The sections of this header follow the light: context -> maps -> load -> sky -> lobe -> spectrum
+// -> prefilter -> spherical harmonics -> lights -> environments, which one call bakes.
 // After these come reference values by brute force, the writing of files, and the engines that read
 // the files. <kiln/brdf.h> has what surfaces do to light: reflection models, and tables and closed
 // forms of their integrals. <kiln/course.h> has the methods that courses teach, and <kiln/check.h>
@@ -668,8 +668,8 @@ typedef struct kiln_lights_def {
 
 /// Finds the compact lights in level 0 of a map of any shape: connected texels that are much
 /// brighter than their surroundings. Lights are left out where discs in their place would change a
-/// coefficient of the first five bands of harmonics by a thousandth of the norm of all these
-/// coefficients. `def` may be NULL. Source: docs/lights.md.
+/// coefficient of the first five bands of harmonics by more than 8e-4 of the norm of all, or the
+/// irradiance of a surface by 9.5e-4 of the greatest. `def` may be NULL. Source: docs/lights.md.
 KILN_API KILN_CHECKED kiln_result kiln_lights_find(kiln_context *context, const kiln_map *map,
                                                    const kiln_lights_def *def, kiln_lights *lights,
                                                    kiln_error *error);
