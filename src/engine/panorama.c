@@ -87,7 +87,7 @@ const ki_recipe ki_godot = {
               .size = 512,
               .level_count = 1,
               .limit = KI_HALF_MAX,
-              .proof = "pixels of Godot 3.2.3, source of Godot 4 (0095d7d)"},
+              .proof = "pixels of Godot 3.2.3 and 4.6"},
     UNFILTERED,
     .write = write_godot,
 };
