@@ -30,7 +30,7 @@ enum { ONE_16 = 7, ONE_12 = 6, SCALE_16 = 15, TWO_4 = 22, SCALES_8 = 20 };
 // Sum of both errors of a block below which no other mode than ONE_16 is tried: at most 1.2 % RMS.
 #define SMOOTH 60000.0f
 // A candidate whose own error is not this many times less than the sum of both errors of the best
-// candidate is given up. The sum is usually 3 times the own error or more.
+// candidate is given up after its lines are refined. The sum is usually 3 times the own error or more.
 #define HOPELESS 2.0f
 // Least weight of an error, which black channels have.
 #define LEAST_SHARE 0.005f
@@ -187,37 +187,42 @@ static void add_own(const colors *b, const float mask[TEXELS], const candidate *
     }
 }
 
-// Chooses the weight of each texel, and measures the error of the decoded block.
+// Chooses the weight of each texel.
 static void choose_weights(const colors *b, const float mask[TEXELS], candidate *k)
 {
     float last = (float)(ki_uastc_levels[ki_uastc_modes[k->block.mode].weights] - 1);
-    float along[TEXELS], error[TEXELS] = {0};
+    float along[TEXELS];
     project(b, mask, k, along);
     for (int i = 0; i < TEXELS; i++)
         k->block.index[i] = (uint8_t)(int)(along[i] * last + 0.5f);
+}
+
+// Measures the error of the decoded block.
+static void measure(const colors *b, const float mask[TEXELS], candidate *k)
+{
+    float error[TEXELS] = {0};
     add_own(b, mask, k, k->block.index, error);
     k->error = fold(error);
 }
 
-// Adds the error after conversion, and takes for each texel the neighbouring weight if that lowers
+// Adds the error after the conversion `o`, and takes for each texel the neighbouring weight if that lowers
 // the sum of the texel's two errors.
-static void settle_weights(const colors *b, const float mask[TEXELS], candidate *k)
+static void settle_weights(const colors *b, const float mask[TEXELS], const converted *o,
+                           candidate *k)
 {
     int last = ki_uastc_levels[ki_uastc_modes[k->block.mode].weights] - 1;
-    converted o;
     float least[TEXELS] = {0};
     uint8_t first[TEXELS];
-    convert(k, &o);
     memcpy(first, k->block.index, sizeof first);
     add_own(b, mask, k, first, least);
-    add_converted(b, mask, k, &o, first, least);
+    add_converted(b, mask, k, o, first, least);
     for (int step = -1; step <= 1; step += 2) {
         float error[TEXELS] = {0};
         uint8_t index[TEXELS];
         for (int i = 0; i < TEXELS; i++)
             index[i] = (uint8_t)ki_max(0, ki_min(first[i] + step, last));
         add_own(b, mask, k, index, error);
-        add_converted(b, mask, k, &o, index, error);
+        add_converted(b, mask, k, o, index, error);
         for (int i = 0; i < TEXELS; i++) {
             bool better = error[i] < least[i];
             k->block.index[i] = better ? index[i] : k->block.index[i];
@@ -334,22 +339,19 @@ static void snap(const float share[TEXELS], const float in[TEXELS], const float 
     }
 }
 
-// Moves the ends of all lines to where BC6H has endpoints, in the mode to which the candidate is
-// converted.
-static void snap_lines(const colors *b, const float mask[TEXELS], const candidate *k, lines *ends)
+// Moves the ends of all lines to where BC6H has endpoints of `bits` bits.
+static void snap_lines(const colors *b, const float mask[TEXELS], const candidate *k, int bits,
+                       lines *ends)
 {
     const ki_uastc_mode *mode = &ki_uastc_modes[k->block.mode];
-    converted o;
     float in[TEXELS], x[TEXELS];
-    convert(k, &o);
     for (int i = 0; i < TEXELS; i++)
         x[i] = (float)ki_uastc_weights[mode->weights][k->block.index[i]] / 64;
     for (int s = 0; s < mode->subsets; s++) {
         for (int i = 0; i < TEXELS; i++)
             in[i] = s ? mask[i] : 1 - mask[i];
         for (int c = 0; c < 3; c++)
-            snap(b->share[c], in, x, b->t.code[c], o.bits, &ends->end[s][0][c],
-                 &ends->end[s][1][c]);
+            snap(b->share[c], in, x, b->t.code[c], bits, &ends->end[s][0][c], &ends->end[s][1][c]);
     }
 }
 
@@ -365,25 +367,31 @@ static void write_lines(const lines *ends, candidate *k)
     }
 }
 
-// Settles the weights of a candidate for both formats, and keeps the result if it is the best.
-static void keep_settled(const colors *b, const float mask[TEXELS], const candidate *k,
-                         candidate *best)
+// Returns whether a candidate cannot be better than the best, as far as its own error tells.
+static bool is_hopeless(const candidate *k, const candidate *best)
 {
-    if (HOPELESS * k->error >= best->error)
-        return;
+    return HOPELESS * k->error >= best->error;
+}
+
+// Settles the weights of a candidate and its conversion, and keeps the result if it is the best.
+static void keep_settled(const colors *b, const float mask[TEXELS], const converted *o,
+                         const candidate *k, candidate *best)
+{
     candidate settled = *k;
-    settle_weights(b, mask, &settled);
+    settle_weights(b, mask, o, &settled);
     if (settled.error < best->error)
         *best = settled;
 }
 
 // Tries a mode on lines. The lines are refined by least squares for the block alone, then moved to
-// where BC6H has endpoints, and the weights are settled for both formats.
+// where BC6H has endpoints, and the weights are settled for both formats. A mode is given up as soon
+// as it is hopeless. (To give it up before the lines are refined would lose suns of one texel.)
 static void try_mode(const colors *b, const float mask[TEXELS], const lines *ends, int mode,
                      int partition, candidate *best)
 {
     candidate k = {.block = {.mode = mode, .partition = partition}};
     lines now = *ends;
+    converted o;
     for (int round = 0;; round++) {
         write_lines(&now, &k);
         choose_weights(b, mask, &k);
@@ -391,11 +399,19 @@ static void try_mode(const colors *b, const float mask[TEXELS], const lines *end
             break;
         refine(b, mask, &k, &now);
     }
-    keep_settled(b, mask, &k, best);
-    snap_lines(b, mask, &k, &now);
+    measure(b, mask, &k);
+    if (is_hopeless(&k, best))
+        return;
+    convert(&k, &o);
+    keep_settled(b, mask, &o, &k, best);
+    snap_lines(b, mask, &k, o.bits, &now);
     write_lines(&now, &k);
     choose_weights(b, mask, &k);
-    keep_settled(b, mask, &k, best);
+    measure(b, mask, &k);
+    if (is_hopeless(&k, best))
+        return;
+    convert(&k, &o);
+    keep_settled(b, mask, &o, &k, best);
 }
 
 // Finds the line through the mean of the texels whose weight is 1 along which the three channels

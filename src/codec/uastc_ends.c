@@ -268,6 +268,21 @@ static void swap_floats(float *a, float *b)
     *b = c;
 }
 
+// Returns false if write_colors() would, since the layout is too narrow for two colours even if the
+// rounding of the largest channel, by less than ROUNDED steps, brings them closer. `wanted` has the
+// largest channel first.
+static bool may_reach(int number, float wanted[2][3])
+{
+    enum { ROUNDED = 12 };
+    const layout *l = &colors[number];
+    const float below[3] = {wanted[1][0] - wanted[1][1], wanted[1][0] - wanted[1][2],
+                            wanted[1][0] - wanted[0][0]};
+    for (int f = B; f <= D; f++)
+        if (below[f - B] > (float)(((1 << l->bits[f]) + ROUNDED) << l->shift))
+            return false;
+    return true;
+}
+
 static void write_two_colors(float wanted[2][3], int range, uint8_t value[6], int end[2][3])
 {
     int first = largest_of(wanted[0]), second = largest_of(wanted[1]);
@@ -280,7 +295,7 @@ static void write_two_colors(float wanted[2][3], int range, uint8_t value[6], in
     for (int e = 0; e < 2; e++)
         swap_floats(&turned[e][0], &turned[e][largest]);
     for (int number = 7; number >= 0; number--)
-        if (write_colors(number, turned, largest, range, value, end))
+        if (may_reach(number, turned) && write_colors(number, turned, largest, range, value, end))
             return;
     write_direct(wanted, range, value, end);
 }
