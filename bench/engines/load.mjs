@@ -55,7 +55,7 @@ await withBrowser(folder, async (visit, address) => {
                 console.log(`  ${version.padEnd(10)} ${name.padEnd(9)} ${kind.padEnd(14)} ${String(size).padStart(8)} bytes ` +
                             `${least.toFixed(0).padStart(5)} ms ${(bytes / 1e6).toFixed(2).padStart(6)} MB on the GPU  ` +
                             `${(100 * rms(pixels, halves)).toFixed(2)} % from halves`);
-                lines.push([version, name, kind, size, least, bytes, rms(pixels, halves)].join());
+                lines.push([version, name, `"${kind}"`, size, least, bytes, rms(pixels, halves)].join());
             }
         }
 });
