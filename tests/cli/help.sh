@@ -16,8 +16,8 @@ done
 expect 0 "" help bake
 tr -s ' \n' '  ' <log/out >log/flat
 has() { grep -q -F -- "$1" log/flat || die "the help does not say: $1"; }
-has '--size N texels along the edge of a face, or rows of a panorama (1 to 32768, default 256)'
-has '--levels N mip levels to write (1 to 16, default all, down to 1 texel)'
+has "--size N texels along the edge of a face, or rows of a panorama (1 to 32768, default 256, or the engine's with --for)"
+has "--levels N mip levels to write (1 to 16, default all, down to 1 texel, or the engine's with --for)"
 has '(ggx, lambert, charlie or phong; default ggx)'
 has '--zstd[=LEVEL] compress KTX2 files by Zstandard (1 to 22, 3 without LEVEL)'
 has '--exposure STOPS multiply the radiance by 2^STOPS (-64 to 64, default 0)'
@@ -41,7 +41,7 @@ esac
 for option in size tune zstd irradiance elevation axis max-coefficients; do
     grep -q "^\.It.* Fl -$option" "$page" || die "the manual has no --$option"
 done
-tr '\n' ' ' <"$page" | grep -q '(1 to 32768, default 256)' || die "the manual has no range"
+tr '\n' ' ' <"$page" | grep -q '(1 to 32768, default 256, or the' || die "the manual has no range"
 checks=$((checks + 3))
 
 # What bash completes.
