@@ -330,7 +330,7 @@ KILN_API void kiln_table_lookup(const kiln_table *table, double nov, double roug
 
 /// Expected errors of three lookups of reflected light, relative to the standard deviation of the
 /// reflected light itself: 0.1 stands for 10 %. Expectations are over environments whose harmonics
-/// of degree l are independent and have the variance l^-2.5, as those of tone-mapped panoramas do.
+/// of degree l are independent and have the variance l^-3, for which tables are fitted.
 typedef struct kiln_lobes_error {
     double straight; ///< the split sum's lookup in the mirror direction
     double bent;     ///< the same in the dominant direction of Lagarde and de Rousiers (2014)

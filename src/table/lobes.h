@@ -24,8 +24,8 @@ enum {
 };
 enum { KI_LOBES_CUTS = 5 };
 
-/// Returns the variance of the light's coefficients of degree l >= 1: l^-2.5, as measured on
-/// tone-mapped panoramas, times a Gaussian that stands for a resolution of about 200 degrees.
+/// Returns the variance of the light's coefficients of degree l >= 1: l^-3 times a Gaussian that
+/// stands for a resolution of about 200 degrees. docs/theory/lobes.md says why l^-3.
 double ki_lobes_variance(int l);
 
 /// What the fit knows of a chain of levels: functions of the angle between two directions. Each
@@ -41,6 +41,9 @@ typedef struct ki_lobes_chain {
     /// Covariance of the lobes of two levels i >= j: table i (i + 1) / 2 + j of KI_LOBES_STEPS + 1
     /// numbers.
     double *pair;
+    /// Lobe of each level without its degrees 0 to 2, per steradian: [KI_LOBES_STEPS + 1]
+    /// [level_count].
+    double *high;
     /// Covariance of light from two directions, cut off at degree 24 << (index + 1), for the norm
     /// of a target of a given width.
     double *self[KI_LOBES_CUTS];
@@ -89,6 +92,36 @@ typedef struct ki_lobes_taps {
     int count;
     double angle[KILN_MAX_TAPS], level[KILN_MAX_TAPS], weight[KILN_MAX_TAPS];
 } ki_lobes_taps;
+
+/// The error as a quadratic function of the weights w: w' a w - 2 b' w.
+typedef struct ki_lobes_form {
+    int count;
+    double a[KILN_MAX_TAPS][KILN_MAX_TAPS], b[KILN_MAX_TAPS];
+} ki_lobes_form;
+
+/// Sets the form of the expected error for the angles and levels of taps.
+void ki_lobes_form_make(const ki_lobes_chain *chain, const ki_lobes_target *target,
+                        const ki_lobes_taps *taps, ki_lobes_form *form);
+double ki_lobes_form_value(const ki_lobes_form *form, const double *weights);
+
+/// Number of nodes on one half of the hemisphere below the surface.
+enum { KI_LOBES_BELOW = 20 };
+/// What a search counts besides the expected error.
+typedef struct ki_lobes_costs {
+    double balance; ///< cost of (1 - sum of the weights)^2
+    /// Directions below the surface, the cost of a squared radiance per steradian there, and the
+    /// target's bands 0 to 2 there, per steradian.
+    double node[KI_LOBES_BELOW][3], weight[KI_LOBES_BELOW], bands[KI_LOBES_BELOW];
+} ki_lobes_costs;
+
+/// Sets the costs for a number of taps.
+void ki_lobes_costs_make(const ki_lobes_chain *chain, const ki_lobes_target *target, int count,
+                         ki_lobes_costs *costs);
+/// Adds the costs to a form.
+void ki_lobes_form_add(const ki_lobes_chain *chain, const ki_lobes_costs *costs,
+                       const ki_lobes_taps *taps, ki_lobes_form *form);
+/// Returns the order of magnitude of the error.
+double ki_lobes_scale(const ki_lobes_chain *chain, const ki_lobes_target *target);
 
 /// Mean square of the taps minus twice their covariance with the target: the error without the
 /// target's own norm.

@@ -14,7 +14,7 @@ enum { ANGLES = KI_LOBES_STEPS + 1, DEGREES = KI_LOBES_DEGREE + 1 };
 
 double ki_lobes_variance(int l)
 {
-    static const double power = 2.5, resolution = 200;
+    static const double power = 3, resolution = 200;
     return ki_pow(l, -power) * ki_exp(-(l / resolution) * (l / resolution));
 }
 
@@ -97,6 +97,19 @@ static void set_cut(int cut, double *factor)
     }
 }
 
+// Sets the series of a lobe from degree 3 on. The Gaussian keeps the lobes of the sharpest levels
+// from ringing, whose degrees do not end at KI_LOBES_DEGREE.
+static void set_high(series *s, const double *k, double *to, size_t stride)
+{
+    static const double resolution = 60;
+    for (int l = 0; l < DEGREES; l++)
+        s->c[l] =
+            l < 3 ? 0
+                  : (2 * l + 1) / (4 * KI_PI) * k[l] * ki_exp(-(l / resolution) * (l / resolution));
+    s->to = to;
+    s->stride = stride;
+}
+
 static int set_all(ki_lobes_chain *chain, int first, double (*k)[DEGREES], series *s)
 {
     size_t levels = (size_t)chain->level_count;
@@ -108,6 +121,8 @@ static int set_all(ki_lobes_chain *chain, int first, double (*k)[DEGREES], serie
             set_series(&s[count++], first, k[i], k[j],
                        chain->pair + (size_t)(i * (i + 1) / 2 + j) * ANGLES, 1);
     }
+    for (int i = 0; i < chain->level_count; i++)
+        set_high(&s[count++], k[i], chain->high + i, levels);
     for (int i = 0; i < KI_LOBES_CUTS; i++) {
         set_cut(i, factor);
         set_series(&s[count++], first, factor, NULL, chain->self[i], 1);
@@ -120,9 +135,9 @@ kiln_result ki_lobes_chain_create(kiln_context *context, const kiln_table_def *d
 {
     *chain = (ki_lobes_chain){.level_count = def->level_count};
     size_t levels = (size_t)def->level_count, pairs = levels * (levels + 1) / 2;
-    size_t numbers = ANGLES * (levels + pairs + KI_LOBES_CUTS);
+    size_t tables = 2 * levels + pairs + KI_LOBES_CUTS, numbers = ANGLES * tables;
     double(*k)[DEGREES] = ki_alloc_raw(context, levels, sizeof *k);
-    series *s = ki_alloc_raw(context, levels + pairs + KI_LOBES_CUTS, sizeof *s);
+    series *s = ki_alloc_raw(context, tables, sizeof *s);
     chain->light = ki_alloc_raw(context, numbers, sizeof *chain->light);
     kiln_result result = KILN_OK;
     if (!k || !s || !chain->light)
@@ -136,8 +151,9 @@ kiln_result ki_lobes_chain_create(kiln_context *context, const kiln_table_def *d
     }
     if (!result) {
         chain->pair = chain->light + ANGLES * levels;
+        chain->high = chain->pair + ANGLES * pairs;
         for (size_t i = 0; i < KI_LOBES_CUTS; i++)
-            chain->self[i] = chain->pair + ANGLES * (pairs + i);
+            chain->self[i] = chain->high + ANGLES * (levels + i);
         sums_job job = {s, set_all(chain, first, k, s)};
         ki_parallel_for(context, ANGLES, sum_at, &job);
     }

@@ -10,99 +10,11 @@
 #include <math.h>
 #include <string.h>
 
-enum { STEPS = KI_LOBES_STEPS, PLACES = 2 * KILN_MAX_TAPS };
-
-// A level with its fraction: the hardware mixes level i and level i + 1 by the share of the latter.
-static int split_level(const ki_lobes_chain *chain, double level, double *share)
-{
-    int i = ki_min((int)level, chain->level_count - 2);
-    *share = level - i;
-    return i;
-}
-
-// Catmull and Rom's cubic through y1 and y2 at the share t, which has the slopes of the parabolas
-// through their neighbours.
-static double cubic(double y0, double y1, double y2, double y3, double t)
-{
-    return y1 + 0.5 * t *
-                    (y2 - y0 + t * (2 * y0 - 5 * y1 + 4 * y2 - y3 + t * (3 * (y1 - y2) + y3 - y0)));
-}
-
-// Covariance of the target and of a tap of weight 1.
-static double target_with(const ki_lobes_chain *chain, const ki_lobes_target *target, double angle,
-                          double level)
-{
-    ptrdiff_t levels = chain->level_count;
-    int last = KI_LOBES_ANGLES - 1;
-    double share, at = ki_clamp((angle - target->from) / target->step, 0, last), sum = 0;
-    int a = ki_min((int)at, last - 1), i = split_level(chain, level, &share);
-    int before = ki_max(a - 1, 0), after = ki_min(a + 2, last);
-    for (int k = 0; k < 2; k++, i++) {
-        const double *c = target->covariance + i;
-        sum += (k ? share : 1 - share) * cubic(c[before * levels], c[a * levels],
-                                               c[(a + 1) * levels], c[after * levels], at - a);
-    }
-    return sum;
-}
-
-// Covariance of two taps of weight 1.
-static double tap_with(const ki_lobes_chain *chain, double angle, double level, double other,
-                       double other_level)
-{
-    double share[2], half = 0.5 * (angle - other), sum = 0;
-    double place = STEPS * sqrt(ki_sin(half < 0 ? -half : half));
-    int at = ki_min((int)place, STEPS - 1);
-    int i = split_level(chain, level, &share[0]), j = split_level(chain, other_level, &share[1]);
-    for (int k = 0; k < 4; k++) {
-        int high = ki_max(i + (k & 1), j + (k >> 1)), low = ki_min(i + (k & 1), j + (k >> 1));
-        const double *pair = chain->pair + (size_t)(high * (high + 1) / 2 + low) * (STEPS + 1) + at;
-        sum += (k & 1 ? share[0] : 1 - share[0]) * (k >> 1 ? share[1] : 1 - share[1]) *
-               (pair[0] + (place - at) * (pair[1] - pair[0]));
-    }
-    return sum;
-}
-
-// The error as a quadratic function of the weights w: w' a w - 2 b' w.
-typedef struct form {
-    int count;
-    double a[KILN_MAX_TAPS][KILN_MAX_TAPS], b[KILN_MAX_TAPS];
-} form;
-
-static void make_form(const ki_lobes_chain *chain, const ki_lobes_target *target,
-                      const ki_lobes_taps *t, form *f)
-{
-    f->count = t->count;
-    for (int i = 0; i < t->count; i++) {
-        f->b[i] = target_with(chain, target, t->angle[i], t->level[i]);
-        for (int j = 0; j <= i; j++)
-            f->a[i][j] = f->a[j][i] =
-                tap_with(chain, t->angle[i], t->level[i], t->angle[j], t->level[j]);
-    }
-}
-
-static double form_value(const form *f, const double *w)
-{
-    double sum = 0;
-    for (int i = 0; i < f->count; i++) {
-        double row = -2 * f->b[i];
-        for (int j = 0; j < f->count; j++)
-            row += f->a[i][j] * w[j];
-        sum += w[i] * row;
-    }
-    return sum;
-}
-
-double ki_lobes_taps_error(const ki_lobes_chain *chain, const ki_lobes_target *target,
-                           const ki_lobes_taps *taps)
-{
-    form f;
-    make_form(chain, target, taps, &f);
-    return form_value(&f, taps->weight);
-}
+enum { PLACES = 2 * KILN_MAX_TAPS };
 
 // Sets the weights of the `count` taps in the list `id` to those of least error, the other weights
 // to 0. The diagonal is a little larger than the form's, so that equal taps share a weight.
-static void solve(const form *f, const int *id, int count, double *w)
+static void solve(const ki_lobes_form *f, const int *id, int count, double *w)
 {
     double m[KILN_MAX_TAPS][KILN_MAX_TAPS + 1];
     double ridge = 0;
@@ -127,7 +39,7 @@ static void solve(const form *f, const int *id, int count, double *w)
 
 // Sets the weights of least error of which none is negative: the tap of the most negative weight is
 // left out until no weight is negative.
-static void weigh(const form *f, double *w)
+static void weigh(const ki_lobes_form *f, double *w)
 {
     int id[KILN_MAX_TAPS] = {0}, count = f->count;
     for (int i = 0; i < count; i++)
@@ -149,32 +61,9 @@ typedef struct search_job {
     const ki_lobes_target *target;
     const ki_lobes_pull *pull;
     int count;
-    double scale;   // the error's order of magnitude
-    double balance; // cost of a sum of weights that is not 1, see `balance_of`
+    double scale; // the error's order of magnitude
+    ki_lobes_costs costs;
 } search_job;
-
-// Returns the cost of (1 - sum of the weights)^2 relative to the error. The light that the fit
-// expects has no suns. Under such light alone the best taps may weigh little and leave the rest to
-// bands 0 to 2, which show a sun as a wide blur. The cost is as large as the part of the error that
-// one tap in the dominant direction explains. It lowers the errors of rendered balls with three taps
-// at any roughness, and those of one and two taps at small roughness only.
-static double balance_of(const ki_lobes_chain *chain, const ki_lobes_target *target, int count)
-{
-    double angle = ki_lobes_dominant(target->roughness, target->mirror);
-    double level = ki_lobes_level(chain, target->roughness);
-    double with = target_with(chain, target, angle, level);
-    double strength = count > 2 ? 1 : ki_clamp(1 - 2.5 * target->roughness, 0, 1);
-    return strength * with * with / tap_with(chain, angle, level, angle, level);
-}
-
-static void add_balance(double balance, form *f)
-{
-    for (int i = 0; i < f->count; i++) {
-        f->b[i] += balance;
-        for (int j = 0; j < f->count; j++)
-            f->a[i][j] += balance;
-    }
-}
 
 static double pull_of(const ki_lobes_pull *pull, double mirror, const ki_lobes_taps *t)
 {
@@ -202,12 +91,12 @@ static double judge(const search_job *job, const double *place, ki_lobes_taps *t
         t->level[i] = ki_clamp(level, 0, highest);
         outside += fabs(angle - t->angle[i]) + fabs(level - t->level[i]);
     }
-    form f;
-    make_form(job->chain, job->target, t, &f);
-    add_balance(job->balance, &f);
+    ki_lobes_form f;
+    ki_lobes_form_make(job->chain, job->target, t, &f);
+    ki_lobes_form_add(job->chain, &job->costs, t, &f);
     weigh(&f, t->weight);
     double pull = job->pull ? pull_of(job->pull, job->target->mirror, t) : 0;
-    return form_value(&f, t->weight) + job->scale * (10 * outside + pull);
+    return ki_lobes_form_value(&f, t->weight) + job->scale * (10 * outside + pull);
 }
 
 // A simplex of corners in the space of angles and levels.
@@ -296,11 +185,9 @@ static void begin(const search_job *job, const ki_lobes_taps *t, simplex *s)
 double ki_lobes_search(const ki_lobes_chain *chain, const ki_lobes_target *target,
                        const ki_lobes_pull *pull, ki_lobes_taps *taps)
 {
-    search_job job = {chain, target, pull, taps->count, 0, 0};
-    job.balance = balance_of(chain, target, taps->count);
-    double level = ki_lobes_level(chain, target->roughness);
-    job.scale =
-        target_with(chain, target, target->mirror, level) + ki_lobes_bands_square(&target->bands);
+    search_job job = {.chain = chain, .target = target, .pull = pull, .count = taps->count};
+    ki_lobes_costs_make(chain, target, taps->count, &job.costs);
+    job.scale = ki_lobes_scale(chain, target);
     simplex s = {0};
     begin(&job, taps, &s);
     for (int i = 0; i < 200 * taps->count; i++) {
@@ -311,32 +198,4 @@ double ki_lobes_search(const ki_lobes_chain *chain, const ki_lobes_target *targe
     }
     rank(&s);
     return judge(&job, s.corner[s.best], taps);
-}
-
-double ki_lobes_bands_square(const ki_lobes_bands *b)
-{
-    double one = b->c[0] * b->c[0] + b->c[1] * b->c[1];
-    double two = b->c[2] * b->c[2] + 0.75 * b->c[3] * b->c[3] + 3 * b->c[4] * b->c[4];
-    return (3 * ki_lobes_variance(1) * one + 5 * ki_lobes_variance(2) * two) / (4 * KI_PI);
-}
-
-ki_lobes_bands ki_lobes_rest(const ki_lobes_chain *chain, const ki_lobes_target *target,
-                             const ki_lobes_taps *taps)
-{
-    ki_lobes_bands rest = target->bands;
-    for (int i = 0; i < taps->count; i++) {
-        double share, x, z, w = taps->weight[i];
-        int level = split_level(chain, taps->level[i], &share);
-        const double *k = chain->band[level], *next = chain->band[level + 1];
-        double first = w * (k[1] + share * (next[1] - k[1]));
-        double second = w * (k[2] + share * (next[2] - k[2]));
-        ki_sincos(taps->angle[i], &x, &z);
-        rest.c[0] -= first * z;
-        rest.c[1] -= first * x;
-        rest.c[2] -= second * (1.5 * z * z - 0.5);
-        rest.c[3] -= second * 2 * x * z;
-        rest.c[4] -= second * 0.5 * x * x;
-        rest.c[5] -= w;
-    }
-    return rest;
 }
