@@ -110,7 +110,8 @@ double ki_lobes_scale(const ki_lobes_chain *chain, const ki_lobes_target *target
 // the errors of gold balls in eight panoramas (docs/theory/lobes.md). One tap and two taps need it at
 // small roughness, three taps at any. Towards roughness 1, where bands 0 to 2 can describe nearly the
 // whole lobe, two taps and three need a sum close to 1; a single tap cannot have one there, since its
-// lobe is too narrow.
+// lobe is too narrow. The same holds for any number of taps of levels that are all much sharper than
+// the lobe, so that the cost ends at a roughness of 1/8 above that of the widest level.
 static double balance_of(const ki_lobes_chain *chain, const ki_lobes_target *target, int count)
 {
     double angle = ki_lobes_dominant(target->roughness, target->mirror);
@@ -119,6 +120,8 @@ static double balance_of(const ki_lobes_chain *chain, const ki_lobes_target *tar
     double strength = count > 2 ? 1 : ki_clamp(1 - 1.5 * target->roughness, 0, 1);
     if (count > 1)
         strength += 1000 * ki_clamp(4 * target->roughness - 3, 0, 1);
+    double widest = chain->roughness[chain->level_count - 1];
+    strength *= ki_clamp(1 - 8 * (target->roughness - widest), 0, 1);
     return strength * with * with / tap_with(chain, angle, level, angle, level);
 }
 
