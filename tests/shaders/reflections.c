@@ -57,8 +57,6 @@ void more_lookups_have_smaller_errors(void **unused)
     view_options o = view_defaults(VIEW_SCENE_IBL);
     kiln_map map;
     kiln_image truth, deviation;
-    o.camera.fov = 45; // a wide lens, as for the tables of docs/theory/realtime.md
-    o.camera.distance = 330;
     o.one_row = true;
     o.samples = 1;
     o.lobes_size = TABLE;
