@@ -21,8 +21,8 @@ const SCENES = [
     ['compare', { split: 0.4, stops: -4 }, ['--split', '0.4', '--exposure', '-4']],
 ];
 
-// The cameras of `kiln render`, where the page has its own.
-const CAMERAS = { ibl: { fov: 45, distance: 330 }, grid: { fov: 45, distance: 600 }, assignment: {} };
+// The distances of `kiln render`, where the page has its own.
+const CAMERAS = { ibl: { distance: 640 }, grid: { distance: 1170 }, assignment: {} };
 
 // Red, green and blue bytes of the view, or of a PNG.
 function pixels(page, png) {
