@@ -18,13 +18,15 @@
 #include "headless.h"
 #include "viewer.h"
 
+#include "lobe_sum.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { WIDTH = 192, HEIGHT = 108, BAKED = 512, SIDE = 128, TEXELS = 6 * SIDE * SIDE };
-enum { SMALL = 32, PARTS = 6, WAYS = KILN_MAX_TAPS + 1, ANGLES = 4096 };
+enum { SMALL = 32, PARTS = 6, WAYS = KILN_MAX_TAPS + 1 };
 
 static const double pi = 3.14159265358979323846;
 static kiln_error error;
@@ -42,8 +44,7 @@ typedef struct scene {
     kiln_environment baked;
     kiln_image seen[WAYS], fine[WAYS]; // pictures by the lookups of small tables and of large ones
     double direction[TEXELS][3], area[TEXELS], light[TEXELS][3];
-    /// lobe of each level per steradian at the index ANGLES * sqrt((1 - cosine) / 2)
-    double lobe[KILN_MAX_LEVELS][ANGLES + 1];
+    lobe_levels lobes;
 } scene;
 
 // A point of a ball in the frame of the scene.
@@ -51,12 +52,6 @@ typedef struct point {
     int ball;
     double n[3], v[3], t[3], nov; // t: the tangent in the plane of incidence
 } point;
-
-// What a table holds at a point: directions, levels and weights of taps, and six coefficients.
-typedef struct lookup {
-    int count;
-    double direction[KILN_MAX_TAPS][3], level[KILN_MAX_TAPS], weight[KILN_MAX_TAPS], c[6];
-} lookup;
 
 static double dot(const double *a, const double *b)
 {
@@ -91,32 +86,6 @@ static void collect(scene *s)
         for (size_t c = 0; c < 3; c++)
             s->direction[i][c] /= size;
     }
-}
-
-// Tabulates the lobes of the levels. Level 0 has none: it is read as it is.
-static void shape_levels(scene *s)
-{
-    enum { NODES = 20000 };
-    for (int level = 1; level < s->baked.levels.level_count; level++) {
-        double r = (double)s->baked.levels.roughness[level], sum = 0;
-        kiln_lobe lobe = kiln_lobe_ggx(r * r);
-        for (int i = 0; i < NODES; i++) {
-            double x = (i + 0.5) / NODES; // 1 - cosine = 2 x^4
-            sum += 8 * x * x * x / NODES * kiln_lobe_evaluate(&lobe, 1 - 2 * x * x * x * x);
-        }
-        for (int i = 0; i <= ANGLES; i++) {
-            double x = (double)i / ANGLES;
-            s->lobe[level][i] = kiln_lobe_evaluate(&lobe, 1 - 2 * x * x) / (2 * pi * sum);
-        }
-    }
-}
-
-static double lobe_at(const scene *s, int level, double cosine)
-{
-    double at = ANGLES * sqrt(fmax(0.5 * (1 - cosine), 0));
-    int i = at < ANGLES - 1 ? (int)at : ANGLES - 1;
-    const double *f = s->lobe[level] + i;
-    return f[0] + (at - i) * (f[1] - f[0]);
 }
 
 // --------------------------------------------------------------------------------------- the points
@@ -166,7 +135,8 @@ static bool find_point(const view_options *o, int x, int y, point *p)
 static void integrate(const scene *s, const view_ball *ball, const point *p, double plain[3],
                       double metal[3], double albedo[3])
 {
-    double alpha2 = pow(ball->roughness, 4), sum = 0, nov = p->nov;
+    static const kiln_model model = {0};
+    double sum = 0, nov = p->nov, energy = kiln_energy(&model, ball->roughness, nov);
     for (int c = 0; c < 3; c++)
         plain[c] = metal[c] = albedo[c] = 0;
     for (int i = 0; i < TEXELS; i++) {
@@ -174,11 +144,8 @@ static void integrate(const scene *s, const view_ball *ball, const point *p, dou
         double nol = dot(p->n, l), h2 = 2 + 2 * dot(p->v, l), noh = nol + nov;
         if (nol <= 0)
             continue;
-        // GGX with height-correlated masking, times n.l
-        double d = 1 - noh * noh / h2 * (1 - alpha2);
-        double masking = nov * sqrt(nol * nol * (1 - alpha2) + alpha2) +
-                         nol * sqrt(nov * nov * (1 - alpha2) + alpha2);
-        double f = alpha2 / (pi * d * d) * 0.5 / masking * nol, voh = 0.5 * sqrt(h2);
+        double f = nol * kiln_brdf_specular(&model, ball->roughness, nov, nol, noh / sqrt(h2));
+        double voh = 0.5 * sqrt(h2);
         sum += f * s->area[i];
         for (int c = 0; c < 3; c++) {
             double with = f * kiln_fresnel_f82(ball->f0[c], ball->f82[c], voh);
@@ -188,78 +155,41 @@ static void integrate(const scene *s, const view_ball *ball, const point *p, dou
         }
     }
     for (int c = 0; c < 3; c++) {
-        plain[c] *= albedo[c] / sum;
-        albedo[c] *= kiln_energy(&(kiln_model){0}, ball->roughness, nov) / sum;
-        metal[c] *= kiln_energy(&(kiln_model){0}, ball->roughness, nov) / sum;
-        plain[c] *= kiln_energy(&(kiln_model){0}, ball->roughness, nov) / sum;
+        plain[c] *= albedo[c] / sum * energy / sum;
+        albedo[c] *= energy / sum;
+        metal[c] *= energy / sum;
     }
 }
 
 // ------------------------------------------------------------------------------------------ lookups
 
-// The bent lookup of one level where `table` is NULL.
-static lookup look_up(const scene *s, const kiln_table *table, double roughness, const point *p)
+// Reads a table, or the bent lookup of one level where `table` is NULL: its direction is
+// n + f (r - n), where r is the mirror direction.
+static lobe_sum look_up(const scene *s, const kiln_table *table, double roughness, double nov)
 {
-    const kiln_map *levels = &s->baked.levels;
-    lookup k = {.count = 1, .weight = {1}};
-    if (!table) {
-        double alpha = roughness * roughness, f = (1 - alpha) * (sqrt(1 - alpha) + alpha);
-        for (int c = 0; c < 3; c++)
-            k.direction[0][c] = p->n[c] + f * ((2 * p->nov * p->n[c] - p->v[c]) - p->n[c]);
-        double size = sqrt(dot(k.direction[0], k.direction[0]));
-        for (int c = 0; c < 3; c++)
-            k.direction[0][c] /= size;
-        k.level[0] = roughness * (levels->level_count - 1); // levels have equal steps of roughness
-        return k;
+    double values[KILN_MAX_TABLE_VALUES] = {0};
+    if (table) {
+        kiln_table_lookup(table, nov, roughness, 0, values);
+        return lobe_sum_make(values, table->def.tap_count, nov);
     }
-    double values[KILN_MAX_TABLE_VALUES], list[KILN_MAX_TAPS + 4];
-    kiln_table_lookup(table, p->nov, roughness, 0, values);
-    k.count = table->def.tap_count;
-    k.c[5] = 1;
-    for (int i = 0; i < k.count; i++) {
-        double angle = acos(p->nov) - values[4 * i];
-        for (int c = 0; c < 3; c++)
-            k.direction[i][c] = cos(angle) * p->n[c] + sin(angle) * p->t[c];
-        k.level[i] = fmin(fmax(values[4 * i + 1], 0), levels->level_count - 1);
-        k.weight[i] = values[4 * i + 2];
-        k.c[5] -= k.weight[i];
-        list[i] = values[4 * i + 3];
-    }
-    memcpy(list + k.count, values + 4 * (size_t)k.count, 4 * sizeof *list);
-    memcpy(k.c, list, 5 * sizeof *list);
-    return k;
-}
-
-// The correction per steradian of a direction, for the six coefficients.
-static double correction(const lookup *k, const point *p, const double d[3])
-{
-    double z = dot(p->n, d), x = dot(p->t, d), y2 = 1 - x * x - z * z;
-    return (k->c[5] + 3 * (k->c[0] * z + k->c[1] * x) +
-            5 * (k->c[2] * (1.5 * z * z - 0.5) + 1.5 * k->c[3] * x * z +
-                 1.5 * k->c[4] * (x * x - y2))) /
-           (4 * pi);
+    double alpha = roughness * roughness, f = (1 - alpha) * (sqrt(1 - alpha) + alpha);
+    values[0] = acos(nov) - atan2(f * sqrt(1 - nov * nov), 1 - f + f * nov);
+    values[1] =
+        roughness * (s->baked.levels.level_count - 1); // levels have equal steps of roughness
+    values[2] = 1;
+    return lobe_sum_make(values, 1, nov);
 }
 
 // Brute force over the lobes of the levels and the correction: above the surface and below.
-static void spread(const scene *s, const lookup *k, const point *p, double above[3],
+static void spread(const scene *s, const lobe_sum *sum, const point *p, double above[3],
                    double below[3])
 {
     for (int c = 0; c < 3; c++)
         above[c] = below[c] = 0;
     for (int i = 0; i < TEXELS; i++) {
-        const double *d = s->direction[i];
-        double *to = dot(p->n, d) > 0 ? above : below, f = 0;
-        for (int j = 0; j < k->count; j++) {
-            int level = k->level[j] < s->baked.levels.level_count - 2
-                            ? (int)k->level[j]
-                            : s->baked.levels.level_count - 2;
-            double share = k->level[j] - level, cosine = dot(k->direction[j], d);
-            if (cosine > 0) // no level's lobe reaches beyond a quarter turn
-                f += k->weight[j] * ((1 - share) * lobe_at(s, level, cosine) +
-                                     share * lobe_at(s, level + 1, cosine));
-        }
-        if (k->c[5] != 0)
-            f += correction(k, p, d);
+        double z = dot(p->n, s->direction[i]), x = dot(p->t, s->direction[i]);
+        double d[3] = {x, sqrt(fmax(1 - x * x - z * z, 0)), z}; // the sum is even in y
+        double f = lobe_sum_at(&s->lobes, sum, d), *to = z > 0 ? above : below;
         for (int c = 0; c < 3; c++)
             to[c] += f * s->light[i][c];
     }
@@ -296,10 +226,10 @@ static void measure_point(const scene *s, size_t pixel, const kiln_table *tables
     to->count++;
     for (int way = 0; way < WAYS; way++) {
         double seen[3], better[3], above[3], below[3], both[3];
-        lookup k = look_up(s, way ? &tables[way] : NULL, ball->roughness, p);
+        lobe_sum sum = look_up(s, way ? &tables[way] : NULL, ball->roughness, p->nov);
         widen(&s->seen[way], pixel, seen);
         widen(&s->fine[way], pixel, better);
-        spread(s, &k, p, above, below);
+        spread(s, &sum, p, above, below);
         for (int c = 0; c < 3; c++) {
             above[c] = fmax(above[c], 0) * albedo[c];
             both[c] = fmax(above[c] + below[c] * albedo[c], 0);
@@ -342,7 +272,7 @@ static void measure(kiln_context *context, view_renderer *renderer, const char *
     check(view_bake(context, &source, BAKED, 0, &s->baked, &error));
     kiln_map_free(&source);
     collect(s);
-    shape_levels(s);
+    lobe_levels_make(s->baked.levels.roughness, s->baked.levels.level_count, &s->lobes);
     draw(renderer, &o, s);
     memset(of, 0, sizeof of);
     for (int i = 0; i < WIDTH * HEIGHT; i++) {

@@ -8,7 +8,7 @@
 // with their correction of bands 0 to 2. In a panel the angle in the plane of incidence runs from
 // -90 to 180 degrees to the right, 0 at the normal, positive towards the mirror direction; the
 // angle out of the plane runs from -90 to 90 degrees upwards.
-#include <kiln/brdf.h>
+#include "lobe_sum.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -46,56 +46,6 @@ static double truth(double roughness, double nov, const double d[3])
            kiln_energy(&model, roughness, nov);
 }
 
-// The lobe of a level per steradian.
-static double level_lobe(double roughness, double cosine)
-{
-    enum { NODES = 4000 };
-    kiln_lobe lobe = kiln_lobe_ggx(roughness * roughness);
-    double sum = 0;
-    if (roughness < 0.01)
-        return 0; // the environment itself, too narrow to draw
-    for (int i = 0; i < NODES; i++) {
-        double t = (i + 0.5) / NODES, t3 = t * t * t;
-        sum += 4 * t3 * kiln_lobe_evaluate(&lobe, 1 - t3 * t) / NODES;
-    }
-    return kiln_lobe_evaluate(&lobe, cosine) / (2 * pi * sum);
-}
-
-// The level's lobe at many angles, since its integral is costly.
-typedef struct profile {
-    double value[7][1025];
-} profile;
-
-static double read_profile(const profile *p, double level, double cosine)
-{
-    int low = level < 5 ? (int)level : 5;
-    double at = 512 * (1 + cosine), share = level - low;
-    int i = at < 1023 ? (int)at : 1023;
-    double value[2];
-    for (int k = 0; k < 2; k++)
-        value[k] =
-            p->value[low + k][i] + (at - i) * (p->value[low + k][i + 1] - p->value[low + k][i]);
-    return value[0] + share * (value[1] - value[0]);
-}
-
-// What `values` of a table with `taps` taps make of the lobe, per steradian.
-static double approximation(const profile *p, const double *values, int taps, double nov,
-                            const double d[3])
-{
-    double list[8], rest = 1, sum = 0;
-    for (int k = 0; k < taps; k++) {
-        const double *tap = values + 4 * (size_t)k;
-        double angle = acos(nov) - tap[0];
-        sum += tap[2] * read_profile(p, tap[1], d[0] * sin(angle) + d[2] * cos(angle));
-        rest -= tap[2];
-        list[k] = tap[3];
-    }
-    memcpy(list + taps, values + 4 * (size_t)taps, 4 * sizeof *list);
-    double two = list[2] * (1.5 * d[2] * d[2] - 0.5) + 1.5 * list[3] * d[0] * d[2] +
-                 1.5 * list[4] * (d[0] * d[0] - d[1] * d[1]);
-    return sum + (rest + 3 * (list[0] * d[2] + list[1] * d[0]) + 5 * two) / (4 * pi);
-}
-
 // Colours a value relative to the lobe's maximum: black is 0, yellow is 1, blue is negative.
 static void color(double value, float rgb[3])
 {
@@ -116,8 +66,8 @@ static void direction_at(int x, int y, double d[3])
     d[2] = cos(across) * cos(along);
 }
 
-static void draw_panel(kiln_image *picture, int row, int taps, const profile *p,
-                       const double *values)
+static void draw_panel(kiln_image *picture, int row, int taps, const lobe_levels *levels,
+                       const lobe_sum *sum)
 {
     double roughness = cases[row].roughness, nov = cases[row].nov, d[3], most = 0;
     static double panel[PANEL_HEIGHT][PANEL_WIDTH];
@@ -126,7 +76,7 @@ static void draw_panel(kiln_image *picture, int row, int taps, const profile *p,
             direction_at(x, y, d);
             double f = truth(roughness, nov, d);
             most = f > most ? f : most;
-            panel[y][x] = taps ? approximation(p, values, taps, nov, d) : f;
+            panel[y][x] = taps ? lobe_sum_at(levels, sum, d) : f;
         }
     for (int y = 0; y < PANEL_HEIGHT; y++)
         for (int x = 0; x < PANEL_WIDTH; x++) {
@@ -153,7 +103,8 @@ static void print_errors(kiln_context *context, const kiln_table *tables)
 
 int main(int argc, char **argv)
 {
-    static profile p;
+    static lobe_levels levels;
+    float roughness[7];
     kiln_context *context;
     kiln_table tables[4];
     kiln_image picture;
@@ -166,8 +117,8 @@ int main(int argc, char **argv)
     for (int i = 0; i < WIDTH * HEIGHT * 3; i++)
         picture.pixels[i] = 0.5f;
     for (int level = 0; level < 7; level++)
-        for (int i = 0; i <= 1024; i++)
-            p.value[level][i] = level_lobe(level / 6.0, i / 512.0 - 1);
+        roughness[level] = (float)level / 6;
+    lobe_levels_make(roughness, 7, &levels);
     for (int taps = 0; taps <= 3; taps++) {
         const kiln_table_def def = {.kind = KILN_TABLE_LOBES, .tap_count = taps};
         if (taps)
@@ -176,7 +127,8 @@ int main(int argc, char **argv)
             double values[16] = {0};
             if (taps)
                 kiln_table_lookup(&tables[taps], cases[row].nov, cases[row].roughness, 0, values);
-            draw_panel(&picture, row, taps, &p, values);
+            lobe_sum sum = lobe_sum_make(values, taps, cases[row].nov);
+            draw_panel(&picture, row, taps, &levels, &sum);
         }
     }
     check(kiln_image_save(context, &picture, argv[1], &error));
