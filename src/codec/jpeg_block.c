@@ -11,16 +11,18 @@
 #include <math.h>
 #include <stdlib.h>
 
+enum { SIDE = 8, COUNT = SIDE * SIDE };
+
+// Limits of the numbers below which all decoders agree.
 enum {
-    SIDE = 8,
-    COUNT = SIDE * SIDE,
-    // |f| <= 1/4 sum |F|, so a block with a sum up to this number fits in every respect.
+    // Sum of |F| over the block. Since |f| <= 1/4 sum |F|, no other number can be beyond its limit
+    // below this one, which spares most blocks the transform.
     SUM_CERTAIN = 2000,
-    // Code for vector units adds two coefficients of a column in 16 bits,
+    // Sum of |F| over a column: code for vector units adds two coefficients in 16 bits.
     COLUMN_MOST = 32000,
-    // and two numbers 4 a of a row.
+    // Sum of |a| over a row: code for vector units adds two numbers 4 a in 16 bits.
     ROW_MOST = 8000,
-    // The C code takes f modulo 1024. The distance from 512 is for the rounding of integers.
+    // |f|: C code takes f modulo 1024, so that 512 would be the limit if integers were not rounded.
     SAMPLE_MOST = 504,
 };
 

@@ -54,16 +54,19 @@ typedef struct ki_fft {
 
 /// Suns, the texels that the analysis keeps out of the spectrum, as points on the sphere. A point
 /// is a unit direction and its light: radiance times solid angle, divided by the lobe's integral. A
-/// sun is summed for eight directions at once. It counts as its one centre point if all eight
-/// directions are farther than far_versine (1 - cos of the angle) from the sun, and as 4 points if
-/// they are farther than near_versine. It counts as near_count points if a direction is nearer, or
-/// if the plane perpendicular to a direction passes within `horizon` (in cos of the angle) of the
-/// sun, because the lobe has a kink there. With
-/// `few_across` it counts as 4 points at that kink, unless it is near. The error of the 4 points is
-/// at most 0.022 texels times the lobe's slope at the horizon, in a band as wide as a texel. It counts as close_count points if a direction is nearer
-/// than close_versine, where a narrow lobe changes within the sun's texel; for wide lobes
-/// close_versine is negative and close_count 0. It counts as no point if it is farther than
-/// `horizon` below the horizon of every direction, where lobes are 0.
+/// sun is summed for eight directions at once. Distances below are 1 - cos of the angle between the
+/// sun and the nearest of the eight directions, and the first line that applies counts:
+///
+/// - Farther than `horizon` (in cos of the angle) below the horizon of every direction, where lobes
+///   are 0: no point.
+/// - Nearer than close_versine, where a narrow lobe changes within the sun's texel: close_count
+///   points. For wide lobes close_versine is negative and close_count 0.
+/// - Nearer than near_versine: near_count points.
+/// - Within `horizon` of the horizon of a direction, where the lobe has a kink: near_count points,
+///   or 4 with `few_across`. The error of the 4 points is at most 0.022 texels times the lobe's slope
+///   at the horizon, in a band as wide as a texel.
+/// - Nearer than far_versine: 4 points.
+/// - Else: its one centre point.
 typedef struct ki_sun_points {
     int count, near_count, close_count;
     bool few_across;

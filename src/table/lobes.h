@@ -23,6 +23,12 @@ enum {
     KI_LOBES_NODES = KI_LOBES_RINGS * KI_LOBES_SPOKES
 };
 enum { KI_LOBES_CUTS = 5 };
+/// Quadrature nodes over the hemisphere below the surface: rings, and nodes on one half of a ring.
+enum {
+    KI_LOBES_BELOW_RINGS = 4,
+    KI_LOBES_BELOW_SPOKES = 5,
+    KI_LOBES_BELOW = KI_LOBES_BELOW_RINGS * KI_LOBES_BELOW_SPOKES
+};
 
 /// Returns the variance of the light's coefficients of degree l >= 1: l^-3 times a Gaussian that
 /// stands for a resolution of about 200 degrees. docs/theory/lobes.md says why l^-3.
@@ -44,6 +50,9 @@ typedef struct ki_lobes_chain {
     /// Lobe of each level without its degrees 0 to 2, per steradian: [KI_LOBES_STEPS + 1]
     /// [level_count].
     double *high;
+    /// Unit directions below the surface in the frame of ki_lobes_nodes, with y > 0, and the solid
+    /// angles for which they and their mirror images with -y stand together.
+    double below[KI_LOBES_BELOW][3], below_area[KI_LOBES_BELOW];
     /// Covariance of light from two directions, cut off at degree 24 << (index + 1), for the norm
     /// of a target of a given width.
     double *self[KI_LOBES_CUTS];
@@ -104,14 +113,13 @@ void ki_lobes_form_make(const ki_lobes_chain *chain, const ki_lobes_target *targ
                         const ki_lobes_taps *taps, ki_lobes_form *form);
 double ki_lobes_form_value(const ki_lobes_form *form, const double *weights);
 
-/// Number of nodes on one half of the hemisphere below the surface.
-enum { KI_LOBES_BELOW = 20 };
 /// What a search counts besides the expected error.
 typedef struct ki_lobes_costs {
-    double balance; ///< cost of (1 - sum of the weights)^2
-    /// Directions below the surface, the cost of a squared radiance per steradian there, and the
-    /// target's bands 0 to 2 there, per steradian.
-    double node[KI_LOBES_BELOW][3], weight[KI_LOBES_BELOW], bands[KI_LOBES_BELOW];
+    double balance; ///< factor of (1 - sum of the weights)^2
+    /// For each node below the surface: the factor of the squared lobe per steradian there, and the
+    /// target's own bands 0 to 2 there, per steradian. The lobe of taps and correction is these bands
+    /// plus the taps without their bands 0 to 2.
+    double weight[KI_LOBES_BELOW], bands[KI_LOBES_BELOW];
 } ki_lobes_costs;
 
 /// Sets the costs for a number of taps.

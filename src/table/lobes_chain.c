@@ -69,6 +69,22 @@ static void set_series(series *s, int first, const double *k, const double *h, d
     s->stride = stride;
 }
 
+// Places the nodes below the surface: Gauss-Legendre over the height, evenly around.
+static void place_below(ki_lobes_chain *chain)
+{
+    enum { RINGS = KI_LOBES_BELOW_RINGS, SPOKES = KI_LOBES_BELOW_SPOKES };
+    double x[RINGS], w[RINGS];
+    ki_gauss_legendre(RINGS, x, w);
+    for (int i = 0; i < KI_LOBES_BELOW; i++) {
+        double z = -0.5 * (1 + x[i / SPOKES]), size = sqrt((1 - z) * (1 + z)), s, c;
+        ki_sincos(KI_PI * (i % SPOKES + 0.5) / SPOKES, &s, &c);
+        chain->below[i][0] = size * c;
+        chain->below[i][1] = size * s;
+        chain->below[i][2] = z;
+        chain->below_area[i] = w[i / SPOKES] * KI_PI / SPOKES;
+    }
+}
+
 // Sets k[DEGREES] to the Legendre coefficients of a level's lobe. A level of roughness 0 is the
 // environment itself.
 static kiln_result analyze(kiln_context *context, double roughness, double *k, kiln_error *error)
@@ -97,8 +113,9 @@ static void set_cut(int cut, double *factor)
     }
 }
 
-// Sets the series of a lobe from degree 3 on. The Gaussian keeps the lobes of the sharpest levels
-// from ringing, whose degrees do not end at KI_LOBES_DEGREE.
+// Sets the series of a lobe from degree 3 on. The Gaussian blurs the lobe by about a degree, because
+// the degrees of the sharpest levels do not end at KI_LOBES_DEGREE and their lobes would ring, and
+// because the nodes below the surface at which the lobe is read lie some 20 degrees apart.
 static void set_high(series *s, const double *k, double *to, size_t stride)
 {
     static const double resolution = 60;
@@ -134,6 +151,7 @@ kiln_result ki_lobes_chain_create(kiln_context *context, const kiln_table_def *d
                                   ki_lobes_chain *chain, kiln_error *error)
 {
     *chain = (ki_lobes_chain){.level_count = def->level_count};
+    place_below(chain);
     size_t levels = (size_t)def->level_count, pairs = levels * (levels + 1) / 2;
     size_t tables = 2 * levels + pairs + KI_LOBES_CUTS, numbers = ANGLES * tables;
     double(*k)[DEGREES] = ki_alloc_raw(context, levels, sizeof *k);

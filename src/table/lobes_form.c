@@ -128,8 +128,9 @@ static double balance_of(const ki_lobes_chain *chain, const ki_lobes_target *tar
 // Returns the strength of the cost of light from below the surface. Round lobes reach below the
 // surface where the true lobe ends at the horizon, and bands 0 to 2 cannot end there either. The
 // expected error counts this as any other difference of the lobes, but on the screen light from below
-// is the larger part of the error (bench_lobe_parts). The numbers were found by the errors of gold
-// balls in eight panoramas (docs/theory/lobes.md).
+// is as large a part of the error as all other differences of the lobes (bench_lobe_parts). The
+// numbers were found by the errors of gold balls in eight panoramas (docs/theory/lobes.md). Above a
+// roughness of 0.35 the strength falls by a factor of 100 for each unit of roughness.
 static double horizon_of(double roughness, int count)
 {
     static const double strength[KILN_MAX_TAPS + 1] = {0, 1, 0.3, 0.01};
@@ -137,48 +138,31 @@ static double horizon_of(double roughness, int count)
     return strength[count] * (fall < 1 ? fall : 1);
 }
 
-// Sets nodes of a product rule over the half of the lower hemisphere with y > 0, and their solid
-// angles, which stand for both halves.
-static void place_below(double node[KI_LOBES_BELOW][3], double *area)
-{
-    enum { RINGS = 4, SPOKES = KI_LOBES_BELOW / RINGS };
-    double x[RINGS], w[RINGS];
-    ki_gauss_legendre(RINGS, x, w);
-    for (int i = 0; i < KI_LOBES_BELOW; i++) {
-        double z = -0.5 * (1 + x[i / SPOKES]), size = sqrt((1 - z) * (1 + z)), s, c;
-        ki_sincos(KI_PI * (i % SPOKES + 0.5) / SPOKES, &s, &c);
-        node[i][0] = size * c;
-        node[i][1] = size * s;
-        node[i][2] = z;
-        area[i] = w[i / SPOKES] * KI_PI / SPOKES;
-    }
-}
-
 void ki_lobes_costs_make(const ki_lobes_chain *chain, const ki_lobes_target *target, int count,
                          ki_lobes_costs *costs)
 {
     const double *c = target->bands.c;
-    double area[KI_LOBES_BELOW], horizon = horizon_of(target->roughness, count);
+    double horizon = horizon_of(target->roughness, count);
     costs->balance = balance_of(chain, target, count);
-    place_below(costs->node, area);
     for (int i = 0; i < KI_LOBES_BELOW; i++) {
-        double x = costs->node[i][0], y = costs->node[i][1], z = costs->node[i][2];
+        double x = chain->below[i][0], y = chain->below[i][1], z = chain->below[i][2];
         double two = c[2] * (1.5 * z * z - 0.5) + 1.5 * (c[3] * x * z + c[4] * (x * x - y * y));
         costs->bands[i] = (c[5] + 3 * (c[0] * z + c[1] * x) + 5 * two) / (4 * KI_PI);
-        costs->weight[i] = horizon * area[i];
+        costs->weight[i] = horizon * chain->below_area[i];
     }
 }
 
-// Sets `to` to what a tap of weight 1, without its bands 0 to 2, takes from the nodes' directions.
-static void reach_below(const ki_lobes_chain *chain, const ki_lobes_costs *costs, double angle,
-                        double level, double to[KI_LOBES_BELOW])
+// Sets `to` to the lobe per steradian, at the nodes below the surface, of a tap of weight 1 without
+// its bands 0 to 2.
+static void reach_below(const ki_lobes_chain *chain, double angle, double level,
+                        double to[KI_LOBES_BELOW])
 {
     size_t levels = (size_t)chain->level_count;
     double x, z, share;
     int low = split_level(chain, level, &share);
     ki_sincos(angle, &x, &z);
     for (int i = 0; i < KI_LOBES_BELOW; i++) {
-        double cosine = x * costs->node[i][0] + z * costs->node[i][2];
+        double cosine = x * chain->below[i][0] + z * chain->below[i][2];
         double place = STEPS * sqrt(sqrt(ki_clamp(0.5 * (1 - cosine), 0, 1)));
         int at = ki_min((int)place, STEPS - 1);
         const double *near = chain->high + (size_t)at * levels + low, *far = near + levels;
@@ -193,7 +177,7 @@ void ki_lobes_form_add(const ki_lobes_chain *chain, const ki_lobes_costs *costs,
 {
     double below[KILN_MAX_TAPS][KI_LOBES_BELOW];
     for (int i = 0; i < t->count; i++) {
-        reach_below(chain, costs, t->angle[i], t->level[i], below[i]);
+        reach_below(chain, t->angle[i], t->level[i], below[i]);
         f->b[i] += costs->balance;
         for (int n = 0; n < KI_LOBES_BELOW; n++)
             f->b[i] -= costs->weight[n] * costs->bands[n] * below[i][n];
