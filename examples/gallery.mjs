@@ -172,7 +172,7 @@ async function showGold(browser, address, { engine, page, more }, file, once) {
 }
 
 makeSite(folder);
-makeLobesBy(path.join(bin, 'kiln'), path.join(folder, 'loaders/lobes'), ['three', 'babylon']);
+makeLobesBy(path.join(bin, 'kiln'), path.join(folder, 'loaders/lobes'), ['three', 'babylon'], 2);
 const ways = makeWays(bin, folder);
 const html = [];
 await withBrowser(folder, async (visit, address) => {
