@@ -1,7 +1,8 @@
 // The whole pages of docs/engines, as printed there, show the right picture:
 //     node pages.mjs KILN FOLDER [PAGE...], where PAGE is the name of a file of docs/engines without .md
 // Each section that has a page names its packages in a line "npm install" and bakes files in lines "kiln bake". The
-// page stands in a folder with these packages and files alone, and asks no other server for anything. The panorama has
+// page stands in a folder with these packages and files alone, and asks no other server for anything. A section with
+// main.jsx also has a line "npx esbuild", which bundles that file. The panorama has
 // a blue upper half and a red lower half. A ball of smooth metal in the middle must show blue above and red below.
 import { execFileSync } from 'node:child_process';
 import fs from 'node:fs';
@@ -20,6 +21,9 @@ const PACKAGES = {
     'kiln-ibl': process.env.KILN_PACKAGE ?? '../../npm', 'three@0.183': 'node_modules/three-r183',
     'cesium': 'cesium/node_modules/cesium', '@galacean/engine': 'galacean/node_modules/@galacean/engine',
     '@google/model-viewer': 'model-viewer/node_modules/@google/model-viewer',
+    ...Object.fromEntries(['@react-three/drei', '@react-three/fiber', 'react', 'react-dom', 'esbuild'].map((name) =>
+        [name, `drei/node_modules/${name}`])),
+    'three@0.187': 'drei/node_modules/three', // that drei imports, too: a bundle holds three.js once
 };
 
 // Further versions with which pages of a single package run.
@@ -49,13 +53,14 @@ function pagesOf(name) {
         if (!html)
             return [];
         const packages = lines('npm install')[0], heading = section.match(/^## (.*)/)?.[1] ?? '';
-        const one = { name, heading, html, packages, bakes: lines('kiln bake') };
+        const jsx = section.match(/^```jsx\n(import [^]*?)\n```$/m)?.[1];
+        const one = { name, heading, html, jsx, packages, bakes: lines('kiln bake'), bundles: lines('npx esbuild') };
         const also = packages.length === 1 ? ALSO[packages[0]] ?? [] : [];
         return [one, ...also.map((place) => ({ ...one, places: { [packages[0]]: place } }))];
     });
 }
 
-function makeFolder({ html, packages, bakes, places = PACKAGES }, site) {
+function makeFolder({ html, jsx, packages, bakes, bundles, places = PACKAGES }, site) {
     fs.rmSync(site, { recursive: true, force: true });
     fs.mkdirSync(path.join(site, 'node_modules'), { recursive: true });
     for (const each of packages) {
@@ -66,6 +71,10 @@ function makeFolder({ html, packages, bakes, places = PACKAGES }, site) {
     makePanorama(path.join(site, 'city.exr'));
     for (const words of bakes)
         execFileSync(kiln, ['bake', '-q', ...words], { cwd: site });
+    if (jsx)
+        fs.writeFileSync(path.join(site, 'main.jsx'), jsx);
+    for (const words of bundles)
+        execFileSync('node_modules/esbuild/bin/esbuild', ['--log-level=warning', ...words], { cwd: site });
     fs.writeFileSync(path.join(site, 'model.glb'),
                      makeBall({ pbrMetallicRoughness: { metallicFactor: 1, roughnessFactor: 0.1 } }));
     fs.writeFileSync(path.join(site, 'index.html'), html.replace('<!doctype html>', '<!doctype html><link rel="icon" href="data:,">'));
@@ -101,7 +110,7 @@ async function prove(one, site, file) {
 
 const names = fs.readdirSync(docs).map((name) => path.parse(name).name).filter((name) => name !== 'README');
 const all = names.flatMap(pagesOf);
-check(all.length >= 9, `docs/engines has ${all.length} whole pages`);
+check(all.length >= 10, `docs/engines has ${all.length} whole pages`);
 const faults = [];
 fs.mkdirSync(folder, { recursive: true });
 for (const one of all.filter(({ name }) => !only.length || only.includes(name))) {
