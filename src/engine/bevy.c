@@ -40,19 +40,21 @@ static kiln_result write_files(ki_export *to, kiln_error *error)
 }
 
 const ki_recipe ki_bevy = {
-    .about = {.name = "bevy",
-              .title = "Bevy",
-              .files = "NAME_specular.ktx2 and NAME_diffuse.ktx2",
-              .ending = "",
-              .mapping = "r = k / (n - 1)",
-              .size = 256,
-              .level_count = 5,
-              .limit = KI_RGB9E5_MAX,
-              .formats = {KILN_FORMAT_RGB9E5, KILN_FORMAT_RGBA16F, KILN_FORMAT_BC6H},
-              .format_reason =
-                  "rgb9e5: rgba16f takes twice the bytes and shows the same error; bc6h takes a "
-                  "quarter of the bytes with the same error, and most phones cannot show bc6h",
-              .proof = "source of Bevy 0.19.1"},
+    .about =
+        {.name = "bevy",
+         .title = "Bevy",
+         .files = "NAME_specular.ktx2 and NAME_diffuse.ktx2",
+         .ending = "",
+         .mapping = "r = k / (n - 1)",
+         .size = 256,
+         .level_count = 5,
+         .limit = KI_RGB9E5_MAX,
+         .formats = {KILN_FORMAT_RGB9E5, KILN_FORMAT_RGBA16F, KILN_FORMAT_BC6H},
+         .format_reason =
+             "rgb9e5: in rgba16f the files are twice as large and the picture errs as much; in "
+             "bc6h the files are a quarter as large and the picture errs as much, but most "
+             "phones cannot show bc6h",
+         .proof = "source of Bevy 0.19.1"},
     .axes = {{0, 1, 2}, {1, 1, -1}},
     .size_min = 32,
     .size_max = 4096,

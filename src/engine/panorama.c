@@ -115,7 +115,7 @@ const ki_recipe ki_model_viewer = {
               .size = 512,
               .level_count = 1,
               .limit = KI_HALF_MAX,
-              .proof = "pixels of <model-viewer> 4.4.0"},
+              .proof = "pixels of <model-viewer> 4.4.0 and drei 10.7.9"},
     UNFILTERED,
     .write = write_model_viewer,
 };

@@ -28,20 +28,19 @@ static double level(double roughness, int level_count, int size)
 }
 
 const ki_recipe ki_unity = {
-    .about =
-        {.name = "unity",
-         .title = "Unity",
-         .files = "NAME.dds",
-         .ending = "dds",
-         .mapping = "k = 6 r (1.7 - 0.7 r), 1 behind",
-         .size = 512,
-         .level_count = 10,
-         .limit = KI_HALF_MAX,
-         .formats = {KILN_FORMAT_RGBA16F, KILN_FORMAT_BC6H},
-         .format_reason =
-             "rgba16f: bc6h takes an eighth of the bytes, shows up to 1.14 times the error, and "
-             "most phones cannot show bc6h",
-         .proof = "source of Unity's shaders, Graphics 0c658a0"},
+    .about = {.name = "unity",
+              .title = "Unity",
+              .files = "NAME.dds",
+              .ending = "dds",
+              .mapping = "k = 6 r (1.7 - 0.7 r), 1 behind",
+              .size = 512,
+              .level_count = 10,
+              .limit = KI_HALF_MAX,
+              .formats = {KILN_FORMAT_RGBA16F, KILN_FORMAT_BC6H},
+              .format_reason = "rgba16f: in bc6h the file is an eighth as large and the picture "
+                               "errs up to 1.14 times "
+                               "as much, and most phones cannot show bc6h",
+              .proof = "source of Unity's shaders, Graphics 0c658a0"},
     .axes = {{2, 1, 0}, {-1, 1, -1}},
     .size_min = 64,
     .size_max = 4096,
