@@ -66,6 +66,11 @@ async function aFileIsDroppedAndBaked(page) {
     fs.copyFileSync(path.join(root, 'build/data/blender/city.exr'), inFolder('city.exr'));
     await drop(page, 'city.exr', read('city.exr'));
     checkSame((await cube(page)).bytes, bakeByCommand('city.exr'), 'city.ktx2');
+    // A cube in rgb9e5, the default format of --for three.
+    kiln('bake', 'low.hdr', '-q', '--for', 'three', '--size', '32', '-o', 'shared.ktx2');
+    await drop(page, 'shared.ktx2', read('shared.ktx2'));
+    check(/^shared\.ktx2: from a cube of 32/.test(await text(page, 'status')), `status says "${await text(page, 'status')}"`);
+    checkSame((await cube(page)).bytes, bakeByCommand('shared.ktx2'), 'the cube of shared.ktx2');
     await drop(page, 'low.hdr', read('low.hdr'));
 }
 
