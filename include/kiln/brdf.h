@@ -254,7 +254,7 @@ typedef enum kiln_axis {
     KILN_AXIS_LINEAR, ///< u = n.v
     KILN_AXIS_SQRT,   ///< u = (n.v)^(1/2)
     KILN_AXIS_CBRT,   ///< u = (n.v)^(1/3)
-    /// U = sqrt(n.v (1 + c) / (n.v + c)), by far the most exact axis for E. c is alpha, or k / (1 -
+    /// The most exact axis for E by far: u = sqrt(n.v (1 + c) / (n.v + c)). c is alpha, or k / (1 -
     /// k) for KILN_G_SCHLICK_TEXT, so that the fast change near n.v = 0 covers the same part of
     /// every row.
     KILN_AXIS_GRAZING
