@@ -201,7 +201,8 @@ test)
 test-dist)
     need build render web test python dist docs test-dist
     panoramas
-    npm_packages web npm/codecs tests/web tests/files/assets tests/engines tests/engines/versions tests/engines/cesium tests/engines/galacean tests/engines/drei tests/engines/model-viewer tests/engines/godot4
+    npm_packages web npm/codecs tests/web tests/files/assets tests/engines tests/engines/versions tests/engines/cesium \
+        tests/engines/galacean tests/engines/drei tests/engines/model-viewer tests/engines/godot4 tests/npm/types
     build wasm
     build_release TESTS GOLDEN EXAMPLES PYTHON
     run_tests release -L dist "$@"

@@ -1,4 +1,4 @@
-import type { BakeOptions, Baked, Harmonics, Light } from 'kiln-ibl';
+import type { Baked, CommonBakeOptions, Harmonics, Light } from 'kiln-ibl';
 
 /** An address, a File or Blob, or bytes. */
 export type Source = string | URL | Blob | ArrayBuffer | Uint8Array;
@@ -26,11 +26,18 @@ export interface LightClasses {
 export function loadEnvironment<C extends EnvironmentClasses>(source: Source, scene: object,
     options?: { babylon?: C; signal?: AbortSignal }): Promise<Made<C>>;
 
-/** Bakes a panorama (EXR, HDR, PNG, JPEG) in a worker, and loads the result like loadEnvironment(). Options are those
- * of bake(), with `for: 'babylon'` or `'babylon-dds'`. `texture.metadata.kiln` holds lights and spherical harmonics
- * as `Omit<Baked, 'files'>`. */
-export function bakeEnvironment<C extends EnvironmentClasses>(source: Source, scene: object,
-    options?: Omit<BakeOptions, 'output'> & { babylon?: C }): Promise<Made<C>>;
+/** Options of bake() except for the name of the output. */
+export interface BakeEnvironmentOptions<C> extends Omit<CommonBakeOptions, 'output'> {
+    for?: 'babylon' | 'babylon-dds';
+    output?: never;
+    babylon?: C;
+    [option: string]: unknown;
+}
+
+/** Bakes a panorama (EXR, HDR, PNG, JPEG) in a worker, and loads the result like loadEnvironment().
+ * `texture.metadata.kiln` holds lights and spherical harmonics, as Found describes them. */
+export function bakeEnvironment<C extends EnvironmentClasses>(
+    source: Source, scene: object, options?: BakeEnvironmentOptions<C>): Promise<Made<C>>;
 
 /** What a bake found, in `texture.metadata.kiln`. */
 export type Found = Omit<Baked, 'files'>;

@@ -30,10 +30,8 @@ export interface Control {
 
 export type Value = string | number | boolean | readonly number[] | null | undefined;
 
-/** Every option of the command `kiln bake`, by its name with or without camel case: `irradianceSize: 32` is
- * `--irradiance-size 32`, `mirror: true` is `--mirror`, a list of numbers is joined by commas. The command checks
- * them. The options below are the common ones; `kiln help bake` describes all. */
-export interface BakeOptions extends Control {
+/** The common options of the command `kiln bake`. */
+export interface CommonBakeOptions extends Control {
     /** The name of the input, such as "city.exr". The file's format is read from its content. */
     name?: string;
     /** The engine whose files are wanted, one of the names in `engines`. */
@@ -54,6 +52,12 @@ export interface BakeOptions extends Control {
     exposure?: number;
     /** What becomes of the sun: 'keep', 'extract', 'clamp=auto' or 'clamp=RADIANCE'. */
     sun?: string;
+}
+
+/** Every option of the command `kiln bake`, by its name with or without camel case: `irradianceSize: 32` is
+ * `--irradiance-size 32`, `mirror: true` is `--mirror`, a list of numbers is joined by commas. The command checks
+ * them; `kiln help bake` describes all. */
+export interface BakeOptions extends CommonBakeOptions {
     [option: string]: Value | Control[keyof Control];
 }
 

@@ -1,5 +1,5 @@
 import type { DirectionalLight, MeshStandardMaterial, Scene, Texture } from 'three';
-import type { BakeOptions, Baked, Harmonics, Light } from 'kiln-ibl';
+import type { Baked, CommonBakeOptions, Control, Harmonics, Light, Value } from 'kiln-ibl';
 
 /** The engine of `kiln bake --for` whose files the running three.js shows. */
 export const engine: 'three' | 'three-cubeuv';
@@ -24,9 +24,15 @@ export interface LoadOptions {
     ktx2Loader?: object;
 }
 
-export interface BakeEnvironmentOptions extends Omit<BakeOptions, 'for' | 'output' | 'format'> {
+/** Options of bake() except for the name and format of the output, which follow from the running three.js. */
+export interface BakeEnvironmentOptions extends Omit<CommonBakeOptions, 'for' | 'output' | 'format'> {
     /** Texels along the edge of a face of the finest level, by default 256. */
     size?: number;
+    /** Need not be given: it must be `engine`. */
+    for?: typeof engine;
+    output?: never;
+    format?: never;
+    [option: string]: Value | Control[keyof Control];
 }
 
 /** What a bake found, in `texture.userData.kiln`. */
