@@ -47,6 +47,26 @@ static void print_layers(const kiln_file_info *info)
         printf("    and %d more\n", info->layer_count - shown);
 }
 
+// Prints a KTX file's orientation, such as "rd" or "S=r,T=d", and what it says of the order of
+// texels.
+static void print_orientation(const char *text)
+{
+    static const char *const words[][2] = {
+        {"r", "texels to the right"}, {"l", "texels to the left"},
+        {"d", "rows down"},           {"u", "rows up"},
+        {"i", "slices inwards"},      {"o", "slices outwards"}};
+    printf("  orientation  %s", text);
+    const char *separator = ": ";
+    bool known = strspn(text, "rludioSTR=,") == strlen(text);
+    for (const char *at = text; known && *at; at++)
+        for (size_t i = 0; i < sizeof words / sizeof *words; i++)
+            if (*at == *words[i][0]) {
+                printf("%s%s", separator, words[i][1]);
+                separator = ", ";
+            }
+    putchar('\n');
+}
+
 static void print_text(const char *path, const kiln_file_info *info, const kiln_lights *lights)
 {
     char bytes[32];
@@ -72,7 +92,7 @@ static void print_text(const char *path, const kiln_file_info *info, const kiln_
     if (info->table[0])
         printf("  table        %s\n", info->table);
     if (info->orientation[0])
-        printf("  orientation  %s\n", info->orientation);
+        print_orientation(info->orientation);
     if (info->sh_bands) {
         printf("  harmonics    %d band%s, %s\n", info->sh_bands, info->sh_bands == 1 ? "" : "s",
                info->sh_irradiance ? "irradiance" : "radiance");
