@@ -146,13 +146,14 @@ const cli_command cli_engines = {
     .name = "engines",
     .arguments = "[ENGINE] [OPTION...]",
     .summary = "Lists the engines that 'kiln bake --for' knows.",
-    .about = "The line 'roughness' relates level k of n, or the width w of level 0, to the "
-             "roughness r for which the level is filtered. Tuned levels differ from exactly "
-             "filtered levels where this reduces the error of the engine's picture (kiln bake "
-             "--tune). The line 'by default' says what the other formats would take and how "
-             "much larger the error of the picture would be. The line 'proof' says whether kiln's "
-             "tests check pixels drawn by the "
-             "engine, or against which source the file was checked.",
+    .about =
+        "The line 'roughness' relates level k of n, or the width w of level 0, to the "
+        "roughness r for which the level is filtered. Tuned levels differ from exactly "
+        "filtered levels where this reduces the error of the engine's picture (kiln bake "
+        "--tune). The line 'by default' names the default format, and compares with it the size "
+        "of the file and the error of the picture in the other formats. The line 'proof' says "
+        "whether kiln's tests check pixels drawn by the engine, or against which source the "
+        "file was checked.",
     .word = engine_word,
     .examples = examples,
     .options = options,

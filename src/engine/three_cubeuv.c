@@ -214,7 +214,7 @@ const ki_recipe ki_three_cubeuv = {
               .title = "three.js r150 to r186",
               .files = "NAME.exr, or NAME.ktx2 in uastc",
               .ending = "exr",
-              .mapping = "r = 2^(-m / 2) / 1.16, .21 .305 .4 .53 .67 .8 1",
+              .mapping = "r = sqrt(2^(k + 1) / w) / 1.16 below 0.21, then .21 .305 .4 .53 .67 .8 1",
               .tune = true,
               .size = 512,
               .level_count = 11,

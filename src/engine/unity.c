@@ -32,7 +32,7 @@ const ki_recipe ki_unity = {
               .title = "Unity",
               .files = "NAME.dds",
               .ending = "dds",
-              .mapping = "k = 6 r (1.7 - 0.7 r), 1 behind",
+              .mapping = "k = 6 r (1.7 - 0.7 r), and r = 1 from k = 6 on",
               .size = 512,
               .level_count = 10,
               .limit = KI_HALF_MAX,
