@@ -69,9 +69,11 @@ async function checkBall({ name, model, loads, asked, original, alone = ALONE },
     const exact = overBall(toKiln, (n) => readLevel(whole, n));
     const rest = await show({}), both = await show({ lights });
     prove('ball, from the exact', both, exact, 0.01, say);
-    if (original)
-        prove('ball, from the ball lit by the whole environment', both, await show({}, 'original'), 0.01,
-              say);
+    if (original) {
+        const lit = await show({}, 'original');
+        prove('ball lit by the whole environment, from the exact', lit, exact, 0.01, say);
+        prove('ball, from the ball lit by the whole environment', both, lit, 0.01, say);
+    }
     const added = both.map((view, v) => [view[0].map((value, x) => value.map((e, c) => e - rest[v][0][x][c]))]);
     compareLight(added, lights, toKiln, alone, say);
 }
