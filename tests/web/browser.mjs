@@ -58,8 +58,8 @@ export async function browse(address, work, flags = []) {
 }
 
 // The same for one page.
-export const withPage = (site, work) =>
-    withBrowser(site, (visit, address) => visit((page) => work(page, address)));
+export const withPage = (site, work, flags) =>
+    withBrowser(site, (visit, address) => visit((page) => work(page, address)), flags);
 
 export const idle = (page) => page.waitForFunction(
     () => document.body.getAttribute('aria-busy') === 'false', null, { timeout: 60000 });
