@@ -109,7 +109,7 @@ engines() {
     engine_pixels displayed engines
 }
 
-# Compares BC6H by kiln and by Basis Universal, decoded by oiiotool.
+# Compares BC6H and UASTC HDR by kiln and by Basis Universal; oiiotool decodes BC6H.
 blocks() {
     have oiiotool || fail "oiiotool is missing: install Debian's openimageio-tools"
     [ -d bench/blocks/node_modules ] || fail "packages are missing: run  npm ci --prefix bench/blocks"

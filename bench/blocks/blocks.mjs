@@ -4,7 +4,8 @@
 // JavaScript. Out: errors and CPU times, printed and as rows of CSV. kiln bakes a cube of each panorama and encodes
 // its levels as BC6H and as UASTC HDR. Basis Universal (UASTC HDR 4x4 at its default effort; npm ktx2-encoder,
 // WebAssembly) encodes the same levels, and its transcoder converts the UASTC HDR of both encoders to BC6H. oiiotool
-// decodes BC6H. The summary gives, for each set of panoramas, kiln's errors divided by Basis Universal's.
+// decodes BC6H. The summary gives, for each set of panoramas, kiln's errors divided by Basis Universal's; exit status 1
+// if the mean of a panorama misses one of BARS.
 import { execFileSync } from 'node:child_process';
 import fs from 'node:fs';
 import path from 'node:path';
@@ -107,8 +108,12 @@ function measureHalfs(faces, made) {
 
 const rows = ['name,unit,median,minimum'];
 const add = (name, unit, value) => rows.push(`${name},${unit},${value},${value}`);
-const ratios = {};
-const compare = (set, what, ratio) => ((ratios[set] ??= {})[what] ??= []).push(ratio);
+// The largest mean over the levels of a panorama of what kiln takes or errs, divided by Basis Universal's.
+const BARS = { uastc: 1, 'converted to bc6h': 1, cpu: 0.2 };
+const ratios = {}, each = {};
+const compare = (set, name, what, ratio) => [[set, ratios], [name, each]].forEach(([key, lists]) =>
+    ((lists[key] ??= {})[what] ??= []).push(ratio));
+const meanOf = (list) => Math.exp(list.reduce((sum, x) => sum + Math.log(x), 0) / list.length);
 
 // The panoramas as [set, name, path].
 const pictures = NAMES.map((name) => ['eight', name, path.join(panoramas, `${name}.exr`)]);
@@ -147,16 +152,16 @@ for (const [set, name, picture] of pictures) {
             writeLevel('converted.dds', header, size, convertLevel(`${name}-uastc.ktx2`, level));
             const [, convertedEnergy] = measure('converted', truth, level);
             add(`${name} kiln uastc as bc6h level ${level}`, 'relative', convertedEnergy);
-            compare(set, 'uastc', uastc[2 * level + 1] / uastcEnergy);
-            compare(set, 'converted to bc6h', convertedEnergy / theirEnergy);
-            compare(set, 'bc6h', energy / theirEnergy);
+            compare(set, name, 'uastc', uastc[2 * level + 1] / uastcEnergy);
+            compare(set, name, 'converted to bc6h', convertedEnergy / theirEnergy);
+            compare(set, name, 'bc6h', energy / theirEnergy);
             add(`${name} kiln uastc level ${level}`, 'relative', uastc[2 * level + 1]);
             add(`${name} basis uastc level ${level}`, 'relative', uastcEnergy);
             const us = made.reduce((sum, { microseconds }) => sum + microseconds, 0) / (6 * size * size);
             add(`${name} basis level ${level}`, 'codes', theirs);
             add(`${name} basis level ${level}`, 'relative', theirEnergy);
             add(`${name} basis level ${level}`, 'us/texel', us);
-            compare(set, 'cpu', uastcTime / us);
+            compare(set, name, 'cpu', uastcTime / us);
             line += `   Basis ${theirs.toFixed(1)} | ${theirEnergy.toExponential(1)} | ${us.toFixed(0)} (WebAssembly)` +
                     `   as UASTC HDR (converted ${convertedEnergy.toExponential(1)}): kiln ${uastc[2 * level + 1].toExponential(1)} Basis ${uastcEnergy.toExponential(1)}`;
         }
@@ -165,7 +170,7 @@ for (const [set, name, picture] of pictures) {
 }
 for (const [set, kinds] of Object.entries(ratios))
     for (const [what, list] of Object.entries(kinds)) {
-        const sorted = list.sort((a, b) => a - b), mean = Math.exp(list.reduce((sum, x) => sum + Math.log(x), 0) / list.length);
+        const sorted = list.sort((a, b) => a - b), mean = meanOf(list);
         const shown = [sorted[0], sorted[sorted.length >> 1], sorted.at(-1), mean].map((x) => x.toFixed(3));
         console.log(`  ${set}, ${what}, kiln / Basis Universal: least ${shown[0]}, median ${shown[1]}, most ${shown[2]}, ` +
                     `geometric mean ${shown[3]}; ${list.filter((x) => x > 1).length} of ${list.length} above 1`);
@@ -173,3 +178,8 @@ for (const [set, kinds] of Object.entries(ratios))
     }
 fs.mkdirSync(path.dirname(csv), { recursive: true });
 fs.writeFileSync(csv, `${rows.join('\n')}\n`);
+for (const [name, kinds] of Object.entries(each))
+    for (const [what, bar] of Object.entries(BARS).filter(([kind, most]) => !(meanOf(kinds[kind]) <= most))) {
+        console.log(`  MISSED: ${name}, ${what}: kiln / Basis Universal is ${meanOf(kinds[what]).toFixed(3)}, more than ${bar}`);
+        process.exitCode = 1;
+    }

@@ -13,7 +13,8 @@ import { makeBall } from './glb.mjs';
 const [kiln, folder] = process.argv.slice(2, 4).map((name) => path.resolve(name)), only = process.argv.slice(4);
 const here = import.meta.dirname ?? path.dirname(new URL(import.meta.url).pathname);
 const docs = path.join(here, '../../docs/engines');
-const WIDTH = 300, HEIGHT = 200, PATIENCE = 120000;
+// Patience is in milliseconds: on a busy machine three.js r183 filters the panorama of model-viewer for two minutes.
+const WIDTH = 300, HEIGHT = 200, PATIENCE = 300000;
 
 // Where the packages are installed, by what `npm install` is told. The built kiln-ibl also has the tables of
 // trueReflections().
