@@ -133,12 +133,12 @@ async function run({ code, taps, size, table, cubes, points, sh }) {
     for (const cube of cubes) {
         const levels = cube.map((texels) => new Float16Array(new Float32Array(bytes(texels).buffer)));
         const edge = Math.sqrt(levels[0].length / 24);
-        const texture = device.createTexture({ size: [edge, edge, 6], mipLevelCount: levels.length, format: 'rgba16float',
-                                               usage });
+        const texture = device.createTexture({ size: [edge, edge, 6], mipLevelCount: levels.length,
+                                               format: 'rgba16float', usage });
         levels.forEach((texels, mipLevel) => {
-            const size = edge >> mipLevel;
-            device.queue.writeTexture({ texture, mipLevel }, texels, { bytesPerRow: 8 * size, rowsPerImage: size },
-                                      [size, size, 6]);
+            const width = edge >> mipLevel;
+            device.queue.writeTexture({ texture, mipLevel }, texels, { bytesPerRow: 8 * width, rowsPerImage: width },
+                                      [width, width, 6]);
         });
         const room = 16 * points.length;
         const made = device.createBuffer({ size: room, usage: GPUBufferUsage.STORAGE | GPUBufferUsage.COPY_SRC });
