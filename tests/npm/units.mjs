@@ -1,5 +1,5 @@
 // Parts of the npm package that need no WebAssembly: textures that components share, names in memory, and what is said
-// of a server that answers with a web page. Run as: node units.mjs NPM_FOLDER
+// of a file for another engine and of a server that answers with a web page. Run as: node units.mjs NPM_FOLDER
 import assert from 'node:assert/strict';
 import path from 'node:path';
 import { pathToFileURL } from 'node:url';
@@ -39,6 +39,13 @@ try { kept.read('none', fail); } catch (thrown) { await thrown; }
 assert.throws(() => kept.read('none', fail), /^Error: no$/);
 assert.throws(() => kept.read('none', fail), (thrown) => thrown instanceof Promise);
 assert.equal(attempts, 2);
+
+// Babylon.js has no reader for the KTX2 file of --for three.
+const { loadEnvironment } = await load('babylon.mjs');
+const beginning = Uint8Array.of(0xab, 0x4b, 0x54, 0x58, 0x20, 0x32, 0x30, 0xbb, 0x0d, 0x0a, 0x1a, 0x0a, 123);
+const ktx2 = Object.assign(new Blob([beginning]), { name: 'city.ktx2' }); // as a File, which Node 18 has not
+await assert.rejects(loadEnvironment(ktx2, {}, { babylon: { CubeTexture: class {} } }),
+                     /^Error: city\.ktx2: the file is of the kind "KTX2", and not an environment that kiln baked with --for babylon/);
 
 // Names lead nowhere above the files in memory.
 for (const [name, wanted] of [['../x', 'x'], ['a/../../b', 'b'], ['./a//b', 'a/b'], ['/a/b/', 'a/b'], ['..', ''], ['a..b', 'a..b']])
