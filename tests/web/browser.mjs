@@ -30,6 +30,7 @@ export async function browse(address, work, flags = []) {
     const visit = async (show, of = () => '') => {
         const fault = (text) => faults.push(`${of()}${text}`);
         const page = await context.newPage();
+        page.setDefaultTimeout(240000); // ends the wait for a page that hangs, not for a slow machine
         page.on('pageerror', (error) => fault(`error: ${error.message}`));
         page.on('console', (line) => {
             if (line.type() === 'error')
@@ -62,11 +63,11 @@ export const withPage = (site, work, flags) =>
     withBrowser(site, (visit, address) => visit((page) => work(page, address)), flags);
 
 export const idle = (page) => page.waitForFunction(
-    () => document.body.getAttribute('aria-busy') === 'false', null, { timeout: 60000 });
+    () => document.body.getAttribute('aria-busy') === 'false');
 
 // The view has been drawn finely since the last change.
 export const drawn = (page) => page.waitForFunction(
-    () => document.getElementById('view').dataset.drawn === 'finely', null, { timeout: 60000 });
+    () => document.getElementById('view').dataset.drawn === 'finely');
 
 // Drops files { name, bytes } on the element `selector`.
 export async function dropOn(page, selector, files) {

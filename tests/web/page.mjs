@@ -245,8 +245,7 @@ async function theLinesAreTheDocumentations(page) {
             .replace(/'sun\.json'/g, "'sky-lights.json'").replace(/'kiln-ibl.(three|babylon)'/g, "'./$1.mjs'").replace(/city([._'"])/g, 'sky$1');
         check(wanted.includes(output.replace('city', 'sky')), `the lines of ${name} do not name ${output}`);
         await page.locator('#engine').selectOption(title);
-        await page.waitForFunction((code) => document.getElementById('lines').textContent === code,
-                                   wanted, { timeout: 10000 });
+        await page.waitForFunction((code) => document.getElementById('lines').textContent === code, wanted);
     }
 }
 
@@ -327,7 +326,7 @@ async function theLooksFollowTheVisitor(page, address) {
 // What the panel of checks says of a file: the verdict, and the sentences.
 const checked = async (page, name) => {
     await page.waitForFunction((file) => document.getElementById('check-verdict').textContent.startsWith(`${file} is `) &&
-        !document.getElementById('check-report').hidden, name, { timeout: 60000 });
+        !document.getElementById('check-report').hidden, name);
     return { verdict: await text(page, 'check-verdict'), wrong: await page.locator('#check-verdict.wrong').count() > 0,
              sentences: await page.locator('#check-findings li').allTextContents(),
              levels: await page.locator('#check-levels tr:has(td)').count() };
@@ -400,7 +399,7 @@ async function aSecondFileIsChecked(page, address) {
 }
 
 const flatError = (page, wanted) => page.waitForFunction(
-    (value) => document.getElementById('flat').dataset.error === value, wanted, { timeout: 240000 });
+    (value) => document.getElementById('flat').dataset.error === value, wanted);
 
 // The figure under the picture is the command's, which has the same rays and random numbers.
 async function theErrorIsIntegrated(page, address) {
@@ -422,8 +421,7 @@ async function theErrorIsIntegrated(page, address) {
     // A change of the view is followed; what takes too long can be stopped, and the page lives on.
     await page.evaluate(() => { location.hash = `${location.hash.replace('noise=0.4', 'noise=0.01')}&azimuth=30`; });
     await idle(page);
-    await page.waitForFunction(() => /^Integrating/.test(document.getElementById('background').textContent),
-                               null, { timeout: 60000 });
+    await page.waitForFunction(() => /^Integrating/.test(document.getElementById('background').textContent));
     await button(page, 'Stop').click();
     check(await text(page, 'background') === '', 'it does not stop');
     await page.waitForTimeout(600);
@@ -438,8 +436,7 @@ async function theTextbookTakesItsTime(page, address) {
     await page.waitForFunction(() => /^Sampling the right side/.test(document.getElementById('background').textContent));
     await page.locator('#view').focus();
     await page.keyboard.press('ArrowRight');
-    await page.waitForFunction(() => document.getElementById('view').dataset.textbook === 'whole',
-                               null, { timeout: 240000 });
+    await page.waitForFunction(() => document.getElementById('view').dataset.textbook === 'whole');
     check(/azimuth=5/.test(page.url()), `after a key the address is ${page.url()}`);
 }
 

@@ -88,8 +88,7 @@ await withPage(site, async (page, address) => {
         }, hash.toString());
         await idle(page);
         if (scene === 'compare')
-            await page.waitForFunction(() => document.getElementById('view').dataset.textbook === 'whole',
-                                       null, { timeout: 240000 });
+            await page.waitForFunction(() => document.getElementById('view').dataset.textbook === 'whole');
         await drawn(page);
         const bare = scene === 'assignment' || scene === 'furnace';
         kiln('render', ...(bare ? [] : ['sky.exr', '--bake-size', '64']), '-q', '-o', 'native.png', '--scene', scene,
