@@ -36,6 +36,7 @@ export class BackgroundWork {
         this.stop();
         this.key = key;
         this.busy = true;
+        this.words = steps[0].words; // progress is told while the source is opened, too
         const round = ++this.round;
         this.engine ??= new Engine({
             onProgress: (stage, fraction) => {

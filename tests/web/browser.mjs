@@ -62,12 +62,13 @@ export async function browse(address, work, flags = []) {
 export const withPage = (site, work, flags) =>
     withBrowser(site, (visit, address) => visit((page) => work(page, address)), flags);
 
-export const idle = (page) => page.waitForFunction(
-    () => document.body.getAttribute('aria-busy') === 'false');
+// Waits until a function of the page is true. Asks by a clock, because software may take seconds to draw a frame.
+export const waitFor = (page, fulfilled, value) => page.waitForFunction(fulfilled, value, { polling: 50 });
+
+export const idle = (page) => waitFor(page, () => document.body.getAttribute('aria-busy') === 'false');
 
 // The view has been drawn finely since the last change.
-export const drawn = (page) => page.waitForFunction(
-    () => document.getElementById('view').dataset.drawn === 'finely');
+export const drawn = (page) => waitFor(page, () => document.getElementById('view').dataset.drawn === 'finely');
 
 // Drops files { name, bytes } on the element `selector`.
 export async function dropOn(page, selector, files) {

@@ -1,6 +1,6 @@
 // The page as a visitor meets it: drop a file, bake, see, download; by keyboard; by address; and what
 // a broken file does.
-import { downloaded, drawn, drop, dropOn, idle, withPage } from './browser.mjs';
+import { downloaded, drawn, drop, dropOn, idle, waitFor, withPage } from './browser.mjs';
 import { execFileSync } from 'node:child_process';
 import fs from 'node:fs';
 import path from 'node:path';
@@ -121,7 +121,7 @@ async function theKeyboardSuffices(page, address) {
     await page.evaluate(() => {}); // the browser knows by now that somebody waits
     await page.keyboard.press('Enter');
     await (await chooser).setFiles({ name: 'low.hdr', mimeType: '', buffer: read('low.hdr') });
-    await page.waitForFunction(() => /^low/.test(document.getElementById('status').textContent));
+    await waitFor(page, () => /^low/.test(document.getElementById('status').textContent));
     await idle(page);
     await page.locator('#view').focus();
     const seen = [await look(page)];
@@ -245,7 +245,7 @@ async function theLinesAreTheDocumentations(page) {
             .replace(/'sun\.json'/g, "'sky-lights.json'").replace(/'kiln-ibl.(three|babylon)'/g, "'./$1.mjs'").replace(/city([._'"])/g, 'sky$1');
         check(wanted.includes(output.replace('city', 'sky')), `the lines of ${name} do not name ${output}`);
         await page.locator('#engine').selectOption(title);
-        await page.waitForFunction((code) => document.getElementById('lines').textContent === code, wanted);
+        await waitFor(page, (code) => document.getElementById('lines').textContent === code, wanted);
     }
 }
 
@@ -325,7 +325,7 @@ async function theLooksFollowTheVisitor(page, address) {
 
 // What the panel of checks says of a file: the verdict, and the sentences.
 const checked = async (page, name) => {
-    await page.waitForFunction((file) => document.getElementById('check-verdict').textContent.startsWith(`${file} is `) &&
+    await waitFor(page, (file) => document.getElementById('check-verdict').textContent.startsWith(`${file} is `) &&
         !document.getElementById('check-report').hidden, name);
     return { verdict: await text(page, 'check-verdict'), wrong: await page.locator('#check-verdict.wrong').count() > 0,
              sentences: await page.locator('#check-findings li').allTextContents(),
@@ -355,7 +355,7 @@ async function aSecondFileIsChecked(page, address) {
     // The right half of the balls is the mirror image's, until the right file takes its place.
     await button(page, 'Show on the balls').click();
     check(/scene=check/.test(page.url()), `the address is ${page.url()}`);
-    await page.waitForFunction(() => /right of it mirror\.glb$/.test(document.getElementById('note').textContent));
+    await waitFor(page, () => /right of it mirror\.glb$/.test(document.getElementById('note').textContent));
     await drawn(page);
     const halves = () => page.evaluate(() => {
         const view = document.getElementById('view'), small = document.createElement('canvas');
@@ -371,7 +371,7 @@ async function aSecondFileIsChecked(page, address) {
     const right = await checked(page, 'right.ktx2');
     check(!right.wrong && right.sentences.every((sentence) => /axes are those of three/.test(sentence)),
           `of kiln's own file it says "${right.verdict} ${right.sentences}"`);
-    await page.waitForFunction(() => /right of it right\.ktx2$/.test(document.getElementById('note').textContent));
+    await waitFor(page, () => /right of it right\.ktx2$/.test(document.getElementById('note').textContent));
     await drawn(page);
     const straight = await halves();
     check(far(straight.left, mirrored.left) <= 1, 'the exact half changes with the file');
@@ -379,14 +379,14 @@ async function aSecondFileIsChecked(page, address) {
 
     // Another engine expects other axes; harmonics are checked alone; a broken file gives a sentence.
     await page.locator('#check-engine').selectOption('unity');
-    await page.waitForFunction(() => /turned by 90/.test(document.getElementById('check-findings').textContent) ||
+    await waitFor(page, () => /turned by 90/.test(document.getElementById('check-findings').textContent) ||
                                /mirrored/.test(document.getElementById('check-findings').textContent));
     await page.locator('#check-engine').selectOption('');
     await dropOn(page, 'body', [file('right.json')]);
     const alone = await checked(page, 'right.json');
     check(!alone.wrong && !alone.levels && /harmonics err by/.test(alone.verdict), `it says "${alone.verdict}"`);
     await dropOn(page, '#check', [{ name: 'cut.glb', bytes: read('mirror.glb').subarray(0, 900) }]);
-    await page.waitForFunction(() => /^cut\.glb: the glTF file is cut off/.test(document.getElementById('error').textContent));
+    await waitFor(page, () => /^cut\.glb: the glTF file is cut off/.test(document.getElementById('error').textContent));
 
     // The panorama is placed as by the command.
     await page.evaluate(() => {
@@ -398,8 +398,8 @@ async function aSecondFileIsChecked(page, address) {
               'the placed cube');
 }
 
-const flatError = (page, wanted) => page.waitForFunction(
-    (value) => document.getElementById('flat').dataset.error === value, wanted);
+const flatError = (page, wanted) => waitFor(
+    page, (value) => document.getElementById('flat').dataset.error === value, wanted);
 
 // The figure under the picture is the command's, which has the same rays and random numbers.
 async function theErrorIsIntegrated(page, address) {
@@ -421,7 +421,7 @@ async function theErrorIsIntegrated(page, address) {
     // A change of the view is followed; what takes too long can be stopped, and the page lives on.
     await page.evaluate(() => { location.hash = `${location.hash.replace('noise=0.4', 'noise=0.01')}&azimuth=30`; });
     await idle(page);
-    await page.waitForFunction(() => /^Integrating/.test(document.getElementById('background').textContent));
+    await waitFor(page, () => /^Integrating/.test(document.getElementById('background').textContent));
     await button(page, 'Stop').click();
     check(await text(page, 'background') === '', 'it does not stop');
     await page.waitForTimeout(600);
@@ -432,11 +432,19 @@ async function theErrorIsIntegrated(page, address) {
 // The textbook's half of compare comes by and by, and the page takes keys meanwhile.
 async function theTextbookTakesItsTime(page, address) {
     await visit(page, `${address}#size=64&samples=1&scene=compare`);
+    await page.evaluate(() => {
+        const background = document.getElementById('background');
+        window.told = [];
+        new MutationObserver(() => window.told.push(background.textContent)).observe(background, { childList: true });
+    });
     await idle(page);
-    await page.waitForFunction(() => /^Sampling the right side/.test(document.getElementById('background').textContent));
+    await waitFor(page, () => /^Sampling the right side/.test(document.getElementById('background').textContent));
     await page.locator('#view').focus();
     await page.keyboard.press('ArrowRight');
-    await page.waitForFunction(() => document.getElementById('view').dataset.textbook === 'whole');
+    await waitFor(page, () => document.getElementById('view').dataset.textbook === 'whole');
+    const told = await page.evaluate(() => window.told);
+    check(told.length > 4 && told.every((words) => !words || /^Sampling the right side: \d+ of 1024/.test(words)),
+          `in the background is told: ${told.join(' / ')}`);
     check(/azimuth=5/.test(page.url()), `after a key the address is ${page.url()}`);
 }
 

@@ -1,6 +1,6 @@
 // The browser's pictures against those that `kiln render` makes without a screen: RMS at most 0.5 of
 // 255, and no pixel more than 2 of 255 off that does not touch a silhouette.
-import { drawn, idle, withPage } from './browser.mjs';
+import { drawn, idle, waitFor, withPage } from './browser.mjs';
 import { check, kiln, read, site } from './lib.mjs';
 
 const WIDTH = 192, HEIGHT = 108;
@@ -88,7 +88,7 @@ await withPage(site, async (page, address) => {
         }, hash.toString());
         await idle(page);
         if (scene === 'compare')
-            await page.waitForFunction(() => document.getElementById('view').dataset.textbook === 'whole');
+            await waitFor(page, () => document.getElementById('view').dataset.textbook === 'whole');
         await drawn(page);
         const bare = scene === 'assignment' || scene === 'furnace';
         kiln('render', ...(bare ? [] : ['sky.exr', '--bake-size', '64']), '-q', '-o', 'native.png', '--scene', scene,
