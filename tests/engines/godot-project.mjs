@@ -1,4 +1,4 @@
-// The whole project of docs/engines/godot.md runs as printed there: node godot-project.mjs KILN FOLDER
+// The whole project for Godot 3 of docs/engines/godot.md runs as printed there: node godot-project.mjs KILN FOLDER
 // The panorama is blue above and red below. A ball of smooth metal in the middle must show blue above and red below.
 import { execFileSync } from 'node:child_process';
 import fs from 'node:fs';
@@ -8,7 +8,7 @@ import { readPng } from './png.mjs';
 const [kiln, folder] = process.argv.slice(2).map((name) => path.resolve(name));
 const here = import.meta.dirname ?? path.dirname(new URL(import.meta.url).pathname);
 const [section] = fs.readFileSync(path.join(here, '../../docs/engines/godot.md'), 'utf8').split(/^(?=## )/m)
-    .filter((text) => text.startsWith('## A whole project'));
+    .filter((text) => text.startsWith('## A whole project for Godot 3\n'));
 fs.rmSync(folder, { recursive: true, force: true });
 fs.mkdirSync(folder, { recursive: true });
 const files = [...section.matchAll(/[Tt]he file `(.*)`:\n\n```[a-z]*\n([^]*?)```$/gm)];
