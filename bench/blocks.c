@@ -5,10 +5,11 @@
 //         encoding in microseconds for each texel
 //     bench_blocks uastc - TRUTH.ktx2 BLOCKS.ktx2
 //         writes the levels as UASTC HDR, and prints the least CPU time likewise, then for each
-//         level the RMS difference of half floats' bits and the relative RMS error
+//         level the RMS difference of half floats' bits, the relative RMS error, and the RMS
+//         difference of x / (x + m) with the level's mean m
 //     bench_blocks error TRUTH.ktx2 LEVEL PICTURE
-//         prints the errors of a picture of six faces, one below the other, from a level of TRUTH:
-//         the RMS difference of half floats' bits and the relative RMS error
+//         prints these three errors of a picture of six faces, one below the other, from a level
+//         of TRUTH
 #include <kiln/kiln.h>
 
 #include <math.h>
@@ -74,14 +75,19 @@ static double code(double value)
 
 static void print_errors(const float *truth, const float *values, size_t count)
 {
-    double codes = 0, off = 0, all = 0;
+    double codes = 0, off = 0, all = 0, mean = 0, shown = 0;
+    for (size_t i = 0; i < count; i++)
+        mean += (double)truth[i] / (double)count;
     for (size_t i = 0; i < count; i++) {
         double a = (double)truth[i], b = (double)values[i];
+        double tone = a / (a + mean) - b / (b + mean);
         codes += (code(a) - code(b)) * (code(a) - code(b));
         off += (a - b) * (a - b);
         all += a * a;
+        shown += tone * tone;
     }
-    printf(" %.6g %.6g", sqrt(codes / (double)count), sqrt(off / all));
+    printf(" %.6g %.6g %.6g", sqrt(codes / (double)count), sqrt(off / all),
+           sqrt(shown / (double)count));
 }
 
 static kiln_result save_uastc(kiln_context *context, char **argv, kiln_error *error)

@@ -91,19 +91,20 @@ function convertLevel(name, level) {
     return faces;
 }
 
-// The RMS difference of UASTC HDR as the transcoder decodes it, relative to the level's RMS radiance.
+// Errors of UASTC HDR as the transcoder decodes it: the RMS difference relative to the level's RMS radiance, and the
+// RMS difference of x / (x + m) with the level's mean m.
 function measureHalfs(faces, made) {
-    let off = 0, all = 0;
-    faces.forEach((bytes, face) => {
-        const floats = new Float32Array(bytes.slice().buffer);
-        floats.forEach((x, i) => {
-            if (i % 4 === 3)
-                return;
-            off += (x - valueOf(made[face].halfs[i])) ** 2;
-            all += x * x;
-        });
+    const colours = (list) => list.filter((_, i) => i % 4 !== 3);
+    const truth = faces.flatMap((bytes) => [...colours(new Float32Array(bytes.slice().buffer))]);
+    const values = made.flatMap(({ halfs }) => [...colours(halfs)].map(valueOf));
+    const m = truth.reduce((sum, x) => sum + x, 0) / truth.length;
+    let off = 0, all = 0, shown = 0;
+    truth.forEach((x, i) => {
+        off += (x - values[i]) ** 2;
+        all += x * x;
+        shown += (x / (x + m) - values[i] / (values[i] + m)) ** 2;
     });
-    return Math.sqrt(off / all);
+    return [Math.sqrt(off / all), Math.sqrt(shown / truth.length)];
 }
 
 const rows = ['name,unit,median,minimum'];
@@ -148,22 +149,26 @@ for (const [set, name, picture] of pictures) {
             const made = faces.map((face) => basisFace(face, size));
             writeLevel('basis.dds', header, size, made.map(({ blocks }) => blocks));
             const [theirs, theirEnergy] = measure('basis', truth, level);
-            const uastcEnergy = measureHalfs(faces, made);
+            const [uastcEnergy, uastcShown] = measureHalfs(faces, made);
+            const [, ownEnergy, ownShown] = uastc.slice(3 * level);
             writeLevel('converted.dds', header, size, convertLevel(`${name}-uastc.ktx2`, level));
             const [, convertedEnergy] = measure('converted', truth, level);
             add(`${name} kiln uastc as bc6h level ${level}`, 'relative', convertedEnergy);
-            compare(set, name, 'uastc', uastc[2 * level + 1] / uastcEnergy);
+            compare(set, name, 'uastc', ownEnergy / uastcEnergy);
+            compare(set, name, 'uastc displayed', ownShown / uastcShown);
             compare(set, name, 'converted to bc6h', convertedEnergy / theirEnergy);
             compare(set, name, 'bc6h', energy / theirEnergy);
-            add(`${name} kiln uastc level ${level}`, 'relative', uastc[2 * level + 1]);
+            add(`${name} kiln uastc level ${level}`, 'relative', ownEnergy);
+            add(`${name} kiln uastc level ${level}`, 'displayed', ownShown);
             add(`${name} basis uastc level ${level}`, 'relative', uastcEnergy);
+            add(`${name} basis uastc level ${level}`, 'displayed', uastcShown);
             const us = made.reduce((sum, { microseconds }) => sum + microseconds, 0) / (6 * size * size);
             add(`${name} basis level ${level}`, 'codes', theirs);
             add(`${name} basis level ${level}`, 'relative', theirEnergy);
             add(`${name} basis level ${level}`, 'us/texel', us);
             compare(set, name, 'cpu', uastcTime / us);
             line += `   Basis ${theirs.toFixed(1)} | ${theirEnergy.toExponential(1)} | ${us.toFixed(0)} (WebAssembly)` +
-                    `   as UASTC HDR (converted ${convertedEnergy.toExponential(1)}): kiln ${uastc[2 * level + 1].toExponential(1)} Basis ${uastcEnergy.toExponential(1)}`;
+                    `   as UASTC HDR (converted ${convertedEnergy.toExponential(1)}): kiln ${ownEnergy.toExponential(1)} Basis ${uastcEnergy.toExponential(1)}`;
         }
         console.log(line);
     });
