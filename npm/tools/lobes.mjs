@@ -22,8 +22,8 @@ const wordsOf = ({ engine, taps }, output) =>
     ['tables', '--table', 'lobes', '--taps', `${taps}`, '--levels', CHAINS[engine].map((r) => +r.toFixed(9)).join(),
      '--size', '32', '--format', 'f16', '-q', '-o', output];
 
-// make(words, output) runs the command with these words and returns the bytes of the file `output`. Engines and most:
-// the engines whose tables are wanted, and the largest number of taps.
+// make(words, output) runs the command with these words and returns the bytes of the file `output`. Only tables for the
+// engines named by `engines` and of at most `most` taps are made.
 export function makeLobes(folder, make, engines = Object.keys(CHAINS), most = 3) {
     fs.mkdirSync(folder, { recursive: true });
     for (const table of LOBES.filter(({ engine, taps }) => engines.includes(engine) && taps <= most)) {

@@ -9,7 +9,7 @@
 
 enum { FINE = 48, LANES = 8 };
 
-// The weight of the lobe averaged over a texel, in one direction.
+// Returns the mean weight of the lobe around `direction` over the area of a sun's texel.
 static double average(const ki_zonal *zonal, const ki_sun *sun, int size, const double *direction)
 {
     double sum = 0, sines = 0, step = KI_PI / size;
@@ -44,7 +44,8 @@ static void aim(const ki_sun *sun, int size, double away, double spread, uint64_
     }
 }
 
-// Returns the greatest error in groups of directions at angles from `from` to `to`.
+// Returns the greatest error, relative to the peak, in directions whose angles to a sun are `from` to
+// `to` radians. Three suns in different rows are tried.
 static double greatest_error(const ki_zonal *zonal, int size, double from, double to)
 {
     const float radiance[3] = {3, 5, 7};

@@ -62,7 +62,8 @@ export async function browse(address, work, flags = []) {
 export const withPage = (site, work, flags) =>
     withBrowser(site, (visit, address) => visit((page) => work(page, address)), flags);
 
-// Waits until a function of the page is true. Asks by a clock, because software may take seconds to draw a frame.
+// Waits until `fulfilled`, which runs in the page with the argument `value`, returns true. Calls it every 50 ms and not
+// at each frame, since a browser that draws by software may take seconds for a frame.
 export const waitFor = (page, fulfilled, value) => page.waitForFunction(fulfilled, value, { polling: 50 });
 
 export const idle = (page) => waitFor(page, () => document.body.getAttribute('aria-busy') === 'false');

@@ -21,7 +21,8 @@ const SCENES = [
     ['compare', { split: 0.4, stops: -4 }, ['--split', '0.4', '--exposure', '-4']],
 ];
 
-// The distances of `kiln render`, where the page has its own.
+// The distances of the camera by which `kiln render` draws each scene. The page draws two of the scenes from other
+// distances by default.
 const CAMERAS = { ibl: { distance: 640 }, grid: { distance: 1170 }, assignment: {} };
 
 // Red, green and blue bytes of the view, or of a PNG.

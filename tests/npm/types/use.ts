@@ -1,5 +1,5 @@
-// What a user of the package writes, which TypeScript's compiler must accept, and mistakes, which it must find. The
-// comments before mistakes make the compiler fail where it finds none. Nothing of this is run.
+// A program that uses every module of the package, which TypeScript's compiler must accept. Below each comment with
+// @ts-expect-error stands a mistake: the compiler fails if it finds no error there. The program is not run.
 import { bake, engines, kiln, version } from 'kiln-ibl';
 import type { Baked, Engine, Harmonics, KilnError, Light } from 'kiln-ibl';
 import * as ibl from 'kiln-ibl/three';
@@ -23,7 +23,7 @@ export async function inMemory(bytes: Uint8Array, signal: AbortSignal): Promise<
     console.log(strongest?.direction[2], baked.files[0].bytes.length, baked.levels[0].roughness, version);
     // @ts-expect-error: an unknown way to tune
     await bake(bytes, { tune: 'loud' });
-    // @ts-expect-error: a picture needs its height
+    // @ts-expect-error: the height of the picture is missing
     await bake({ data: new Float32Array(6), width: 2 });
     // @ts-expect-error: harmonics may be null
     return [baked, baked.sh.coefficients[0][0] ? baked.sh : null];
@@ -50,7 +50,7 @@ export async function inThree(scene: Scene, renderer: WebGLRenderer): Promise<vo
     shown.roughness = 0.5;
     // @ts-expect-error: four taps
     await ibl.trueReflections(gold, environment, { taps: 4 });
-    // @ts-expect-error: the engine and the name of the output are the loader's choice
+    // @ts-expect-error: three.js' loader bakes for three.js alone
     await ibl.bakeEnvironment('city.hdr', renderer, { for: 'babylon' });
 }
 
