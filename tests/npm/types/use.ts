@@ -1,5 +1,6 @@
-// A program that uses every module of the package, which TypeScript's compiler must accept. Below each comment with
-// @ts-expect-error stands a mistake: the compiler fails if it finds no error there. The program is not run.
+// A program that uses every module of the package, which TypeScript's compiler must accept. It holds mistakes, too: a
+// comment with @ts-expect-error stands above each, and the compiler fails if the line below has no error. The program
+// is not run.
 import { bake, engines, kiln, version } from 'kiln-ibl';
 import type { Baked, Engine, Harmonics, KilnError, Light } from 'kiln-ibl';
 import * as ibl from 'kiln-ibl/three';
