@@ -4,9 +4,10 @@
 // for the most promising partitions; endpoints are quantised, indices chosen, and both refined by
 // least squares. block_lines.inl finds the lines.
 //
-// Errors are squared differences between the bits of half floats ("codes", 1024 of them for each
-// factor of two), which are nearly relative errors except for the darkest colours. A code counts as
-// the middle of its interval, since decoding rounds down.
+// Errors are weighted squared differences between the bits of half floats ("codes", 1024 of them for
+// each factor of two), which are nearly relative errors except for the darkest colours.
+// block_lines.inl has the weights. A code counts as the middle of its interval, since decoding rounds
+// down.
 #include "codec/block_lines.inl"
 
 // The decoder multiplies a number that it has interpolated between endpoints by 31/64. The result
@@ -19,7 +20,21 @@ enum { TRIED = 3, MODES = 2, ROUNDS = 2 };
 
 // A mode that stores endpoints as differences from endpoint 0 is also tried if the differences
 // exceed its range by at most this factor; the endpoints are then moved into range.
-#define REACH 1.2f
+#define EXCESS 1.2f
+
+// Before lines are fitted, values are raised to this many codes below the block's largest value.
+#define REACH (8 * 1024.0f)
+
+// A partition is tried unless this part of the variance that its lines leave exceeds the error of the
+// best block so far. The variance counts all texels alike, where errors have weights of up to 1.
+#define HOPEFUL 0.5f
+
+// The texels of a block, the weights of their errors, and what lines are fitted to.
+typedef struct colors {
+    texels t;
+    float share[3][TEXELS];
+    scaled_texels s;
+} colors;
 
 typedef struct candidate {
     ki_bc6h_block block;
@@ -117,7 +132,7 @@ static void obey_anchors(ki_bc6h_block *b, int index[TEXELS])
 
 // Chooses the index of each texel, makes the indices of the anchors valid, and measures the error
 // of the decoded block.
-static void choose_indices(const texels *t, const float mask[TEXELS], candidate *k)
+static void choose_indices(const colors *of, const float mask[TEXELS], candidate *k)
 {
     ki_bc6h_block *b = &k->block;
     const ki_bc6h_mode *mode = &ki_bc6h_modes[b->mode];
@@ -130,8 +145,9 @@ static void choose_indices(const texels *t, const float mask[TEXELS], candidate 
         for (int i = 0; i < TEXELS; i++) {
             float from = mask[i] != 0 ? end[2] : end[0];
             float way = mask[i] != 0 ? end[3] - end[2] : end[1] - end[0];
-            along[i] += (t->code[c][i] + 0.5f - from) * way;
-            length[i] += way * way;
+            float weighted = way * of->share[c][i];
+            along[i] += (of->t.code[c][i] + 0.5f - from) * weighted;
+            length[i] += way * weighted;
         }
     }
     int index[TEXELS];
@@ -154,8 +170,8 @@ static void choose_indices(const texels *t, const float mask[TEXELS], candidate 
         for (int i = 0; i < TEXELS; i++) {
             float from = mask[i] != 0 ? end[2] : end[0], to = mask[i] != 0 ? end[3] : end[1];
             float mixed = (float)(int)(((64 - weight[i]) * from + weight[i] * to + 32) / 64);
-            float off = (float)(int)(mixed * 31 / 64) - t->code[c][i];
-            error[i] += off * off;
+            float off = (float)(int)(mixed * 31 / 64) - of->t.code[c][i];
+            error[i] += off * off * of->share[c][i];
         }
     }
     k->error = fold(error);
@@ -198,35 +214,30 @@ static void descend(const parabola *p, const ki_bc6h_mode *mode, int channel, in
 
 // Sets the ends of each subset's line to those with the least squared error for the indices that
 // the texels have.
-static void refine(const texels *t, const float mask[TEXELS], candidate *k)
+static void refine(const colors *of, const float mask[TEXELS], candidate *k)
 {
     ki_bc6h_block *b = &k->block;
     const ki_bc6h_mode *mode = &ki_bc6h_modes[b->mode];
     for (int s = 0; s < mode->subsets; s++) {
-        float near[TEXELS], far[TEXELS], product[TEXELS];
-        parabola p;
+        float near[TEXELS], far[TEXELS], product[5][TEXELS];
         for (int i = 0; i < TEXELS; i++) {
             float in = s ? mask[i] : 1 - mask[i];
             float weight = (float)ki_bc6h_weight(b->index[i], mode->subsets) / 64;
             near[i] = in * (1 - weight);
             far[i] = in * weight;
         }
-        for (int i = 0; i < TEXELS; i++)
-            product[i] = near[i] * near[i];
-        p.xx = fold(product);
-        for (int i = 0; i < TEXELS; i++)
-            product[i] = near[i] * far[i];
-        p.xy = fold(product);
-        for (int i = 0; i < TEXELS; i++)
-            product[i] = far[i] * far[i];
-        p.yy = fold(product);
         for (int c = 0; c < 3; c++) {
-            for (int i = 0; i < TEXELS; i++)
-                product[i] = near[i] * (t->code[c][i] + 0.5f);
-            p.x = fold(product);
-            for (int i = 0; i < TEXELS; i++)
-                product[i] = far[i] * (t->code[c][i] + 0.5f);
-            p.y = fold(product);
+            for (int i = 0; i < TEXELS; i++) {
+                float x = near[i] * of->share[c][i], y = far[i] * of->share[c][i];
+                float code = of->t.code[c][i] + 0.5f;
+                product[0][i] = x * near[i];
+                product[1][i] = x * far[i];
+                product[2][i] = y * far[i];
+                product[3][i] = x * code;
+                product[4][i] = y * code;
+            }
+            const parabola p = {fold(product[0]), fold(product[1]), fold(product[2]),
+                                fold(product[3]), fold(product[4])};
             descend(&p, mode, c, b->endpoint[0][0][c], s == 0, &b->endpoint[s][0][c],
                     &b->endpoint[s][1][c]);
         }
@@ -246,31 +257,31 @@ static void keep_all(ki_bc6h_block *b)
 
 // --------------------------------------------------------------------------------------- choosing
 
-static void try_mode(const texels *t, const float mask[TEXELS], const lines *ends, int mode,
+static void try_mode(const colors *of, const float mask[TEXELS], const lines *ends, int mode,
                      int partition, candidate *best)
 {
     candidate k = {.block = {.mode = mode, .partition = partition}};
     quantize_lines(ends, &k);
     float before = INFINITY;
     for (int round = 0;; round++) {
-        choose_indices(t, mask, &k);
+        choose_indices(of, mask, &k);
         if (k.error < best->error)
             *best = k;
         if (round == ROUNDS || !(k.error < before))
             break;
         before = k.error;
-        refine(t, mask, &k);
+        refine(of, mask, &k);
         keep_all(&k.block);
     }
 }
 
 // Returns whether the endpoints' differences from endpoint 0 fit in a mode's bits, or exceed them
-// by less than the factor REACH.
+// by less than the factor EXCESS.
 static bool reaches(const lines *ends, const ki_bc6h_mode *mode)
 {
     float step = (float)(65536 >> mode->bits) * CODE;
     for (int c = 0; c < 3 && mode->relative; c++) {
-        float most = (float)((1 << (mode->delta_bits[c] - 1)) - 1) * step * REACH;
+        float most = (float)((1 << (mode->delta_bits[c] - 1)) - 1) * step * EXCESS;
         for (int e = 1; e < 2 * mode->subsets; e++)
             if (fabsf(ends->end[e / 2][e % 2][c] - ends->end[0][0][c]) > most)
                 return false;
@@ -280,17 +291,17 @@ static bool reaches(const lines *ends, const ki_bc6h_mode *mode)
 
 // Tries modes on the lines of a partition, from the most precise mode on, until MODES of them could
 // store the lines' ends.
-static void try_modes(const texels *t, const float mask[TEXELS], const lines *ends,
+static void try_modes(const colors *of, const float mask[TEXELS], const lines *ends,
                       const uint8_t *modes, int count, int partition, candidate *best)
 {
     for (int i = 0, tried = 0; i < count && tried < MODES && best->error > 0; i++)
         if (reaches(ends, &ki_bc6h_modes[modes[i]])) {
-            try_mode(t, mask, ends, modes[i], partition, best);
+            try_mode(of, mask, ends, modes[i], partition, best);
             tried++;
         }
 }
 
-static void encode(const texels *t, uint8_t bytes[KI_BLOCK_BYTES])
+static void encode(const colors *of, uint8_t bytes[KI_BLOCK_BYTES])
 {
     static const uint8_t ones_modes[4] = {13, 12, 11, 10};
     static const uint8_t twos_modes[10] = {2, 3, 4, 0, 5, 6, 7, 8, 1, 9};
@@ -299,23 +310,23 @@ static void encode(const texels *t, uint8_t bytes[KI_BLOCK_BYTES])
     lines ends = {0};
     for (int i = 0; i < TEXELS; i++)
         unmasked[i] = 1;
-    find_line(t, unmasked, ends.end[0]);
-    try_modes(t, mask, &ends, ones_modes, 4, 0, &best);
+    find_scaled(&of->s, unmasked, ends.end[0]);
+    try_modes(of, mask, &ends, ones_modes, 4, 0, &best);
     if (best.error > 0)
-        rank(t, left);
+        rank(&of->s.t, left);
     for (int n = 0; n < TRIED && best.error > 0; n++) {
         int p = 0;
         for (int i = 1; i < PARTITIONS; i++)
             p = left[i] < left[p] ? i : p;
-        if (left[p] >= best.error)
+        if (HOPEFUL * left[p] >= best.error)
             break;
         left[p] = INFINITY;
         read_mask(p, mask);
         for (int i = 0; i < TEXELS; i++)
             unmasked[i] = 1 - mask[i];
-        find_line(t, unmasked, ends.end[0]);
-        find_line(t, mask, ends.end[1]);
-        try_modes(t, mask, &ends, twos_modes, 10, p, &best);
+        find_scaled(&of->s, unmasked, ends.end[0]);
+        find_scaled(&of->s, mask, ends.end[1]);
+        try_modes(of, mask, &ends, twos_modes, 10, p, &best);
     }
     ki_bc6h_pack(&best.block, bytes);
 }
@@ -324,10 +335,14 @@ void KI_BC6H_ROW(const float *rgb, int width, int height, int y, uint8_t *bytes)
 {
     for (int x = 0; x < width; x += 4, bytes += KI_BLOCK_BYTES) {
         uint16_t halfs[VALUES];
-        texels t;
+        colors of;
         read_block(rgb, width, height, x, y, halfs);
         for (int i = 0; i < VALUES; i++)
-            t.code[i % 3][i / 3] = (float)halfs[i];
-        encode(&t, bytes);
+            of.t.code[i % 3][i / 3] = (float)halfs[i];
+        weigh_errors(halfs, of.share);
+        texels raised;
+        raise_darks(&of.t, REACH, &raised);
+        scale_channels(&raised, of.share, &of.s);
+        encode(&of, bytes);
     }
 }

@@ -39,6 +39,41 @@ static void read_block(const float *rgb, int width, int height, int x, int y,
     ki_halfs_from_floats(block, VALUES, halfs);
 }
 
+// Least weight of an error, which black channels have.
+#define LEAST_SHARE 0.01f
+
+// Sets the weights of the errors of a block's channels: a channel's value divided by the largest
+// value of the block, so that the sun's texels count more than dark texels next to the sun, and a
+// colour's nearly black channels count little.
+static void weigh_errors(const uint16_t halfs[VALUES], float share[3][TEXELS])
+{
+    float value[VALUES], most = 0;
+    ki_floats_from_halfs(halfs, VALUES, value);
+    for (int i = 0; i < VALUES; i++)
+        most = value[i] > most ? value[i] : most;
+    for (int i = 0; i < VALUES; i++)
+        share[i % 3][i / 3] = (most > 0 ? value[i] / most : 0) + LEAST_SHARE;
+}
+
+// Copies the codes of a block, and raises them to `reach` below the largest of all, such that nearly
+// black texels do not determine the direction of a line. A channel whose codes are all lower is left
+// as it is: its weight keeps it from determining the direction.
+static void raise_darks(const texels *t, float reach, texels *raised)
+{
+    float high[3], top = 0;
+    for (int c = 0; c < 3; c++) {
+        high[c] = t->code[c][0];
+        for (int i = 1; i < TEXELS; i++)
+            high[c] = t->code[c][i] > high[c] ? t->code[c][i] : high[c];
+        top = high[c] > top ? high[c] : top;
+    }
+    for (int c = 0; c < 3; c++) {
+        float least = high[c] < top - reach ? 0 : top - reach;
+        for (int i = 0; i < TEXELS; i++)
+            raised->code[c][i] = t->code[c][i] > least ? t->code[c][i] : least;
+    }
+}
+
 static float fold(const float v[TEXELS])
 {
     float a[8], b[4];
@@ -106,6 +141,31 @@ static void find_line(const texels *t, const float weight[TEXELS], float end[2][
         end[0][c] = mean[c] + 0.5f + low * axis[c];
         end[1][c] = mean[c] + 0.5f + high * axis[c];
     }
+}
+
+// The codes of a block multiplied by a factor for each channel, the root of the channel's mean weight,
+// such that distances between texels count as their errors do.
+typedef struct scaled_texels {
+    texels t;
+    float factor[3];
+} scaled_texels;
+
+static void scale_channels(const texels *t, float share[3][TEXELS], scaled_texels *s)
+{
+    for (int c = 0; c < 3; c++) {
+        s->factor[c] = sqrtf(fold(share[c]) / TEXELS);
+        for (int i = 0; i < TEXELS; i++)
+            s->t.code[c][i] = t->code[c][i] * s->factor[c];
+    }
+}
+
+// Finds the line like find_line, in scaled codes, and returns its ends in codes.
+static void find_scaled(const scaled_texels *s, const float weight[TEXELS], float end[2][3])
+{
+    find_line(&s->t, weight, end);
+    for (int c = 0; c < 3; c++)
+        for (int e = 0; e < 2; e++)
+            end[e][c] = (end[e][c] - 0.5f) / s->factor[c] + 0.5f;
 }
 
 // Sets left[p] to the variance that remains when the two subsets of partition p are approximated by

@@ -8,9 +8,7 @@
 //
 // Errors are weighted squared differences between ASTC's logarithmic numbers of 16 bits ("codes",
 // 2048 of them for each factor of two), between which the decoder interpolates. Such a difference
-// is nearly a relative error. A channel of a texel has a weight of its value divided by the largest
-// value of the block, so that the sun's texels count more than dark texels next to the sun, and a
-// colour's nearly black channels count little.
+// is nearly a relative error. block_lines.inl has the weights.
 #include "codec/block_lines.inl"
 #include "codec/uastc.h"
 
@@ -26,18 +24,20 @@ enum { ONE_16 = 7, ONE_12 = 6, SCALE_16 = 15, TWO_4 = 22, SCALES_8 = 20 };
 
 // Weight of the error after conversion to BC6H relative to the error of the block itself. With this
 // weight both errors are below those of Basis Universal's encoder in most pictures.
-#define BC6H_SHARE 2.0f
+#define BC6H_SHARE 1.0f
 // Sum of both errors of a block below which no other mode than ONE_16 is tried: at most 1.2 % RMS.
 #define SMOOTH 60000.0f
+// Two lines are tried for the TRIED most promising partitions, as long as the sum of both errors of the
+// best block exceeds HARSH: 4 % RMS. The blocks of a smooth picture rarely need a second partition,
+// those around lights often do.
+#define HARSH 600000.0f
+enum { TRIED = 3 };
 // A candidate whose own error is not this many times less than the sum of both errors of the best
 // candidate is given up after its lines are refined. The sum is usually 3 times the own error or more.
 #define HOPELESS 2.0f
-// Least weight of an error, which black channels have.
-#define LEAST_SHARE 0.005f
 // Values below the block's largest value divided by 2^DARKEST count as equal to this quotient.
 #define DARKEST 12
-// Before lines are fitted, values are raised to this many codes below the block's largest value,
-// such that nearly black channels do not determine the direction of a line.
+// Before lines are fitted, values are raised to this many codes below the block's largest value.
 #define REACH (8 * 2048.0f)
 
 // The texels of a block, the bits of their half floats, and the weights of their errors.
@@ -45,6 +45,7 @@ typedef struct colors {
     texels t, raised;
     float half[3][TEXELS];
     float share[3][TEXELS];
+    scaled_texels s;
 } colors;
 
 typedef struct candidate {
@@ -456,8 +457,8 @@ static void try_partition(const colors *b, int partition, candidate *best)
         mask[i] = (float)(bits >> i & 1);
         unmasked[i] = 1 - mask[i];
     }
-    find_line(&b->raised, unmasked, ends.end[0]);
-    find_line(&b->raised, mask, ends.end[1]);
+    find_scaled(&b->s, unmasked, ends.end[0]);
+    find_scaled(&b->s, mask, ends.end[1]);
     try_mode(b, mask, &ends, TWO_4, partition, best);
     find_scale(&b->raised, unmasked, ends.end[0]);
     find_scale(&b->raised, mask, ends.end[1]);
@@ -471,14 +472,18 @@ static void encode(const colors *b, uint8_t bytes[KI_BLOCK_BYTES])
     lines ends = {0};
     for (int i = 0; i < TEXELS; i++)
         all[i] = 1;
-    find_line(&b->raised, all, ends.end[0]);
+    find_scaled(&b->s, all, ends.end[0]);
     try_mode(b, none, &ends, ONE_16, 0, &best);
     if (best.error > SMOOTH) {
         try_mode(b, none, &ends, ONE_12, 0, &best);
         find_scale(&b->raised, all, ends.end[0]);
         try_mode(b, none, &ends, SCALE_16, 0, &best);
-        rank(&b->raised, left);
-        try_partition(b, best_partition(left), &best);
+        rank(&b->s.t, left);
+        for (int n = 0; n < TRIED && (n == 0 || best.error > HARSH); n++) {
+            int p = best_partition(left);
+            left[ki_uastc_partitions[p].bc6h] = INFINITY;
+            try_partition(b, p, &best);
+        }
     }
     ki_uastc_pack(&best.block, bytes);
 }
@@ -497,23 +502,19 @@ static bool encode_solid(const uint16_t halfs[VALUES], uint8_t bytes[KI_BLOCK_BY
 
 static void read_colors(const uint16_t halfs[VALUES], colors *b)
 {
-    float value[VALUES], most = 0;
     uint16_t top = 0;
-    ki_floats_from_halfs(halfs, VALUES, value);
-    for (int i = 0; i < VALUES; i++) {
-        most = value[i] > most ? value[i] : most;
+    for (int i = 0; i < VALUES; i++)
         top = halfs[i] > top ? halfs[i] : top;
-    }
+    weigh_errors(halfs, b->share);
     int least = ki_max(top - DARKEST * 1024, 0);
-    float reach = code_of_half(top) - 0.5f - REACH;
     for (int i = 0; i < VALUES; i++) {
         int c = i % 3, t = i / 3, half = ki_max(halfs[i], least);
         float code = code_of_half(half) - 0.5f;
         b->half[c][t] = (float)half;
         b->t.code[c][t] = code;
-        b->raised.code[c][t] = code > reach ? code : reach;
-        b->share[c][t] = value[i] / most + LEAST_SHARE;
     }
+    raise_darks(&b->t, REACH, &b->raised);
+    scale_channels(&b->raised, b->share, &b->s);
 }
 
 void KI_UASTC_ROW(const float *rgb, int width, int height, int y, uint8_t *bytes)
