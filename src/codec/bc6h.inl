@@ -22,9 +22,6 @@ enum { TRIED = 3, MODES = 2, ROUNDS = 2 };
 // exceed its range by at most this factor; the endpoints are then moved into range.
 #define EXCESS 1.2f
 
-// Before lines are fitted, values are raised to this many codes below the block's largest value.
-#define REACH (8 * 1024.0f)
-
 // A partition is tried unless this part of the variance that its lines leave exceeds the error of the
 // best block so far. The variance counts all texels alike, where errors have weights of up to 1.
 #define HOPEFUL 0.5f
@@ -337,12 +334,11 @@ void KI_BC6H_ROW(const float *rgb, int width, int height, int y, uint8_t *bytes)
         uint16_t halfs[VALUES];
         colors of;
         read_block(rgb, width, height, x, y, halfs);
+        int least = is_solid(halfs) ? 0 : least_of_block(halfs);
         for (int i = 0; i < VALUES; i++)
-            of.t.code[i % 3][i / 3] = (float)halfs[i];
+            of.t.code[i % 3][i / 3] = (float)ki_max(halfs[i], least);
         weigh_errors(halfs, of.share);
-        texels raised;
-        raise_darks(&of.t, REACH, &raised);
-        scale_channels(&raised, of.share, &of.s);
+        scale_channels(&of.t, of.share, &of.s);
         encode(&of, bytes);
     }
 }

@@ -39,6 +39,27 @@ static void read_block(const float *rgb, int width, int height, int x, int y,
     ki_halfs_from_floats(block, VALUES, halfs);
 }
 
+// Values below the block's largest value divided by 2^DARKEST count as equal to this quotient.
+enum { DARKEST = 20 };
+
+// Returns the least value that counts in a block, as a half float.
+static int least_of_block(const uint16_t halfs[VALUES])
+{
+    int top = 0;
+    for (int i = 0; i < VALUES; i++)
+        top = ki_max(top, halfs[i]);
+    return ki_max(top - DARKEST * 1024, 0);
+}
+
+// Returns whether all texels of a block have the same colour.
+static bool is_solid(const uint16_t halfs[VALUES])
+{
+    for (int i = 3; i < VALUES; i++)
+        if (halfs[i] != halfs[i - 3])
+            return false;
+    return true;
+}
+
 // Least weight of an error, which black channels have.
 #define LEAST_SHARE 0.01f
 
@@ -53,25 +74,6 @@ static void weigh_errors(const uint16_t halfs[VALUES], float share[3][TEXELS])
         most = value[i] > most ? value[i] : most;
     for (int i = 0; i < VALUES; i++)
         share[i % 3][i / 3] = (most > 0 ? value[i] / most : 0) + LEAST_SHARE;
-}
-
-// Copies the codes of a block, and raises them to `reach` below the largest of all, such that nearly
-// black texels do not determine the direction of a line. A channel whose codes are all lower is left
-// as it is: its weight keeps it from determining the direction.
-static void raise_darks(const texels *t, float reach, texels *raised)
-{
-    float high[3], top = 0;
-    for (int c = 0; c < 3; c++) {
-        high[c] = t->code[c][0];
-        for (int i = 1; i < TEXELS; i++)
-            high[c] = t->code[c][i] > high[c] ? t->code[c][i] : high[c];
-        top = high[c] > top ? high[c] : top;
-    }
-    for (int c = 0; c < 3; c++) {
-        float least = high[c] < top - reach ? 0 : top - reach;
-        for (int i = 0; i < TEXELS; i++)
-            raised->code[c][i] = t->code[c][i] > least ? t->code[c][i] : least;
-    }
 }
 
 static float fold(const float v[TEXELS])

@@ -1,7 +1,7 @@
 // Encoding of a row of UASTC HDR blocks, compiled once for each instruction set. In: RGB floats.
 // Out: 16 bytes for each block of 4 x 4 texels. The including file defines KI_UASTC_ROW, the name
 // of the function. Method: a line of least squares is fitted to the colours of the block, and two
-// lines for the most promising partition; the ends are rounded to what a mode can store, a weight
+// lines for the most promising partitions; the ends are rounded to what a mode can store, a weight
 // is chosen for each texel, and both are refined by least squares. Then both are adjusted such that
 // the block also has little error after a conversion to BC6H. Blocks of one colour are stored
 // exactly.
@@ -35,14 +35,10 @@ enum { TRIED = 3 };
 // A candidate whose own error is not this many times less than the sum of both errors of the best
 // candidate is given up after its lines are refined. The sum is usually 3 times the own error or more.
 #define HOPELESS 2.0f
-// Values below the block's largest value divided by 2^DARKEST count as equal to this quotient.
-#define DARKEST 12
-// Before lines are fitted, values are raised to this many codes below the block's largest value.
-#define REACH (8 * 2048.0f)
 
 // The texels of a block, the bits of their half floats, and the weights of their errors.
 typedef struct colors {
-    texels t, raised;
+    texels t;
     float half[3][TEXELS];
     float share[3][TEXELS];
     scaled_texels s;
@@ -460,8 +456,8 @@ static void try_partition(const colors *b, int partition, candidate *best)
     find_scaled(&b->s, unmasked, ends.end[0]);
     find_scaled(&b->s, mask, ends.end[1]);
     try_mode(b, mask, &ends, TWO_4, partition, best);
-    find_scale(&b->raised, unmasked, ends.end[0]);
-    find_scale(&b->raised, mask, ends.end[1]);
+    find_scale(&b->t, unmasked, ends.end[0]);
+    find_scale(&b->t, mask, ends.end[1]);
     try_mode(b, mask, &ends, SCALES_8, partition, best);
 }
 
@@ -476,7 +472,7 @@ static void encode(const colors *b, uint8_t bytes[KI_BLOCK_BYTES])
     try_mode(b, none, &ends, ONE_16, 0, &best);
     if (best.error > SMOOTH) {
         try_mode(b, none, &ends, ONE_12, 0, &best);
-        find_scale(&b->raised, all, ends.end[0]);
+        find_scale(&b->t, all, ends.end[0]);
         try_mode(b, none, &ends, SCALE_16, 0, &best);
         rank(&b->s.t, left);
         for (int n = 0; n < TRIED && (n == 0 || best.error > HARSH); n++) {
@@ -492,9 +488,8 @@ static void encode(const colors *b, uint8_t bytes[KI_BLOCK_BYTES])
 static bool encode_solid(const uint16_t halfs[VALUES], uint8_t bytes[KI_BLOCK_BYTES])
 {
     ki_uastc_block b = {.mode = KI_UASTC_SOLID};
-    for (int i = 3; i < VALUES; i++)
-        if (halfs[i] != halfs[i - 3])
-            return false;
+    if (!is_solid(halfs))
+        return false;
     memcpy(b.solid, halfs, sizeof b.solid);
     ki_uastc_pack(&b, bytes);
     return true;
@@ -502,19 +497,15 @@ static bool encode_solid(const uint16_t halfs[VALUES], uint8_t bytes[KI_BLOCK_BY
 
 static void read_colors(const uint16_t halfs[VALUES], colors *b)
 {
-    uint16_t top = 0;
-    for (int i = 0; i < VALUES; i++)
-        top = halfs[i] > top ? halfs[i] : top;
+    int least = least_of_block(halfs);
     weigh_errors(halfs, b->share);
-    int least = ki_max(top - DARKEST * 1024, 0);
     for (int i = 0; i < VALUES; i++) {
         int c = i % 3, t = i / 3, half = ki_max(halfs[i], least);
         float code = code_of_half(half) - 0.5f;
         b->half[c][t] = (float)half;
         b->t.code[c][t] = code;
     }
-    raise_darks(&b->t, REACH, &b->raised);
-    scale_channels(&b->raised, b->share, &b->s);
+    scale_channels(&b->t, b->share, &b->s);
 }
 
 void KI_UASTC_ROW(const float *rgb, int width, int height, int y, uint8_t *bytes)
