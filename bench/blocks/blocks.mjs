@@ -13,6 +13,7 @@ import BASIS from './node_modules/ktx2-encoder/dist/basis/basis_encoder.js';
 
 const [bin, panoramas, assets, folder, csv] = process.argv.slice(2).map((name) => path.resolve(name));
 const NAMES = ['city', 'courtyard', 'forest', 'interior', 'night', 'studio', 'sunrise', 'sunset'], LEVELS = 6, PEER_LEVELS = [0, 2, 4];
+const RGBA16F = 10; // number of a format in DDS files
 const run = (program, ...args) => execFileSync(program, args, { encoding: 'utf8', cwd: folder });
 const ours = (...args) => run(path.join(bin, 'bench_blocks'), ...args).trim().split(' ').map(Number);
 
@@ -66,14 +67,11 @@ function basisFace(pixels, size) {
     return { blocks, microseconds, halfs: new Uint16Array(halfs.buffer) };
 }
 
-// Returns the RMS difference of the half floats' bits, and the RMS difference of the radiance relative to the
-// level's RMS radiance.
+// Returns the errors that bench_blocks prints of a DDS file of blocks.
 function measure(name, truth, level) {
     run('oiiotool', `${name}.dds`, '--fullpixels', '--scanline', '-o', `${name}.exr`);
     return ours('error', truth, `${level}`, `${name}.exr`);
 }
-
-const valueOf = (h) => (h >> 10 ? (1024 + (h & 1023)) * 2 ** ((h >> 10) - 25) : h * 2 ** -24);
 
 // The blocks of a level of kiln's UASTC HDR file after conversion to BC6H, of all faces.
 function convertLevel(name, level) {
@@ -91,20 +89,15 @@ function convertLevel(name, level) {
     return faces;
 }
 
-// Errors of UASTC HDR as the transcoder decodes it: the RMS difference relative to the level's RMS radiance, and the
-// RMS difference of x / (x + m) with the level's mean m.
-function measureHalfs(faces, made) {
-    const colours = (list) => list.filter((_, i) => i % 4 !== 3);
-    const truth = faces.flatMap((bytes) => [...colours(new Float32Array(bytes.slice().buffer))]);
-    const values = made.flatMap(({ halfs }) => [...colours(halfs)].map(valueOf));
-    const m = truth.reduce((sum, x) => sum + x, 0) / truth.length;
-    let off = 0, all = 0, shown = 0;
-    truth.forEach((x, i) => {
-        off += (x - values[i]) ** 2;
-        all += x * x;
-        shown += (x / (x + m) - values[i] / (values[i] + m)) ** 2;
-    });
-    return [Math.sqrt(off / all), Math.sqrt(shown / truth.length)];
+// Returns the errors that bench_blocks prints of UASTC HDR as Basis Universal's transcoder decodes it, to half floats of
+// RGBA. They are written as one DDS texture of all faces, one below the other.
+function measureHalfs(truth, level, header, size, made) {
+    const own = Buffer.from(header), set = (place, value) => own.writeUInt32LE(value, place);
+    Object.entries({ 12: 6 * size, 16: size, 20: 8 * size, 28: 1, 112: 0, 128: RGBA16F, 136: 0 })
+        .forEach(([place, value]) => set(+place, value));
+    const faces = made.map(({ halfs }) => Buffer.from(halfs.buffer));
+    fs.writeFileSync(path.join(folder, 'halfs.dds'), Buffer.concat([own, ...faces]));
+    return ours('error', truth, `${level}`, 'halfs.dds');
 }
 
 const rows = ['name,unit,median,minimum'];
@@ -149,7 +142,7 @@ for (const [set, name, picture] of pictures) {
             const made = faces.map((face) => basisFace(face, size));
             writeLevel('basis.dds', header, size, made.map(({ blocks }) => blocks));
             const [theirs, theirEnergy] = measure('basis', truth, level);
-            const [uastcEnergy, uastcShown] = measureHalfs(faces, made);
+            const [, uastcEnergy, uastcShown] = measureHalfs(truth, level, header, size, made);
             const [, ownEnergy, ownShown] = uastc.slice(3 * level);
             writeLevel('converted.dds', header, size, convertLevel(`${name}-uastc.ktx2`, level));
             const [, convertedEnergy] = measure('converted', truth, level);

@@ -16,21 +16,23 @@
 
 // TRIED: number of partitions that are tried in full. MODES: number of modes that are tried for
 // each partition. ROUNDS: number of least-squares refinements for each mode.
-enum { TRIED = 3, MODES = 2, ROUNDS = 2 };
+enum { TRIED = 2, MODES = 3, ROUNDS = 2 };
 
 // A mode that stores endpoints as differences from endpoint 0 is also tried if the differences
 // exceed its range by at most this factor; the endpoints are then moved into range.
 #define EXCESS 1.2f
 
-// A partition is tried unless this part of the variance that its lines leave exceeds the error of the
-// best block so far. The variance counts all texels alike, where errors have weights of up to 1.
+// The scaled distances of a block's texels from the two lines of a partition predict the error of the
+// partition's best block. They leave out the differences of the weights within a channel, so that the
+// true error may be less. A partition is tried if HOPEFUL times the prediction is less than the least
+// error of the blocks that were tried before.
 #define HOPEFUL 0.5f
 
-// The texels of a block, the weights of their errors, and what lines are fitted to.
+// One block that is to be encoded.
 typedef struct colors {
-    texels t;
-    float share[3][TEXELS];
-    scaled_texels s;
+    texels t; // the bits of the half floats, where raised to the least value that counts
+    float share[3][TEXELS]; // the weights of squared errors
+    scaled_texels s;        // the texels for the search of lines
 } colors;
 
 typedef struct candidate {

@@ -39,10 +39,11 @@ static void read_block(const float *rgb, int width, int height, int x, int y,
     ki_halfs_from_floats(block, VALUES, halfs);
 }
 
-// Values below the block's largest value divided by 2^DARKEST count as equal to this quotient.
+// The encoders raise values that are less than the block's largest value divided by 2^DARKEST to this
+// quotient, since no eye tells them apart beside the largest, and a line need not reach them.
 enum { DARKEST = 20 };
 
-// Returns the least value that counts in a block, as a half float.
+// Returns the value, as the bits of a half float, to which lower values of the block are raised.
 static int least_of_block(const uint16_t halfs[VALUES])
 {
     int top = 0;
@@ -60,12 +61,13 @@ static bool is_solid(const uint16_t halfs[VALUES])
     return true;
 }
 
-// Least weight of an error, which black channels have.
-#define LEAST_SHARE 0.01f
+// What is added to all weights of errors, such that errors of black values count, too.
+#define LEAST_SHARE 0.015f
 
-// Sets the weights of the errors of a block's channels: a channel's value divided by the largest
-// value of the block, so that the sun's texels count more than dark texels next to the sun, and a
-// colour's nearly black channels count little.
+// Sets share[channel][texel] to the weight with which the squared error of this channel of this texel
+// counts: its value divided by the largest value of the block, plus LEAST_SHARE. Errors are relative.
+// Without weights, a dark texel beside the sun would count as much as the sun, and an error in a
+// channel that is nearly black as much as one in the channel that gives the colour.
 static void weigh_errors(const uint16_t halfs[VALUES], float share[3][TEXELS])
 {
     float value[VALUES], most = 0;
@@ -145,13 +147,15 @@ static void find_line(const texels *t, const float weight[TEXELS], float end[2][
     }
 }
 
-// The codes of a block multiplied by a factor for each channel, the root of the channel's mean weight,
-// such that distances between texels count as their errors do.
+// A block's codes, multiplied by a factor for each channel: the square root of the mean weight of the
+// channel's errors. A line of least squares through the products is one that minimises weighted errors
+// of the codes, but for the differences of the weights within a channel.
 typedef struct scaled_texels {
     texels t;
     float factor[3];
 } scaled_texels;
 
+// `share` has the weights of errors, as weigh_errors sets them.
 static void scale_channels(const texels *t, float share[3][TEXELS], scaled_texels *s)
 {
     for (int c = 0; c < 3; c++) {
@@ -161,7 +165,8 @@ static void scale_channels(const texels *t, float share[3][TEXELS], scaled_texel
     }
 }
 
-// Finds the line like find_line, in scaled codes, and returns its ends in codes.
+// Finds the line of least squares through the texels whose weight is 1, like find_line. Sets `end` to
+// its ends, which are codes without the factors of the channels.
 static void find_scaled(const scaled_texels *s, const float weight[TEXELS], float end[2][3])
 {
     find_line(&s->t, weight, end);

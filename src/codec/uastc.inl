@@ -6,7 +6,8 @@
 // the block also has little error after a conversion to BC6H. Blocks of one colour are stored
 // exactly.
 //
-// Errors are weighted squared differences between ASTC's logarithmic numbers of 16 bits ("codes",
+// The error of a block is the sum of two: that of the block as it is decoded, and that after the
+// conversion. Errors are weighted squared differences between ASTC's logarithmic numbers of 16 bits ("codes",
 // 2048 of them for each factor of two), between which the decoder interpolates. Such a difference
 // is nearly a relative error. block_lines.inl has the weights.
 #include "codec/block_lines.inl"
@@ -22,26 +23,23 @@ enum { ROUNDS = 1 };
 // along which only brightness changes with 8 weights.
 enum { ONE_16 = 7, ONE_12 = 6, SCALE_16 = 15, TWO_4 = 22, SCALES_8 = 20 };
 
-// Weight of the error after conversion to BC6H relative to the error of the block itself. With this
-// weight both errors are below those of Basis Universal's encoder in most pictures.
-#define BC6H_SHARE 1.0f
 // Sum of both errors of a block below which no other mode than ONE_16 is tried: at most 1.2 % RMS.
 #define SMOOTH 60000.0f
-// Two lines are tried for the TRIED most promising partitions, as long as the sum of both errors of the
-// best block exceeds HARSH: 4 % RMS. The blocks of a smooth picture rarely need a second partition,
-// those around lights often do.
+// Two lines are tried for the most promising partition, and for up to TRIED partitions while the sum
+// of both errors of the best block exceeds HARSH, which is an error of about 4 % RMS. Few blocks need
+// more than one partition; those around lights do.
 #define HARSH 600000.0f
 enum { TRIED = 3 };
 // A candidate whose own error is not this many times less than the sum of both errors of the best
 // candidate is given up after its lines are refined. The sum is usually 3 times the own error or more.
 #define HOPELESS 2.0f
 
-// The texels of a block, the bits of their half floats, and the weights of their errors.
+// One block that is to be encoded.
 typedef struct colors {
-    texels t;
-    float half[3][TEXELS];
-    float share[3][TEXELS];
-    scaled_texels s;
+    texels t;               // ASTC's codes
+    float half[3][TEXELS];  // the bits of the half floats for which the codes stand
+    float share[3][TEXELS]; // the weights of squared errors
+    scaled_texels s;        // the texels for the search of lines
 } colors;
 
 typedef struct candidate {
@@ -159,7 +157,7 @@ static void add_converted(const colors *b, const float mask[TEXELS], const candi
             float mixed = (float)(int)(((64 - weight[i]) * from + weight[i] * to + 32) / 64);
             // Half floats have 1024 steps for each factor of two, and codes have 2048.
             float off = 2 * ((float)(int)(mixed * 31 / 64) - b->half[c][i]);
-            error[i] += BC6H_SHARE * off * off * b->share[c][i];
+            error[i] += off * off * b->share[c][i];
         }
 }
 

@@ -86,8 +86,9 @@ static void any_size_comes_back(void **state)
     kiln_context_destroy(context);
 }
 
-// The texels of a sky beside a sun of up to 2^20 times their radiance err by at most an eighth: lines
-// that span so many factors of two have ends in steps of about a ninth.
+// A block is a dim sky, but for one texel, which is a sun up to 2^20 times as bright. The sky must be
+// decoded with a relative error of at most an eighth. Both formats store the ends of lines that reach
+// so far in steps of up to 11 %.
 static void a_sky_beside_a_sun_stays_dark(void **state)
 {
     (void)state;

@@ -13,6 +13,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "kit/clock.h"
 #include "kit/context.h"
 
 enum { N = 8, LEVELS = 2, FILES = 6 * LEVELS, MOMENTS = 200, ROUNDS = 40 };
@@ -254,8 +255,9 @@ static int check_pictures(float wanted)
     return count;
 }
 
-// Starts a process that saves sets whose values are `first`, first + step ..., and returns its number
-// once it begins to save.
+// Starts a process that saves `count` sets of files, of which the first has the value `first` in all
+// texels and each further one `step` more. Waits until the process begins to save, and returns its
+// number.
 static pid_t start_writer(float first, float step, int count)
 {
     int begun[2];
@@ -321,14 +323,8 @@ static void a_failing_disk_damages_no_file(void **state)
     }
 }
 
-static double seconds_now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-// The moments are spread over the time that saving a set takes on this machine.
+// The moments are spread over the time that saving a set takes on this machine, but over half a second
+// at most.
 static void a_killed_writer_damages_nothing(void **state)
 {
     (void)state;

@@ -1,26 +1,19 @@
 #include "sweep.h"
 
-#include <time.h>
+#include "kit/clock.h"
 
 long sweep_count;
 
 static double end;
 
-static double now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 void sweep_begin(void)
 {
-    end = now() + 0.02;
+    end = seconds_now() + 0.02;
 }
 
 void sweep_prepare(void)
 {
-    end = now() + 60;
+    end = seconds_now() + 60;
 }
 
 static bool go_on(void *user, const char *stage, double fraction)
@@ -28,7 +21,7 @@ static bool go_on(void *user, const char *stage, double fraction)
     (void)user;
     assert_non_null(stage);
     assert_true(fraction >= 0 && fraction <= 1);
-    return now() < end;
+    return seconds_now() < end;
 }
 
 kiln_context *sweep_context(void)
