@@ -38,7 +38,7 @@ const ki_recipe ki_unity = {
               .limit = KI_HALF_MAX,
               .formats = {KILN_FORMAT_RGBA16F, KILN_FORMAT_BC6H},
               .format_reason = "rgba16f: in bc6h the file is an eighth as large and the picture "
-                               "errs up to 1.14 times "
+                               "errs up to 1.13 times "
                                "as much, and most phones cannot show bc6h",
               .proof = "source of Unity's shaders, Graphics 0c658a0"},
     .axes = {{2, 1, 0}, {-1, 1, -1}},
