@@ -5,8 +5,9 @@
 //         encoding in microseconds for each texel
 //     bench_blocks uastc - TRUTH.ktx2 BLOCKS.ktx2
 //         writes the levels as UASTC HDR, and prints the least CPU time likewise, then for each
-//         level the RMS difference of half floats' bits, the relative RMS error, and the RMS
-//         difference of x / (x + m) with the level's mean m
+//         level three errors: the RMS difference of half floats' bits; the RMS error divided by the
+//         RMS radiance; and the RMS difference of x / (x + m), where x is a radiance and m the mean
+//         of the level, which is about how much the errors show on a screen
 //     bench_blocks error TRUTH.ktx2 LEVEL PICTURE
 //         prints these three errors of a picture of six faces, one below the other, from a level
 //         of TRUTH

@@ -4,8 +4,8 @@ import { cesium } from './models.mjs';
 import { CELL, check, kiln, readFile } from './rig.mjs';
 
 const LEAST = 0.001; // cosine that Cesium's shader gives to a surface that turns away from the light
-// What Cesium says of a cube in each format. Its reader of KTX2 expects four numbers for each texel whatever the format
-// is, and looks for them behind the end of the file where texels have fewer bytes.
+// What the test's page must say after CesiumJS was given a cube in each format. CesiumJS' reader of KTX2 expects four
+// numbers for each texel in every format. Where texels have fewer bytes, it reads beyond the end of the file and fails.
 const FORMATS = { rgba16f: /^loaded$/, rgb9e5: /Invalid typed array length/, b10g11r11: /Invalid typed array length/,
                   bc6h: /Invalid typed array length/, uastc: /Invalid typed array length/ };
 const HALVES = 1 / 2048; // by which pixels are rounded at most
