@@ -7,6 +7,7 @@
 
 #include <float.h>
 #include <stdarg.h>
+#include <stdatomic.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -127,6 +128,17 @@ bool ki_progress(kiln_context *context, const char *stage, double fraction);
 /// Repeats the last report of progress, so that long work with many small steps can be stopped.
 /// Returns false if the caller wants to stop.
 bool ki_go_on(kiln_context *context);
+/// The question whether to go on, for tasks that run on several threads. Only the thread that began
+/// the question asks the caller of the library; the other threads learn from it that work stops.
+typedef struct ki_asker {
+    kiln_context *context;
+    uintptr_t caller;
+    atomic_bool stopped;
+} ki_asker;
+void ki_asker_begin(ki_asker *asker, kiln_context *context);
+/// Returns false if the caller wants to stop, and asks no more once that is known.
+bool ki_may_go_on(ki_asker *asker);
+bool ki_was_stopped(const ki_asker *asker);
 /// The range of fractions, within 0 to 1, that a part of the work covers in the progress reports of
 /// a stage.
 typedef struct ki_progress_range {

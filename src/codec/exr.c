@@ -93,6 +93,7 @@ static kiln_result check_window(const ki_exr_file *f, const char *what, const ki
 kiln_result ki_exr_open(ki_exr_file *f, const uint8_t *bytes, size_t size, const char *wanted,
                         bool describe_only, kiln_error *error)
 {
+    ki_asker_begin(&f->asker, f->context);
     kiln_result result = ki_exr_read_header(f->context, bytes, size, f->name, &f->header, error);
     if (result == KILN_OK)
         result = ki_exr_list_layers(f->context, &f->header, f->name, &f->layers, error);
@@ -206,13 +207,13 @@ static void decode_chunks(void *data, int task)
         most = f->chunks[i].size > most ? f->chunks[i].size : most;
     bool packed = f->part->compression != KI_EXR_NONE;
     uint8_t *raw = packed ? ki_alloc_raw(f->context, most, 2) : NULL;
-    const ki_exr_workspace work = {f->context, raw ? raw + most : NULL, f->dwa_table};
+    ki_exr_workspace work = {f->context, &f->asker, raw ? raw + most : NULL, f->dwa_table, 0};
     kiln_result result = packed && !raw ? KILN_ERROR_MEMORY : KILN_OK;
     for (int i = begin; i < end && result == KILN_OK; i++) {
         const uint8_t *samples =
             ki_exr_chunk_samples(&work, f->part->compression, &f->chunks[i], raw, &result);
         if (samples)
-            ki_exr_put_box(&f->picture, &f->chunks[i].box, samples);
+            result = ki_exr_put_box(&work, &f->picture, &f->chunks[i].box, samples);
         f->damaged[task] = i;
     }
     ki_free(raw);
@@ -225,6 +226,8 @@ kiln_result ki_exr_say_damaged(const ki_exr_file *f, int index, kiln_result resu
     const ki_exr_chunk *chunk = &f->chunks[index];
     if (result == KILN_ERROR_MEMORY)
         return ki_fail_memory(f->context, error, f->name, 2 * chunk->size);
+    if (result == KILN_ERROR_CANCELLED)
+        return ki_fail_cancelled(error, "reading");
     return ki_fail(error, KILN_ERROR_FORMAT, "%s: chunk %d of %d (%s, %zu bytes) is damaged",
                    f->name, index, f->chunk_count, ki_exr_compression_name(f->part->compression),
                    chunk->packed_size);

@@ -189,9 +189,6 @@ void ki_exr_find_lines(const ki_exr_box *box, size_t *offset,
                        const size_t *lines[KI_EXR_MAX_CHANNELS]);
 /// Returns the number of bytes of a box's samples, or 0 if the number exceeds size_t.
 size_t ki_exr_box_size(const ki_exr_box *box);
-/// Reorders samples from planes, in which all samples of one channel precede all samples of the
-/// next channel, to the lines of a box, in which the channels alternate line by line.
-void ki_exr_lines_from_planes(const ki_exr_box *box, const uint8_t *planes, uint8_t *raw);
 
 // ----------------------------------------------------------------------------------------- methods
 
@@ -199,14 +196,21 @@ void ki_exr_lines_from_planes(const ki_exr_box *box, const uint8_t *planes, uint
 /// decompressed chunk.
 typedef struct ki_exr_workspace {
     kiln_context *context;
+    ki_asker *asker; // whom to ask whether to go on: a tile may be as large as the picture
     uint8_t *scratch;
     const uint16_t *dwa_table; // table by ki_exr_dwa_table, used by the methods DWAA and DWAB only
+    size_t worked;             // bytes that were written since the last question
 } ki_exr_workspace;
 
+/// Counts bytes that were written, and asks after each 2^22 of them whether to go on. Returns false
+/// if the caller of the library wants to stop.
+bool ki_exr_go_on(ki_exr_workspace *work, size_t bytes);
+
 /// Decompresses the `packed` bytes of a chunk into exactly `size` bytes, which is the size of the
-/// chunk's box. Returns KILN_OK, KILN_ERROR_FORMAT or KILN_ERROR_MEMORY and writes no error
-/// message. Each function is defined in the file exr_METHOD.c of its method.
-typedef kiln_result ki_exr_decompress(const ki_exr_workspace *work, const ki_exr_box *box,
+/// chunk's box. Returns KILN_OK, KILN_ERROR_MEMORY or, where the bytes are damaged or the work was
+/// stopped, KILN_ERROR_FORMAT, and writes no error message. Each function is defined in the file
+/// exr_METHOD.c of its method.
+typedef kiln_result ki_exr_decompress(ki_exr_workspace *work, const ki_exr_box *box,
                                       const uint8_t *packed, size_t packed_size, uint8_t *raw,
                                       size_t size);
 ki_exr_decompress ki_exr_decompress_rle, ki_exr_decompress_zip, ki_exr_decompress_piz,
@@ -216,17 +220,26 @@ ki_exr_decompress ki_exr_decompress_rle, ki_exr_decompress_zip, ki_exr_decompres
 /// to perception, into a linear half float.
 void ki_exr_dwa_table(kiln_context *context, uint16_t *table);
 
+/// The steps that methods share. They fail if the data are damaged or the work was stopped.
+///
+/// Decompresses zlib data into exactly `size` bytes.
+bool ki_exr_inflate(ki_exr_workspace *work, const uint8_t *packed, size_t packed_size,
+                    uint8_t *plain, size_t size);
 /// Decompresses the byte runs of EXR's method RLE to at most `size` bytes. Returns the number of
-/// bytes written, or SIZE_MAX if the data are damaged.
-size_t ki_exr_unpack_runs(const uint8_t *packed, size_t packed_size, uint8_t *raw, size_t size);
+/// bytes written, or SIZE_MAX on failure.
+size_t ki_exr_unpack_runs(ki_exr_workspace *work, const uint8_t *packed, size_t packed_size,
+                          uint8_t *raw, size_t size);
 /// Decompresses EXR's method ZIP: zlib data of bytes that were sorted into even and odd ones and
-/// then replaced by their differences. `scratch` has `size` bytes. Returns false if the data are
-/// damaged.
-bool ki_exr_unzip(const uint8_t *packed, size_t packed_size, uint8_t *raw, size_t size,
-                  uint8_t *scratch);
+/// then replaced by their differences. `scratch` has `size` bytes.
+bool ki_exr_unzip(ki_exr_workspace *work, const uint8_t *packed, size_t packed_size, uint8_t *raw,
+                  size_t size, uint8_t *scratch);
 /// Decodes exactly `count` symbols of 16 bits from the Huffman codes of EXR's methods PIZ and DWA.
-kiln_result ki_exr_unpack_huffman(kiln_context *context, const uint8_t *packed, size_t packed_size,
+kiln_result ki_exr_unpack_huffman(ki_exr_workspace *work, const uint8_t *packed, size_t packed_size,
                                   uint16_t *symbols, size_t count);
+/// Reorders samples from planes, in which all samples of one channel precede all samples of the
+/// next channel, to the lines of a box, in which the channels alternate line by line.
+bool ki_exr_lines_from_planes(ki_exr_workspace *work, const ki_exr_box *box, const uint8_t *planes,
+                              uint8_t *raw);
 
 // ------------------------------------------------------------------------------------------ chunks
 
@@ -252,8 +265,8 @@ kiln_result ki_exr_find_chunks(kiln_context *context, const ki_exr_header *heade
 
 /// Returns the samples of a chunk: in `raw`, which has the chunk's size, or the packed bytes
 /// themselves if they are not compressed. On failure returns NULL and sets *result to
-/// KILN_ERROR_FORMAT or KILN_ERROR_MEMORY.
-const uint8_t *ki_exr_chunk_samples(const ki_exr_workspace *work, int compression,
+/// KILN_ERROR_FORMAT, KILN_ERROR_MEMORY or KILN_ERROR_CANCELLED.
+const uint8_t *ki_exr_chunk_samples(ki_exr_workspace *work, int compression,
                                     const ki_exr_chunk *chunk, uint8_t *raw, kiln_result *result);
 
 // ----------------------------------------------------------------------------------------- picture
@@ -265,8 +278,10 @@ typedef struct ki_exr_picture {
 } ki_exr_picture;
 
 /// Writes the samples of a box to the pixels of the picture that the box overlaps. A subsampled
-/// channel is written to those pixels only that have a sample.
-void ki_exr_put_box(const ki_exr_picture *picture, const ki_exr_box *box, const uint8_t *raw);
+/// channel is written to those pixels only that have a sample. Returns KILN_OK or
+/// KILN_ERROR_CANCELLED.
+kiln_result ki_exr_put_box(ki_exr_workspace *work, const ki_exr_picture *picture,
+                           const ki_exr_box *box, const uint8_t *raw);
 
 // ------------------------------------------------------------------------------------------- color
 

@@ -70,9 +70,12 @@ static size_t undo_block(const uint8_t *bytes, size_t left, uint16_t halfs[16])
 }
 
 // Decodes one channel of a chunk, `width` x `height` halfs in blocks of 4 x 4.
-static bool undo_plane(ki_reader *r, bool linear, int width, int height, uint8_t *plane)
+static bool undo_plane(ki_exr_workspace *work, ki_reader *r, bool linear, int width, int height,
+                       uint8_t *plane)
 {
-    for (int y = 0; y < height; y += 4)
+    for (int y = 0; y < height; y += 4) {
+        if (!ki_exr_go_on(work, 8 * (size_t)width))
+            return false;
         for (int x = 0; x < width; x += 4) {
             uint16_t block[16] = {0};
             size_t used = undo_block(r->at, ki_reader_left(r), block);
@@ -88,10 +91,11 @@ static bool undo_plane(ki_reader *r, bool linear, int width, int height, uint8_t
                     memcpy(to, block + (ptrdiff_t)4 * j, 2 * (size_t)(width - x));
             }
         }
+    }
     return true;
 }
 
-kiln_result ki_exr_decompress_b44(const ki_exr_workspace *work, const ki_exr_box *box,
+kiln_result ki_exr_decompress_b44(ki_exr_workspace *work, const ki_exr_box *box,
                                   const uint8_t *packed, size_t packed_size, uint8_t *raw,
                                   size_t size)
 {
@@ -103,7 +107,7 @@ kiln_result ki_exr_decompress_b44(const ki_exr_workspace *work, const ki_exr_box
         int width = ki_exr_columns(box, channel), height = ki_exr_rows(box, channel);
         size_t bytes = (size_t)width * (size_t)height * (size_t)channel->bytes;
         if (channel->type == KI_EXR_HALF) {
-            if (!undo_plane(&r, channel->linear, width, height, plane))
+            if (!undo_plane(work, &r, channel->linear, width, height, plane))
                 return KILN_ERROR_FORMAT;
         } else {
             const uint8_t *from = ki_read_bytes(&r, bytes);
@@ -113,6 +117,6 @@ kiln_result ki_exr_decompress_b44(const ki_exr_workspace *work, const ki_exr_box
         }
         plane += bytes;
     }
-    ki_exr_lines_from_planes(box, work->scratch, raw);
-    return KILN_OK;
+    bool good = ki_exr_lines_from_planes(work, box, work->scratch, raw);
+    return good ? KILN_OK : KILN_ERROR_FORMAT;
 }

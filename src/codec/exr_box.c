@@ -94,7 +94,8 @@ void ki_exr_find_lines(const ki_exr_box *box, size_t *offset,
             }
 }
 
-void ki_exr_lines_from_planes(const ki_exr_box *box, const uint8_t *planes, uint8_t *raw)
+bool ki_exr_lines_from_planes(ki_exr_workspace *work, const ki_exr_box *box, const uint8_t *planes,
+                              uint8_t *raw)
 {
     const uint8_t *plane[KI_EXR_MAX_CHANNELS];
     ki_exr_run runs[KI_EXR_MAX_CHANNELS];
@@ -110,5 +111,8 @@ void ki_exr_lines_from_planes(const ki_exr_box *box, const uint8_t *planes, uint
             memcpy(raw, plane[i], runs[i].bytes);
             raw += runs[i].bytes;
             plane[i] += runs[i].bytes;
+            if (!ki_exr_go_on(work, runs[i].bytes))
+                return false;
         }
+    return true;
 }

@@ -3,7 +3,6 @@
 // half floats in a perceptual scale; other channels are compressed as runs or by zlib. The format
 // is described in "DreamWorks Animation Lossy Compression" (OpenEXR 2.2).
 #include "base/bytes.h"
-#include "codec/deflate.h"
 #include "codec/exr.h"
 #include "image/pack.h"
 #include "math/math.h"
@@ -71,8 +70,8 @@ typedef struct dwa_plan {
 } dwa_plan;
 
 typedef struct dwa {
+    ki_exr_workspace *work;
     const ki_exr_box *box;
-    const uint16_t *table;
     counts counts;
     dwa_rule rules[MAX_RULES];
     int rule_count;
@@ -260,7 +259,7 @@ static void put_row(const dwa *d, int bytes, bool linear, const uint16_t *halfs,
 {
     uint16_t row[8] = {0};
     for (int x = 0; x < count; x++)
-        row[x] = linear ? halfs[x] : d->table[halfs[x]];
+        row[x] = linear ? halfs[x] : d->work->dwa_table[halfs[x]];
     if (bytes == 2) {
         memcpy(to, row, 2 * (size_t)count);
     } else {
@@ -279,6 +278,8 @@ static bool transform(dwa *d, const int *members, int count)
     if ((size_t)(d->dc_end - d->dc) < blocks * (size_t)count)
         return false;
     for (int by = 0; by < down; by++) {
+        if (!ki_exr_go_on(d->work, (size_t)count * 8 * 2 * (size_t)width))
+            return false;
         for (int bx = 0; bx < across; bx++) {
             float samples[3][64];
             bool flat = true;
@@ -401,13 +402,15 @@ static size_t block_count(const dwa *d)
 
 // Copies a channel that was stored without the cosine transform: line by line, or, if it was stored
 // as runs, from planes that hold the most significant byte of every sample, then the next byte.
-static void copy_plain(dwa *d, int index)
+static bool copy_plain(dwa *d, int index)
 {
     const dwa_plan *plan = &d->plans[index];
     size_t bytes = (size_t)d->box->channels[index].bytes;
     size_t width = (size_t)plan->width, plane = width * (size_t)plan->height;
     for (size_t y = 0; width && y < (size_t)plan->height; y++) {
         uint8_t *to = d->raw + plan->lines[y];
+        if (!ki_exr_go_on(d->work, width * bytes))
+            return false;
         if (plan->scheme == SCHEME_ZLIB) {
             memcpy(to, plan->from + y * width * bytes, width * bytes);
             continue;
@@ -416,6 +419,7 @@ static void copy_plain(dwa *d, int index)
             for (size_t b = 0; b < bytes; b++)
                 to[x * bytes + b] = plan->from[b * plane + y * width + x];
     }
+    return true;
 }
 
 // The packed sections of a chunk, and the memory for their unpacked content: channels compressed by
@@ -474,35 +478,38 @@ static bool allocate(kiln_context *context, const dwa *d, sections *s)
     return s->plain && s->run_bytes && s->ac_values && s->dc_values && s->scratch;
 }
 
-static kiln_result unpack_ac(kiln_context *context, const counts *n, const sections *s)
+static kiln_result unpack_ac(dwa *d, const sections *s)
 {
+    const counts *n = &d->counts;
     if (!n->ac_count)
         return KILN_OK;
     if (n->ac_compression == AC_HUFFMAN)
-        return ki_exr_unpack_huffman(context, s->ac, n->ac_packed, s->ac_values, n->ac_count);
-    bool good =
-        n->ac_compression == AC_DEFLATE && ki_inflate(s->ac, n->ac_packed, (uint8_t *)s->ac_values,
-                                                      n->ac_count * sizeof *s->ac_values);
+        return ki_exr_unpack_huffman(d->work, s->ac, n->ac_packed, s->ac_values, n->ac_count);
+    bool good = n->ac_compression == AC_DEFLATE &&
+                ki_exr_inflate(d->work, s->ac, n->ac_packed, (uint8_t *)s->ac_values,
+                               n->ac_count * sizeof *s->ac_values);
     return good ? KILN_OK : KILN_ERROR_FORMAT;
 }
 
-static kiln_result unpack_sections(kiln_context *context, dwa *d, const sections *s)
+static kiln_result unpack_sections(dwa *d, const sections *s)
 {
     const counts *n = &d->counts;
-    if (s->zlib_size && !ki_inflate(s->zlib, n->zlib_packed, s->plain, s->zlib_size))
+    ki_exr_workspace *work = d->work;
+    if (s->zlib_size && !ki_exr_inflate(work, s->zlib, n->zlib_packed, s->plain, s->zlib_size))
         return KILN_ERROR_FORMAT;
-    if (s->runs_size && (!ki_inflate(s->runs, n->runs_packed, s->run_bytes, n->runs_size) ||
-                         ki_exr_unpack_runs(s->run_bytes, n->runs_size, s->plain + s->zlib_size,
-                                            s->runs_size) != s->runs_size))
+    if (s->runs_size &&
+        (!ki_exr_inflate(work, s->runs, n->runs_packed, s->run_bytes, n->runs_size) ||
+         ki_exr_unpack_runs(work, s->run_bytes, n->runs_size, s->plain + s->zlib_size,
+                            s->runs_size) != s->runs_size))
         return KILN_ERROR_FORMAT;
-    if (s->blocks && !ki_exr_unzip(s->dc, n->dc_packed, (uint8_t *)s->dc_values,
+    if (s->blocks && !ki_exr_unzip(work, s->dc, n->dc_packed, (uint8_t *)s->dc_values,
                                    s->blocks * sizeof *s->dc_values, (uint8_t *)s->scratch))
         return KILN_ERROR_FORMAT;
     d->ac = s->ac_values;
     d->ac_end = s->ac_values + n->ac_count;
     d->dc = s->dc_values;
     d->dc_end = s->dc_values + s->blocks;
-    return unpack_ac(context, n, s);
+    return unpack_ac(d, s);
 }
 
 // Decodes the colour triples (red, green and blue of a layer), which are stored before all other
@@ -538,7 +545,8 @@ static bool put_other_channels(dwa *d, const sections *s)
         plan->from = at[plan->scheme];
         at[plan->scheme] +=
             (size_t)plan->width * (size_t)plan->height * (size_t)box->channels[c].bytes;
-        copy_plain(d, c);
+        if (!copy_plain(d, c))
+            return false;
     }
     return true;
 }
@@ -557,7 +565,7 @@ static kiln_result decompress(kiln_context *context, dwa *d, const uint8_t *pack
     s->offset = ki_alloc_raw(context, ki_exr_count_lines(d->box), sizeof *s->offset);
     if (!s->offset || !allocate(context, d, s))
         return KILN_ERROR_MEMORY;
-    kiln_result result = unpack_sections(context, d, s);
+    kiln_result result = unpack_sections(d, s);
     if (result != KILN_OK)
         return result;
     const size_t *lines[KI_EXR_MAX_CHANNELS];
@@ -568,7 +576,7 @@ static kiln_result decompress(kiln_context *context, dwa *d, const uint8_t *pack
     return good ? KILN_OK : KILN_ERROR_FORMAT;
 }
 
-kiln_result ki_exr_decompress_dwa(const ki_exr_workspace *work, const ki_exr_box *box,
+kiln_result ki_exr_decompress_dwa(ki_exr_workspace *work, const ki_exr_box *box,
                                   const uint8_t *packed, size_t packed_size, uint8_t *raw,
                                   size_t size)
 {
@@ -577,7 +585,7 @@ kiln_result ki_exr_decompress_dwa(const ki_exr_workspace *work, const ki_exr_box
     if (!d)
         return KILN_ERROR_MEMORY;
     d->box = box;
-    d->table = work->dwa_table;
+    d->work = work;
     d->raw = raw;
     sections s = {0};
     kiln_result result = decompress(work->context, d, packed, packed_size, &s);

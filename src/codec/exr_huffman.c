@@ -16,6 +16,7 @@ enum {
     // the stored code length 63, with 8 more bits, means that 6 to 261 symbols do not occur
     LONG_ZEROS = 63,
     TABLE_BITS = 13,
+    PART = 1 << 20, // symbols that are decoded at once
 };
 
 typedef struct decoder {
@@ -151,8 +152,32 @@ static inline bool next_symbol(const decoder *d, bits *b, uint32_t *symbol)
     return false;
 }
 
-static bool decode(decoder *d, const uint8_t *packed, size_t packed_size, uint16_t *symbols,
-                   size_t count)
+// Decodes symbols up to at least the index `end`, unless a run is too long for `count` symbols.
+static bool decode_part(const decoder *d, bits *b, uint64_t bit_count, uint32_t run_symbol,
+                        size_t end, uint16_t *symbols, size_t count, size_t *done)
+{
+    size_t out = *done;
+    while (out < end) {
+        uint32_t symbol;
+        if (!next_symbol(d, b, &symbol) || b->spent > bit_count)
+            return false;
+        if (symbol != run_symbol) {
+            symbols[out++] = (uint16_t)symbol;
+            continue;
+        }
+        uint32_t run = take(b, 8);
+        if (out == 0 || run > count - out || b->spent > bit_count)
+            return false;
+        uint16_t last = symbols[out - 1];
+        for (uint32_t i = 0; i < run; i++)
+            symbols[out++] = last;
+    }
+    *done = out;
+    return true;
+}
+
+static bool decode(ki_exr_workspace *work, decoder *d, const uint8_t *packed, size_t packed_size,
+                   uint16_t *symbols, size_t count)
 {
     ki_reader r = ki_reader_make(packed, packed_size);
     uint32_t low = ki_read_u32(&r), high = ki_read_u32(&r);
@@ -171,32 +196,22 @@ static bool decode(decoder *d, const uint8_t *packed, size_t packed_size, uint16
 
     const uint8_t *data = r.at + table_size;
     b = (bits){.at = data, .end = data + (bit_count + 7) / 8};
-    size_t out = 0;
-    while (out < count) {
-        uint32_t symbol;
-        if (!next_symbol(d, &b, &symbol) || b.spent > bit_count)
+    for (size_t at = 0, from = 0; at < count; from = at) {
+        size_t end = count - at < PART ? count : at + PART;
+        if (!decode_part(d, &b, bit_count, high, end, symbols, count, &at) ||
+            !ki_exr_go_on(work, (at - from) * sizeof *symbols))
             return false;
-        if (symbol != high) {
-            symbols[out++] = (uint16_t)symbol;
-            continue;
-        }
-        uint32_t run = take(&b, 8);
-        if (out == 0 || run > count - out || b.spent > bit_count)
-            return false;
-        uint16_t last = symbols[out - 1];
-        for (uint32_t i = 0; i < run; i++)
-            symbols[out++] = last;
     }
     return true;
 }
 
-kiln_result ki_exr_unpack_huffman(kiln_context *context, const uint8_t *packed, size_t packed_size,
+kiln_result ki_exr_unpack_huffman(ki_exr_workspace *work, const uint8_t *packed, size_t packed_size,
                                   uint16_t *symbols, size_t count)
 {
-    decoder *d = ki_alloc_raw(context, 1, sizeof *d);
+    decoder *d = ki_alloc_raw(work->context, 1, sizeof *d);
     if (!d)
         return KILN_ERROR_MEMORY;
-    bool good = decode(d, packed, packed_size, symbols, count);
+    bool good = decode(work, d, packed, packed_size, symbols, count);
     ki_free(d);
     return good ? KILN_OK : KILN_ERROR_FORMAT;
 }

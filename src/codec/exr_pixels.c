@@ -128,7 +128,8 @@ static void put_sources(const ki_exr_picture *p, const ki_exr_box *box, const so
                         right - left, rgb + k);
 }
 
-void ki_exr_put_box(const ki_exr_picture *p, const ki_exr_box *box, const uint8_t *raw)
+kiln_result ki_exr_put_box(ki_exr_workspace *work, const ki_exr_picture *p, const ki_exr_box *box,
+                           const uint8_t *raw)
 {
     int left = ki_max(box->x, p->left), right = ki_min(box->x + box->width, p->left + p->width);
     ki_exr_run runs[KI_EXR_MAX_CHANNELS];
@@ -136,7 +137,11 @@ void ki_exr_put_box(const ki_exr_picture *p, const ki_exr_box *box, const uint8_
     for (int y = box->y; y < box->y + box->height; y++) {
         sources found;
         raw = find_sources(p, box, runs, count, y, raw, &found);
-        if (y >= p->top && y - p->top < p->height && left < right)
-            put_sources(p, box, &found, y, left, right);
+        if (y < p->top || y - p->top >= p->height || left >= right)
+            continue;
+        put_sources(p, box, &found, y, left, right);
+        if (!ki_exr_go_on(work, 3 * sizeof(float) * (size_t)(right - left)))
+            return KILN_ERROR_CANCELLED;
     }
+    return KILN_OK;
 }

@@ -33,8 +33,8 @@ static inline void pair(bool wide, uint16_t mean, uint16_t difference, uint16_t 
 }
 
 // Undoes the wavelet of one plane in place: `width` values `step` apart, `height` rows `row` apart.
-static void undo_wavelet(uint16_t *plane, int width, ptrdiff_t step, int height, ptrdiff_t row,
-                         bool wide)
+static bool undo_wavelet(ki_exr_workspace *work, uint16_t *plane, int width, ptrdiff_t step,
+                         int height, ptrdiff_t row, bool wide)
 {
     int small = ki_min(width, height), two = 1;
     while (two <= small)
@@ -56,6 +56,8 @@ static void undo_wavelet(uint16_t *plane, int width, ptrdiff_t step, int height,
                 at[0] = m0;
                 at[below] = d0;
             }
+            if (!ki_exr_go_on(work, (size_t)(width / one) * 2 * sizeof *at))
+                return false;
         }
         if (height & one) {
             uint16_t *at = plane + row * y, m, d;
@@ -66,6 +68,7 @@ static void undo_wavelet(uint16_t *plane, int width, ptrdiff_t step, int height,
             }
         }
     }
+    return true;
 }
 
 // Reads which of the 65536 possible values occur: a bitmap of which the file holds the bytes
@@ -91,19 +94,37 @@ static int read_values(ki_reader *r, uint16_t *table)
     return count - 1;
 }
 
-static void undo_wavelets(const ki_exr_box *box, uint16_t *plane, bool wide)
+static bool undo_wavelets(ki_exr_workspace *work, const ki_exr_box *box, uint16_t *plane, bool wide)
 {
     for (int c = 0; c < box->channel_count; c++) {
         const ki_exr_channel *channel = &box->channels[c];
         int width = ki_exr_columns(box, channel), height = ki_exr_rows(box, channel);
         int words = channel->bytes / 2;
         for (int k = 0; k < words; k++)
-            undo_wavelet(plane + k, width, words, height, (ptrdiff_t)width * words, wide);
+            if (!undo_wavelet(work, plane + k, width, words, height, (ptrdiff_t)width * words,
+                              wide))
+                return false;
         plane += (ptrdiff_t)width * height * words;
     }
+    return true;
 }
 
-kiln_result ki_exr_decompress_piz(const ki_exr_workspace *work, const ki_exr_box *box,
+// Replaces ranks by the values of those ranks.
+static bool undo_ranks(ki_exr_workspace *work, const uint16_t *table, uint16_t *values,
+                       size_t count)
+{
+    enum { PART = 1 << 20 };
+    for (size_t at = 0, end = 0; at < count; at = end) {
+        end = count - at < PART ? count : at + PART;
+        for (size_t i = at; i < end; i++)
+            values[i] = table[values[i]];
+        if (!ki_exr_go_on(work, (end - at) * sizeof *values))
+            return false;
+    }
+    return true;
+}
+
+kiln_result ki_exr_decompress_piz(ki_exr_workspace *work, const ki_exr_box *box,
                                   const uint8_t *packed, size_t packed_size, uint8_t *raw,
                                   size_t size)
 {
@@ -118,13 +139,11 @@ kiln_result ki_exr_decompress_piz(const ki_exr_workspace *work, const ki_exr_box
     const uint8_t *huffman = ki_read_bytes(&r, length);
     kiln_result result = KILN_ERROR_FORMAT;
     if (greatest >= 0 && huffman)
-        result = ki_exr_unpack_huffman(work->context, huffman, length, values, count);
-    if (result == KILN_OK) {
-        undo_wavelets(box, values, greatest >= 1 << 14);
-        for (size_t i = 0; i < count; i++)
-            values[i] = table[values[i]];
-        ki_exr_lines_from_planes(box, work->scratch, raw);
-    }
+        result = ki_exr_unpack_huffman(work, huffman, length, values, count);
+    if (result == KILN_OK && !(undo_wavelets(work, box, values, greatest >= 1 << 14) &&
+                               undo_ranks(work, table, values, count) &&
+                               ki_exr_lines_from_planes(work, box, work->scratch, raw)))
+        result = KILN_ERROR_FORMAT;
     ki_free(table);
     return result;
 }

@@ -1,6 +1,5 @@
 // EXR's PXR24: for each line and channel the differences of the samples, deflated; all highest
 // bytes come first, then all next bytes. A float is stored without its lowest byte.
-#include "codec/deflate.h"
 #include "codec/exr.h"
 
 #include <string.h>
@@ -28,7 +27,7 @@ static void undo_line(const uint8_t *from, size_t width, const ki_exr_channel *c
     }
 }
 
-kiln_result ki_exr_decompress_pxr24(const ki_exr_workspace *work, const ki_exr_box *box,
+kiln_result ki_exr_decompress_pxr24(ki_exr_workspace *work, const ki_exr_box *box,
                                     const uint8_t *packed, size_t packed_size, uint8_t *raw,
                                     size_t size)
 {
@@ -38,7 +37,7 @@ kiln_result ki_exr_decompress_pxr24(const ki_exr_workspace *work, const ki_exr_b
         plain_size += stored_bytes(&box->channels[c]) *
                       (size_t)ki_exr_columns(box, &box->channels[c]) *
                       (size_t)ki_exr_rows(box, &box->channels[c]);
-    if (!ki_inflate(packed, packed_size, work->scratch, plain_size))
+    if (!ki_exr_inflate(work, packed, packed_size, work->scratch, plain_size))
         return KILN_ERROR_FORMAT;
     const uint8_t *from = work->scratch;
     ki_exr_run runs[KI_EXR_MAX_CHANNELS];
@@ -52,6 +51,8 @@ kiln_result ki_exr_decompress_pxr24(const ki_exr_workspace *work, const ki_exr_b
             undo_line(from, width, channel, raw);
             from += stored_bytes(channel) * width;
             raw += runs[i].bytes;
+            if (!ki_exr_go_on(work, runs[i].bytes))
+                return KILN_ERROR_FORMAT;
         }
     return KILN_OK;
 }

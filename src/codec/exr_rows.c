@@ -41,12 +41,12 @@ static kiln_result put_chunk(const exr_rows *r, int index, const ki_exr_picture 
     } else {
         ki_exr_chunk held = *chunk;
         held.packed = packed;
-        const ki_exr_workspace work = {f->context, raw + chunk->size, f->dwa_table};
+        ki_exr_workspace work = {f->context, &r->file->asker, raw + chunk->size, f->dwa_table, 0};
         const uint8_t *samples =
             ki_exr_chunk_samples(&work, f->part->compression, &held, raw, &result);
         if (samples)
-            ki_exr_put_box(picture, &chunk->box, samples);
-        else
+            result = ki_exr_put_box(&work, picture, &chunk->box, samples);
+        if (result != KILN_OK)
             result = ki_exr_say_damaged(f, index, result, error);
     }
     ki_row_pool_give(pool, buffer);

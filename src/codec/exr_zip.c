@@ -1,6 +1,5 @@
 // EXR's byte-wise compressions: ZIP, ZIPS and RLE.
 #include "base/vector.h"
-#include "codec/deflate.h"
 #include "codec/exr.h"
 
 #include <string.h>
@@ -10,14 +9,15 @@
                  22 - (n), 23 - (n), 24 - (n), 25 - (n), 26 - (n), 27 - (n), 28 - (n), 29 - (n),   \
                  30 - (n), 31 - (n))
 
+enum { PART = 1 << 20 }; // bytes that are written before their number is told
+
 // Undoes the differences of EXR's method ZIP: each byte was stored as its difference from the byte
 // before, plus 128. Sixteen running sums are computed at a time, in four steps that add to each
 // byte the sum 1, 2, 4 and 8 places to its left.
-static void undo_differences(uint8_t *bytes, size_t size)
+// Returns the last sum. `last` is the sum before the first byte.
+static uint8_t undo_differences(uint8_t *bytes, size_t size, uint8_t last)
 {
     size_t i = 0;
-    // the byte before the first, chosen so that the first byte stays as it is stored
-    uint8_t last = 128;
     for (; i + 16 <= size; i += 16) {
         ki_bytes16 v;
         memcpy(&v, bytes + i, sizeof v);
@@ -32,72 +32,93 @@ static void undo_differences(uint8_t *bytes, size_t size)
     }
     for (; i < size; i++)
         bytes[i] = last = (uint8_t)(last + bytes[i] - 128);
+    return last;
 }
 
-// Merges the even bytes of a chunk, which are stored first, with the odd bytes, which are stored
-// after them.
-static void interleave(const uint8_t *halves, uint8_t *restrict raw, size_t size)
+// Merges `count` even bytes of a chunk with as many odd ones.
+static void interleave(const uint8_t *even, const uint8_t *odd, size_t count, uint8_t *restrict raw)
 {
-    const uint8_t *odd = halves + (size + 1) / 2;
-    for (size_t i = 0; i < size / 2; i++) {
-        raw[2 * i] = halves[i];
+    for (size_t i = 0; i < count; i++) {
+        raw[2 * i] = even[i];
         raw[2 * i + 1] = odd[i];
     }
-    if (size % 2)
-        raw[size - 1] = halves[size / 2];
 }
 
-bool ki_exr_unzip(const uint8_t *packed, size_t packed_size, uint8_t *raw, size_t size,
-                  uint8_t *scratch)
+// Undoes the differences of bytes, of which the even ones come first and the odd ones after them,
+// and merges both to `raw`, part by part.
+static bool undo_all(ki_exr_workspace *work, uint8_t *bytes, uint8_t *raw, size_t size)
 {
-    if (!ki_inflate(packed, packed_size, scratch, size))
-        return false;
-    undo_differences(scratch, size);
-    interleave(scratch, raw, size);
+    const uint8_t *odd = bytes + (size + 1) / 2;
+    // the byte before the first, chosen so that the first byte stays as it is stored
+    uint8_t last = 128;
+    for (size_t at = 0, count = PART; at < size; at += count) {
+        count = size - at < PART ? size - at : PART;
+        last = undo_differences(bytes + at, count, last);
+        if (!ki_exr_go_on(work, count))
+            return false;
+    }
+    for (size_t at = 0, count = PART; at < size / 2; at += count) {
+        count = size / 2 - at < PART ? size / 2 - at : PART;
+        interleave(bytes + at, odd + at, count, raw + 2 * at);
+        if (!ki_exr_go_on(work, 2 * count))
+            return false;
+    }
+    if (size % 2)
+        raw[size - 1] = bytes[size / 2];
     return true;
 }
 
-kiln_result ki_exr_decompress_zip(const ki_exr_workspace *work, const ki_exr_box *box,
+bool ki_exr_unzip(ki_exr_workspace *work, const uint8_t *packed, size_t packed_size, uint8_t *raw,
+                  size_t size, uint8_t *scratch)
+{
+    return ki_exr_inflate(work, packed, packed_size, scratch, size) &&
+           undo_all(work, scratch, raw, size);
+}
+
+kiln_result ki_exr_decompress_zip(ki_exr_workspace *work, const ki_exr_box *box,
                                   const uint8_t *packed, size_t packed_size, uint8_t *raw,
                                   size_t size)
 {
     (void)box;
-    return ki_exr_unzip(packed, packed_size, raw, size, work->scratch) ? KILN_OK
-                                                                       : KILN_ERROR_FORMAT;
+    bool good = ki_exr_unzip(work, packed, packed_size, raw, size, work->scratch);
+    return good ? KILN_OK : KILN_ERROR_FORMAT;
 }
 
-size_t ki_exr_unpack_runs(const uint8_t *packed, size_t packed_size, uint8_t *raw, size_t size)
+size_t ki_exr_unpack_runs(ki_exr_workspace *work, const uint8_t *packed, size_t packed_size,
+                          uint8_t *raw, size_t size)
 {
-    size_t in = 0, out = 0;
+    size_t in = 0, out = 0, told = 0;
     while (in < packed_size) {
-        size_t code = packed[in++];
+        size_t code = packed[in++], count;
         // a code above 127 means that the next 256 - code bytes stand for themselves
         if (code > 127) {
-            size_t count = 256 - code;
+            count = 256 - code;
             if (packed_size - in < count || size - out < count)
                 return SIZE_MAX;
             memcpy(raw + out, packed + in, count);
             in += count;
-            out += count;
         } else {
-            size_t count = code + 1;
+            count = code + 1;
             if (in == packed_size || size - out < count)
                 return SIZE_MAX;
             memset(raw + out, packed[in++], count);
-            out += count;
+        }
+        out += count;
+        if (out - told >= PART) {
+            if (!ki_exr_go_on(work, out - told))
+                return SIZE_MAX;
+            told = out;
         }
     }
     return out;
 }
 
-kiln_result ki_exr_decompress_rle(const ki_exr_workspace *work, const ki_exr_box *box,
+kiln_result ki_exr_decompress_rle(ki_exr_workspace *work, const ki_exr_box *box,
                                   const uint8_t *packed, size_t packed_size, uint8_t *raw,
                                   size_t size)
 {
     (void)box;
-    if (ki_exr_unpack_runs(packed, packed_size, work->scratch, size) != size)
-        return KILN_ERROR_FORMAT;
-    undo_differences(work->scratch, size);
-    interleave(work->scratch, raw, size);
-    return KILN_OK;
+    bool good = ki_exr_unpack_runs(work, packed, packed_size, work->scratch, size) == size &&
+                undo_all(work, work->scratch, raw, size);
+    return good ? KILN_OK : KILN_ERROR_FORMAT;
 }

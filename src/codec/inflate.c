@@ -50,11 +50,11 @@ typedef struct stream {
 typedef struct state {
     stream s;
     uint8_t *out, *begin, *end;
-    bool full;             // set when the output has no room for the next symbol's bytes
-    kiln_context *context; // the context that is asked whether to go on; NULL: nobody is asked
-    uint8_t *pause;        // place in the output where the next question is due, or its end
-    bool stopped;          // set when the answer was to stop
-    bool fixed;            // the tables are those of the fixed codes
+    bool full;       // set when the output has no room for the next symbol's bytes
+    ki_asker *asker; // who is asked whether to go on; NULL: nobody
+    uint8_t *pause;  // place in the output where the next question is due, or its end
+    bool stopped;    // set when the answer was to stop
+    bool fixed;      // the tables are those of the fixed codes
     uint32_t literals[LITERAL_ROOM], distances[DISTANCE_ROOM];
 } state;
 
@@ -243,7 +243,7 @@ enum { PART = 1 << 24 }; // bytes of output between two questions whether to go 
 
 static void find_pause(state *st)
 {
-    bool last = !st->context || st->end - st->out <= PART;
+    bool last = !st->asker || st->end - st->out <= PART;
     st->pause = last ? st->end : st->out + PART;
 }
 
@@ -251,7 +251,7 @@ static void find_pause(state *st)
 static bool go_on(state *st)
 {
     find_pause(st);
-    st->stopped = st->context && !ki_go_on(st->context);
+    st->stopped = st->asker && !ki_may_go_on(st->asker);
     return !st->stopped;
 }
 
@@ -473,11 +473,11 @@ static bool unpack(state *st)
 }
 
 // Prepares decompression. Returns false unless the data begin with zlib's header of two bytes.
-// `context` is NULL if nobody is to be asked whether to go on.
-static bool begin(state *st, kiln_context *context, const uint8_t *packed, size_t packed_size,
+// `asker` is NULL if nobody is to be asked whether to go on.
+static bool begin(state *st, ki_asker *asker, const uint8_t *packed, size_t packed_size,
                   uint8_t *plain, size_t size)
 {
-    st->context = context;
+    st->asker = asker;
     st->full = st->stopped = st->fixed = false;
     if (packed_size < 6 || (packed[0] & 15) != 8 || packed[1] & 0x20 ||
         !ki_checksum_agrees((uint32_t)(packed[0] << 8 | packed[1]) % 31, 0))
@@ -495,7 +495,7 @@ static bool add_up(state *st, uint32_t *sum)
     size_t size = (size_t)(st->end - st->begin), part = PART;
     *sum = 1;
     for (size_t at = 0; at < size; at += part) {
-        if (at && st->context && !go_on(st))
+        if (at && st->asker && !go_on(st))
             return false;
         part = size - at < PART ? size - at : PART;
         *sum = ki_adler32(*sum, st->begin + at, part);
@@ -527,7 +527,7 @@ bool ki_inflate_beginning(const uint8_t *packed, size_t packed_size, uint8_t *pl
     return begin(&st, NULL, packed, packed_size, plain, size) && !unpack(&st) && st.full;
 }
 
-kiln_result ki_inflate_long(kiln_context *context, const uint8_t *packed, size_t packed_size,
+kiln_result ki_inflate_long(ki_asker *asker, const uint8_t *packed, size_t packed_size,
                             uint8_t *plain, size_t size, bool may_go_on)
 {
     // Up to so many bytes, packed and plain, take less than a tenth of a second.
@@ -538,8 +538,7 @@ kiln_result ki_inflate_long(kiln_context *context, const uint8_t *packed, size_t
                        (may_go_on && ki_inflate_beginning(packed, packed_size, plain, size))
                    ? KILN_OK
                    : KILN_ERROR_FORMAT;
-    bool good =
-        begin(&st, context, packed, packed_size, plain, size) && unpack(&st) && is_whole(&st);
+    bool good = begin(&st, asker, packed, packed_size, plain, size) && unpack(&st) && is_whole(&st);
     return st.stopped                       ? KILN_ERROR_CANCELLED
            : good || (may_go_on && st.full) ? KILN_OK
                                             : KILN_ERROR_FORMAT;

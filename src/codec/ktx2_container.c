@@ -277,22 +277,22 @@ kiln_result ki_ktx2_unpack(kiln_context *context, const ki_ktx2_source *s, int k
     if (!room)
         return ki_fail_memory(context, error, s->name, level->plain_size);
     const char *fault = "its zlib data";
-    kiln_result result = KILN_ERROR_FORMAT;
+    kiln_result result;
+    ki_asker asker;
+    ki_asker_begin(&asker, context);
     if (s->zlib)
-        result =
-            ki_inflate_long(context, level->bytes, level->size, room, level->plain_size, false);
+        result = ki_inflate_long(&asker, level->bytes, level->size, room, level->plain_size, false);
     else
-        fault = ki_zstd_unpack(level->bytes, level->size, room, level->plain_size);
-    if (result == KILN_ERROR_CANCELLED) {
-        ki_free(room);
+        result =
+            ki_zstd_unpack(context, level->bytes, level->size, room, level->plain_size, &fault);
+    if (result == KILN_OK) {
+        *plain = *unpacked = room;
+        return KILN_OK;
+    }
+    ki_free(room);
+    if (result == KILN_ERROR_CANCELLED)
         return ki_fail_cancelled(error, "reading");
-    }
-    if (fault && result != KILN_OK) {
-        ki_free(room);
-        return ki_fail(error, KILN_ERROR_FORMAT, "%s: level %d is damaged: %s", s->name, k, fault);
-    }
-    *plain = *unpacked = room;
-    return KILN_OK;
+    return ki_fail(error, KILN_ERROR_FORMAT, "%s: level %d is damaged: %s", s->name, k, fault);
 }
 
 // ---------------------------------------------------------------------------------------- metadata

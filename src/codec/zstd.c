@@ -1,5 +1,8 @@
+// Besides the stable functions of the zstd library this file uses the parameter
+// ZSTD_d_stableOutBuffer of versions from 1.4.6 on, where the library has it.
 #include "codec/zstd.h"
 
+#define ZSTD_STATIC_LINKING_ONLY
 #include <zstd.h>
 
 enum { STEP = 1 << 17 };
@@ -56,8 +59,58 @@ bool ki_zstd_stated_size(const uint8_t *packed, size_t packed_size, uint64_t *si
     return *size != ZSTD_CONTENTSIZE_UNKNOWN && *size != ZSTD_CONTENTSIZE_ERROR;
 }
 
-const char *ki_zstd_unpack(const uint8_t *packed, size_t packed_size, uint8_t *plain, size_t size)
+#ifdef ZSTD_d_stableOutBuffer
+// Makes a decoder that writes straight to the output, which saves memory as large as the output.
+// Returns NULL if the library has no such decoder, or memory runs out.
+static ZSTD_DCtx *make_decoder(void)
 {
-    size_t got = ZSTD_decompress(plain, size, packed, packed_size);
-    return got == size ? NULL : ZSTD_isError(got) ? ZSTD_getErrorName(got) : "too short";
+    ZSTD_DCtx *zstd = ZSTD_createDCtx();
+    int longest = ZSTD_dParam_getBounds(ZSTD_d_windowLogMax).upperBound;
+    if (zstd && (ZSTD_isError(ZSTD_DCtx_setParameter(zstd, ZSTD_d_stableOutBuffer, 1)) ||
+                 ZSTD_isError(ZSTD_DCtx_setParameter(zstd, ZSTD_d_windowLogMax, longest)))) {
+        ZSTD_freeDCtx(zstd);
+        return NULL;
+    }
+    return zstd;
+}
+
+// Unpacks block by block: the decoder says how many bytes end with the next block, which makes at
+// most 128 KiB.
+static size_t unpack_blocks(kiln_context *context, ZSTD_DCtx *zstd, ZSTD_inBuffer in,
+                            ZSTD_outBuffer *out, bool *stopped)
+{
+    enum { PART = 1 << 22, FIRST = 5 }; // FIRST: bytes that every frame begins with
+    size_t all = in.size, wanted = 0, asked = 0;
+    do {
+        size_t left = all - in.pos, next = wanted ? wanted : FIRST;
+        in.size = in.pos + (next < left ? next : left);
+        wanted = ZSTD_decompressStream(zstd, out, &in);
+        if (out->pos - asked >= PART) {
+            asked = out->pos;
+            *stopped = !ki_go_on(context);
+        }
+    } while (!*stopped && !ZSTD_isError(wanted) && in.pos < all);
+    return wanted;
+}
+#endif
+
+kiln_result ki_zstd_unpack(kiln_context *context, const uint8_t *packed, size_t packed_size,
+                           uint8_t *plain, size_t size, const char **fault)
+{
+    bool stopped = false;
+    size_t got;
+#ifdef ZSTD_d_stableOutBuffer
+    ZSTD_DCtx *zstd = make_decoder();
+    if (zstd) {
+        ZSTD_outBuffer out = {plain, size, 0};
+        got = unpack_blocks(context, zstd, (ZSTD_inBuffer){packed, packed_size, 0}, &out, &stopped);
+        got = ZSTD_isError(got) ? got : got ? 0 : out.pos;
+        ZSTD_freeDCtx(zstd);
+    } else
+#endif
+        got = ZSTD_decompress(plain, size, packed, packed_size);
+    if (stopped)
+        return KILN_ERROR_CANCELLED;
+    *fault = ZSTD_isError(got) ? ZSTD_getErrorName(got) : "too short";
+    return got == size ? KILN_OK : KILN_ERROR_FORMAT;
 }

@@ -17,8 +17,10 @@ kiln_result ki_zstd_pack(kiln_context *context, const uint8_t *plain, size_t siz
 /// Sets *size to the uncompressed size that a zstd frame states. Returns false if the frame states
 /// no size or is not a zstd frame.
 bool ki_zstd_stated_size(const uint8_t *packed, size_t packed_size, uint64_t *size);
-/// Unpacks a zstd frame to exactly `size` bytes. Returns NULL on success, else a text that says
-/// what is wrong.
-const char *ki_zstd_unpack(const uint8_t *packed, size_t packed_size, uint8_t *plain, size_t size);
+/// Unpacks zstd frames to exactly `size` bytes and asks from time to time whether to go on. Returns
+/// KILN_OK, KILN_ERROR_FORMAT, with a text in *fault that says what is wrong, or
+/// KILN_ERROR_CANCELLED. Writes no error message.
+kiln_result ki_zstd_unpack(kiln_context *context, const uint8_t *packed, size_t packed_size,
+                           uint8_t *plain, size_t size, const char **fault);
 
 #endif

@@ -28,8 +28,10 @@ bool ki_zstd_stated_size(const uint8_t *packed, size_t packed_size, uint64_t *si
     return false;
 }
 
-const char *ki_zstd_unpack(const uint8_t *packed, size_t packed_size, uint8_t *plain, size_t size)
+kiln_result ki_zstd_unpack(kiln_context *context, const uint8_t *packed, size_t packed_size,
+                           uint8_t *plain, size_t size, const char **fault)
 {
-    (void)packed, (void)packed_size, (void)plain, (void)size;
-    return "this build of kiln has no zstd";
+    (void)context, (void)packed, (void)packed_size, (void)plain, (void)size;
+    *fault = "this build of kiln has no zstd";
+    return KILN_ERROR_FORMAT;
 }

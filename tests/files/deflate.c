@@ -119,17 +119,19 @@ static void long_data_are_inflated(void **state)
     enum { SIZE = (1 << 26) + 12345, ROOM = 1 << 20 };
     uint8_t *plain = malloc(SIZE), *back = malloc(SIZE), *packed = malloc(ROOM);
     uLongf length = ROOM;
+    ki_asker asker;
+    ki_asker_begin(&asker, context);
     assert_true(plain && back && packed);
     for (size_t i = 0; i < SIZE; i++)
         plain[i] = (uint8_t)(i >> 13);
     assert_int_equal(compress2(packed, &length, plain, SIZE, 1), Z_OK);
-    assert_int_equal(ki_inflate_long(context, packed, length, back, SIZE, false), KILN_OK);
+    assert_int_equal(ki_inflate_long(&asker, packed, length, back, SIZE, false), KILN_OK);
     assert_memory_equal(back, plain, SIZE);
-    assert_int_equal(ki_inflate_long(context, packed, length, back, SIZE - 1, false),
+    assert_int_equal(ki_inflate_long(&asker, packed, length, back, SIZE - 1, false),
                      KILN_ERROR_FORMAT);
-    assert_int_equal(ki_inflate_long(context, packed, length, back, SIZE - 1, true), KILN_OK);
+    assert_int_equal(ki_inflate_long(&asker, packed, length, back, SIZE - 1, true), KILN_OK);
     packed[length - 1] ^= 1; // a byte of the checksum
-    assert_int_equal(ki_inflate_long(context, packed, length, back, SIZE, true), KILN_ERROR_FORMAT);
+    assert_int_equal(ki_inflate_long(&asker, packed, length, back, SIZE, true), KILN_ERROR_FORMAT);
     free(plain);
     free(back);
     free(packed);

@@ -1,13 +1,14 @@
-// The reading of a picture can be stopped while its data are inflated, its colours converted and
-// its faces turned. Each conversion of a picture of 64 rows asks at least once a row more than the
-// reading of the same picture without the conversion; texels of cubes are converted and turned in
-// strips of 64 rows.
+// The reading of a picture can be stopped while its data are decompressed, its colours converted
+// and its faces turned. Each conversion of a picture of 64 rows asks at least once a row more than
+// the reading of the same picture without the conversion; texels of cubes are converted and turned
+// in strips of 64 rows.
 #include "codec/codec.h"
 #include "codec/deflate.h"
 #include "image/pack.h"
 #include "kit/context.h"
 #include "kit/stopping.h"
 
+#include "exr_make.h"
 #include "exr_plain.h"
 
 enum { WIDTH = 128, HEIGHT = 64, PNG_HEAD = 8 + 25 };
@@ -179,6 +180,29 @@ static void put_turned_ktx1(ki_writer *w)
     put_ktx1_with(w, "S=l,T=u\0\0\0\0");
 }
 
+// A cube whose level has 12.6 million bytes.
+static void put_halfs_with(ki_writer *w, int zstd)
+{
+    kiln_map cube = make_map(context, KILN_SHAPE_CUBE, 512, 1);
+    const kiln_save_def def = {.format = KILN_FORMAT_RGBA16F, .zstd = zstd};
+    kiln_files files;
+    fill_constant(&cube, 1);
+    CHECK_OK(kiln_map_encode(context, &cube, "a.ktx2", &def, &files, NULL, &error));
+    ki_write(w, files.file[0].bytes, files.file[0].size);
+    kiln_files_free(&files);
+    kiln_map_free(&cube);
+}
+
+static void put_halfs(ki_writer *w)
+{
+    put_halfs_with(w, 0);
+}
+
+static void put_zstd_halfs(ki_writer *w)
+{
+    put_halfs_with(w, KILN_TEST_ZSTD);
+}
+
 static const struct {
     void (*plain)(ki_writer *w), (*converted)(ki_writer *w);
     int more; // least number of further questions
@@ -192,41 +216,62 @@ static const struct {
     {put_small_cube, put_large_cube, 6 * 3},
     {put_cube_of_128, put_turned_cube, 6 * (2 + 1)}, // columns, then rows, in strips of 64 rows
     {put_ktx1, put_turned_ktx1, 6 * (2 + 1)},
+    {put_halfs, put_zstd_halfs, 3 * KILN_TEST_ZSTD},
 };
 
 static countdown reports;
 static kiln_context *own;
 
-static kiln_result decode(const ki_writer *w, int left, kiln_map *map)
+typedef kiln_result decoder(const ki_writer *w, int left);
+
+static kiln_result decode(const ki_writer *w, int left)
 {
+    kiln_map map;
     reports = (countdown){.left = left};
-    return kiln_map_decode(own, w->bytes, w->size, "a", NULL, map, &error);
+    kiln_result result = kiln_map_decode(own, w->bytes, w->size, "a", NULL, &map, &error);
+    assert_true(result == KILN_OK || !map.level[0]);
+    kiln_map_free(&map);
+    return result;
+}
+
+// Decodes the pixels of an EXR file, without what makes a map of them.
+static kiln_result decode_exr(const ki_writer *w, int left)
+{
+    kiln_image image = {0};
+    reports = (countdown){.left = left};
+    kiln_result result =
+        ki_exr_decode(own, w->bytes, w->size, "a", NULL, &image, NULL, NULL, &error);
+    assert_true(result == KILN_OK || !image.pixels);
+    kiln_image_free(&image);
+    return result;
 }
 
 // Returns the number of questions while a file is read, at each of which the reading can be
 // stopped. Work in steps asks once more after each twentieth of a second, so that on a busy machine
 // one reading may ask more often than the next: the least number counts.
-static int count_questions(void (*put)(ki_writer *w))
+static int count_questions(const ki_writer *w, decoder *decode_file)
 {
-    ki_writer w = {.context = context};
-    kiln_map map;
-    put(&w);
-    assert_false(w.failed);
-    CHECK_OK(decode(&w, 1 << 30, &map));
-    kiln_map_free(&map);
+    assert_false(w->failed);
+    CHECK_OK(decode_file(w, 1 << 30));
     int asked = reports.calls;
     for (int stop = 0; stop < asked; stop++) {
-        kiln_result result = decode(&w, stop, &map);
+        kiln_result result = decode_file(w, stop);
         if (result == KILN_OK) {
             assert_true(reports.calls <= stop);
             asked = reports.calls;
         } else {
             assert_int_equal(result, KILN_ERROR_CANCELLED);
             assert_int_equal(reports.calls, stop + 1);
-            assert_null(map.level[0]);
         }
-        kiln_map_free(&map);
     }
+    return asked;
+}
+
+static int count_questions_of(void (*put)(ki_writer *w))
+{
+    ki_writer w = {.context = context};
+    put(&w);
+    int asked = count_questions(&w, decode);
     ki_writer_free(&w);
     return asked;
 }
@@ -237,9 +282,115 @@ static void conversions_can_be_stopped(void **state)
     kiln_context_def def = {.thread_count = 1, .progress = count_down, .progress_user = &reports};
     CHECK_OK(kiln_context_create(&def, &own, &error));
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        int plain = count_questions(cases[i].plain), all = count_questions(cases[i].converted);
+        int plain = count_questions_of(cases[i].plain);
+        int all = count_questions_of(cases[i].converted);
         if (all < plain + cases[i].more)
             fail_msg("case %zu: %d questions, and %d without the conversion", i, all, plain);
+    }
+    kiln_context_destroy(own);
+}
+
+enum { TILE_WIDTH = 2048, TILE_HEIGHT = 1024, TILE_BYTES = 6 * TILE_WIDTH * TILE_HEIGHT };
+
+static float sawtooth(int x, int y, const char *channel)
+{
+    return (float)((5 * x + 3 * y + *channel) % 64) / 64;
+}
+
+// Compresses `count` times the two bytes of `pair` by zlib, of which the first byte may differ.
+static void put_zlib(ki_writer *w, size_t count, int first, const uint8_t pair[2])
+{
+    ki_deflater *deflater = ki_deflater_create(context);
+    uint8_t *plain = malloc(2 * count), *packed = malloc(ki_deflate_bound(2 * count));
+    assert_true(deflater && plain && packed);
+    for (size_t i = 0; i < 2 * count; i++)
+        plain[i] = i ? pair[i % 2] : (uint8_t)first;
+    ki_write(w, packed,
+             ki_deflate(deflater, plain, 2 * count, packed, ki_deflate_bound(2 * count)));
+    free(plain);
+    free(packed);
+    ki_deflater_free(deflater);
+}
+
+// Puts black pixels in place of the one, uncompressed tile of a file, compressed by DWAA, which
+// OpenEXRCore 3.1 cannot write: blocks of 8 x 8 whose mean is 0 and that end after it.
+static void put_black_dwaa(ki_writer *w, const uint8_t *bytes, size_t size)
+{
+    enum { BLOCKS = 3 * (TILE_WIDTH / 8) * (TILE_HEIGHT / 8), TILE_HEAD = 20 };
+    static const char name[] = "compression\0compression\0\1\0\0";
+    const uint8_t differences[2] = {128, 128}, ends[2] = {0, 0xff};
+    ki_writer means = {.context = context}, rest = {.context = context};
+    put_zlib(&means, BLOCKS, 0, differences);
+    put_zlib(&rest, BLOCKS, 0, ends);
+    size_t before = size - TILE_BYTES - TILE_HEAD, at = 0;
+    while (memcmp(bytes + at, name, sizeof name) != 0)
+        at++;
+    ki_write(w, bytes, before + TILE_HEAD - 4);
+    w->bytes[at + sizeof name] = EXR_COMPRESSION_DWAA;
+    ki_write_u32(w, (uint32_t)(11 * 8 + rest.size + means.size));
+    // version, zlib, packed; ac, dc, runs packed; runs, unpacked; ac, dc; 1: ac by zlib
+    const uint64_t counts[11] = {1, 0, 0, rest.size, means.size, 0, 0, 0, BLOCKS, BLOCKS, 1};
+    for (int i = 0; i < 11; i++)
+        ki_write_u64(w, counts[i]);
+    ki_write(w, rest.bytes, rest.size);
+    ki_write(w, means.bytes, means.size);
+    ki_writer_free(&means);
+    ki_writer_free(&rest);
+}
+
+// Makes a picture of one tile.
+static void put_tile(ki_writer *w, int width, exr_compression_t compression)
+{
+    static const exr_make_channel rgb[] = {{"B", EXR_PIXEL_HALF, 0, false},
+                                           {"G", EXR_PIXEL_HALF, 0, false},
+                                           {"R", EXR_PIXEL_HALF, 0, false}};
+    bool dwa = compression == EXR_COMPRESSION_DWAA;
+    exr_make make = {.width = width,
+                     .height = TILE_HEIGHT,
+                     .compression = dwa ? EXR_COMPRESSION_NONE : compression,
+                     .tile_width = width,
+                     .tile_height = TILE_HEIGHT,
+                     .channels = rgb,
+                     .channel_count = 3,
+                     .value = sawtooth};
+    size_t size;
+    uint8_t *bytes = exr_make_file(&make, &size);
+    if (dwa)
+        put_black_dwaa(w, bytes, size);
+    else
+        ki_write(w, bytes, size);
+    free(bytes);
+}
+
+// A picture of 12.6 million bytes in one tile, by each method of compression. A step that writes as
+// many bytes asks after each 2^22 of them, or a row later: 2.5 times or more, as a mean of steps.
+// The questions of a small picture are those outside of these steps.
+static void large_tiles_can_be_stopped(void **state)
+{
+    (void)state;
+    enum { SMALL = 64 };
+    static const struct {
+        exr_compression_t compression;
+        int steps; // 2 of them are the conversion to floats, which are twice as many bytes
+    } methods[] = {
+        {EXR_COMPRESSION_NONE, 2},     {EXR_COMPRESSION_RLE, 3 + 2},   {EXR_COMPRESSION_ZIP, 2 + 2},
+        {EXR_COMPRESSION_PIZ, 4 + 2},  {EXR_COMPRESSION_PXR24, 1 + 2}, {EXR_COMPRESSION_B44, 2 + 2},
+        {EXR_COMPRESSION_DWAA, 1 + 2},
+    };
+    kiln_context_def def = {.thread_count = 1, .progress = count_down, .progress_user = &reports};
+    CHECK_OK(kiln_context_create(&def, &own, &error));
+    for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
+        int asked[2];
+        for (int large = 0; large < 2; large++) {
+            ki_writer w = {.context = context};
+            put_tile(&w, large ? TILE_WIDTH : SMALL,
+                     large ? methods[i].compression : EXR_COMPRESSION_NONE);
+            asked[large] = count_questions(&w, decode_exr);
+            ki_writer_free(&w);
+        }
+        if (2 * (asked[1] - asked[0]) < 5 * methods[i].steps)
+            fail_msg("compression %d: %d questions, and %d of a small picture",
+                     (int)methods[i].compression, asked[1], asked[0]);
     }
     kiln_context_destroy(own);
 }
@@ -276,18 +427,17 @@ static void inflating_can_be_stopped(void **state)
     uint8_t head[13] = {0, 0, COLUMNS >> 8, 0, 0, 0, ROWS >> 8, ROWS & 255, 1};
     kiln_context_def def = {.thread_count = 1, .progress = count_down, .progress_user = &reports};
     ki_writer w = {.context = context};
-    kiln_map map;
     ki_write(&w, "\x89PNG\r\n\x1a\n", 8);
     put_chunk(&w, "IHDR", head, sizeof head);
     put_chunk(&w, "IDAT", packed, sizeof packed);
     put_chunk(&w, "IEND", NULL, 0);
     CHECK_OK(kiln_context_create(&def, &own, &error));
-    assert_int_equal(decode(&w, 1 << 30, &map), KILN_ERROR_FORMAT);
+    assert_int_equal(decode(&w, 1 << 30), KILN_ERROR_FORMAT);
     CHECK_SAYS(error.message, "does not inflate to the picture's size");
     int asked = reports.calls;
     assert_true(asked >= 4); // a question after each 2^24 of the 82 million bytes
     for (int stop = 0; stop < asked; stop++) {
-        assert_int_equal(decode(&w, stop, &map), KILN_ERROR_CANCELLED);
+        assert_int_equal(decode(&w, stop), KILN_ERROR_CANCELLED);
         assert_int_equal(reports.calls, stop + 1);
     }
     kiln_context_destroy(own);
@@ -298,6 +448,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(conversions_can_be_stopped, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(large_tiles_can_be_stopped, set_up, tear_down),
         cmocka_unit_test_setup_teardown(inflating_can_be_stopped, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
