@@ -187,6 +187,9 @@ static bool stream_file(bench *b, const char *name, bool loads, double bound)
     double ratio = (bake.user + bake.system) / (load.user + load.system);
     snprintf(text, sizeof text, "%s: CPU time of the bake / of loading", name);
     bench_value(b, text, "ratio", ratio);
+    snprintf(text, sizeof text, "%s: time of the bake / of loading", name);
+    bench_value(b, text, "ratio", bake.wall / load.wall);
+    bench_bar(b, text, bake.wall / load.wall, "", 1.3, false);
     return true;
 }
 
