@@ -42,8 +42,12 @@ void fuzz_input(const uint8_t *bytes, size_t size)
     rewind_input();
     kiln_result result = kiln_map_load(context, "-", NULL, &map, &error);
     kiln_result decoded = kiln_map_decode(context, bytes, size, "-", NULL, &same, &other);
-    fuzz_must(result == decoded || result == KILN_ERROR_MEMORY || decoded == KILN_ERROR_MEMORY);
-    fuzz_must(result == KILN_OK || result != decoded || !strcmp(error.message, other.message));
+    // Loading holds the bytes of the file too: it may lack memory where decoding does not, and says
+    // another number of bytes that are held.
+    if (result != KILN_ERROR_MEMORY && decoded != KILN_ERROR_MEMORY) {
+        fuzz_must(result == decoded);
+        fuzz_must(result == KILN_OK || !strcmp(error.message, other.message));
+    }
     kiln_map_free(&map);
     kiln_map_free(&same);
     fuzz_end(context);
