@@ -85,8 +85,8 @@ static size_t unpack_blocks(kiln_context *context, ZSTD_DCtx *zstd, ZSTD_inBuffe
         size_t left = all - in.pos, next = wanted ? wanted : FIRST;
         in.size = in.pos + (next < left ? next : left);
         wanted = ZSTD_decompressStream(zstd, out, &in);
-        if (out->pos - asked >= PART) {
-            asked = out->pos;
+        if (in.pos + out->pos - asked >= PART) {
+            asked = in.pos + out->pos;
             *stopped = !ki_go_on(context);
         }
     } while (!*stopped && !ZSTD_isError(wanted) && in.pos < all);
