@@ -128,8 +128,9 @@ bool ki_progress(kiln_context *context, const char *stage, double fraction);
 /// Repeats the last report of progress, so that long work with many small steps can be stopped.
 /// Returns false if the caller wants to stop.
 bool ki_go_on(kiln_context *context);
-/// The question whether to go on, for tasks that run on several threads. Only the thread that began
-/// the question asks the caller of the library; the other threads learn from it that work stops.
+/// The question whether to go on, for tasks that run on several threads. Only the thread that
+/// called ki_asker_begin, which is the one on which the library was called, asks the caller; the
+/// other threads learn from it that work stops. Nobody asks while that thread waits for the others.
 typedef struct ki_asker {
     kiln_context *context;
     uintptr_t caller;

@@ -13,11 +13,11 @@ bool ki_inflate_own(const uint8_t *packed, size_t packed_size, uint8_t *plain, s
 /// Decompresses only the first `size` bytes. Returns false if the data hold fewer bytes. The
 /// checksum after the data is not checked.
 bool ki_inflate_beginning(const uint8_t *packed, size_t packed_size, uint8_t *plain, size_t size);
-/// Decompresses as ki_inflate does, but asks from time to time whether to go on. `may_go_on` allows
-/// data that hold more bytes, of which the first are decompressed as ki_inflate_beginning does.
-/// Returns KILN_OK, KILN_ERROR_FORMAT or KILN_ERROR_CANCELLED and writes no error message.
+/// Decompresses as ki_inflate does, but asks from time to time whether to go on. `may_hold_more`
+/// allows data that hold more bytes, of which the first are decompressed as ki_inflate_beginning
+/// does. Returns KILN_OK, KILN_ERROR_FORMAT or KILN_ERROR_CANCELLED and writes no error message.
 kiln_result ki_inflate_long(ki_asker *asker, const uint8_t *packed, size_t packed_size,
-                            uint8_t *plain, size_t size, bool may_go_on);
+                            uint8_t *plain, size_t size, bool may_hold_more);
 
 /// Compresses bytes to zlib data, always to the same bytes for the same input. One object can
 /// compress any number of inputs, one after the other. Creation returns NULL if memory runs out.

@@ -210,18 +210,22 @@ static void decode_chunks(void *data, int task)
     ki_exr_workspace work = {f->context, &f->asker, raw ? raw + most : NULL, f->dwa_table, 0};
     kiln_result result = packed && !raw ? KILN_ERROR_MEMORY : KILN_OK;
     for (int i = begin; i < end && result == KILN_OK; i++) {
+        f->failed_at[task] = i;
+        if (ki_was_stopped(&f->asker)) {
+            result = KILN_ERROR_CANCELLED;
+            break;
+        }
         const uint8_t *samples =
             ki_exr_chunk_samples(&work, f->part->compression, &f->chunks[i], raw, &result);
         if (samples)
             result = ki_exr_put_box(&work, &f->picture, &f->chunks[i].box, samples);
-        f->damaged[task] = i;
     }
     ki_free(raw);
     f->results[task] = (uint8_t)result;
 }
 
-kiln_result ki_exr_say_damaged(const ki_exr_file *f, int index, kiln_result result,
-                               kiln_error *error)
+kiln_result ki_exr_fail_chunk(const ki_exr_file *f, int index, kiln_result result,
+                              kiln_error *error)
 {
     const ki_exr_chunk *chunk = &f->chunks[index];
     if (result == KILN_ERROR_MEMORY)
@@ -256,7 +260,7 @@ static kiln_result decode_all(ki_exr_file *f, kiln_error *error)
         return ki_fail_cancelled(error, "reading");
     for (int t = 0; t < f->task_count; t++)
         if (f->results[t] != KILN_OK)
-            return ki_exr_say_damaged(f, f->damaged[t], f->results[t], error);
+            return ki_exr_fail_chunk(f, f->failed_at[t], f->results[t], error);
     return KILN_OK;
 }
 

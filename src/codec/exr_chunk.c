@@ -2,7 +2,6 @@
 // and box of each chunk, and its samples, decompressed by the file's method. A chunk is a tile, or
 // as many scan lines as the method compresses together. All sizes are checked against the file's.
 #include "base/bytes.h"
-#include "codec/deflate.h"
 #include "codec/exr.h"
 
 #include <string.h>
@@ -214,22 +213,6 @@ kiln_result ki_exr_find_chunks(kiln_context *context, const ki_exr_header *heade
 }
 
 // --------------------------------------------------------------------------------------- unpacking
-
-bool ki_exr_go_on(ki_exr_workspace *work, size_t bytes)
-{
-    enum { PART = 1 << 22 };
-    work->worked += bytes;
-    if (work->worked < PART)
-        return true;
-    work->worked = 0;
-    return ki_may_go_on(work->asker);
-}
-
-bool ki_exr_inflate(ki_exr_workspace *work, const uint8_t *packed, size_t packed_size,
-                    uint8_t *plain, size_t size)
-{
-    return ki_inflate_long(work->asker, packed, packed_size, plain, size, false) == KILN_OK;
-}
 
 const uint8_t *ki_exr_chunk_samples(ki_exr_workspace *work, int compression,
                                     const ki_exr_chunk *chunk, uint8_t *raw, kiln_result *result)

@@ -25,11 +25,12 @@ typedef struct ki_exr_file {
     ki_asker asker;
     int task_count;
     uint8_t results[KI_EXR_TASKS]; // the kiln_result of each task that decodes chunks
-    int damaged[KI_EXR_TASKS];     // index of the chunk at which each task failed
+    int failed_at[KI_EXR_TASKS];   // index of the chunk at which each task failed
 } ki_exr_file;
 
-/// Parses the headers in `bytes`, chooses the layer and checks the windows of its part. Called on the
-/// thread on which the library was called. `f` has its context and name; ki_exr_close frees `f`, whatever the result is.
+/// Parses the headers in `bytes`, chooses the layer and checks the windows of its part. Called on
+/// the thread on which the library was called. `f` has its context and name; ki_exr_close frees
+/// `f`, whatever the result is.
 kiln_result ki_exr_open(ki_exr_file *f, const uint8_t *bytes, size_t size, const char *wanted,
                         bool describe_only, kiln_error *error);
 void ki_exr_close(ki_exr_file *f);
@@ -44,9 +45,9 @@ kiln_result ki_exr_check_common(const ki_exr_file *f, size_t common, kiln_error 
 kiln_result ki_exr_prepare(ki_exr_file *f, kiln_error *error);
 /// Returns whether the colours of the layer are multiplied by color.matrix.
 bool ki_exr_converts(const ki_exr_file *f);
-/// Fails with the message that chunk `index` is damaged, that memory for it ran out, or that reading
-/// was stopped.
-kiln_result ki_exr_say_damaged(const ki_exr_file *f, int index, kiln_result result,
-                               kiln_error *error);
+/// Fails with the message that chunk `index` is damaged, that memory for it ran out, or that
+/// reading was stopped.
+kiln_result ki_exr_fail_chunk(const ki_exr_file *f, int index, kiln_result result,
+                              kiln_error *error);
 
 #endif

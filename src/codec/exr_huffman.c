@@ -16,7 +16,7 @@ enum {
     // the stored code length 63, with 8 more bits, means that 6 to 261 symbols do not occur
     LONG_ZEROS = 63,
     TABLE_BITS = 13,
-    PART = 1 << 20, // symbols that are decoded at once
+    PART = 1 << 20, // symbols, or bytes of them, between two calls of ki_exr_go_on
 };
 
 typedef struct decoder {
@@ -152,12 +152,13 @@ static inline bool next_symbol(const decoder *d, bits *b, uint32_t *symbol)
     return false;
 }
 
-// Decodes symbols up to at least the index `end`, unless a run is too long for `count` symbols.
+// Decodes symbols up to at least the index `end`, or PART bytes of the input, which may hold runs
+// of no symbol. Fails where a run is too long for `count` symbols.
 static bool decode_part(const decoder *d, bits *b, uint64_t bit_count, uint32_t run_symbol,
                         size_t end, uint16_t *symbols, size_t count, size_t *done)
 {
     size_t out = *done;
-    while (out < end) {
+    for (uint64_t most = b->spent + 8 * (uint64_t)PART; out < end && b->spent < most;) {
         uint32_t symbol;
         if (!next_symbol(d, b, &symbol) || b->spent > bit_count)
             return false;
@@ -197,9 +198,10 @@ static bool decode(ki_exr_workspace *work, decoder *d, const uint8_t *packed, si
     const uint8_t *data = r.at + table_size;
     b = (bits){.at = data, .end = data + (bit_count + 7) / 8};
     for (size_t at = 0, from = 0; at < count; from = at) {
+        uint64_t spent = b.spent;
         size_t end = count - at < PART ? count : at + PART;
         if (!decode_part(d, &b, bit_count, high, end, symbols, count, &at) ||
-            !ki_exr_go_on(work, (at - from) * sizeof *symbols))
+            !ki_exr_go_on(work, (at - from) * sizeof *symbols + (size_t)(b.spent - spent) / 8))
             return false;
     }
     return true;

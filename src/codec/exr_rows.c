@@ -22,8 +22,8 @@ typedef struct exr_rows {
 // ---------------------------------------------------------------------------------- decoding
 
 // Reads, decompresses and writes one chunk to the rows of `picture`.
-static kiln_result put_chunk(const exr_rows *r, int index, const ki_exr_picture *picture,
-                             kiln_error *error)
+static kiln_result put_chunk(const exr_rows *r, ki_exr_workspace *work, int index,
+                             const ki_exr_picture *picture, kiln_error *error)
 {
     const ki_exr_file *f = r->file;
     const ki_exr_chunk *chunk = &f->chunks[index];
@@ -32,7 +32,7 @@ static kiln_result put_chunk(const exr_rows *r, int index, const ki_exr_picture 
     bool fits = ki_mul_size(chunk->size, 2, &bytes) && bytes <= SIZE_MAX - chunk->packed_size;
     ki_buffer buffer = ki_row_pool_take(pool, fits ? bytes + chunk->packed_size : SIZE_MAX);
     if (!buffer.memory)
-        return ki_exr_say_damaged(f, index, KILN_ERROR_MEMORY, error);
+        return ki_exr_fail_chunk(f, index, KILN_ERROR_MEMORY, error);
     uint8_t *raw = buffer.memory, *packed = raw + 2 * chunk->size;
     kiln_result result = KILN_OK;
     if (!ki_file_read_at(&r->input->file, chunk->at, packed, chunk->packed_size)) {
@@ -41,13 +41,13 @@ static kiln_result put_chunk(const exr_rows *r, int index, const ki_exr_picture 
     } else {
         ki_exr_chunk held = *chunk;
         held.packed = packed;
-        ki_exr_workspace work = {f->context, &r->file->asker, raw + chunk->size, f->dwa_table, 0};
+        work->scratch = raw + chunk->size;
         const uint8_t *samples =
-            ki_exr_chunk_samples(&work, f->part->compression, &held, raw, &result);
+            ki_exr_chunk_samples(work, f->part->compression, &held, raw, &result);
         if (samples)
-            result = ki_exr_put_box(&work, picture, &chunk->box, samples);
+            result = ki_exr_put_box(work, picture, &chunk->box, samples);
         if (result != KILN_OK)
-            result = ki_exr_say_damaged(f, index, result, error);
+            result = ki_exr_fail_chunk(f, index, result, error);
     }
     ki_row_pool_give(pool, buffer);
     return result;
@@ -70,8 +70,9 @@ static kiln_result decode(const void *state, int first, int count, float *rgb, k
                  ? 0
                  : (int)(((bottom < rows ? bottom : rows) + r->chunk_height - 1) / r->chunk_height);
     kiln_result result = KILN_OK;
+    ki_exr_workspace work = {r->file->context, &r->file->asker, NULL, r->file->dwa_table, 0};
     for (int i = from * r->across; i < to * r->across && result == KILN_OK; i++)
-        result = put_chunk(r, i, &picture, error);
+        result = put_chunk(r, &work, i, &picture, error);
     return result;
 }
 

@@ -9,7 +9,7 @@
                  22 - (n), 23 - (n), 24 - (n), 25 - (n), 26 - (n), 27 - (n), 28 - (n), 29 - (n),   \
                  30 - (n), 31 - (n))
 
-enum { PART = 1 << 20 }; // bytes that are written before their number is told
+enum { PART = 1 << 20 }; // bytes between two calls of ki_exr_go_on
 
 // Undoes the differences of EXR's method ZIP: each byte was stored as its difference from the byte
 // before, plus 128. Sixteen running sums are computed at a time, in four steps that add to each

@@ -146,7 +146,10 @@ kiln_result ki_hdr_find_lines(ki_hdr_file *f, uint64_t start, kiln_load_report *
                 flat);
         return find_lines(f, KI_HDR_FLAT, start, &end, error);
     }
-    if (find_lines(f, KI_HDR_NEW_RUNS, start, &end, error) == KILN_OK && end == f->size) {
+    result = find_lines(f, KI_HDR_NEW_RUNS, start, &end, error);
+    if (result == KILN_ERROR_CANCELLED)
+        return result;
+    if (result == KILN_OK && end == f->size) {
         ki_note(report, KILN_NOTE_CHOICE, false,
                 "lines of %d texels were read as run-lengths, which lines of %d to %d texels have",
                 f->head.line_length, KI_HDR_RUNS_LEAST, KI_HDR_RUNS_MOST);

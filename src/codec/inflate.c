@@ -528,18 +528,19 @@ bool ki_inflate_beginning(const uint8_t *packed, size_t packed_size, uint8_t *pl
 }
 
 kiln_result ki_inflate_long(ki_asker *asker, const uint8_t *packed, size_t packed_size,
-                            uint8_t *plain, size_t size, bool may_go_on)
+                            uint8_t *plain, size_t size, bool may_hold_more)
 {
-    // Up to so many bytes, packed and plain, take less than a tenth of a second.
-    enum { AT_ONCE = 1 << 26 };
+    // Up to AT_ONCE bytes, packed and plain, take about a tenth of a second. Far more packed bytes
+    // than plain ones may be blocks without content, whose tables take longer.
+    enum { AT_ONCE = 1 << 26, MORE = 1 << 20 };
     state st;
-    if (packed_size <= AT_ONCE && size <= AT_ONCE - packed_size)
+    if (packed_size <= AT_ONCE && size <= AT_ONCE - packed_size && packed_size <= size + MORE)
         return ki_inflate(packed, packed_size, plain, size) ||
-                       (may_go_on && ki_inflate_beginning(packed, packed_size, plain, size))
+                       (may_hold_more && ki_inflate_beginning(packed, packed_size, plain, size))
                    ? KILN_OK
                    : KILN_ERROR_FORMAT;
     bool good = begin(&st, asker, packed, packed_size, plain, size) && unpack(&st) && is_whole(&st);
-    return st.stopped                       ? KILN_ERROR_CANCELLED
-           : good || (may_go_on && st.full) ? KILN_OK
-                                            : KILN_ERROR_FORMAT;
+    return st.stopped                           ? KILN_ERROR_CANCELLED
+           : good || (may_hold_more && st.full) ? KILN_OK
+                                                : KILN_ERROR_FORMAT;
 }

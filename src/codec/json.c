@@ -167,8 +167,13 @@ void ki_json_triple(ki_json *j, double triple[3])
 static void skip_word(ki_json *j)
 {
     const char *from = j->at;
-    while (j->at < j->end && *j->at && !strchr("{}[]\",: \t\r\n", *j->at))
+    while (j->at < j->end && *j->at && !strchr("{}[]\",: \t\r\n", *j->at)) {
         j->at++;
+        if (j->at >= j->ask && j->at < j->end)
+            ask(j);
+        if (j->failed)
+            return;
+    }
     if (j->at == from)
         j->failed = true;
 }

@@ -74,8 +74,8 @@ static ZSTD_DCtx *make_decoder(void)
     return zstd;
 }
 
-// Unpacks block by block: the decoder says how many bytes end with the next block, which makes at
-// most 128 KiB.
+// Unpacks block by block: the decoder says how many packed bytes it wants up to the end of the next
+// block, which unpacks to at most 128 KiB.
 static size_t unpack_blocks(kiln_context *context, ZSTD_DCtx *zstd, ZSTD_inBuffer in,
                             ZSTD_outBuffer *out, bool *stopped)
 {

@@ -221,7 +221,7 @@ static kiln_result bake_passing_file(kiln_context *context, const char *path,
     *done = *done || result != KILN_OK;
     if (*done && result == KILN_OK)
         result = ki_row_file_finish(file, error);
-    if (ki_row_file_needs_whole(file))
+    if (result != KILN_ERROR_CANCELLED && ki_row_file_needs_whole(file))
         *done = false;
     if (!*done || result != KILN_OK)
         kiln_environment_free(environment);

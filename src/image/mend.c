@@ -108,6 +108,7 @@ static void survey_strip(void *data, int index)
 enum { GOOD, BAD, LISTED };
 
 typedef struct holes {
+    kiln_context *context;
     const plane *plane;
     uint8_t *state;
     size_t *list, count; // the texels to fill, in the order in which they are filled
@@ -177,48 +178,70 @@ static void fill(const holes *h, size_t index)
     }
 }
 
+// Asks whether to go on, once in 65536 calls for successive texels.
+static bool go_on(const holes *h, size_t texel)
+{
+    return texel % 65536 != 65535 || ki_go_on(h->context);
+}
+
 // Fills the texels of the list from `begin` on, one ring around the holes, and marks them as known.
-// Then lists the unknown texels around them, the next ring.
-static void fill_ring(holes *h, size_t begin)
+// Then lists the unknown texels around them, the next ring. Returns false if the caller wants to
+// stop.
+static bool fill_ring(holes *h, size_t begin)
 {
     size_t end = h->count, around[8];
-    for (size_t i = begin; i < end; i++)
+    for (size_t i = begin; i < end; i++) {
         fill(h, h->list[i]);
+        if (!go_on(h, i))
+            return false;
+    }
     for (size_t i = begin; i < end; i++)
         h->state[h->list[i]] = GOOD;
     for (size_t i = begin; i < end; i++) {
+        if (!go_on(h, i))
+            return false;
         int count = find_neighbours(h->plane, h->list[i], around);
         for (int k = 0; k < count; k++)
             list(h, around[k]);
     }
+    return ki_go_on(h->context);
+}
+
+// Lists all texels beside known ones, and then fills ring after ring.
+static bool fill_all(holes *h, size_t texels)
+{
+    for (size_t i = 0; i < texels; i++) {
+        h->state[i] = is_nan(h->plane->rgb + 3 * i) ? BAD : GOOD;
+        if (!go_on(h, i))
+            return false;
+    }
+    for (size_t i = 0; i < texels; i++) {
+        list(h, i);
+        if (!go_on(h, i))
+            return false;
+    }
+    for (size_t begin = 0, end; begin < h->count; begin = end) {
+        end = h->count;
+        if (!fill_ring(h, begin))
+            return false;
+    }
+    return true;
 }
 
 static kiln_result fill_holes(kiln_context *context, const plane *p, size_t bad_count,
                               kiln_error *error)
 {
     size_t texels = (size_t)p->width * (size_t)p->height;
-    holes h = {.plane = p,
+    holes h = {.context = context,
+               .plane = p,
                .state = ki_alloc(context, texels, 1),
                .list = ki_alloc_raw(context, bad_count, sizeof(size_t))};
     kiln_result result = KILN_OK;
-    if (!h.state || !h.list) {
+    if (!h.state || !h.list)
         result = ki_fail_memory(context, error, "the texels that are not a number",
                                 texels + bad_count * sizeof(size_t));
-        goto done;
-    }
-    for (size_t i = 0; i < texels; i++)
-        h.state[i] = is_nan(p->rgb + 3 * i) ? BAD : GOOD;
-    for (size_t i = 0; i < texels; i++)
-        list(&h, i);
-    for (size_t begin = 0, end; begin < h.count; begin = end) {
-        end = h.count;
-        fill_ring(&h, begin);
-        if (!ki_go_on(context)) {
-            result = ki_fail_cancelled(error, "reading");
-            break;
-        }
-    }
-done:
+    else if (!fill_all(&h, texels))
+        result = ki_fail_cancelled(error, "reading");
     ki_free(h.state);
     ki_free(h.list);
     return result;

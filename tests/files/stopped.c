@@ -30,6 +30,33 @@ static void put_exr(ki_writer *w, const float *chromaticities, int envmap, bool 
     plain_write(&file, w);
 }
 
+static void put_large_exr(ki_writer *w, float (*value)(int part, const char *channel, int x, int y))
+{
+    plain_file file = {.width = 512,
+                       .height = 256,
+                       .part_count = 1,
+                       .parts = {{.channels = {"B", "G", "R"}}},
+                       .value = value};
+    plain_write(&file, w);
+}
+
+static float board(int part, const char *channel, int x, int y)
+{
+    (void)part, (void)channel;
+    return (x + y) % 2 ? NAN : 1;
+}
+
+static void put_whole_exr(ki_writer *w)
+{
+    put_large_exr(w, NULL);
+}
+
+// Half of the texels are no number, and all of these are neighbours of known ones.
+static void put_holes_exr(ki_writer *w)
+{
+    put_large_exr(w, board);
+}
+
 static void put_plain_exr(ki_writer *w)
 {
     put_exr(w, NULL, 0, false);
@@ -210,6 +237,8 @@ static const struct {
     {put_plain_exr, put_acescg, HEIGHT},
     {put_plain_exr, put_chroma, HEIGHT / 2 + HEIGHT}, // pairs of lines, then strips
     {put_plain_exr, put_envmap, HEIGHT},
+    // Of 2^17 texels and 2^16 holes: the texels are looked at twice, and so are the holes.
+    {put_whole_exr, put_holes_exr, 2 + 2 + 1 + 1},
     {put_hdr, put_wide_hdr, HEIGHT},
     {put_png, put_wide_png, HEIGHT},
     {put_png, put_hlg_png, 2 * HEIGHT}, // the system gamma, then the primaries
