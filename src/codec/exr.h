@@ -199,11 +199,12 @@ typedef struct ki_exr_workspace {
     ki_asker *asker; // whom to ask whether to go on: a tile may be as large as the picture
     uint8_t *scratch;
     const uint16_t *dwa_table; // table by ki_exr_dwa_table, used by the methods DWAA and DWAB only
-    size_t worked;             // bytes that were written since the last question
+    size_t worked;             // bytes since the last question, which ki_exr_go_on counts
 } ki_exr_workspace;
 
-/// Counts bytes that were written, and asks after each 2^22 of them whether to go on. Returns false
-/// if the caller of the library wants to stop.
+/// Adds `bytes`, the size of what was just decompressed or is decompressed next, to work->worked.
+/// Where the sum reaches 2^22, asks the caller of the library whether to go on and begins a new
+/// sum. Returns false if the caller wants to stop.
 bool ki_exr_go_on(ki_exr_workspace *work, size_t bytes);
 
 /// Decompresses the `packed` bytes of a chunk into exactly `size` bytes, which is the size of the
@@ -220,8 +221,9 @@ ki_exr_decompress ki_exr_decompress_rle, ki_exr_decompress_zip, ki_exr_decompres
 /// to perception, into a linear half float.
 void ki_exr_dwa_table(kiln_context *context, uint16_t *table);
 
-/// The steps that methods share. They fail if the data are damaged or the work was stopped.
-///
+// The steps that several methods use. Each fails if its data are damaged, or if the caller of the
+// library wants to stop.
+
 /// Decompresses zlib data into exactly `size` bytes.
 bool ki_exr_inflate(ki_exr_workspace *work, const uint8_t *packed, size_t packed_size,
                     uint8_t *plain, size_t size);

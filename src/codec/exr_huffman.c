@@ -152,8 +152,9 @@ static inline bool next_symbol(const decoder *d, bits *b, uint32_t *symbol)
     return false;
 }
 
-// Decodes symbols up to at least the index `end`, or PART bytes of the input, which may hold runs
-// of no symbol. Fails where a run is too long for `count` symbols.
+// Decodes symbols until *done, the number of those decoded, reaches `end`, or until PART bytes of
+// the input were read: it may hold any number of runs of length 0. Fails where a run is too long
+// for `count` symbols.
 static bool decode_part(const decoder *d, bits *b, uint64_t bit_count, uint32_t run_symbol,
                         size_t end, uint16_t *symbols, size_t count, size_t *done)
 {

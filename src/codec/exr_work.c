@@ -1,4 +1,4 @@
-// What the methods of decompression of an EXR file share: questions whether to go on, and inflating.
+// What the methods that decompress EXR chunks share: questions whether to go on, and inflating.
 #include "codec/deflate.h"
 #include "codec/exr.h"
 

@@ -35,7 +35,7 @@ static uint8_t undo_differences(uint8_t *bytes, size_t size, uint8_t last)
     return last;
 }
 
-// Merges `count` even bytes of a chunk with as many odd ones.
+// Writes `count` even bytes of a chunk and as many odd ones to `raw` in turn.
 static void interleave(const uint8_t *even, const uint8_t *odd, size_t count, uint8_t *restrict raw)
 {
     for (size_t i = 0; i < count; i++) {
@@ -44,12 +44,13 @@ static void interleave(const uint8_t *even, const uint8_t *odd, size_t count, ui
     }
 }
 
-// Undoes the differences of bytes, of which the even ones come first and the odd ones after them,
-// and merges both to `raw`, part by part.
+// Undoes the differences in `bytes`, which hold all even bytes of a chunk and then all odd ones,
+// and writes the bytes of the chunk to `raw`.
 static bool undo_all(ki_exr_workspace *work, uint8_t *bytes, uint8_t *raw, size_t size)
 {
     const uint8_t *odd = bytes + (size + 1) / 2;
-    // the byte before the first, chosen so that the first byte stays as it is stored
+    // Differences are stored plus 128, except that of the first byte, which is stored as it is: a
+    // byte of 128 before it makes it a difference like the others.
     uint8_t last = 128;
     for (size_t at = 0, count = PART; at < size; at += count) {
         count = size - at < PART ? size - at : PART;

@@ -1,5 +1,6 @@
-// Besides the stable functions of the zstd library this file uses the parameter
-// ZSTD_d_stableOutBuffer of versions from 1.4.6 on, where the library has it.
+// Compression and decompression by the zstd library. Its header declares the parameter
+// ZSTD_d_stableOutBuffer, which is used here, only with ZSTD_STATIC_LINKING_ONLY. Versions before
+// 1.4.6 have no such parameter; levels are then decompressed by one call that cannot be stopped.
 #include "codec/zstd.h"
 
 #define ZSTD_STATIC_LINKING_ONLY

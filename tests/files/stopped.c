@@ -1,15 +1,18 @@
 // The reading of a picture can be stopped while its data are decompressed, its colours converted
-// and its faces turned. Each conversion of a picture of 64 rows asks at least once a row more than
-// the reading of the same picture without the conversion; texels of cubes are converted and turned
-// in strips of 64 rows.
+// and its faces turned. The tests count how often a reading asks whether to go on. A picture of 64
+// rows whose colours are converted asks at least 64 times more than the same picture without the
+// conversion; texels of cubes are converted and turned in strips of 64 rows.
 #include "codec/codec.h"
 #include "codec/deflate.h"
 #include "image/pack.h"
 #include "kit/context.h"
+#include "kit/folder.h"
 #include "kit/stopping.h"
 
 #include "exr_make.h"
 #include "exr_plain.h"
+
+#include <pthread.h>
 
 enum { WIDTH = 128, HEIGHT = 64, PNG_HEAD = 8 + 25 };
 
@@ -94,6 +97,14 @@ static void put_wide_hdr(ki_writer *w)
     put_hdr_with(w, "PRIMARIES=0.708 0.292 0.170 0.797 0.131 0.046 0.3127 0.3290\n");
 }
 
+// A file whose lines do not end where it ends, so that they are looked for by the second rule too,
+// and then by the first rule again.
+static void put_long_hdr(ki_writer *w)
+{
+    put_hdr(w);
+    ki_write(w, "more", 4);
+}
+
 static void put_u32(uint8_t *to, uint32_t value)
 {
     for (int i = 0; i < 4; i++)
@@ -137,10 +148,10 @@ static void put_hlg_png(ki_writer *w)
     put_png_with(w, 9, 18);
 }
 
-static void put_cube(ki_writer *w, int size, kiln_format format)
+static void put_cube(ki_writer *w, int size, kiln_format format, int zstd)
 {
     kiln_map cube = make_map(context, KILN_SHAPE_CUBE, size, 1);
-    const kiln_save_def def = {.format = format};
+    const kiln_save_def def = {.format = format, .zstd = zstd};
     kiln_files files;
     fill_constant(&cube, 1);
     CHECK_OK(kiln_map_encode(context, &cube, "a.ktx2", &def, &files, NULL, &error));
@@ -153,17 +164,17 @@ static void put_cube(ki_writer *w, int size, kiln_format format)
 // cube of 256.
 static void put_small_cube(ki_writer *w)
 {
-    put_cube(w, 64, KILN_FORMAT_B10G11R11);
+    put_cube(w, 64, KILN_FORMAT_B10G11R11, 0);
 }
 
 static void put_large_cube(ki_writer *w)
 {
-    put_cube(w, 256, KILN_FORMAT_B10G11R11);
+    put_cube(w, 256, KILN_FORMAT_B10G11R11, 0);
 }
 
 static void put_cube_of_128(ki_writer *w)
 {
-    put_cube(w, 128, KILN_FORMAT_B10G11R11);
+    put_cube(w, 128, KILN_FORMAT_B10G11R11, 0);
 }
 
 // Cubes whose faces must be turned: rows from the bottom and columns from the right.
@@ -208,26 +219,14 @@ static void put_turned_ktx1(ki_writer *w)
 }
 
 // A cube whose level has 12.6 million bytes.
-static void put_halfs_with(ki_writer *w, int zstd)
-{
-    kiln_map cube = make_map(context, KILN_SHAPE_CUBE, 512, 1);
-    const kiln_save_def def = {.format = KILN_FORMAT_RGBA16F, .zstd = zstd};
-    kiln_files files;
-    fill_constant(&cube, 1);
-    CHECK_OK(kiln_map_encode(context, &cube, "a.ktx2", &def, &files, NULL, &error));
-    ki_write(w, files.file[0].bytes, files.file[0].size);
-    kiln_files_free(&files);
-    kiln_map_free(&cube);
-}
-
 static void put_halfs(ki_writer *w)
 {
-    put_halfs_with(w, 0);
+    put_cube(w, 512, KILN_FORMAT_RGBA16F, 0);
 }
 
 static void put_zstd_halfs(ki_writer *w)
 {
-    put_halfs_with(w, KILN_TEST_ZSTD);
+    put_cube(w, 512, KILN_FORMAT_RGBA16F, KILN_TEST_ZSTD);
 }
 
 static const struct {
@@ -240,6 +239,7 @@ static const struct {
     // Of 2^17 texels and 2^16 holes: the texels are looked at twice, and so are the holes.
     {put_whole_exr, put_holes_exr, 2 + 2 + 1 + 1},
     {put_hdr, put_wide_hdr, HEIGHT},
+    {put_hdr, put_long_hdr, 1},
     {put_png, put_wide_png, HEIGHT},
     {put_png, put_hlg_png, 2 * HEIGHT}, // the system gamma, then the primaries
     {put_small_cube, put_large_cube, 6 * 3},
@@ -326,7 +326,8 @@ static float sawtooth(int x, int y, const char *channel)
     return (float)((5 * x + 3 * y + *channel) % 64) / 64;
 }
 
-// Compresses `count` times the two bytes of `pair` by zlib, of which the first byte may differ.
+// Writes zlib data of the two bytes of `pair`, repeated `count` times, with `first` in place of the
+// very first byte.
 static void put_zlib(ki_writer *w, size_t count, int first, const uint8_t pair[2])
 {
     ki_deflater *deflater = ki_deflater_create(context);
@@ -341,8 +342,9 @@ static void put_zlib(ki_writer *w, size_t count, int first, const uint8_t pair[2
     ki_deflater_free(deflater);
 }
 
-// Puts black pixels in place of the one, uncompressed tile of a file, compressed by DWAA, which
-// OpenEXRCore 3.1 cannot write: blocks of 8 x 8 whose mean is 0 and that end after it.
+// Copies a file of one uncompressed tile, and replaces the tile by black pixels that are compressed
+// by DWAA, which OpenEXRCore 3.1 cannot write. Each block of 8 x 8 pixels has the mean 0 and no
+// further coefficient.
 static void put_black_dwaa(ki_writer *w, const uint8_t *bytes, size_t size)
 {
     enum { BLOCKS = 3 * (TILE_WIDTH / 8) * (TILE_HEIGHT / 8), TILE_HEAD = 20 };
@@ -367,8 +369,8 @@ static void put_black_dwaa(ki_writer *w, const uint8_t *bytes, size_t size)
     ki_writer_free(&rest);
 }
 
-// Makes a picture of one tile.
-static void put_tile(ki_writer *w, int width, exr_compression_t compression)
+// Makes a picture of TILE_HEIGHT rows, in tiles of its width and `rows` rows.
+static void put_tile(ki_writer *w, int width, int rows, exr_compression_t compression)
 {
     static const exr_make_channel rgb[] = {{"B", EXR_PIXEL_HALF, 0, false},
                                            {"G", EXR_PIXEL_HALF, 0, false},
@@ -378,7 +380,7 @@ static void put_tile(ki_writer *w, int width, exr_compression_t compression)
                      .height = TILE_HEIGHT,
                      .compression = dwa ? EXR_COMPRESSION_NONE : compression,
                      .tile_width = width,
-                     .tile_height = TILE_HEIGHT,
+                     .tile_height = rows,
                      .channels = rgb,
                      .channel_count = 3,
                      .value = sawtooth};
@@ -412,7 +414,7 @@ static void large_tiles_can_be_stopped(void **state)
         int asked[2];
         for (int large = 0; large < 2; large++) {
             ki_writer w = {.context = context};
-            put_tile(&w, large ? TILE_WIDTH : SMALL,
+            put_tile(&w, large ? TILE_WIDTH : SMALL, TILE_HEIGHT,
                      large ? methods[i].compression : EXR_COMPRESSION_NONE);
             asked[large] = count_questions(&w, decode_exr);
             ki_writer_free(&w);
@@ -422,6 +424,89 @@ static void large_tiles_can_be_stopped(void **state)
                      (int)methods[i].compression, asked[1], asked[0]);
     }
     kiln_context_destroy(own);
+}
+
+// A progress callback that says once that the work is to stop, and then that it may go on.
+typedef struct once {
+    int at, calls;
+    pthread_t caller;
+} once;
+
+static bool stop_once(void *user, const char *stage, double fraction)
+{
+    once *o = user;
+    (void)stage, (void)fraction;
+    assert_true(pthread_equal(o->caller, pthread_self()));
+    return o->calls++ != o->at;
+}
+
+// Does work again and again, and stops it once: at its first question, at its second, and so on.
+// Returns the number of questions of the whole work.
+static int stop_at_each(once *o, kiln_result (*work)(const void *data), const void *data)
+{
+    for (int at = 0;; at++) {
+        *o = (once){.at = at, .caller = pthread_self()};
+        kiln_result result = work(data);
+        if (o->calls <= at) {
+            CHECK_OK(result);
+            return at;
+        }
+        assert_int_equal(result, KILN_ERROR_CANCELLED);
+    }
+}
+
+static kiln_result decode_tiles(const void *data)
+{
+    const ki_writer *w = data;
+    kiln_image image = {0};
+    kiln_result result =
+        ki_exr_decode(own, w->bytes, w->size, "a", NULL, &image, NULL, NULL, &error);
+    kiln_image_free(&image);
+    return result;
+}
+
+// Two threads decode two large tiles. Only the thread that called the library asks, and the other
+// learns the answer.
+static void a_stop_reaches_other_threads(void **state)
+{
+    (void)state;
+    once o;
+    ki_writer w = {.context = context};
+    kiln_context_def def = {.thread_count = 2, .progress = stop_once, .progress_user = &o};
+    put_tile(&w, TILE_WIDTH, TILE_HEIGHT / 2, EXR_COMPRESSION_ZIP);
+    assert_false(w.failed);
+    CHECK_OK(kiln_context_create(&def, &own, &error));
+    assert_true(stop_at_each(&o, decode_tiles, &w) >= 2);
+    kiln_context_destroy(own);
+    ki_writer_free(&w);
+}
+
+static kiln_result bake_file(const void *path)
+{
+    kiln_environment environment;
+    const kiln_bake_def def = {.levels = {.size = 8, .level_count = 1}};
+    kiln_result result = kiln_bake_file(own, path, NULL, &def, NULL, &environment, &error);
+    kiln_environment_free(&environment);
+    return result;
+}
+
+// A file with texels that are no number is baked by rows first, and then as a whole. A stop of the
+// first bake does not begin the second.
+static void a_stopped_bake_does_not_begin_again(void **state)
+{
+    (void)state;
+    once o;
+    ki_writer w = {.context = context};
+    kiln_context_def def = {.thread_count = 1, .progress = stop_once, .progress_user = &o};
+    put_holes_exr(&w);
+    assert_false(w.failed);
+    folder_make();
+    write_file(in_folder("holes.exr"), w.bytes, w.size);
+    CHECK_OK(kiln_context_create(&def, &own, &error));
+    assert_true(stop_at_each(&o, bake_file, in_folder("holes.exr")) >= 10);
+    folder_remove();
+    kiln_context_destroy(own);
+    ki_writer_free(&w);
 }
 
 // Writes a chunk of a PNG file.
@@ -478,6 +563,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(conversions_can_be_stopped, set_up, tear_down),
         cmocka_unit_test_setup_teardown(large_tiles_can_be_stopped, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_stop_reaches_other_threads, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_stopped_bake_does_not_begin_again, set_up, tear_down),
         cmocka_unit_test_setup_teardown(inflating_can_be_stopped, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
