@@ -128,17 +128,20 @@ bool ki_progress(kiln_context *context, const char *stage, double fraction);
 /// Repeats the last report of progress, so that long work with many small steps can be stopped.
 /// Returns false if the caller wants to stop.
 bool ki_go_on(kiln_context *context);
-/// The question whether to go on, for tasks that run on several threads. Only the thread that
-/// called ki_asker_begin, which is the one on which the library was called, asks the caller; the
-/// other threads learn from it that work stops. Nobody asks while that thread waits for the others.
+/// The question whether to go on, for work that may run on several threads. Only the thread on
+/// which the library was called asks the caller; the other threads learn from the context that the
+/// caller wants to stop. While that thread waits for the others in ki_parallel_steps or
+/// ki_parallel_workers it goes on asking, unless the host's own function runs the tasks.
 typedef struct ki_asker {
     kiln_context *context;
-    uintptr_t caller;
-    atomic_bool stopped;
+    unsigned stops; // number of stops that the context had seen when the work began
+    bool is_nested; // true: the work belongs to a call which a progress callback makes
 } ki_asker;
-void ki_asker_begin(ki_asker *asker, kiln_context *context);
+/// Returns the asker of work that begins now, on any thread that runs it.
+ki_asker ki_asker_make(kiln_context *context);
 /// Returns false if the caller wants to stop, and asks no more once that is known.
-bool ki_may_go_on(ki_asker *asker);
+bool ki_may_go_on(const ki_asker *asker);
+/// Returns whether the caller has asked to stop since the asker was made, in whichever function.
 bool ki_was_stopped(const ki_asker *asker);
 /// The range of fractions, within 0 to 1, that a part of the work covers in the progress reports of
 /// a stage.

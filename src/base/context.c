@@ -171,8 +171,9 @@ void *ki_alloc_raw(kiln_context *context, size_t count, size_t size)
     size_t bytes = ki_block_size(count, size);
     if (bytes == SIZE_MAX)
         return NULL;
-    ki_block *block = context->scratch ? scratch_take(context->heap, context->scratch, bytes)
-                                       : heap_take(context->heap, bytes);
+    ki_scratch *scratch = ki_is_caller(context) ? context->scratch : NULL;
+    ki_block *block =
+        scratch ? scratch_take(context->heap, scratch, bytes) : heap_take(context->heap, bytes);
     return block ? block + 1 : NULL;
 }
 

@@ -22,7 +22,10 @@ typedef struct ki_pool {
     // number of helper threads that have not finished the current call of ki_parallel_for
     int running;
     unsigned round; // number of calls of ki_parallel_for so far
-    bool in_use;    // true while ki_parallel_for runs; read and written by the calling thread only
+    // True while ki_parallel_for runs; written only by the thread that calls it, while no other
+    // thread works for the context.
+    bool in_use;
+    uintptr_t caller; // the thread that called ki_parallel_for, while in_use is true
     bool stop;
 } ki_pool;
 
@@ -42,10 +45,25 @@ struct kiln_context {
     kiln_context_def def;
     int threads_wanted; // number of threads that the definition asked for
     ki_heap *heap;
-    ki_scratch *scratch;    // scratch of the plan execution that runs; NULL if no execution runs
+    // Scratch of the plan execution that runs; NULL if no execution runs. Only the thread on which
+    // the library was called reads or writes it and the next two fields.
+    ki_scratch *scratch;
     ki_progress_range said; // stage and range of the last progress report, which ki_go_on repeats
+    int depth;              // number of progress callbacks that run, one within the other
+    // Numbers of progress reports that asked to stop: of the calls which progress callbacks make,
+    // and of all others. A call within a callback runs on one thread alone.
+    unsigned nested_stops;
+    atomic_uint stops;
     ki_pool pool;
 };
+
+/// Returns whether the calling thread is the one on which the library was called, rather than one
+/// that only runs tasks for it.
+static inline bool ki_is_caller(const kiln_context *context)
+{
+    const ki_pool *pool = &context->pool;
+    return !pool->in_use || pool->caller == ki_os_this_thread();
+}
 
 /// Starts the threads that the definition asks for, or as many as the system starts. Returns their
 /// number, with the calling thread.

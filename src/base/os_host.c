@@ -258,6 +258,12 @@ void ki_os_wait(ki_os_condition *condition, ki_os_mutex *mutex)
     (void)mutex;
 }
 
+void ki_os_wait_briefly(ki_os_condition *condition, ki_os_mutex *mutex)
+{
+    (void)condition;
+    (void)mutex;
+}
+
 void ki_os_wake_one(ki_os_condition *condition)
 {
     (void)condition;

@@ -344,6 +344,20 @@ void ki_os_wait(ki_os_condition *condition, ki_os_mutex *mutex)
     pthread_cond_wait(condition, mutex);
 }
 
+void ki_os_wait_briefly(ki_os_condition *condition, ki_os_mutex *mutex)
+{
+    // The clock of the default condition may be set while a thread waits. The wait then ends early,
+    // or as late as that of ki_os_wait does.
+    struct timespec end;
+    clock_gettime(CLOCK_REALTIME, &end);
+    end.tv_nsec += 50 * 1000 * 1000;
+    if (end.tv_nsec >= 1000 * 1000 * 1000) {
+        end.tv_sec++;
+        end.tv_nsec -= 1000 * 1000 * 1000;
+    }
+    pthread_cond_timedwait(condition, mutex, &end);
+}
+
 void ki_os_wake_one(ki_os_condition *condition)
 {
     pthread_cond_signal(condition);

@@ -431,6 +431,11 @@ void ki_os_wait(ki_os_condition *condition, ki_os_mutex *mutex)
     SleepConditionVariableSRW((CONDITION_VARIABLE *)condition, (SRWLOCK *)mutex, INFINITE, 0);
 }
 
+void ki_os_wait_briefly(ki_os_condition *condition, ki_os_mutex *mutex)
+{
+    SleepConditionVariableSRW((CONDITION_VARIABLE *)condition, (SRWLOCK *)mutex, 50, 0);
+}
+
 void ki_os_wake_one(ki_os_condition *condition)
 {
     WakeConditionVariable((CONDITION_VARIABLE *)condition);

@@ -3,15 +3,26 @@
 
 bool ki_progress(kiln_context *context, const char *stage, double fraction)
 {
-    context->said = (ki_progress_range){stage, fraction, fraction};
+    ki_progress_range said = {stage, fraction, fraction};
+    context->said = said;
     if (!context->def.progress)
         return true;
     // The callback may call the library with this context. Memory that it allocates must not come
-    // from the scratch memory of the plan execution that reports progress.
+    // from the scratch memory of the plan execution that reports progress, and a call that it stops
+    // must not stop the one that reports.
     ki_scratch *scratch = context->scratch;
+    unsigned nested_stops = context->nested_stops;
     context->scratch = NULL;
+    context->depth++;
     bool go_on = context->def.progress(context->def.progress_user, stage, fraction);
+    context->depth--;
     context->scratch = scratch;
+    context->said = said;
+    context->nested_stops = nested_stops;
+    if (!go_on && context->depth)
+        context->nested_stops++;
+    else if (!go_on)
+        atomic_fetch_add(&context->stops, 1);
     return go_on;
 }
 
@@ -21,23 +32,24 @@ bool ki_go_on(kiln_context *context)
     return ki_progress(context, said->name ? said->name : "working", said->from);
 }
 
-void ki_asker_begin(ki_asker *asker, kiln_context *context)
+ki_asker ki_asker_make(kiln_context *context)
 {
-    asker->context = context;
-    asker->caller = ki_os_this_thread();
-    atomic_init(&asker->stopped, false);
+    bool is_nested = ki_is_caller(context) && context->depth;
+    return (ki_asker){context, is_nested ? context->nested_stops : atomic_load(&context->stops),
+                      is_nested};
 }
 
 bool ki_was_stopped(const ki_asker *asker)
 {
-    return atomic_load_explicit(&asker->stopped, memory_order_relaxed);
+    kiln_context *context = asker->context;
+    unsigned stops = asker->is_nested ? context->nested_stops
+                                      : atomic_load_explicit(&context->stops, memory_order_relaxed);
+    return stops != asker->stops;
 }
 
-bool ki_may_go_on(ki_asker *asker)
+bool ki_may_go_on(const ki_asker *asker)
 {
-    if (!ki_was_stopped(asker) && ki_os_this_thread() == asker->caller && !ki_go_on(asker->context))
-        atomic_store(&asker->stopped, true);
-    return !ki_was_stopped(asker);
+    return !ki_was_stopped(asker) && (!ki_is_caller(asker->context) || ki_go_on(asker->context));
 }
 
 kiln_result ki_fail_cancelled(kiln_error *error, const char *stage)

@@ -62,7 +62,27 @@ void ki_threads_stop(kiln_context *context)
     ki_os_mutex_end(&pool->mutex);
 }
 
-static void run_on_pool(ki_pool *pool, int count, ki_task *task, void *data)
+// Waits until the helper threads have finished. Meanwhile asks the caller of the library now and
+// then whether to go on if `asker` is not NULL.
+static void wait_for_helpers(ki_pool *pool, const ki_asker *asker)
+{
+    ki_os_lock(&pool->mutex);
+    while (pool->running) {
+        if (!asker || ki_was_stopped(asker)) {
+            ki_os_wait(&pool->done, &pool->mutex);
+            continue;
+        }
+        ki_os_wait_briefly(&pool->done, &pool->mutex);
+        bool waits = pool->running > 0;
+        ki_os_unlock(&pool->mutex);
+        if (waits)
+            (void)ki_may_go_on(asker);
+        ki_os_lock(&pool->mutex);
+    }
+    ki_os_unlock(&pool->mutex);
+}
+
+static void run_on_pool(ki_pool *pool, const ki_asker *asker, int count, ki_task *task, void *data)
 {
     ki_os_lock(&pool->mutex);
     pool->task = task;
@@ -74,13 +94,10 @@ static void run_on_pool(ki_pool *pool, int count, ki_task *task, void *data)
     ki_os_wake_all(&pool->work);
     ki_os_unlock(&pool->mutex);
     take_all(pool);
-    ki_os_lock(&pool->mutex);
-    while (pool->running)
-        ki_os_wait(&pool->done, &pool->mutex);
-    ki_os_unlock(&pool->mutex);
+    wait_for_helpers(pool, asker);
 }
 
-void ki_parallel_for(kiln_context *context, int count, ki_task *task, void *data)
+static void run(kiln_context *context, const ki_asker *asker, int count, ki_task *task, void *data)
 {
     ki_pool *pool = &context->pool;
     bool own = !context->def.parallel_for;
@@ -91,12 +108,18 @@ void ki_parallel_for(kiln_context *context, int count, ki_task *task, void *data
             task(data, i);
         return;
     }
+    pool->caller = ki_os_this_thread();
     pool->in_use = true;
     if (own)
-        run_on_pool(pool, count, task, data);
+        run_on_pool(pool, asker, count, task, data);
     else
         context->def.parallel_for(context->def.parallel_user, count, task, data);
     pool->in_use = false;
+}
+
+void ki_parallel_for(kiln_context *context, int count, ki_task *task, void *data)
+{
+    run(context, NULL, count, task, data);
 }
 
 // Longest time in seconds between two progress reports, unless one task takes longer. A caller can
@@ -104,35 +127,32 @@ void ki_parallel_for(kiln_context *context, int count, ki_task *task, void *data
 static const double silence = 0.05;
 
 typedef struct workers {
-    kiln_context *context;
+    ki_asker asker;
     void (*task)(void *data, int worker, int index);
     void *data;
     int count;
-    uintptr_t caller;
     double asked; // time of the last progress report, in seconds
     atomic_int next;
-    atomic_bool stopped;
 } workers;
 
 // Asks the caller of the library whether to go on, on the thread of the caller, from time to time.
 static void ask(workers *w)
 {
-    if (ki_os_this_thread() != w->caller || ki_os_seconds() < w->asked + silence)
+    if (!ki_is_caller(w->asker.context) || ki_os_seconds() < w->asked + silence)
         return;
-    if (!ki_go_on(w->context))
-        atomic_store(&w->stopped, true);
+    (void)ki_may_go_on(&w->asker);
     w->asked = ki_os_seconds();
 }
 
 static void work(void *data, int worker)
 {
     workers *w = data;
-    while (!atomic_load_explicit(&w->stopped, memory_order_relaxed)) {
+    while (!ki_was_stopped(&w->asker)) {
         int index = atomic_fetch_add(&w->next, 1);
         if (index >= w->count)
             return;
         w->task(w->data, worker, index);
-        if (w->context->def.progress)
+        if (w->asker.context->def.progress)
             ask(w);
     }
 }
@@ -140,26 +160,24 @@ static void work(void *data, int worker)
 bool ki_parallel_workers(kiln_context *context, int count,
                          void (*task)(void *data, int worker, int index), void *data)
 {
-    workers w = {.context = context,
+    workers w = {.asker = ki_asker_make(context),
                  .task = task,
                  .data = data,
                  .count = count,
-                 .caller = ki_os_this_thread(),
                  .asked = ki_os_seconds()};
-    ki_parallel_for(context, ki_min(context->def.thread_count, count), work, &w);
-    return !atomic_load(&w.stopped);
+    run(context, context->def.progress ? &w.asker : NULL, ki_min(context->def.thread_count, count),
+        work, &w);
+    return !ki_was_stopped(&w.asker);
 }
 
 typedef struct steps {
-    kiln_context *context;
+    ki_asker asker;
     ki_task *task;
     void *data;
     const ki_progress_range *range;
-    uintptr_t caller;
     int count, told;
     double asked; // time of the last progress report, in seconds
     atomic_int done;
-    atomic_bool stopped;
 } steps;
 
 enum { REPORTS = 64 };
@@ -167,20 +185,21 @@ enum { REPORTS = 64 };
 static void step(void *data, int index)
 {
     steps *s = data;
-    if (atomic_load_explicit(&s->stopped, memory_order_relaxed))
+    if (ki_was_stopped(&s->asker))
         return;
     s->task(s->data, index);
     double part = (double)(atomic_fetch_add(&s->done, 1) + 1) / s->count;
-    if (ki_os_this_thread() != s->caller ||
+    kiln_context *context = s->asker.context;
+    if (!ki_is_caller(context) || ki_was_stopped(&s->asker) ||
         (part * REPORTS < s->told + 1 && ki_os_seconds() < s->asked + silence))
         return;
     s->told = (int)(part * REPORTS);
     s->asked = ki_os_seconds();
     const ki_progress_range *at = s->range;
-    bool go_on = at ? ki_progress(s->context, at->name, at->from + part * (at->to - at->from))
-                    : ki_go_on(s->context);
-    if (!go_on)
-        atomic_store(&s->stopped, true);
+    if (at)
+        (void)ki_progress(context, at->name, at->from + part * (at->to - at->from));
+    else
+        (void)ki_go_on(context);
 }
 
 bool ki_parallel_steps(kiln_context *context, const ki_progress_range *range, int count,
@@ -190,13 +209,12 @@ bool ki_parallel_steps(kiln_context *context, const ki_progress_range *range, in
         ki_parallel_for(context, count, task, data);
         return true;
     }
-    steps s = {.context = context,
+    steps s = {.asker = ki_asker_make(context),
                .task = task,
                .data = data,
                .range = range,
-               .caller = ki_os_this_thread(),
                .count = count,
                .asked = ki_os_seconds()};
-    ki_parallel_for(context, count, step, &s);
-    return !atomic_load(&s.stopped);
+    run(context, &s.asker, count, step, &s);
+    return !ki_was_stopped(&s.asker);
 }

@@ -16,7 +16,7 @@ bool ki_inflate_beginning(const uint8_t *packed, size_t packed_size, uint8_t *pl
 /// Decompresses as ki_inflate does, but asks from time to time whether to go on. `may_hold_more`
 /// allows data that hold more bytes, of which the first are decompressed as ki_inflate_beginning
 /// does. Returns KILN_OK, KILN_ERROR_FORMAT or KILN_ERROR_CANCELLED and writes no error message.
-kiln_result ki_inflate_long(ki_asker *asker, const uint8_t *packed, size_t packed_size,
+kiln_result ki_inflate_long(const ki_asker *asker, const uint8_t *packed, size_t packed_size,
                             uint8_t *plain, size_t size, bool may_hold_more);
 
 /// Compresses bytes to zlib data, always to the same bytes for the same input. One object can

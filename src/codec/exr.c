@@ -93,7 +93,6 @@ static kiln_result check_window(const ki_exr_file *f, const char *what, const ki
 kiln_result ki_exr_open(ki_exr_file *f, const uint8_t *bytes, size_t size, const char *wanted,
                         bool describe_only, kiln_error *error)
 {
-    ki_asker_begin(&f->asker, f->context);
     kiln_result result = ki_exr_read_header(f->context, bytes, size, f->name, &f->header, error);
     if (result == KILN_OK)
         result = ki_exr_list_layers(f->context, &f->header, f->name, &f->layers, error);
@@ -207,11 +206,11 @@ static void decode_chunks(void *data, int task)
         most = f->chunks[i].size > most ? f->chunks[i].size : most;
     bool packed = f->part->compression != KI_EXR_NONE;
     uint8_t *raw = packed ? ki_alloc_raw(f->context, most, 2) : NULL;
-    ki_exr_workspace work = {f->context, &f->asker, raw ? raw + most : NULL, f->dwa_table, 0};
+    ki_exr_workspace work = {f->context, f->asker, raw ? raw + most : NULL, f->dwa_table, 0};
     kiln_result result = packed && !raw ? KILN_ERROR_MEMORY : KILN_OK;
     for (int i = begin; i < end && result == KILN_OK; i++) {
         f->failed_at[task] = i;
-        if (ki_was_stopped(&f->asker)) {
+        if (ki_was_stopped(&work.asker)) {
             result = KILN_ERROR_CANCELLED;
             break;
         }
@@ -251,6 +250,7 @@ kiln_result ki_exr_prepare(ki_exr_file *f, kiln_error *error)
 static kiln_result decode_all(ki_exr_file *f, kiln_error *error)
 {
     f->task_count = ki_min(TASKS, f->chunk_count);
+    f->asker = ki_asker_make(f->context);
     static const ki_progress_range all = {"reading", 0, 1};
     kiln_result result = ki_exr_prepare(f, error);
     if (result != KILN_OK)

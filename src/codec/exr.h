@@ -196,7 +196,7 @@ size_t ki_exr_box_size(const ki_exr_box *box);
 /// decompressed chunk.
 typedef struct ki_exr_workspace {
     kiln_context *context;
-    ki_asker *asker; // whom to ask whether to go on: a tile may be as large as the picture
+    ki_asker asker; // whom to ask whether to go on: a tile may be as large as the picture
     uint8_t *scratch;
     const uint16_t *dwa_table; // table by ki_exr_dwa_table, used by the methods DWAA and DWAB only
     size_t worked;             // bytes since the last question, which ki_exr_go_on counts

@@ -225,7 +225,7 @@ const uint8_t *ki_exr_chunk_samples(ki_exr_workspace *work, int compression,
     *result = m->decompress ? m->decompress(work, &chunk->box, chunk->packed, chunk->packed_size,
                                             raw, chunk->size)
                             : KILN_ERROR_FORMAT;
-    if (*result == KILN_ERROR_FORMAT && ki_was_stopped(work->asker))
+    if (*result == KILN_ERROR_FORMAT && ki_was_stopped(&work->asker))
         *result = KILN_ERROR_CANCELLED;
     return *result == KILN_OK ? raw : NULL;
 }

@@ -70,7 +70,8 @@ static kiln_result decode(const void *state, int first, int count, float *rgb, k
                  ? 0
                  : (int)(((bottom < rows ? bottom : rows) + r->chunk_height - 1) / r->chunk_height);
     kiln_result result = KILN_OK;
-    ki_exr_workspace work = {r->file->context, &r->file->asker, NULL, r->file->dwa_table, 0};
+    ki_exr_workspace work = {r->file->context, ki_asker_make(r->file->context), NULL,
+                             r->file->dwa_table, 0};
     for (int i = from * r->across; i < to * r->across && result == KILN_OK; i++)
         result = put_chunk(r, &work, i, &picture, error);
     return result;

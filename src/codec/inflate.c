@@ -50,11 +50,11 @@ typedef struct stream {
 typedef struct state {
     stream s;
     uint8_t *out, *begin, *end;
-    bool full;       // set when the output has no room for the next symbol's bytes
-    ki_asker *asker; // who is asked whether to go on; NULL: nobody
-    uint8_t *pause;  // place in the output where the next question is due, or its end
-    bool stopped;    // set when the answer was to stop
-    bool fixed;      // the tables are those of the fixed codes
+    bool full;             // set when the output has no room for the next symbol's bytes
+    const ki_asker *asker; // who is asked whether to go on; NULL: nobody
+    uint8_t *pause;        // place in the output where the next question is due, or its end
+    bool stopped;          // set when the answer was to stop
+    bool fixed;            // the tables are those of the fixed codes
     uint32_t literals[LITERAL_ROOM], distances[DISTANCE_ROOM];
 } state;
 
@@ -474,7 +474,7 @@ static bool unpack(state *st)
 
 // Prepares decompression. Returns false unless the data begin with zlib's header of two bytes.
 // `asker` is NULL if nobody is to be asked whether to go on.
-static bool begin(state *st, ki_asker *asker, const uint8_t *packed, size_t packed_size,
+static bool begin(state *st, const ki_asker *asker, const uint8_t *packed, size_t packed_size,
                   uint8_t *plain, size_t size)
 {
     st->asker = asker;
@@ -527,7 +527,7 @@ bool ki_inflate_beginning(const uint8_t *packed, size_t packed_size, uint8_t *pl
     return begin(&st, NULL, packed, packed_size, plain, size) && !unpack(&st) && st.full;
 }
 
-kiln_result ki_inflate_long(ki_asker *asker, const uint8_t *packed, size_t packed_size,
+kiln_result ki_inflate_long(const ki_asker *asker, const uint8_t *packed, size_t packed_size,
                             uint8_t *plain, size_t size, bool may_hold_more)
 {
     // Up to AT_ONCE bytes, packed and plain, take about a tenth of a second. Far more packed bytes

@@ -278,8 +278,7 @@ kiln_result ki_ktx2_unpack(kiln_context *context, const ki_ktx2_source *s, int k
         return ki_fail_memory(context, error, s->name, level->plain_size);
     const char *fault = "its zlib data";
     kiln_result result;
-    ki_asker asker;
-    ki_asker_begin(&asker, context);
+    ki_asker asker = ki_asker_make(context);
     if (s->zlib)
         result = ki_inflate_long(&asker, level->bytes, level->size, room, level->plain_size, false);
     else

@@ -398,8 +398,7 @@ static kiln_result put_all(png_file *f, kiln_error *error)
 
 static kiln_result inflate(const png_file *f, kiln_error *error)
 {
-    ki_asker asker;
-    ki_asker_begin(&asker, f->context);
+    ki_asker asker = ki_asker_make(f->context);
     kiln_result result =
         ki_inflate_long(&asker, f->packed, f->packed_size, f->raw, (size_t)f->raw_size, true);
     if (result == KILN_ERROR_CANCELLED)

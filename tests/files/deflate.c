@@ -119,8 +119,7 @@ static void long_data_are_inflated(void **state)
     enum { SIZE = (1 << 26) + 12345, ROOM = 1 << 20 };
     uint8_t *plain = malloc(SIZE), *back = malloc(SIZE), *packed = malloc(ROOM);
     uLongf length = ROOM;
-    ki_asker asker;
-    ki_asker_begin(&asker, context);
+    ki_asker asker = ki_asker_make(context);
     assert_true(plain && back && packed);
     for (size_t i = 0; i < SIZE; i++)
         plain[i] = (uint8_t)(i >> 13);
