@@ -53,7 +53,13 @@ int ki_text_step(const char *text, size_t left, unsigned *code, bool *shown);
 void *ki_alloc(kiln_context *context, size_t count, size_t size);
 /// Allocates as ki_alloc does, but does not zero the memory.
 void *ki_alloc_raw(kiln_context *context, size_t count, size_t size);
-/// Frees memory from ki_alloc or ki_alloc_raw; the memory itself records its context. `memory` may
+/// Allocates as ki_alloc does, on the thread on which the library was called, for memory as large
+/// as a picture: the context's threads zero it together, and the caller may stop them. Sets *memory
+/// to the memory, or to NULL on failure. Fails with the message of ki_fail_memory, which names
+/// `what`, or with that of ki_fail_cancelled.
+kiln_result ki_alloc_zeroed(kiln_context *context, size_t count, size_t size, const char *what,
+                            void **memory, kiln_error *error);
+/// Frees memory from one of these functions; the memory itself records its context. `memory` may
 /// be NULL.
 void ki_free(void *memory);
 /// Writes the error message "out of memory: WHAT: N more bytes are needed", with the context's
@@ -128,6 +134,8 @@ bool ki_progress(kiln_context *context, const char *stage, double fraction);
 /// Repeats the last report of progress, so that long work with many small steps can be stopped.
 /// Returns false if the caller wants to stop.
 bool ki_go_on(kiln_context *context);
+/// Number of small steps, such as texels that are converted, after which a loop calls ki_go_on.
+enum { KI_ASK_EVERY = 1 << 16 };
 /// The question whether to go on, for work that may run on several threads. Only the thread on
 /// which the library was called asks the caller; the other threads learn from the context that the
 /// caller wants to stop. While that thread waits for the others in ki_parallel_steps or

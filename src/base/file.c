@@ -26,6 +26,9 @@ bool ki_ends_with(const char *path, const char *ending)
     return true;
 }
 
+// The caller can stop the reading of a file after each of these numbers of bytes.
+enum { READ_STEP = 16 << 20 };
+
 kiln_result ki_file_read(kiln_context *context, const char *path, uint8_t **bytes, size_t *size,
                          kiln_error *error)
 {
@@ -62,7 +65,8 @@ kiln_result ki_file_read(kiln_context *context, const char *path, uint8_t **byte
             buffer = larger;
             capacity *= 2;
         }
-        ptrdiff_t got = ki_os_read(fd, buffer + filled, capacity - filled);
+        size_t room = capacity - filled;
+        ptrdiff_t got = ki_os_read(fd, buffer + filled, room < READ_STEP ? room : READ_STEP);
         if (got < 0 && errno == EINTR) {
             if (ki_progress(context, "reading", 0))
                 continue;
@@ -76,7 +80,12 @@ kiln_result ki_file_read(kiln_context *context, const char *path, uint8_t **byte
         }
         if (got == 0)
             break;
+        size_t before = filled;
         filled += (size_t)got;
+        if (filled / READ_STEP != before / READ_STEP && !ki_progress(context, "reading", 0)) {
+            result = ki_fail_cancelled(error, "reading");
+            goto done;
+        }
     }
     *bytes = buffer;
     *size = filled;

@@ -299,25 +299,31 @@ kiln_result ki_exr_check_common(const ki_exr_file *f, size_t common, kiln_error 
 
 static kiln_result allocate(const ki_exr_file *f, size_t pixels, float **memory, kiln_error *error)
 {
-    *memory = ki_alloc(f->context, pixels, 3 * sizeof(float));
-    return *memory ? KILN_OK
-                   : ki_fail_memory(f->context, error, f->name, 3 * pixels * sizeof(float));
+    void *room = NULL;
+    kiln_result result =
+        ki_alloc_zeroed(f->context, pixels, 3 * sizeof(float), f->name, &room, error);
+    *memory = room;
+    return result;
 }
 
 // Copies what the picture of the data window has in common with the display window into a picture
 // of the display window.
-static void copy_common(const ki_exr_picture *data, const ki_exr_picture *display)
+static kiln_result copy_common(kiln_context *context, const ki_exr_picture *data,
+                               const ki_exr_picture *display, kiln_error *error)
 {
     int left = ki_max(data->left, display->left), top = ki_max(data->top, display->top);
     int right = ki_min(data->left + data->width, display->left + display->width);
     int bottom = ki_min(data->top + data->height, display->top + display->height);
     for (int y = top; y < bottom; y++) {
+        if (!ki_go_on(context))
+            return ki_fail_cancelled(error, "reading");
         size_t from = (size_t)(y - data->top) * (size_t)data->width + (size_t)(left - data->left);
         size_t to =
             (size_t)(y - display->top) * (size_t)display->width + (size_t)(left - display->left);
         memcpy(display->pixels + 3 * to, data->pixels + 3 * from,
                3 * (size_t)(right - left) * sizeof(float));
     }
+    return KILN_OK;
 }
 
 // Reads luminance and chroma over the data window, whose border the interpolation of chroma needs,
@@ -348,7 +354,7 @@ static kiln_result read_chroma(ki_exr_file *f, kiln_error *error)
     f->picture = display;
     result = allocate(f, area(&f->part->display), &f->picture.pixels, error);
     if (result == KILN_OK)
-        copy_common(&colours, &f->picture);
+        result = copy_common(f->context, &colours, &f->picture, error);
     ki_free(colours.pixels);
     return result;
 }
@@ -356,11 +362,15 @@ static kiln_result read_chroma(ki_exr_file *f, kiln_error *error)
 static kiln_result read_colors(ki_exr_file *f, size_t common, kiln_error *error)
 {
     size_t pixels = area(&f->part->display);
-    f->picture.pixels = common == pixels ? ki_alloc_raw(f->context, pixels, 3 * sizeof(float))
-                                         : ki_alloc(f->context, pixels, 3 * sizeof(float));
-    if (!f->picture.pixels)
-        return ki_fail_memory(f->context, error, f->name, 3 * pixels * sizeof(float));
-    return decode_all(f, error);
+    kiln_result result = KILN_OK;
+    if (common != pixels) {
+        result = allocate(f, pixels, &f->picture.pixels, error);
+    } else {
+        f->picture.pixels = ki_alloc_raw(f->context, pixels, 3 * sizeof(float));
+        if (!f->picture.pixels)
+            result = ki_fail_memory(f->context, error, f->name, 3 * pixels * sizeof(float));
+    }
+    return result == KILN_OK ? decode_all(f, error) : result;
 }
 
 void ki_exr_note_all(const ki_exr_file *f, kiln_load_report *report)

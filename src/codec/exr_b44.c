@@ -95,6 +95,19 @@ static bool undo_plane(ki_exr_workspace *work, ki_reader *r, bool linear, int wi
     return true;
 }
 
+// Copies a channel of `height` lines and `bytes` bytes in all, which is not of halfs.
+static bool copy_plane(ki_exr_workspace *work, const uint8_t *from, int height, size_t bytes,
+                       uint8_t *plane)
+{
+    size_t line = height ? bytes / (size_t)height : 0;
+    for (size_t at = 0; at < bytes; at += line) {
+        if (!ki_exr_go_on(work, line))
+            return false;
+        memcpy(plane + at, from + at, line);
+    }
+    return true;
+}
+
 kiln_result ki_exr_decompress_b44(ki_exr_workspace *work, const ki_exr_box *box,
                                   const uint8_t *packed, size_t packed_size, uint8_t *raw,
                                   size_t size)
@@ -111,9 +124,8 @@ kiln_result ki_exr_decompress_b44(ki_exr_workspace *work, const ki_exr_box *box,
                 return KILN_ERROR_FORMAT;
         } else {
             const uint8_t *from = ki_read_bytes(&r, bytes);
-            if (!from)
+            if (!from || !copy_plane(work, from, height, bytes, plane))
                 return KILN_ERROR_FORMAT;
-            memcpy(plane, from, bytes);
         }
         plane += bytes;
     }

@@ -214,6 +214,8 @@ kiln_result ki_exr_find_chunks(kiln_context *context, const ki_exr_header *heade
 
 // --------------------------------------------------------------------------------------- unpacking
 
+enum { FIXED_COST = 1 << 17 };
+
 const uint8_t *ki_exr_chunk_samples(ki_exr_workspace *work, int compression,
                                     const ki_exr_chunk *chunk, uint8_t *raw, kiln_result *result)
 {
@@ -222,6 +224,13 @@ const uint8_t *ki_exr_chunk_samples(ki_exr_workspace *work, int compression,
     if (chunk->packed_size == chunk->size)
         return chunk->packed;
     const method *m = &methods[compression];
+    // What a chunk costs before its first byte, in bytes that would cost as much: a chunk may be one
+    // pixel. PIZ fills tables of 2^16 entries, and DWA compares the channels' names with each other.
+    size_t channels = (size_t)chunk->box.channel_count;
+    if (!ki_exr_go_on(work, FIXED_COST + 8 * channels * channels)) {
+        *result = KILN_ERROR_CANCELLED;
+        return NULL;
+    }
     *result = m->decompress ? m->decompress(work, &chunk->box, chunk->packed, chunk->packed_size,
                                             raw, chunk->size)
                             : KILN_ERROR_FORMAT;

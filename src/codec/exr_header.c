@@ -197,6 +197,8 @@ static const char *read_part(kiln_context *context, ki_reader *r, uint32_t flags
             found |= read_attribute(&a, p);
         if (++count % STEP == 0 && !ki_progress(context, "reading", 0))
             *stopped = CANCELLED;
+        if (!wrong && count > KI_EXR_MAX_ATTRIBUTES)
+            wrong = "it has more than 1048576 attributes";
         if (wrong || *stopped)
             return wrong ? wrong : "";
     }

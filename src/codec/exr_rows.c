@@ -21,6 +21,21 @@ typedef struct exr_rows {
 
 // ---------------------------------------------------------------------------------- decoding
 
+// Reads the packed bytes of a chunk, which may be the whole picture, in parts. Returns false on
+// failure and if the caller wants to stop.
+static bool read_packed(const exr_rows *r, const ki_exr_workspace *work, const ki_exr_chunk *chunk,
+                        uint8_t *packed)
+{
+    enum { STEP = 16 << 20 };
+    for (size_t at = 0; at < chunk->packed_size; at += STEP) {
+        size_t left = chunk->packed_size - at, part = left < STEP ? left : STEP;
+        if ((at && !ki_may_go_on(&work->asker)) ||
+            !ki_file_read_at(&r->input->file, chunk->at + at, packed + at, part))
+            return false;
+    }
+    return true;
+}
+
 // Reads, decompresses and writes one chunk to the rows of `picture`.
 static kiln_result put_chunk(const exr_rows *r, ki_exr_workspace *work, int index,
                              const ki_exr_picture *picture, kiln_error *error)
@@ -35,9 +50,11 @@ static kiln_result put_chunk(const exr_rows *r, ki_exr_workspace *work, int inde
         return ki_exr_fail_chunk(f, index, KILN_ERROR_MEMORY, error);
     uint8_t *raw = buffer.memory, *packed = raw + 2 * chunk->size;
     kiln_result result = KILN_OK;
-    if (!ki_file_read_at(&r->input->file, chunk->at, packed, chunk->packed_size)) {
-        result = ki_fail(error, KILN_ERROR_IO, "%s: cannot be read at byte %llu", f->name,
-                         (unsigned long long)chunk->at);
+    if (!read_packed(r, work, chunk, packed)) {
+        result = ki_was_stopped(&work->asker)
+                     ? ki_fail_cancelled(error, "reading")
+                     : ki_fail(error, KILN_ERROR_IO, "%s: cannot be read at byte %llu", f->name,
+                               (unsigned long long)chunk->at);
     } else {
         ki_exr_chunk held = *chunk;
         held.packed = packed;

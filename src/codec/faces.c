@@ -451,15 +451,20 @@ static size_t quake_source(int face, size_t n, size_t x, size_t y)
     return y * n + n - 1 - x;
 }
 
-void ki_face_place(const ki_face_set *set, const kiln_image *image, int face, float *texels)
+bool ki_face_place(kiln_context *context, const ki_face_set *set, const kiln_image *image, int face,
+                   float *texels)
 {
     size_t n = (size_t)image->width;
-    if (!set || !set->quake) {
-        memcpy(texels, image->pixels, 3 * n * n * sizeof *texels);
-        return;
-    }
-    for (size_t y = 0; y < n; y++)
+    for (size_t y = 0; y < n; y++, texels += 3 * n) {
+        if (!ki_go_on(context))
+            return false;
+        if (!set || !set->quake) {
+            memcpy(texels, image->pixels + 3 * y * n, 3 * n * sizeof *texels);
+            continue;
+        }
         for (size_t x = 0; x < n; x++)
-            memcpy(texels + 3 * (y * n + x), image->pixels + 3 * quake_source(face, n, x, y),
+            memcpy(texels + 3 * x, image->pixels + 3 * quake_source(face, n, x, y),
                    3 * sizeof *texels);
+    }
+    return true;
 }

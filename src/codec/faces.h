@@ -32,6 +32,8 @@ const ki_face_set *ki_faces_order(const char *const paths[6], int order[6]);
 void ki_faces_note(const ki_face_set *set, kiln_load_report *report);
 /// Copies a square picture of three channels to a face of a cube, turned from the orientation that
 /// pictures with this set of names have to that of kiln. `set` may be NULL.
-void ki_face_place(const ki_face_set *set, const kiln_image *image, int face, float *texels);
+/// Returns false if the caller of the library wants to stop.
+bool ki_face_place(kiln_context *context, const ki_face_set *set, const kiln_image *image, int face,
+                   float *texels);
 
 #endif

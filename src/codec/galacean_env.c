@@ -137,8 +137,13 @@ kiln_result ki_galacean_env_decode(kiln_context *context, const uint8_t *bytes, 
     ki_read_bytes(&r, HEAD);
     for (int k = 0; k < map->level_count; k++) {
         map->roughness[k] = roughness_of(k, map->level_count);
-        for (size_t i = 0; i < kiln_map_texels(map, k); i++)
+        for (size_t i = 0; i < kiln_map_texels(map, k); i++) {
+            if (i % KI_ASK_EVERY == 0 && !ki_go_on(context)) {
+                kiln_map_free(map);
+                return ki_fail_cancelled(error, "reading");
+            }
             take_texel(ki_read_bytes(&r, 4), map->level[k] + 3 * i);
+        }
     }
     return KILN_OK;
 }

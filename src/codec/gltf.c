@@ -490,6 +490,20 @@ static kiln_result check_scale(const light *l, const char *name, kiln_error *err
     return KILN_OK;
 }
 
+// Multiplies the values of a level by the intensity of the light.
+static kiln_result scale_level(kiln_context *context, const kiln_map *map, int level,
+                               double intensity, kiln_error *error)
+{
+    float *value = map->level[level];
+    size_t count = intensity != 1 ? 3 * kiln_map_texels(map, level) : 0;
+    for (size_t i = 0; i < count; i++) {
+        if (i % KI_ASK_EVERY == 0 && !ki_go_on(context))
+            return ki_fail_cancelled(error, "reading");
+        value[i] = (float)((double)value[i] * intensity);
+    }
+    return KILN_OK;
+}
+
 kiln_result ki_gltf_decode(kiln_context *context, const uint8_t *bytes, size_t size,
                            const char *name, kiln_map *map, kiln_error *error)
 {
@@ -512,8 +526,7 @@ kiln_result ki_gltf_decode(kiln_context *context, const uint8_t *bytes, size_t s
                                          name, i, map, error);
     for (int k = 0; k < map->level_count && result == KILN_OK; k++) {
         map->roughness[k] = roughness_of(k, map->level_count);
-        for (size_t i = 0; i < 3 * kiln_map_texels(map, k); i++)
-            map->level[k][i] = (float)((double)map->level[k][i] * l.intensity);
+        result = scale_level(context, map, k, l.intensity, error);
     }
     if (result != KILN_OK)
         kiln_map_free(map);

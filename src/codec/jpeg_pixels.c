@@ -23,6 +23,8 @@ typedef struct decoder {
     struct jpeg_decompress_struct jpeg;
     struct jpeg_error_mgr errors;
     struct jpeg_progress_mgr progress;
+    struct jpeg_source_mgr source;
+    ki_reader rest; // bytes of the file that libjpeg has not been given
     jmp_buf stop;
     kiln_context *context;
     double pixels;      // number of pixels of the picture, which each scan can cover once
@@ -57,6 +59,54 @@ static void watch(j_common_ptr jpeg)
     d->too_many_scans = ki_max(1, d->jpeg.input_scan_number) * d->pixels > d->pixels_most;
     if (d->cancelled || d->too_many_scans)
         longjmp(d->stop, 1);
+}
+
+// The functions by which libjpeg takes the bytes of the file. It gets them in parts and the caller
+// is asked before each part, because a file may have millions of markers before its first scan. At
+// the end of the file libjpeg gets an end marker and a warning, which is an error here.
+
+enum { PART = 1 << 20 };
+
+static void need_no_work(j_decompress_ptr jpeg)
+{
+    (void)jpeg;
+}
+
+static boolean give_part(j_decompress_ptr jpeg)
+{
+    static const JOCTET end[] = {0xff, JPEG_EOI};
+    decoder *d = jpeg->client_data;
+    watch((j_common_ptr)jpeg);
+    size_t left = ki_reader_left(&d->rest), size = left < PART ? left : PART;
+    if (!size)
+        WARNMS(jpeg, JWRN_JPEG_EOF);
+    d->source.next_input_byte = size ? ki_read_bytes(&d->rest, size) : end;
+    d->source.bytes_in_buffer = size ? size : sizeof end;
+    return TRUE;
+}
+
+static void skip_bytes(j_decompress_ptr jpeg, long count)
+{
+    decoder *d = jpeg->client_data;
+    while (count > 0 && (size_t)count > d->source.bytes_in_buffer) {
+        count -= (long)d->source.bytes_in_buffer;
+        give_part(jpeg);
+    }
+    if (count > 0) {
+        d->source.next_input_byte += count;
+        d->source.bytes_in_buffer -= (size_t)count;
+    }
+}
+
+static void begin_source(decoder *d, ki_span picture)
+{
+    d->rest = ki_reader_make(picture.bytes, picture.size);
+    d->source = (struct jpeg_source_mgr){.init_source = need_no_work,
+                                         .fill_input_buffer = give_part,
+                                         .skip_input_data = skip_bytes,
+                                         .resync_to_restart = jpeg_resync_to_restart,
+                                         .term_source = need_no_work};
+    d->jpeg.src = &d->source;
 }
 
 static void begin(decoder *d, kiln_context *context)
@@ -127,7 +177,7 @@ static bool decode(decoder *d, ki_span picture, const ki_jpeg_head *head, uint8_
     jpeg->client_data = d;
     d->progress.progress_monitor = watch;
     jpeg->progress = &d->progress;
-    jpeg_mem_src(jpeg, picture.bytes, picture.size);
+    begin_source(d, picture);
     jpeg_read_header(jpeg, TRUE);
     jpeg->out_color_space = head->components == 1 ? JCS_GRAYSCALE : JCS_RGB;
     jpeg->dct_method = JDCT_ISLOW; // gives the same bits on every processor, see limit_blocks

@@ -102,8 +102,9 @@ kiln_result ki_ktx2_unpack(kiln_context *context, const ki_ktx2_source *source, 
 kiln_result ki_ktx2_texels(const ki_ktx2_source *source, ki_texels *texels, kiln_error *error);
 /// Fails if a level of UASTC HDR blocks, which may come from a file of general ASTC, has a block
 /// that kiln cannot decode.
-kiln_result ki_ktx2_check_blocks(const ki_ktx2_source *source, const ki_texels *texels,
-                                 const uint8_t *plain, size_t size, int level, kiln_error *error);
+kiln_result ki_ktx2_check_blocks(kiln_context *context, const ki_ktx2_source *source,
+                                 const ki_texels *texels, const uint8_t *plain, size_t size,
+                                 int level, kiln_error *error);
 /// Returns the end of the description of the texels: ", zstd", ", zlib" or "".
 const char *ki_ktx2_scheme(const ki_ktx2_source *source);
 /// Turns a picture of RGB floats from the orientation that the metadata state to rows from the top

@@ -107,7 +107,7 @@ static kiln_result read_level(kiln_context *context, const ki_ktx2_source *s,
     int n = kiln_map_level_size(map, k);
     size_t face = (size_t)ki_texels_size(format, n, n, 1), texels = kiln_map_texels(map, k) / 6;
     if (result == KILN_OK)
-        result = ki_ktx2_check_blocks(s, format, plain, 6 * face, k, error);
+        result = ki_ktx2_check_blocks(context, s, format, plain, 6 * face, k, error);
     for (size_t i = 0; i < 6 && result == KILN_OK; i++)
         if (!ki_texels_read(context, format, plain + face * i, n, n, 1,
                             map->level[k] + 3 * texels * i))

@@ -45,12 +45,21 @@ kiln_result ki_ktx2_texels(const ki_ktx2_source *s, ki_texels *texels, kiln_erro
     return KILN_OK;
 }
 
-kiln_result ki_ktx2_check_blocks(const ki_ktx2_source *s, const ki_texels *texels,
-                                 const uint8_t *plain, size_t size, int level, kiln_error *error)
+kiln_result ki_ktx2_check_blocks(kiln_context *context, const ki_ktx2_source *s,
+                                 const ki_texels *texels, const uint8_t *plain, size_t size,
+                                 int level, kiln_error *error)
 {
     if (!texels->pixel || texels->pixel->format != KILN_FORMAT_UASTC)
         return KILN_OK;
-    size_t count = size / KI_BLOCK_BYTES, unknown = ki_uastc_first_unknown(plain, count);
+    size_t count = size / KI_BLOCK_BYTES, unknown = 0, part = 0;
+    do {
+        if (!ki_go_on(context))
+            return ki_fail_cancelled(error, "reading");
+        part = count - unknown < KI_ASK_EVERY ? count - unknown : KI_ASK_EVERY;
+        size_t known = ki_uastc_first_unknown(plain + KI_BLOCK_BYTES * unknown, part);
+        unknown += known;
+        part -= known; // 0 if all blocks of this part are known
+    } while (!part && unknown < count);
     if (unknown == count)
         return KILN_OK;
     return ki_fail(error, KILN_ERROR_UNSUPPORTED,
@@ -121,8 +130,8 @@ kiln_result ki_ktx2_decode_picture(kiln_context *context, ki_ktx2_source *s, kil
         return result;
     result = ki_ktx2_unpack(context, s, 0, &level, &plain, &unpacked, error);
     if (result == KILN_OK)
-        result = ki_ktx2_check_blocks(s, &texels, plain, (size_t)ki_texels_size(&texels, w, h, 1),
-                                      0, error);
+        result = ki_ktx2_check_blocks(context, s, &texels, plain,
+                                      (size_t)ki_texels_size(&texels, w, h, 1), 0, error);
     *image = (kiln_image){.width = w, .height = h, .channels = 3};
     if (result == KILN_OK)
         result = ki_image_allocate(context, image, error);

@@ -172,9 +172,16 @@ kiln_result ki_ktx2_decode_table(kiln_context *context, ki_ktx2_source *s, kiln_
         return result;
     *image = (kiln_image){.width = info->width, .height = rows, .channels = texel->channels};
     result = ki_image_allocate(context, image, error);
-    if (result == KILN_OK)
-        ki_components_unpack(texel->format, plain, (size_t)count * (size_t)texel->channels,
-                             image->pixels);
+    size_t line = (size_t)s->width * (size_t)texel->channels;
+    for (int y = 0; y < rows && result == KILN_OK; y++) {
+        if (ki_go_on(context))
+            ki_components_unpack(texel->format, plain + (size_t)y * s->width * texel_size(texel),
+                                 line, image->pixels + (size_t)y * line);
+        else
+            result = ki_fail_cancelled(error, "reading");
+    }
     ki_free(unpacked);
+    if (result != KILN_OK)
+        kiln_image_free(image);
     return result;
 }

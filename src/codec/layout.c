@@ -22,9 +22,12 @@ const char *ki_layout_name(int width, int height)
     return NULL;
 }
 
-void ki_cut_face(const kiln_image *image, int x, int y, int size, bool turned, float *face)
+bool ki_cut_face(kiln_context *context, const kiln_image *image, int x, int y, int size,
+                 bool turned, float *face)
 {
     for (int row = 0; row < size; row++) {
+        if (!ki_go_on(context))
+            return false;
         const float *from =
             image->pixels + 3 * ((size_t)(y + row) * (size_t)image->width + (size_t)x);
         if (!turned) {
@@ -35,6 +38,7 @@ void ki_cut_face(const kiln_image *image, int x, int y, int size, bool turned, f
         for (int i = 0; i < size; i++, to -= 3)
             memcpy(to, from + 3 * (size_t)i, 3 * sizeof *to);
     }
+    return true;
 }
 
 // Place of a cube face in a picture that shows a cross or strip: column and row, counted in faces.
@@ -55,8 +59,11 @@ static kiln_result make_cube(kiln_context *context, const kiln_image *image, int
     kiln_result result = ki_map_allocate(context, map, error);
     size_t face_floats = 3 * (size_t)size * (size_t)size;
     for (int face = 0; face < 6 && result == KILN_OK; face++)
-        ki_cut_face(image, places[face].x * size, places[face].y * size, size,
-                    turn_last && face == 5, map->level[0] + face_floats * (size_t)face);
+        if (!ki_cut_face(context, image, places[face].x * size, places[face].y * size, size,
+                         turn_last && face == 5, map->level[0] + face_floats * (size_t)face))
+            result = ki_fail_cancelled(error, "reading");
+    if (result != KILN_OK)
+        kiln_map_free(map);
     return result;
 }
 

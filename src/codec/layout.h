@@ -9,8 +9,10 @@
 /// sides fits none of these layouts.
 const char *ki_layout_name(int width, int height);
 /// Copies a face of `size` x `size` texels from a picture of three channels. The upper left corner
-/// of the face is at (x, y); `turned` turns the face by 180 degrees.
-void ki_cut_face(const kiln_image *image, int x, int y, int size, bool turned, float *face);
+/// of the face is at (x, y); `turned` turns the face by 180 degrees. Returns false if the caller of
+/// the library wants to stop.
+bool ki_cut_face(kiln_context *context, const kiln_image *image, int x, int y, int size,
+                 bool turned, float *face);
 /// Makes a map of one level from a picture of three channels. If the layout keeps the order of the
 /// texels, the map takes over the picture's memory and `image` is zeroed. Layouts that mix texels
 /// mend the picture first and add what was mended, and a note, to *report.

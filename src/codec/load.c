@@ -205,9 +205,10 @@ static kiln_result load_face(kiln_context *context, const ki_face_files *files, 
         if (result == KILN_OK && info.roughness[0] >= 0)
             map->roughness[0] = info.roughness[0];
     }
-    if (result == KILN_OK)
-        ki_face_place(files->set, image, face,
-                      map->level[0] + 3 * (size_t)size * (size_t)size * (size_t)face);
+    if (result == KILN_OK &&
+        !ki_face_place(context, files->set, image, face,
+                       map->level[0] + 3 * (size_t)size * (size_t)size * (size_t)face))
+        result = ki_fail_cancelled(error, "reading");
     ki_report_add(report, &decoded.report);
     ki_decoded_free(&decoded);
     return result;

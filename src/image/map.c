@@ -75,20 +75,6 @@ static bool level_floats(const kiln_map *map, int level, size_t *count)
     return true;
 }
 
-enum { PIECE = 1 << 20 }; // number of floats of a new map that one task sets to 0
-
-typedef struct clear_job {
-    float *memory;
-    size_t count;
-} clear_job;
-
-static void clear_piece(void *data, int index)
-{
-    const clear_job *job = data;
-    size_t first = (size_t)index * PIECE, left = job->count - first;
-    memset(job->memory + first, 0, (left < PIECE ? left : PIECE) * sizeof(float));
-}
-
 kiln_result ki_map_allocate(kiln_context *context, kiln_map *map, kiln_error *error)
 {
     memset(map->level, 0, sizeof map->level);
@@ -105,20 +91,15 @@ kiln_result ki_map_allocate(kiln_context *context, kiln_map *map, kiln_error *er
         fits = fits && level_floats(map, k, &count) && total <= SIZE_MAX / sizeof(float) - count;
         total += count;
     }
-    float *memory = fits ? ki_alloc_raw(context, total, sizeof(float)) : NULL;
-    if (!memory) {
+    void *memory = NULL;
+    kiln_result result =
+        ki_alloc_zeroed(context, fits ? total : SIZE_MAX, sizeof(float), "a map", &memory, error);
+    if (result != KILN_OK) {
         *map = (kiln_map){0};
-        return ki_fail_memory(context, error, "a map", fits ? total * sizeof(float) : SIZE_MAX);
-    }
-    // The first write to fresh memory is slow, so that all threads clear the texels together.
-    clear_job job = {memory, total};
-    if (!ki_parallel_steps(context, NULL, (int)((total + PIECE - 1) / PIECE), clear_piece, &job)) {
-        ki_free(memory);
-        *map = (kiln_map){0};
-        return ki_fail_cancelled(error, "making a map");
+        return result;
     }
     for (int k = 0; k < map->level_count; k++)
-        map->level[k] = memory + offset[k];
+        map->level[k] = (float *)memory + offset[k];
     map->owner = memory;
     return KILN_OK;
 }
@@ -136,14 +117,14 @@ kiln_result ki_image_allocate(kiln_context *context, kiln_image *image, kiln_err
     if (made.channels < 1 || made.channels > 4)
         return ki_fail(error, KILN_ERROR_ARGUMENT, "image has %d channels, it must be 1 to 4",
                        made.channels);
-    size_t count = 0, bytes = 0;
-    bool fits = ki_mul_size((size_t)made.width, (size_t)made.height, &count) &&
-                ki_mul_size(count, (size_t)made.channels, &count) &&
-                ki_mul_size(count, sizeof(float), &bytes);
-    made.pixels = fits ? ki_alloc(context, count, sizeof(float)) : NULL;
-    if (!made.pixels)
-        return ki_fail_memory(context, error, "an image", fits ? bytes : SIZE_MAX);
-    made.owner = made.pixels;
+    size_t count = (size_t)made.channels * sizeof(float);
+    if (!ki_mul_size((size_t)made.width, count, &count))
+        count = SIZE_MAX;
+    kiln_result result =
+        ki_alloc_zeroed(context, (size_t)made.height, count, "an image", &made.owner, error);
+    if (result != KILN_OK)
+        return result;
+    made.pixels = made.owner;
     *image = made;
     return KILN_OK;
 }

@@ -232,15 +232,14 @@ static kiln_result fill_holes(kiln_context *context, const plane *p, size_t bad_
                               kiln_error *error)
 {
     size_t texels = (size_t)p->width * (size_t)p->height;
-    holes h = {.context = context,
-               .plane = p,
-               .state = ki_alloc(context, texels, 1),
-               .list = ki_alloc_raw(context, bad_count, sizeof(size_t))};
-    kiln_result result = KILN_OK;
-    if (!h.state || !h.list)
-        result = ki_fail_memory(context, error, "the texels that are not a number",
-                                texels + bad_count * sizeof(size_t));
-    else if (!fill_all(&h, texels))
+    static const char what[] = "the texels that are not a number";
+    holes h = {
+        .context = context, .plane = p, .list = ki_alloc_raw(context, bad_count, sizeof(size_t))};
+    void *state = NULL;
+    kiln_result result = h.list ? ki_alloc_zeroed(context, texels, 1, what, &state, error)
+                                : ki_fail_memory(context, error, what, bad_count * sizeof(size_t));
+    h.state = state;
+    if (result == KILN_OK && !fill_all(&h, texels))
         result = ki_fail_cancelled(error, "reading");
     ki_free(h.state);
     ki_free(h.list);

@@ -121,6 +121,14 @@ static void what_is_too_much_is_said(void **state)
                       "attribute has a name of more than 255 bytes");
 }
 
+static void attributes_are_limited(void **state)
+{
+    (void)state;
+    header h = plain_header();
+    h.attributes = 1 << 20;
+    check_refused(&h, "a.exr: the EXR header is damaged: it has more than 1048576 attributes");
+}
+
 static void what_is_just_allowed_is_read(void **state)
 {
     (void)state;
@@ -259,6 +267,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(what_is_too_much_is_said, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(attributes_are_limited, set_up, tear_down),
         cmocka_unit_test_setup_teardown(what_is_just_allowed_is_read, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_nearly_empty_display_window_takes_no_memory, set_up,
                                         tear_down),

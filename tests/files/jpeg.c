@@ -100,14 +100,86 @@ static void add_segment(ki_writer *w, int marker, const void *data, size_t size)
     memcpy(w->bytes + 6, data, size);
 }
 
-static double sample_of(const picture *p, int x, int y, int c)
-{
-    return p->samples[(y * p->width + x) * p->channels + (p->channels == 1 ? 0 : c)] / 255.0;
-}
-
 static double srgb(double x)
 {
     return x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4);
+}
+
+// A progress callback that counts its calls, and lets the `left`-th stop the work.
+typedef struct counter {
+    int calls, left;
+} counter;
+
+static bool count(void *user, const char *stage, double fraction)
+{
+    counter *c = user;
+    (void)stage, (void)fraction;
+    return ++c->calls != c->left;
+}
+
+// Decodes a file of `samples` samples and checks that they are those of the witness in `wanted`,
+// as libjpeg-turbo gives them. Returns the number of questions whether to go on.
+static int check_samples(const ki_writer *w, const uint8_t *wanted, size_t samples)
+{
+    counter c = {0};
+    kiln_context *own;
+    kiln_context_def def = {.thread_count = 1, .progress = count, .progress_user = &c};
+    ki_decoded decoded;
+    kiln_file_info info;
+    CHECK_OK(kiln_context_create(&def, &own, &error));
+    CHECK_OK(ki_decode(own, w->bytes, w->size, "a.jpg", &decoded, &info, &error));
+    for (size_t i = 0; i < samples; i++)
+        assert_float_equal(decoded.image.pixels[i], srgb(wanted[i] / 255.0), 1e-6);
+    ki_decoded_free(&decoded);
+    int calls = c.calls;
+    for (c = (counter){.left = 1}; c.left <= calls;
+         c = (counter){.left = c.left + 1 + c.left / 8}) {
+        assert_int_equal(ki_decode(own, w->bytes, w->size, "a.jpg", &decoded, &info, &error),
+                         KILN_ERROR_CANCELLED);
+        assert_int_equal(c.calls, c.left);
+    }
+    kiln_context_destroy(own);
+    return calls;
+}
+
+// libjpeg is given a file in parts of 2^20 bytes, and each part is a question. The picture of noise
+// has more bytes than that; before it stand 3 megabytes of comments.
+static void long_files_can_be_stopped(void **state)
+{
+    (void)state;
+    enum { SIDE = 1400, SAMPLES = 3 * SIDE * SIDE, COMMENTS = 50, COMMENT = 65533 };
+    uint8_t *samples = malloc(SAMPLES), *wanted = malloc(SAMPLES), *comment = calloc(COMMENT, 1);
+    uint32_t random = 1;
+    for (int i = 0; i < SAMPLES; i++)
+        samples[i] = (uint8_t)((random = random * 1664525 + 1013904223) >> 24);
+    ki_writer w = encode(samples, SIDE, SIDE, 3, 3 * SIDE, false);
+    assert_true(w.size > 1 << 20);
+    struct jpeg_decompress_struct jpeg;
+    struct jpeg_error_mgr errors;
+    jpeg.err = jpeg_std_error(&errors);
+    jpeg_create_decompress(&jpeg);
+    jpeg_mem_src(&jpeg, w.bytes, w.size);
+    jpeg_read_header(&jpeg, TRUE);
+    jpeg_start_decompress(&jpeg);
+    while (jpeg.output_scanline < SIDE) {
+        JSAMPROW row = wanted + (size_t)jpeg.output_scanline * 3 * SIDE;
+        jpeg_read_scanlines(&jpeg, &row, 1);
+    }
+    jpeg_finish_decompress(&jpeg);
+    jpeg_destroy_decompress(&jpeg);
+    int less = check_samples(&w, wanted, SAMPLES);
+    for (int i = 0; i < COMMENTS; i++)
+        add_segment(&w, 0xfe, comment, COMMENT);
+    assert_true(check_samples(&w, wanted, SAMPLES) >= less + COMMENTS * COMMENT / (1 << 20));
+    ki_writer_free(&w);
+    free(samples);
+    free(wanted);
+    free(comment);
+}
+
+static double sample_of(const picture *p, int x, int y, int c)
+{
+    return p->samples[(y * p->width + x) * p->channels + (p->channels == 1 ? 0 : c)] / 255.0;
 }
 
 static void samples_become_linear_by_srgb(void **state)
@@ -637,6 +709,7 @@ int main(void)
         cmocka_unit_test(exif_orientations_are_honoured),
         cmocka_unit_test(faces_may_be_jpeg),
         cmocka_unit_test(what_is_not_read_is_said),
+        cmocka_unit_test(long_files_can_be_stopped),
         cmocka_unit_test(scans_are_limited_by_the_size),
         cmocka_unit_test(an_index_ends_with_its_segment),
     };

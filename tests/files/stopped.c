@@ -251,12 +251,11 @@ static const struct {
 static countdown reports;
 static kiln_context *own;
 
-typedef kiln_result decoder(const ki_writer *w, int left);
-
-static kiln_result decode(const ki_writer *w, int left)
+static kiln_result decode(const void *file)
 {
+    const ki_writer *w = file;
     kiln_map map;
-    reports = (countdown){.left = left};
+    assert_false(w->failed);
     kiln_result result = kiln_map_decode(own, w->bytes, w->size, "a", NULL, &map, &error);
     assert_true(result == KILN_OK || !map.level[0]);
     kiln_map_free(&map);
@@ -264,10 +263,11 @@ static kiln_result decode(const ki_writer *w, int left)
 }
 
 // Decodes the pixels of an EXR file, without what makes a map of them.
-static kiln_result decode_exr(const ki_writer *w, int left)
+static kiln_result decode_exr(const void *file)
 {
+    const ki_writer *w = file;
     kiln_image image = {0};
-    reports = (countdown){.left = left};
+    assert_false(w->failed);
     kiln_result result =
         ki_exr_decode(own, w->bytes, w->size, "a", NULL, &image, NULL, NULL, &error);
     assert_true(result == KILN_OK || !image.pixels);
@@ -275,32 +275,11 @@ static kiln_result decode_exr(const ki_writer *w, int left)
     return result;
 }
 
-// Returns the number of questions while a file is read, at each of which the reading can be
-// stopped. Work in steps asks once more after each twentieth of a second, so that on a busy machine
-// one reading may ask more often than the next: the least number counts.
-static int count_questions(const ki_writer *w, decoder *decode_file)
-{
-    assert_false(w->failed);
-    CHECK_OK(decode_file(w, 1 << 30));
-    int asked = reports.calls;
-    for (int stop = 0; stop < asked; stop++) {
-        kiln_result result = decode_file(w, stop);
-        if (result == KILN_OK) {
-            assert_true(reports.calls <= stop);
-            asked = reports.calls;
-        } else {
-            assert_int_equal(result, KILN_ERROR_CANCELLED);
-            assert_int_equal(reports.calls, stop + 1);
-        }
-    }
-    return asked;
-}
-
 static int count_questions_of(void (*put)(ki_writer *w))
 {
     ki_writer w = {.context = context};
     put(&w);
-    int asked = count_questions(&w, decode);
+    int asked = count_questions(&reports, decode, &w);
     ki_writer_free(&w);
     return asked;
 }
@@ -416,7 +395,7 @@ static void large_tiles_can_be_stopped(void **state)
             ki_writer w = {.context = context};
             put_tile(&w, large ? TILE_WIDTH : SMALL, TILE_HEIGHT,
                      large ? methods[i].compression : EXR_COMPRESSION_NONE);
-            asked[large] = count_questions(&w, decode_exr);
+            asked[large] = count_questions(&reports, decode_exr, &w);
             ki_writer_free(&w);
         }
         if (2 * (asked[1] - asked[0]) < 5 * methods[i].steps)
@@ -455,16 +434,6 @@ static int stop_at_each(once *o, kiln_result (*work)(const void *data), const vo
     }
 }
 
-static kiln_result decode_tiles(const void *data)
-{
-    const ki_writer *w = data;
-    kiln_image image = {0};
-    kiln_result result =
-        ki_exr_decode(own, w->bytes, w->size, "a", NULL, &image, NULL, NULL, &error);
-    kiln_image_free(&image);
-    return result;
-}
-
 // Two threads decode two large tiles. Only the thread that called the library asks, and the other
 // learns the answer.
 static void a_stop_reaches_other_threads(void **state)
@@ -476,7 +445,7 @@ static void a_stop_reaches_other_threads(void **state)
     put_tile(&w, TILE_WIDTH, TILE_HEIGHT / 2, EXR_COMPRESSION_ZIP);
     assert_false(w.failed);
     CHECK_OK(kiln_context_create(&def, &own, &error));
-    assert_true(stop_at_each(&o, decode_tiles, &w) >= 2);
+    assert_true(stop_at_each(&o, decode_exr, &w) >= 2);
     kiln_context_destroy(own);
     ki_writer_free(&w);
 }
@@ -546,12 +515,14 @@ static void inflating_can_be_stopped(void **state)
     put_chunk(&w, "IDAT", packed, sizeof packed);
     put_chunk(&w, "IEND", NULL, 0);
     CHECK_OK(kiln_context_create(&def, &own, &error));
-    assert_int_equal(decode(&w, 1 << 30), KILN_ERROR_FORMAT);
+    reports = (countdown){.left = 1 << 30};
+    assert_int_equal(decode(&w), KILN_ERROR_FORMAT);
     CHECK_SAYS(error.message, "does not inflate to the picture's size");
     int asked = reports.calls;
     assert_true(asked >= 4); // a question after each 2^24 of the 82 million bytes
     for (int stop = 0; stop < asked; stop++) {
-        assert_int_equal(decode(&w, stop), KILN_ERROR_CANCELLED);
+        reports = (countdown){.left = stop};
+        assert_int_equal(decode(&w), KILN_ERROR_CANCELLED);
         assert_int_equal(reports.calls, stop + 1);
     }
     kiln_context_destroy(own);

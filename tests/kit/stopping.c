@@ -10,3 +10,22 @@ bool count_down(void *user, const char *stage, double fraction)
     c->calls++;
     return c->left-- > 0;
 }
+
+int count_questions(countdown *c, kiln_result (*work)(const void *data), const void *data)
+{
+    *c = (countdown){.left = 1 << 30};
+    assert_int_equal(work(data), KILN_OK);
+    int asked = c->calls;
+    for (int stop = 0; stop < asked; stop++) {
+        *c = (countdown){.left = stop};
+        kiln_result result = work(data);
+        if (result == KILN_OK) {
+            assert_true(c->calls <= stop);
+            asked = c->calls;
+        } else {
+            assert_int_equal(result, KILN_ERROR_CANCELLED);
+            assert_int_equal(c->calls, stop + 1);
+        }
+    }
+    return asked;
+}

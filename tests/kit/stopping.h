@@ -2,6 +2,8 @@
 #ifndef KILN_KIT_STOPPING_H
 #define KILN_KIT_STOPPING_H
 
+#include <kiln/kiln.h>
+
 #include <stdbool.h>
 
 typedef struct countdown {
@@ -12,5 +14,11 @@ typedef struct countdown {
 /// A progress callback of a context whose user pointer is a countdown. Checks that there is a stage
 /// and that the fraction is in [0, 1].
 bool count_down(void *user, const char *stage, double fraction);
+
+/// Does `work`, which must succeed with a context of the countdown `c`, again and again, and stops
+/// it at its first question, at its second, and so on. Returns the number of its questions. Work in
+/// steps asks once more after each twentieth of a second, so that on a busy machine it may ask more
+/// often one time than the next: the least number counts.
+int count_questions(countdown *c, kiln_result (*work)(const void *data), const void *data);
 
 #endif
