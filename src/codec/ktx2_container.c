@@ -291,6 +291,8 @@ kiln_result ki_ktx2_unpack(kiln_context *context, const ki_ktx2_source *s, int k
     ki_free(room);
     if (result == KILN_ERROR_CANCELLED)
         return ki_fail_cancelled(error, "reading");
+    if (result == KILN_ERROR_MEMORY)
+        return ki_fail_memory(context, error, s->name, level->plain_size);
     return ki_fail(error, KILN_ERROR_FORMAT, "%s: level %d is damaged: %s", s->name, k, fault);
 }
 

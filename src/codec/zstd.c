@@ -5,6 +5,7 @@
 
 #define ZSTD_STATIC_LINKING_ONLY
 #include <zstd.h>
+#include <zstd_errors.h>
 
 enum { STEP = 1 << 17 };
 
@@ -112,6 +113,8 @@ kiln_result ki_zstd_unpack(kiln_context *context, const uint8_t *packed, size_t 
         got = ZSTD_decompress(plain, size, packed, packed_size);
     if (stopped)
         return KILN_ERROR_CANCELLED;
+    if (ZSTD_getErrorCode(got) == ZSTD_error_memory_allocation)
+        return KILN_ERROR_MEMORY;
     *fault = ZSTD_isError(got) ? ZSTD_getErrorName(got) : "too short";
     return got == size ? KILN_OK : KILN_ERROR_FORMAT;
 }

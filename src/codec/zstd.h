@@ -19,7 +19,8 @@ kiln_result ki_zstd_pack(kiln_context *context, const uint8_t *plain, size_t siz
 bool ki_zstd_stated_size(const uint8_t *packed, size_t packed_size, uint64_t *size);
 /// Unpacks zstd frames to exactly `size` bytes. Asks whether to go on after each 2^22 bytes, packed
 /// and plain, if the library is of version 1.4.6 or later. Returns KILN_OK, KILN_ERROR_FORMAT, with
-/// a text in *fault that says what is wrong, or KILN_ERROR_CANCELLED. Writes no error message.
+/// a text in *fault that says what is wrong, KILN_ERROR_MEMORY or KILN_ERROR_CANCELLED. Writes no
+/// error message.
 kiln_result ki_zstd_unpack(kiln_context *context, const uint8_t *packed, size_t packed_size,
                            uint8_t *plain, size_t size, const char **fault);
 
