@@ -142,8 +142,8 @@ enum { KI_ASK_EVERY = 1 << 16 };
 /// ki_parallel_workers it goes on asking, unless the host's own function runs the tasks.
 typedef struct ki_asker {
     kiln_context *context;
-    unsigned stops; // number of stops that the context had seen when the work began
-    bool is_nested; // true: the work belongs to a call which a progress callback makes
+    int depth;      // number of progress callbacks within which the work was called
+    unsigned stops; // number of stops that the context had seen at this depth when the work began
 } ki_asker;
 /// Returns the asker of work that begins now, on any thread that runs it.
 ki_asker ki_asker_make(kiln_context *context);

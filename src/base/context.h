@@ -8,6 +8,9 @@
 #include <stdatomic.h>
 
 enum { KI_MAX_THREADS = 256 };
+/// Number of depths of calls within progress callbacks whose stops are counted apart; deeper calls
+/// are counted with the deepest of these.
+enum { KI_MAX_DEPTH = 8 };
 
 typedef struct ki_pool {
     ki_os_mutex mutex;
@@ -26,6 +29,7 @@ typedef struct ki_pool {
     // thread works for the context.
     bool in_use;
     uintptr_t caller; // the thread that called ki_parallel_for, while in_use is true
+    int depth;        // the context's depth when ki_parallel_for was called
     bool stop;
 } ki_pool;
 
@@ -50,10 +54,9 @@ struct kiln_context {
     ki_scratch *scratch;
     ki_progress_range said; // stage and range of the last progress report, which ki_go_on repeats
     int depth;              // number of progress callbacks that run, one within the other
-    // Numbers of progress reports that asked to stop: of the calls which progress callbacks make,
-    // and of all others. A call within a callback runs on one thread alone.
-    unsigned nested_stops;
-    atomic_uint stops;
+    // Number of progress reports that asked to stop, of the calls at each depth. A callback may
+    // call the library, and a stop of that call does not stop the one that reports.
+    atomic_uint stops[KI_MAX_DEPTH];
     ki_pool pool;
 };
 
@@ -63,6 +66,13 @@ static inline bool ki_is_caller(const kiln_context *context)
 {
     const ki_pool *pool = &context->pool;
     return !pool->in_use || pool->caller == ki_os_this_thread();
+}
+
+/// Returns the depth of the call for which the calling thread works, less than KI_MAX_DEPTH.
+static inline int ki_depth(const kiln_context *context)
+{
+    int depth = ki_is_caller(context) ? context->depth : context->pool.depth;
+    return depth < KI_MAX_DEPTH ? depth : KI_MAX_DEPTH - 1;
 }
 
 /// Starts the threads that the definition asks for, or as many as the system starts. Returns their

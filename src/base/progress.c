@@ -8,21 +8,16 @@ bool ki_progress(kiln_context *context, const char *stage, double fraction)
     if (!context->def.progress)
         return true;
     // The callback may call the library with this context. Memory that it allocates must not come
-    // from the scratch memory of the plan execution that reports progress, and a call that it stops
-    // must not stop the one that reports.
+    // from the scratch memory of the plan execution that reports progress.
     ki_scratch *scratch = context->scratch;
-    unsigned nested_stops = context->nested_stops;
     context->scratch = NULL;
     context->depth++;
     bool go_on = context->def.progress(context->def.progress_user, stage, fraction);
     context->depth--;
     context->scratch = scratch;
     context->said = said;
-    context->nested_stops = nested_stops;
-    if (!go_on && context->depth)
-        context->nested_stops++;
-    else if (!go_on)
-        atomic_fetch_add(&context->stops, 1);
+    if (!go_on)
+        atomic_fetch_add(&context->stops[ki_depth(context)], 1);
     return go_on;
 }
 
@@ -34,17 +29,14 @@ bool ki_go_on(kiln_context *context)
 
 ki_asker ki_asker_make(kiln_context *context)
 {
-    bool is_nested = ki_is_caller(context) && context->depth;
-    return (ki_asker){context, is_nested ? context->nested_stops : atomic_load(&context->stops),
-                      is_nested};
+    int depth = ki_depth(context);
+    return (ki_asker){context, depth, atomic_load(&context->stops[depth])};
 }
 
 bool ki_was_stopped(const ki_asker *asker)
 {
-    kiln_context *context = asker->context;
-    unsigned stops = asker->is_nested ? context->nested_stops
-                                      : atomic_load_explicit(&context->stops, memory_order_relaxed);
-    return stops != asker->stops;
+    const atomic_uint *stops = &asker->context->stops[asker->depth];
+    return atomic_load_explicit(stops, memory_order_relaxed) != asker->stops;
 }
 
 bool ki_may_go_on(const ki_asker *asker)

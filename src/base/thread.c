@@ -109,6 +109,7 @@ static void run(kiln_context *context, const ki_asker *asker, int count, ki_task
         return;
     }
     pool->caller = ki_os_this_thread();
+    pool->depth = context->depth;
     pool->in_use = true;
     if (own)
         run_on_pool(pool, asker, count, task, data);

@@ -51,10 +51,11 @@ static kiln_result put_chunk(const exr_rows *r, ki_exr_workspace *work, int inde
     uint8_t *raw = buffer.memory, *packed = raw + 2 * chunk->size;
     kiln_result result = KILN_OK;
     if (!read_packed(r, work, chunk, packed)) {
-        result = ki_was_stopped(&work->asker)
-                     ? ki_fail_cancelled(error, "reading")
-                     : ki_fail(error, KILN_ERROR_IO, "%s: cannot be read at byte %llu", f->name,
-                               (unsigned long long)chunk->at);
+        if (ki_was_stopped(&work->asker))
+            result = ki_fail_cancelled(error, "reading");
+        else
+            result = ki_fail(error, KILN_ERROR_IO, "%s: cannot be read at byte %llu", f->name,
+                             (unsigned long long)chunk->at);
     } else {
         ki_exr_chunk held = *chunk;
         held.packed = packed;
