@@ -134,13 +134,16 @@ static const char *parse_lobes(const char *text, kiln_table_def *def)
     if (!strchr(text, ','))
         text = parse_count(text, KILN_MAX_LEVELS, &def->level_count);
     else
-        for (bool more = true; text && more; text += more) {
+        for (bool more = true; more;) {
             double value = 0;
             if (*text < '0' || *text > '9' || def->level_count == KILN_MAX_LEVELS)
                 return NULL;
             text = ki_parse_number(text, &value);
+            if (!text)
+                return NULL;
             def->level_roughness[def->level_count++] = (float)value;
-            more = text && *text == ',';
+            more = *text == ',';
+            text += more;
         }
     return text && def->tap_count && def->level_count && !ki_lobes_complete(def, NULL) ? text
                                                                                        : NULL;

@@ -272,6 +272,11 @@ static void texts_of_lobes_are_parsed_strictly(void **state)
         if (ki_table_parse(text, &def))
             fail_msg("parsed: %s", text);
     }
+    // more digits than kiln reads as a number
+    char digits[400] = {0}, long_text[1000];
+    memset(digits, '6', sizeof digits - 1);
+    snprintf(long_text, sizeof long_text, "%s2 paths=0 taps=1 levels=0.%s,1", start, digits);
+    assert_false(ki_table_parse(long_text, &def));
 }
 
 static void wrong_choices_are_refused(void **state)
