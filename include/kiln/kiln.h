@@ -116,12 +116,15 @@ typedef struct kiln_context_def {
     /// context works with those; see kiln_context_threads.
     int thread_count;
     /// Runs task(data, i) for each i from 0 to count - 1, in any order on any threads, and returns
-    /// when every call has returned. NULL: the context starts threads of its own.
+    /// when every call has returned. NULL: the context starts threads of its own. Work can be
+    /// stopped between two calls of this function, and by those tasks that run on the thread that
+    /// called the library.
     void (*parallel_for)(void *user, int count, void (*task)(void *data, int index), void *data);
     void *parallel_user;
     /// Called from time to time with 0 <= fraction <= 1, on the thread that called the library. The
     /// work in progress is cancelled when this function returns false. The function may call kiln
-    /// with the same context, but not execute a plan that is being executed. May be NULL.
+    /// with the same context and on its own thread, but not execute a plan that is being executed.
+    /// May be NULL.
     bool (*progress)(void *user, const char *stage, double fraction);
     void *progress_user;
     /// Highest instruction set that may be used, for tests and benchmarks. Results are

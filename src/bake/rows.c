@@ -143,8 +143,8 @@ static bool add_band(const pass *p, const ki_rows rows[2], int to)
     }
     for (int i = 0; i < work->mirror_count && go_on; i++) {
         ki_buffer buffer = work->mirrors[i].buffer;
-        ki_resample_band(p->context, work->mirrors[i].plan, &buffer, rows, p->depth, to,
-                         work->mirrors[i].target);
+        go_on = ki_resample_band(p->context, work->mirrors[i].plan, &buffer, rows, p->depth, to,
+                                 work->mirrors[i].target);
     }
     return go_on;
 }

@@ -53,8 +53,9 @@ int ki_text_step(const char *text, size_t left, unsigned *code, bool *shown);
 void *ki_alloc(kiln_context *context, size_t count, size_t size);
 /// Allocates as ki_alloc does, but does not zero the memory.
 void *ki_alloc_raw(kiln_context *context, size_t count, size_t size);
-/// Allocates as ki_alloc does, on the thread on which the library was called, for memory as large
-/// as a picture: the context's threads zero it together, and the caller may stop them. Sets *memory
+/// Allocates as ki_alloc does, for memory as large as a picture: the context's threads zero it
+/// together, and the caller may stop them. May be called only on the thread on which the library
+/// was called. Sets *memory
 /// to the memory, or to NULL on failure. Fails with the message of ki_fail_memory, which names
 /// `what`, or with that of ki_fail_cancelled.
 kiln_result ki_alloc_zeroed(kiln_context *context, size_t count, size_t size, const char *what,
@@ -142,14 +143,14 @@ enum { KI_ASK_EVERY = 1 << 16 };
 /// ki_parallel_workers it goes on asking, unless the host's own function runs the tasks.
 typedef struct ki_asker {
     kiln_context *context;
-    int depth;      // number of progress callbacks within which the work was called
+    int depth;      // number of progress callbacks within which the work was begun
     unsigned stops; // number of stops that the context had seen at this depth when the work began
 } ki_asker;
 /// Returns the asker of work that begins now, on any thread that runs it.
 ki_asker ki_asker_make(kiln_context *context);
 /// Returns false if the caller wants to stop, and asks no more once that is known.
 bool ki_may_go_on(const ki_asker *asker);
-/// Returns whether the caller has asked to stop since the asker was made, in whichever function.
+/// Returns whether the caller has asked to stop since the asker was made, whichever function asked.
 bool ki_was_stopped(const ki_asker *asker);
 /// The range of fractions, within 0 to 1, that a part of the work covers in the progress reports of
 /// a stage.

@@ -60,10 +60,18 @@ kiln_result ki_file_read(kiln_context *context, const char *path, uint8_t **byte
                 result = ki_fail_memory(context, error, path, capacity * 2);
                 goto done;
             }
-            memcpy(larger, buffer, filled);
+            bool go_on = true;
+            for (size_t at = 0; at < filled && go_on; at += READ_STEP) {
+                go_on = !at || ki_progress(context, "reading", 0);
+                memcpy(larger + at, buffer + at, filled - at < READ_STEP ? filled - at : READ_STEP);
+            }
             ki_free(buffer);
             buffer = larger;
             capacity *= 2;
+            if (!go_on) {
+                result = ki_fail_cancelled(error, "reading");
+                goto done;
+            }
         }
         size_t room = capacity - filled;
         ptrdiff_t got = ki_os_read(fd, buffer + filled, room < READ_STEP ? room : READ_STEP);

@@ -127,7 +127,8 @@ void ki_os_condition_end(ki_os_condition *condition);
 /// Unlocks the mutex, waits until the condition is signalled or the wait ends spuriously, and locks
 /// the mutex again.
 void ki_os_wait(ki_os_condition *condition, ki_os_mutex *mutex);
-/// Waits as ki_os_wait does, but for at most about a twentieth of a second.
+/// Waits as ki_os_wait does, but also ends after about a twentieth of a second, or later if the
+/// system's clock is set back meanwhile.
 void ki_os_wait_briefly(ki_os_condition *condition, ki_os_mutex *mutex);
 void ki_os_wake_one(ki_os_condition *condition);
 void ki_os_wake_all(ki_os_condition *condition);

@@ -346,8 +346,8 @@ void ki_os_wait(ki_os_condition *condition, ki_os_mutex *mutex)
 
 void ki_os_wait_briefly(ki_os_condition *condition, ki_os_mutex *mutex)
 {
-    // The clock of the default condition may be set while a thread waits. The wait then ends early,
-    // or as late as that of ki_os_wait does.
+    // A condition's default clock is the only one on every system. If it is set forward while a
+    // thread waits, the wait ends early; if it is set back, the wait may last until it is signalled.
     struct timespec end;
     clock_gettime(CLOCK_REALTIME, &end);
     end.tv_nsec += 50 * 1000 * 1000;

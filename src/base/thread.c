@@ -113,7 +113,7 @@ static void run(kiln_context *context, const ki_asker *asker, int count, ki_task
     pool->in_use = true;
     if (own)
         run_on_pool(pool, asker, count, task, data);
-    else
+    else if (!asker || ki_may_go_on(asker))
         context->def.parallel_for(context->def.parallel_user, count, task, data);
     pool->in_use = false;
 }

@@ -1,5 +1,5 @@
 // Memory as large as a picture, zeroed. The first write to fresh memory is slow, about a second for
-// 3 GB, so that all threads of the context write together and the caller can stop them.
+// 3 GB; therefore all threads of the context write together, and the caller can stop them.
 #include "base/base.h"
 
 #include <limits.h>

@@ -61,3 +61,13 @@ uint32_t ki_crc32(const ki_crc32_table *table, uint32_t sum, const uint8_t *byte
         sum = sum >> 8 ^ table->sums[0][(sum ^ *bytes++) & 255];
     return ~sum;
 }
+
+uint32_t ki_crc32_long(const ki_asker *asker, const ki_crc32_table *table, const uint8_t *bytes,
+                       size_t size)
+{
+    enum { PART = 1 << 24 };
+    uint32_t sum = 0;
+    for (size_t at = 0; at < size && (!at || ki_may_go_on(asker)); at += PART)
+        sum = ki_crc32(table, sum, bytes + at, size - at < PART ? size - at : PART);
+    return sum;
+}

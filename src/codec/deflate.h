@@ -51,6 +51,10 @@ typedef struct ki_crc32_table {
 } ki_crc32_table;
 void ki_crc32_fill(ki_crc32_table *table);
 uint32_t ki_crc32(const ki_crc32_table *table, uint32_t sum, const uint8_t *bytes, size_t size);
+/// Computes the CRC-32 of the bytes from 0 on, and asks whether to go on after each 2^24 bytes. If
+/// the caller of the library wants to stop, returns the checksum of fewer bytes.
+uint32_t ki_crc32_long(const ki_asker *asker, const ki_crc32_table *table, const uint8_t *bytes,
+                       size_t size);
 /// Returns whether a checksum that was computed from a file's bytes is the one that the file
 /// states. Fuzz targets replace this function, since random changes of a file never give right
 /// checksums.

@@ -11,8 +11,10 @@
 
 /// Greatest number of channels of a part that is read, and of parts of a file; and the greatest
 /// length of the name of an attribute or a channel, which is OpenEXR's limit.
-enum { KI_EXR_MAX_ATTRIBUTES = 1 << 20 }; // in the header of one part
 enum { KI_EXR_MAX_CHANNELS = 1024, KI_EXR_MAX_PARTS = 1024, KI_EXR_MAX_NAME = 255 };
+/// Greatest number of attributes in the header of a part, some of which are looked for several
+/// times.
+enum { KI_EXR_MAX_ATTRIBUTES = 1 << 20 };
 /// Greatest distance of the samples of a channel, in pixels. Lines without samples of a channel
 /// take time too, which this limit keeps proportional to the number of samples.
 enum { KI_EXR_MAX_SAMPLING = 16 };

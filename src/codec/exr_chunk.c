@@ -191,7 +191,7 @@ kiln_result ki_exr_find_chunks(kiln_context *context, const ki_exr_header *heade
                        "%s: its table of %d chunks does not fit into the file's %llu bytes or is "
                        "shorter than the %lld chunks of the picture",
                        name, s.entry_count, (unsigned long long)header->size, (long long)needed);
-    ki_exr_chunk *found = ki_alloc(context, (size_t)needed, sizeof *found);
+    ki_exr_chunk *found = ki_alloc_raw(context, (size_t)needed, sizeof *found);
     if (!found)
         return ki_fail_memory(context, error, name, (size_t)needed * sizeof *found);
     for (int row = 0; row < s.grid.down; row++)
@@ -214,6 +214,9 @@ kiln_result ki_exr_find_chunks(kiln_context *context, const ki_exr_header *heade
 
 // --------------------------------------------------------------------------------------- unpacking
 
+// A chunk may be one pixel, and takes time by itself: PIZ fills tables of 2^16 entries, and DWA
+// compares the channels' names with each other. This time is counted as that of so many
+// decompressed bytes, and as 8 more for each pair of channels.
 enum { FIXED_COST = 1 << 17 };
 
 const uint8_t *ki_exr_chunk_samples(ki_exr_workspace *work, int compression,
@@ -224,8 +227,6 @@ const uint8_t *ki_exr_chunk_samples(ki_exr_workspace *work, int compression,
     if (chunk->packed_size == chunk->size)
         return chunk->packed;
     const method *m = &methods[compression];
-    // What a chunk costs before its first byte, in bytes that would cost as much: a chunk may be one
-    // pixel. PIZ fills tables of 2^16 entries, and DWA compares the channels' names with each other.
     size_t channels = (size_t)chunk->box.channel_count;
     if (!ki_exr_go_on(work, FIXED_COST + 8 * channels * channels)) {
         *result = KILN_ERROR_CANCELLED;

@@ -22,7 +22,7 @@ typedef struct ki_exr_file {
     ki_exr_chunk *chunks;
     int chunk_count;
     uint16_t *dwa_table;
-    ki_asker asker; // of the tasks that decode chunks
+    ki_asker asker; // of the decoding of chunks
     int task_count;
     uint8_t results[KI_EXR_TASKS]; // the kiln_result of each task that decodes chunks
     int failed_at[KI_EXR_TASKS];   // index of the chunk at which each task failed

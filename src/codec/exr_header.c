@@ -108,8 +108,13 @@ static const char *read_channels(kiln_context *context, const attribute *a, ki_e
         *stopped = STARVED;
         return wrong;
     }
-    for (p->channel_count = 0; p->channel_count < count; p->channel_count++)
+    for (p->channel_count = 0; p->channel_count < count; p->channel_count++) {
+        if (p->channel_count % STEP == STEP - 1 && !ki_progress(context, "reading", 0)) {
+            *stopped = CANCELLED;
+            return wrong;
+        }
         read_channel(&r, &p->channels[p->channel_count]);
+    }
     return NULL;
 }
 

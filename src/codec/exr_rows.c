@@ -88,8 +88,7 @@ static kiln_result decode(const void *state, int first, int count, float *rgb, k
                  ? 0
                  : (int)(((bottom < rows ? bottom : rows) + r->chunk_height - 1) / r->chunk_height);
     kiln_result result = KILN_OK;
-    ki_exr_workspace work = {r->file->context, ki_asker_make(r->file->context), NULL,
-                             r->file->dwa_table, 0};
+    ki_exr_workspace work = {r->file->context, r->file->asker, NULL, r->file->dwa_table, 0};
     for (int i = from * r->across; i < to * r->across && result == KILN_OK; i++)
         result = put_chunk(r, &work, i, &picture, error);
     return result;
@@ -136,6 +135,7 @@ static kiln_result read_head(exr_rows *r, size_t size, kiln_error *error)
     ki_exr_file *f = r->file;
     f->context = context;
     f->name = r->input->name;
+    f->asker = ki_asker_make(context);
     if (!ki_file_read_at(&r->input->file, 0, r->head, size))
         return KILN_ERROR_FORMAT;
     kiln_result result = ki_exr_open(f, r->head, size, r->input->layer, false, error);

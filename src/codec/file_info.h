@@ -4,6 +4,10 @@
 
 #include "base/base.h"
 
+/// Greatest length in bytes of a key and its text in the metadata of KTX files that is looked at.
+/// kiln's own have less than 10 kB.
+enum { KI_KTX_TEXT = 1 << 20 };
+
 /// Sets the description of a file of `byte_count` bytes to zero, except for one face, one slice and
 /// -1 for each level's roughness.
 void ki_file_info_clear(kiln_file_info *info, size_t byte_count);

@@ -530,11 +530,11 @@ bool ki_inflate_beginning(const uint8_t *packed, size_t packed_size, uint8_t *pl
 kiln_result ki_inflate_long(const ki_asker *asker, const uint8_t *packed, size_t packed_size,
                             uint8_t *plain, size_t size, bool may_hold_more)
 {
-    // Up to AT_ONCE bytes, packed and plain, take about a tenth of a second. Far more packed bytes
-    // than plain ones may be blocks without content, whose tables take longer.
-    enum { AT_ONCE = 1 << 26, MORE = 1 << 20 };
+    // PLAIN bytes take about a tenth of a second. PACKED bytes may be blocks without content, whose
+    // tables take half a second.
+    enum { PLAIN = 1 << 26, PACKED = 1 << 21 };
     state st;
-    if (packed_size <= AT_ONCE && size <= AT_ONCE - packed_size && packed_size <= size + MORE)
+    if (packed_size <= PACKED && size <= PLAIN)
         return ki_inflate(packed, packed_size, plain, size) ||
                        (may_hold_more && ki_inflate_beginning(packed, packed_size, plain, size))
                    ? KILN_OK

@@ -152,20 +152,21 @@ static void read_segment(ki_jpeg_head *head, int marker, ki_span segment)
         read_frame(head, marker, segment);
 }
 
-// Returns the position of the code of the next marker, which is one byte after its 0xff, or `size`
-// if there is none.
-static size_t find_marker(const uint8_t *bytes, size_t size, size_t at)
+// Advances *at to the code of the next marker, which is one byte after its 0xff, or to `size` if
+// there is none. Returns false if the caller of the library wants to stop.
+static bool find_marker(kiln_context *context, const uint8_t *bytes, size_t size, size_t *at)
 {
-    while (at < size) {
-        const uint8_t *found = memchr(bytes + at, 0xff, size - at);
-        if (!found)
-            return size;
-        at = (size_t)(found - bytes) + 1;
-        if (at < size && bytes[at] && bytes[at] != 0xff &&
-            !(bytes[at] >= RST0 && bytes[at] <= RST7))
-            return at;
+    enum { PART = 1 << 20 };
+    for (int i = 1; *at < size; i++) {
+        if (i % PART == 0 && !ki_go_on(context))
+            return false;
+        const uint8_t *found = memchr(bytes + *at, 0xff, size - *at);
+        *at = found ? (size_t)(found - bytes) + 1 : size;
+        if (*at < size && bytes[*at] && bytes[*at] != 0xff &&
+            !(bytes[*at] >= RST0 && bytes[*at] <= RST7))
+            break;
     }
-    return size;
+    return true;
 }
 
 kiln_result ki_jpeg_read_head(kiln_context *context, const uint8_t *bytes, size_t size,
@@ -176,9 +177,8 @@ kiln_result ki_jpeg_read_head(kiln_context *context, const uint8_t *bytes, size_
     *head = (ki_jpeg_head){.end = size};
     size_t at = 2;
     for (int i = 1; at < size; i++) {
-        if (i % SEGMENTS == 0 && !ki_go_on(context))
+        if ((i % SEGMENTS == 0 && !ki_go_on(context)) || !find_marker(context, bytes, size, &at))
             return ki_fail_cancelled(error, "reading");
-        at = find_marker(bytes, size, at);
         int marker = at < size ? bytes[at++] : EOI;
         if (marker == EOI)
             break;

@@ -229,7 +229,7 @@ static void read_pair(const char *key, const char *value, kiln_file_info *info)
 
 // Reads the key-value pairs of the metadata into `info`. Returns false if the pairs are longer or
 // shorter than `size`, or if the caller asks to stop, which sets *stopped. Pairs whose value is not
-// text are skipped.
+// text, and pairs longer than KI_KTX_TEXT, are skipped.
 static bool read_pairs(kiln_context *context, const uint8_t *bytes, size_t size,
                        kiln_file_info *info, bool *stopped)
 {
@@ -243,7 +243,7 @@ static bool read_pairs(kiln_context *context, const uint8_t *bytes, size_t size,
         if (!pair)
             return false;
         const uint8_t *end = memchr(pair, 0, length);
-        if (end && end + 1 < pair + length && pair[length - 1] == 0)
+        if (end && end + 1 < pair + length && pair[length - 1] == 0 && length <= KI_KTX_TEXT)
             read_pair((const char *)pair, (const char *)end + 1, info);
         ki_read_bytes(&r, (4 - length % 4) % 4);
     }

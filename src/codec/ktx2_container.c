@@ -292,7 +292,8 @@ kiln_result ki_ktx2_unpack(kiln_context *context, const ki_ktx2_source *s, int k
     if (result == KILN_ERROR_CANCELLED)
         return ki_fail_cancelled(error, "reading");
     if (result == KILN_ERROR_MEMORY)
-        return ki_fail_memory(context, error, s->name, level->plain_size);
+        return ki_fail(error, KILN_ERROR_MEMORY,
+                       "out of memory: %s: the zstd library could not allocate its own", s->name);
     return ki_fail(error, KILN_ERROR_FORMAT, "%s: level %d is damaged: %s", s->name, k, fault);
 }
 
@@ -345,7 +346,8 @@ static void read_entry(const char *key, const char *value, kiln_file_info *info)
     }
 }
 
-// Reads the metadata. Entries whose value is not text that ends within the entry are skipped.
+// Reads the metadata. Entries whose value is not text that ends within the entry, and entries longer
+// than KI_KTX_TEXT, are skipped.
 // Returns false if the caller asks to stop.
 static bool read_metadata(kiln_context *context, const uint8_t *bytes, size_t size,
                           kiln_file_info *info)
@@ -359,7 +361,7 @@ static bool read_metadata(kiln_context *context, const uint8_t *bytes, size_t si
         if (!entry)
             return true;
         const uint8_t *end = memchr(entry, 0, length);
-        if (end && end + 1 < entry + length && entry[length - 1] == 0)
+        if (end && end + 1 < entry + length && entry[length - 1] == 0 && length <= KI_KTX_TEXT)
             read_entry((const char *)entry, (const char *)end + 1, info);
         ki_read_bytes(&r, (4 - length % 4) % 4);
     }

@@ -32,6 +32,7 @@ enum { PASSES = 7 };
 typedef struct png_file {
     kiln_context *context;
     const char *name;
+    ki_asker asker;
     ki_reader reader;
     ki_crc32_table crc;
     int width, height, depth, color, channels;
@@ -51,8 +52,11 @@ typedef struct png_file {
     float *table[3], *pixels;
 } png_file;
 
+// Fails because the file is damaged, or because the caller has stopped the reading.
 static kiln_result damaged(const png_file *f, kiln_error *error, const char *what)
 {
+    if (ki_was_stopped(&f->asker))
+        return ki_fail_cancelled(error, "reading");
     return ki_fail(error, KILN_ERROR_FORMAT, "%s: the PNG is damaged: %s", f->name, what);
 }
 
@@ -70,6 +74,7 @@ typedef struct chunk {
     bool intact; // true: the chunk's CRC is right
 } chunk;
 
+// Reads the next chunk. Returns false where the file ends, or if the caller wants to stop.
 static bool next_chunk(png_file *f, chunk *c)
 {
     ki_reader *r = &f->reader;
@@ -80,8 +85,8 @@ static bool next_chunk(png_file *f, chunk *c)
     if (r->failed)
         return false;
     memcpy(c->type, type, 4);
-    c->intact = ki_checksum_agrees(ki_crc32(&f->crc, 0, type, c->size + 4), sum);
-    return true;
+    c->intact = ki_checksum_agrees(ki_crc32_long(&f->asker, &f->crc, type, c->size + 4), sum);
+    return !ki_was_stopped(&f->asker);
 }
 
 static bool is(const chunk *c, const char *type)
@@ -161,6 +166,8 @@ static kiln_result join_data(png_file *f, chunk *c, kiln_error *error)
         f->packed_size += next.size;
         count++;
     }
+    if (ki_was_stopped(&f->asker))
+        return ki_fail_cancelled(error, "reading");
     if (count == 1)
         return KILN_OK;
     f->joined = ki_alloc_raw(f->context, f->packed_size + 1, 1);
@@ -170,10 +177,12 @@ static kiln_result join_data(png_file *f, chunk *c, kiln_error *error)
     size_t at = 0;
     f->reader = first;
     for (next = *c; count > 0 && next.bytes; count--) {
+        if (!ki_may_go_on(&f->asker))
+            return ki_fail_cancelled(error, "reading");
         memcpy(f->joined + at, next.bytes, next.size);
         at += next.size;
-        if (count > 1)
-            next_chunk(f, &next);
+        if (count > 1 && !next_chunk(f, &next))
+            return ki_fail_cancelled(error, "reading");
     }
     return KILN_OK;
 }
@@ -398,9 +407,8 @@ static kiln_result put_all(png_file *f, kiln_error *error)
 
 static kiln_result inflate(const png_file *f, kiln_error *error)
 {
-    ki_asker asker = ki_asker_make(f->context);
     kiln_result result =
-        ki_inflate_long(&asker, f->packed, f->packed_size, f->raw, (size_t)f->raw_size, true);
+        ki_inflate_long(&f->asker, f->packed, f->packed_size, f->raw, (size_t)f->raw_size, true);
     if (result == KILN_ERROR_CANCELLED)
         return ki_fail_cancelled(error, "reading");
     return result == KILN_OK ? result
@@ -510,6 +518,7 @@ kiln_result ki_png_decode_as(kiln_context *context, const uint8_t *bytes, size_t
         return ki_fail_memory(context, error, name, sizeof *f);
     f->context = context;
     f->name = name;
+    f->asker = ki_asker_make(context);
     f->forced = forced;
     f->reader = ki_reader_make(bytes, size);
     ki_crc32_fill(&f->crc);

@@ -16,7 +16,9 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { PROFILE_MOST = 1 << 24 }; // number of bytes of the largest ICC profile that is read
+// Number of bytes of the largest ICC profile that is read, and of the largest chunk that holds one.
+// To inflate a chunk takes half a second at most, if it holds blocks without content.
+enum { PROFILE_MOST = 1 << 24, PACKED_MOST = 1 << 21 };
 
 // The content of one kind of chunk; NULL if the file has no such chunk.
 typedef struct content {
@@ -64,6 +66,7 @@ static kiln_result find_chunks(kiln_context *context, ki_reader *r, found *f,
                                kiln_load_report *report, kiln_error *error)
 {
     enum { CHUNKS = 1 << 14 }; // number of chunks after which the caller is asked whether to go on
+    ki_asker asker = ki_asker_make(context);
     ki_crc32_table table;
     ki_crc32_fill(&table);
     ki_read_bytes(r, 8);
@@ -75,12 +78,15 @@ static kiln_result find_chunks(kiln_context *context, ki_reader *r, found *f,
         if (!head || !sum)
             return KILN_OK;
         before = before && memcmp(head + 4, "IDAT", 4) != 0;
-        if (i % CHUNKS == 0 && !ki_go_on(context))
+        if (i % CHUNKS == 0 && !ki_may_go_on(&asker))
             return ki_fail_cancelled(error, "reading");
         content *place = place_of(f, head + 4, data, size);
         if (!place || place->bytes || (!before && place != &f->exif))
             continue;
-        if (ki_checksum_agrees(ki_crc32(&table, 0, head + 4, size + 4), u32_at(sum)))
+        uint32_t computed = ki_crc32_long(&asker, &table, head + 4, size + 4);
+        if (ki_was_stopped(&asker))
+            return ki_fail_cancelled(error, "reading");
+        if (ki_checksum_agrees(computed, u32_at(sum)))
             *place = (content){data, size};
         else
             ki_note(report, KILN_NOTE_ASSUMPTION, true,
@@ -136,7 +142,7 @@ static uint8_t *unpack_profile(kiln_context *context, const found *f, size_t *si
     const uint8_t *bytes = f->iccp.bytes, *end = memchr(bytes, 0, f->iccp.size);
     size_t before = end ? (size_t)(end - bytes) + 2 : f->iccp.size;
     uint8_t first[4];
-    if (before >= f->iccp.size || end[1] ||
+    if (before >= f->iccp.size || f->iccp.size - before > PACKED_MOST || end[1] ||
         !ki_inflate_beginning(bytes + before, f->iccp.size - before, first, sizeof first))
         return NULL;
     *size = u32_at(first);

@@ -21,13 +21,18 @@ struct ki_row_file {
 
 // -------------------------------------------------------------------------------------------- rows
 
+enum { ROWS = 64 }; // number of rows after which the caller is asked whether to go on
+
 // Decodes rows, converts their colours and mends them. With `weigh`, sums the light of the rows.
 static kiln_result read_rows(ki_row_file *f, int first, int count, bool weigh, float *rgb,
                              kiln_error *error)
 {
     const ki_row_decoder *d = &f->decoder;
+    ki_asker asker = ki_asker_make(f->input.context);
     kiln_result result = d->decode(d->state, first, count, rgb, error);
     for (int i = 0; i < count && result == KILN_OK; i++, rgb += 6 * (size_t)d->size) {
+        if (i % ROWS == ROWS - 1 && !ki_may_go_on(&asker))
+            return ki_fail_cancelled(error, "reading");
         ki_row_finds *finds = &f->finds[first + i];
         bool weighs = weigh || finds->weighed || atomic_load(&f->is_negative);
         if (d->converts)

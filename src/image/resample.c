@@ -182,7 +182,7 @@ int ki_resample_reach(const ki_resample_plan *plan)
     return most;
 }
 
-void ki_resample_band(kiln_context *context, const ki_resample_plan *plan, ki_buffer *buffer,
+bool ki_resample_band(kiln_context *context, const ki_resample_plan *plan, ki_buffer *buffer,
                       const ki_rows rows[2], int from, int to, float *target)
 {
     bool gathers = plan->method == KI_RESAMPLE_GATHER;
@@ -192,10 +192,8 @@ void ki_resample_band(kiln_context *context, const ki_resample_plan *plan, ki_bu
                          .rows = {rows[0], rows[1]},
                          .from = from,
                          .to = to};
-    if (gathers)
-        ki_parallel_for(context, count_chunks(plan), ki_resample_gather, &r);
-    else
-        ki_parallel_for(context, plan->size, ki_resample_separable, &r);
+    return gathers ? ki_parallel_steps(context, NULL, count_chunks(plan), ki_resample_gather, &r)
+                   : ki_parallel_steps(context, NULL, plan->size, ki_resample_separable, &r);
 }
 
 void ki_resample_end_bands(kiln_context *context, const ki_resample_plan *plan, ki_buffer *buffer,

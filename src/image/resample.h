@@ -37,8 +37,9 @@ int ki_resample_reach(const ki_resample_plan *plan);
 /// Computes all texels whose last source row has a depth from `from` to `to` - 1, with the same
 /// bits as ki_resample_execute. rows[0] holds the rows from the north pole, rows[1] those from the
 /// south pole, as many of them up to this depth as ki_resample_reach says. `buffer` was reserved
-/// for the plan and keeps its content from the first band to ki_resample_end_bands.
-void ki_resample_band(kiln_context *context, const ki_resample_plan *plan, ki_buffer *buffer,
+/// for the plan and keeps its content from the first band to ki_resample_end_bands. Returns false
+/// if the caller of the library stops the work.
+bool ki_resample_band(kiln_context *context, const ki_resample_plan *plan, ki_buffer *buffer,
                       const ki_rows rows[2], int from, int to, float *target);
 /// Completes the target after all bands.
 void ki_resample_end_bands(kiln_context *context, const ki_resample_plan *plan, ki_buffer *buffer,

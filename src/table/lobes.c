@@ -306,7 +306,8 @@ static kiln_result fit(kiln_context *context, fill_job *job, kiln_error *error)
     const kiln_table_def *def = job->def;
     if (!ki_progress(context, "table", 0))
         return ki_fail_cancelled(error, "table");
-    ki_parallel_workers(context, def->width * def->height, make_target, job);
+    if (!ki_parallel_workers(context, def->width * def->height, make_target, job))
+        return ki_fail_cancelled(error, "table");
     int steps = def->width + def->height;
     double total = steps + 2.0 * SWEEPS * def->height * 0.3;
     for (job->step = 0; job->step < steps; job->step++) {

@@ -105,8 +105,8 @@ kiln_result kiln_lobes_errors(kiln_context *context, const kiln_table *table, co
     job.covariance = ki_alloc_raw(context, threads, room);
     if (!result && (!job.nodes || !job.covariance))
         result = ki_fail_memory(context, error, "expected errors of lookups", threads * room);
-    if (!result)
-        ki_parallel_workers(context, count, judge, &job);
+    if (!result && !ki_parallel_workers(context, count, judge, &job))
+        result = ki_fail_cancelled(error, "table");
     ki_free(job.covariance);
     ki_free(job.nodes);
     ki_lobes_chain_free(&job.chain);
