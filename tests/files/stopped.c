@@ -529,6 +529,51 @@ static void inflating_can_be_stopped(void **state)
     ki_writer_free(&w);
 }
 
+// A grey PNG of 4 x 2 pixels with `more` bytes in a chunk that kiln does not know, and `blocks`
+// stored blocks without content before the pixels.
+static void put_long_png(ki_writer *w, size_t more, size_t blocks)
+{
+    enum { STORED = 5, ROWS = 10 };
+    static const uint8_t head[13] = {0, 0, 0, 4, 0, 0, 0, 2, 8};
+    static const uint8_t last[5] = {1, ROWS, 0, 0xff - ROWS, 0xff};
+    size_t size = 2 + STORED * blocks + sizeof last + ROWS + 4;
+    uint8_t *unknown = calloc(more + 1, 1), *packed = calloc(size, 1), *at = packed + 2;
+    assert_true(unknown && packed);
+    memcpy(packed, "\x78\x01", 2);
+    for (size_t i = 0; i < blocks; i++, at += STORED)
+        memset(at + 3, 0xff, 2);
+    memcpy(at, last, sizeof last);
+    at += sizeof last + ROWS;
+    put_u32(at, ki_adler32(1, at - ROWS, ROWS));
+    ki_write(w, "\x89PNG\r\n\x1a\n", 8);
+    put_chunk(w, "IHDR", head, sizeof head);
+    put_chunk(w, "kiLn", unknown, (uint32_t)more);
+    put_chunk(w, "IDAT", packed, (uint32_t)size);
+    put_chunk(w, "IEND", NULL, 0);
+    free(unknown);
+    free(packed);
+}
+
+// Checksums of chunks are computed in parts of 2^24 bytes; the caller is asked between blocks of
+// deflate too, which may have no content.
+static void long_chunks_can_be_stopped(void **state)
+{
+    (void)state;
+    static const size_t sizes[3][2] = {{0, 0}, {(3 << 24) + 1, 0}, {0, 1 << 20}};
+    kiln_context_def def = {.thread_count = 1, .progress = count_down, .progress_user = &reports};
+    CHECK_OK(kiln_context_create(&def, &own, &error));
+    int asked[3];
+    for (int i = 0; i < 3; i++) {
+        ki_writer w = {.context = context};
+        put_long_png(&w, sizes[i][0], sizes[i][1]);
+        asked[i] = count_questions(&reports, decode, &w);
+        ki_writer_free(&w);
+    }
+    assert_true(asked[1] >= asked[0] + 3);
+    assert_true(asked[2] >= asked[0] + 10);
+    kiln_context_destroy(own);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -537,6 +582,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(a_stop_reaches_other_threads, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_stopped_bake_does_not_begin_again, set_up, tear_down),
         cmocka_unit_test_setup_teardown(inflating_can_be_stopped, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(long_chunks_can_be_stopped, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

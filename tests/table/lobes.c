@@ -321,10 +321,58 @@ static int end(void **state)
     return tear_down_folder(state);
 }
 
+// A progress callback that says at one of its calls that the work is to stop, and at all others
+// that it may go on.
+typedef struct once {
+    int calls, stop_at;
+} once;
+
+static bool stop_once(void *user, const char *stage, double fraction)
+{
+    once *o = user;
+    (void)stage, (void)fraction;
+    return ++o->calls != o->stop_at;
+}
+
+// Work that was told once to stop ends there, on two threads too, and neither goes on with numbers
+// that were not computed nor returns them.
+static void one_stop_is_enough(void **state)
+{
+    (void)state;
+    enum { MOST = 12, POINTS = 2000 };
+    once o;
+    kiln_context *own;
+    kiln_table table;
+    static double nov[POINTS], roughness[POINTS];
+    static kiln_lobes_error errors[POINTS];
+    kiln_table_def def = {.kind = KILN_TABLE_LOBES, .width = 32, .height = 32, .corners = true};
+    kiln_context_def how = {.thread_count = 2, .progress = stop_once, .progress_user = &o};
+    CHECK_OK(kiln_context_create(&how, &own, &error));
+    for (int at = 1; at < MOST; at++) {
+        o = (once){.stop_at = at};
+        assert_int_equal(kiln_table_create(own, &def, &table, &error), KILN_ERROR_CANCELLED);
+        assert_int_equal(o.calls, at);
+    }
+    o = (once){0};
+    CHECK_OK(kiln_table_create(own, &def, &table, &error));
+    for (int i = 0; i < POINTS; i++) {
+        nov[i] = (i % 40 + 0.5) / 40;
+        roughness[i] = 0.2 + 0.7 * i / POINTS;
+    }
+    for (int at = 1; at < 4; at++) {
+        o = (once){.stop_at = at};
+        kiln_result result = kiln_lobes_errors(own, &table, nov, roughness, POINTS, errors, &error);
+        assert_int_equal(result, o.calls < at ? KILN_OK : KILN_ERROR_CANCELLED);
+    }
+    kiln_table_free(&table);
+    kiln_context_destroy(own);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bands_to_two_are_exact),
+        cmocka_unit_test(one_stop_is_enough),
         cmocka_unit_test(weights_are_not_negative),
         cmocka_unit_test(errors_fall_with_taps),
         cmocka_unit_test(errors_between_texels_are_those_at_texels),
