@@ -107,6 +107,8 @@ kiln_result kiln_lobes_errors(kiln_context *context, const kiln_table *table, co
         result = ki_fail_memory(context, error, "expected errors of lookups", threads * room);
     if (!result && !ki_parallel_workers(context, count, judge, &job))
         result = ki_fail_cancelled(error, "table");
+    for (int i = 0; i < count && result; i++)
+        errors[i] = (kiln_lobes_error){0};
     ki_free(job.covariance);
     ki_free(job.nodes);
     ki_lobes_chain_free(&job.chain);

@@ -363,6 +363,8 @@ static void one_stop_is_enough(void **state)
         o = (once){.stop_at = at};
         kiln_result result = kiln_lobes_errors(own, &table, nov, roughness, POINTS, errors, &error);
         assert_int_equal(result, o.calls < at ? KILN_OK : KILN_ERROR_CANCELLED);
+        for (int i = 0; i < POINTS && result; i++)
+            assert_true(errors[i].table == 0 && errors[i].bent == 0 && errors[i].straight == 0);
     }
     kiln_table_free(&table);
     kiln_context_destroy(own);
