@@ -5,7 +5,7 @@
 
 typedef struct stream {
     uint8_t *bytes;
-    size_t size;
+    size_t size, room;
 } stream;
 
 static int64_t write_stream(exr_const_context_t context, void *data, const void *bytes,
@@ -14,11 +14,13 @@ static int64_t write_stream(exr_const_context_t context, void *data, const void 
     (void)context;
     (void)error;
     stream *s = data;
-    if (offset + size > s->size) {
-        s->bytes = realloc(s->bytes, offset + size);
+    if (offset + size > s->room) {
+        s->room = 2 * (size_t)(offset + size);
+        s->bytes = realloc(s->bytes, s->room);
         assert_non_null(s->bytes);
-        s->size = offset + size;
     }
+    if (offset + size > s->size)
+        s->size = offset + size;
     memcpy(s->bytes + offset, bytes, size);
     return (int64_t)size;
 }
