@@ -55,9 +55,8 @@ void *ki_alloc(kiln_context *context, size_t count, size_t size);
 void *ki_alloc_raw(kiln_context *context, size_t count, size_t size);
 /// Allocates as ki_alloc does, for memory as large as a picture: the context's threads zero it
 /// together, and the caller may stop them. May be called only on the thread on which the library
-/// was called. Sets *memory
-/// to the memory, or to NULL on failure. Fails with the message of ki_fail_memory, which names
-/// `what`, or with that of ki_fail_cancelled.
+/// was called. Sets *memory to the memory, or to NULL on failure. Fails with the message of
+/// ki_fail_memory, which names `what`, or with that of ki_fail_cancelled.
 kiln_result ki_alloc_zeroed(kiln_context *context, size_t count, size_t size, const char *what,
                             void **memory, kiln_error *error);
 /// Frees memory from one of these functions; the memory itself records its context. `memory` may

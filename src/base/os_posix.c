@@ -346,8 +346,9 @@ void ki_os_wait(ki_os_condition *condition, ki_os_mutex *mutex)
 
 void ki_os_wait_briefly(ki_os_condition *condition, ki_os_mutex *mutex)
 {
-    // A condition's default clock is the only one on every system. If it is set forward while a
-    // thread waits, the wait ends early; if it is set back, the wait may last until it is signalled.
+    // Every system has a condition's default clock, and some have no other. If it is set forward
+    // while a thread waits, the wait ends early; if it is set back, the wait may last until the
+    // condition is signalled.
     struct timespec end;
     clock_gettime(CLOCK_REALTIME, &end);
     end.tv_nsec += 50 * 1000 * 1000;

@@ -1,5 +1,5 @@
-// Decompression of zlib's format (RFC 1950, RFC 1951), for EXR, PNG and KTX2 files. In: zlib data that
-// are not trusted. Out: exactly as many bytes as the caller asks for. The code here lets kiln be
+// Decompression of zlib's format (RFC 1950, RFC 1951), for EXR, PNG and KTX2 files. In: zlib data
+// that are not trusted. Out: exactly as many bytes as the caller asks for. The code here lets kiln be
 // built with nothing but a C compiler. If kiln is built with libdeflate (KILN_DEFLATE), that
 // library decompresses whole buffers, which is faster and gives the same bytes. It cannot be
 // stopped, so that long data are left to the code here.

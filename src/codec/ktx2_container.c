@@ -346,9 +346,8 @@ static void read_entry(const char *key, const char *value, kiln_file_info *info)
     }
 }
 
-// Reads the metadata. Entries whose value is not text that ends within the entry, and entries longer
-// than KI_KTX_TEXT, are skipped.
-// Returns false if the caller asks to stop.
+// Reads the metadata. Entries whose value is not text that ends within the entry, and entries
+// longer than KI_KTX_TEXT, are skipped. Returns false if the caller asks to stop.
 static bool read_metadata(kiln_context *context, const uint8_t *bytes, size_t size,
                           kiln_file_info *info)
 {

@@ -51,21 +51,19 @@ kiln_result ki_ktx2_check_blocks(kiln_context *context, const ki_ktx2_source *s,
 {
     if (!texels->pixel || texels->pixel->format != KILN_FORMAT_UASTC)
         return KILN_OK;
-    size_t count = size / KI_BLOCK_BYTES, unknown = 0, part = 0;
-    do {
+    size_t count = size / KI_BLOCK_BYTES, part;
+    for (size_t at = 0; at < count; at += part) {
         if (!ki_go_on(context))
             return ki_fail_cancelled(error, "reading");
-        part = count - unknown < KI_ASK_EVERY ? count - unknown : KI_ASK_EVERY;
-        size_t known = ki_uastc_first_unknown(plain + KI_BLOCK_BYTES * unknown, part);
-        unknown += known;
-        part -= known; // 0 if all blocks of this part are known
-    } while (!part && unknown < count);
-    if (unknown == count)
-        return KILN_OK;
-    return ki_fail(error, KILN_ERROR_UNSUPPORTED,
-                   "%s: block %zu of %zu in level %d is not in one of the 24 modes of UASTC HDR "
-                   "4x4; kiln reads no other ASTC, expand the file first",
-                   s->name, unknown, count, level);
+        part = count - at < KI_ASK_EVERY ? count - at : KI_ASK_EVERY;
+        size_t known = ki_uastc_first_unknown(plain + KI_BLOCK_BYTES * at, part);
+        if (known < part)
+            return ki_fail(error, KILN_ERROR_UNSUPPORTED,
+                           "%s: block %zu of %zu in level %d is not in one of the 24 modes of "
+                           "UASTC HDR 4x4; kiln reads no other ASTC, expand the file first",
+                           s->name, at + known, count, level);
+    }
+    return KILN_OK;
 }
 
 kiln_result ki_ktx2_turn(kiln_context *context, const kiln_file_info *info, float *rgb, int width,

@@ -16,9 +16,7 @@
 #include <stdio.h>
 #include <string.h>
 
-// Number of bytes of the largest ICC profile that is read, and of the largest chunk that holds one.
-// To inflate a chunk takes half a second at most, if it holds blocks without content.
-enum { PROFILE_MOST = 1 << 24, PACKED_MOST = 1 << 21 };
+enum { PROFILE_MOST = 1 << 24 }; // number of bytes of the largest ICC profile that is read
 
 // The content of one kind of chunk; NULL if the file has no such chunk.
 typedef struct content {
@@ -136,31 +134,40 @@ static kiln_result read_cicp(const found *f, const char *name, ki_png_meaning *m
 }
 
 // Decompresses the ICC profile in the chunk iCCP, which is a name, a NUL, the method 0 and zlib
-// data. The first four bytes of a profile are its size. Returns NULL if the chunk is damaged.
-static uint8_t *unpack_profile(kiln_context *context, const found *f, size_t *size)
+// data. The first four bytes of a profile are its size. Returns NULL if the chunk is damaged,
+// or if the caller wants to stop.
+static uint8_t *unpack_profile(const ki_asker *asker, const found *f, size_t *size)
 {
     const uint8_t *bytes = f->iccp.bytes, *end = memchr(bytes, 0, f->iccp.size);
     size_t before = end ? (size_t)(end - bytes) + 2 : f->iccp.size;
     uint8_t first[4];
-    if (before >= f->iccp.size || f->iccp.size - before > PACKED_MOST || end[1] ||
-        !ki_inflate_beginning(bytes + before, f->iccp.size - before, first, sizeof first))
+    if (before >= f->iccp.size || end[1])
+        return NULL;
+    const uint8_t *packed = bytes + before;
+    size_t packed_size = f->iccp.size - before;
+    if (ki_inflate_long(asker, packed, packed_size, first, sizeof first, true) != KILN_OK)
         return NULL;
     *size = u32_at(first);
     if (*size < sizeof first || *size > PROFILE_MOST || *size / 1032 > f->iccp.size)
         return NULL;
-    uint8_t *profile = ki_alloc_raw(context, *size, 1);
-    if (profile && !ki_inflate(bytes + before, f->iccp.size - before, profile, *size)) {
+    uint8_t *profile = ki_alloc_raw(asker->context, *size, 1);
+    if (profile && ki_inflate_long(asker, packed, packed_size, profile, *size, false) != KILN_OK) {
         ki_free(profile);
         return NULL;
     }
     return profile;
 }
 
-static void read_iccp(kiln_context *context, const found *f, ki_png_meaning *meaning,
-                      kiln_load_report *report)
+static kiln_result read_iccp(kiln_context *context, const found *f, ki_png_meaning *meaning,
+                             kiln_load_report *report, kiln_error *error)
 {
     size_t size = 0;
-    uint8_t *profile = unpack_profile(context, f, &size);
+    ki_asker asker = ki_asker_make(context);
+    uint8_t *profile = unpack_profile(&asker, f, &size);
+    if (ki_was_stopped(&asker)) {
+        ki_free(profile);
+        return ki_fail_cancelled(error, "reading");
+    }
     if (profile) {
         ki_icc_read(profile, size, &meaning->color, report);
         meaning->name = "icc";
@@ -168,6 +175,7 @@ static void read_iccp(kiln_context *context, const found *f, ki_png_meaning *mea
         ki_note(report, KILN_NOTE_ASSUMPTION, true,
                 "the ICC profile in the chunk iCCP is damaged, so sRGB was assumed");
     }
+    return KILN_OK;
 }
 
 static void read_gamma(const found *f, ki_png_meaning *meaning, kiln_load_report *report)
@@ -236,10 +244,8 @@ kiln_result ki_png_read_meaning(kiln_context *context, const uint8_t *bytes, siz
         return KILN_OK;
     if (f.cicp.bytes)
         return read_cicp(&f, name, meaning, report, error);
-    if (f.iccp.bytes) {
-        read_iccp(context, &f, meaning, report);
-        return KILN_OK;
-    }
+    if (f.iccp.bytes)
+        return read_iccp(context, &f, meaning, report, error);
     if (f.srgb.bytes)
         return KILN_OK;
     if (f.gama.bytes)

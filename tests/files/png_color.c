@@ -532,6 +532,45 @@ static void icc_profiles_of_matrices_and_curves_are_honoured(void **state)
                   "values were converted to linear Rec. 709 by the ICC profile \"table\"");
 }
 
+// A profile of 3 MB, which do not become fewer by compression. Data of more than 2 MB are inflated
+// another way than shorter ones.
+static void large_profiles_are_honoured(void **state)
+{
+    enum { SIZE = 3 << 20 };
+    static const double square[] = {2};
+    profile p;
+    kiln_note note;
+    ki_decoded decoded;
+    uint32_t random = 1;
+    size_t bound = 5 + ki_deflate_bound(SIZE);
+    uint8_t *plain = malloc(SIZE), *data = malloc(bound);
+    ki_deflater *deflater = ki_deflater_create(context);
+    ki_writer w = make(KI_PNG_PLAIN16);
+    (void)state;
+    assert_true(plain && data && deflater);
+    begin_profile(&p, "RGB ", "large");
+    add_columns(&p, p3_columns);
+    add_parametric(&p, 0, square, 1);
+    for (size_t i = 0; i < SIZE; i++)
+        plain[i] = (uint8_t)((random = random * 1664525 + 1013904223) >> 24);
+    memcpy(plain, p.bytes, p.size);
+    put_u32(plain, SIZE);
+    memcpy(data, "icc\0\0", 5);
+    size_t size = ki_deflate(deflater, plain, SIZE, data + 5, bound - 5);
+    assert_true(size > 1 << 21);
+    add_chunk(&w, "iCCP", data, size + 5);
+    CHECK_OK(ki_decode(context, w.bytes, w.size, "a.png", &decoded, NULL, &error));
+    assert_int_equal(decoded.report.note_count, 1);
+    assert_true(kiln_load_report_note(&decoded.report, 0, &note));
+    assert_string_equal(note.text,
+                        "values were converted to linear Rec. 709 by the ICC profile \"large\"");
+    ki_decoded_free(&decoded);
+    ki_writer_free(&w);
+    ki_deflater_free(deflater);
+    free(plain);
+    free(data);
+}
+
 // The profile of sRGB itself gives the bits of a file with the chunk sRGB, and no note.
 static void the_profile_of_srgb_changes_nothing(void **state)
 {
@@ -775,6 +814,7 @@ int main(void)
         cmocka_unit_test(unknown_colours_are_refused),
         cmocka_unit_test(useless_chunks_are_told_of),
         cmocka_unit_test(icc_profiles_of_matrices_and_curves_are_honoured),
+        cmocka_unit_test(large_profiles_are_honoured),
         cmocka_unit_test(the_profile_of_srgb_changes_nothing),
         cmocka_unit_test(a_tag_cicp_goes_before_curves),
         cmocka_unit_test(profiles_that_kiln_cannot_use_count_as_srgb),
