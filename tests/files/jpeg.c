@@ -6,6 +6,7 @@
 
 #include "kit/context.h"
 #include "kit/notes.h"
+#include "kit/stopping.h"
 
 #include <jpeglib.h>
 
@@ -105,25 +106,14 @@ static double srgb(double x)
     return x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4);
 }
 
-// A progress callback that counts its calls, and lets the `left`-th stop the work.
-typedef struct counter {
-    int calls, left;
-} counter;
-
-static bool count(void *user, const char *stage, double fraction)
-{
-    counter *c = user;
-    (void)stage, (void)fraction;
-    return ++c->calls != c->left;
-}
-
-// Decodes a file of `samples` samples and checks that they are those of the witness in `wanted`,
-// as libjpeg-turbo gives them. Returns the number of questions whether to go on.
+// Decodes a file and checks that its samples, as many as `samples` says, are those in `wanted`,
+// which libjpeg-turbo itself gave. Then stops the decoding at some of its questions whether to go
+// on, and returns the number of these questions.
 static int check_samples(const ki_writer *w, const uint8_t *wanted, size_t samples)
 {
-    counter c = {0};
+    once c = {0};
     kiln_context *own;
-    kiln_context_def def = {.thread_count = 1, .progress = count, .progress_user = &c};
+    kiln_context_def def = {.thread_count = 1, .progress = stop_once, .progress_user = &c};
     ki_decoded decoded;
     kiln_file_info info;
     CHECK_OK(kiln_context_create(&def, &own, &error));
@@ -132,11 +122,11 @@ static int check_samples(const ki_writer *w, const uint8_t *wanted, size_t sampl
         assert_float_equal(decoded.image.pixels[i], srgb(wanted[i] / 255.0), 1e-6);
     ki_decoded_free(&decoded);
     int calls = c.calls;
-    for (c = (counter){.left = 1}; c.left <= calls;
-         c = (counter){.left = c.left + 1 + c.left / 8}) {
+    for (int stop = 1; stop <= calls; stop += 1 + stop / 8) {
+        c = (once){.stop_at = stop};
         assert_int_equal(ki_decode(own, w->bytes, w->size, "a.jpg", &decoded, &info, &error),
                          KILN_ERROR_CANCELLED);
-        assert_int_equal(c.calls, c.left);
+        assert_int_equal(c.calls, stop);
     }
     kiln_context_destroy(own);
     return calls;

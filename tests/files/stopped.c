@@ -405,30 +405,29 @@ static void large_tiles_can_be_stopped(void **state)
     kiln_context_destroy(own);
 }
 
-// A progress callback that says once that the work is to stop, and then that it may go on.
-typedef struct once {
-    int at, calls;
+// Work that is told once to stop, on the thread that called the library.
+typedef struct watched {
+    once once;
     pthread_t caller;
-} once;
+} watched;
 
-static bool stop_once(void *user, const char *stage, double fraction)
+static bool stop_on_caller(void *user, const char *stage, double fraction)
 {
-    once *o = user;
-    (void)stage, (void)fraction;
+    watched *o = user;
     assert_true(pthread_equal(o->caller, pthread_self()));
-    return o->calls++ != o->at;
+    return stop_once(&o->once, stage, fraction);
 }
 
 // Does work again and again, and stops it once: at its first question, at its second, and so on.
 // Returns the number of questions of the whole work.
-static int stop_at_each(once *o, kiln_result (*work)(const void *data), const void *data)
+static int stop_at_each(watched *o, kiln_result (*work)(const void *data), const void *data)
 {
-    for (int at = 0;; at++) {
-        *o = (once){.at = at, .caller = pthread_self()};
+    for (int at = 1;; at++) {
+        *o = (watched){.once.stop_at = at, .caller = pthread_self()};
         kiln_result result = work(data);
-        if (o->calls <= at) {
+        if (o->once.calls < at) {
             CHECK_OK(result);
-            return at;
+            return at - 1;
         }
         assert_int_equal(result, KILN_ERROR_CANCELLED);
     }
@@ -439,9 +438,9 @@ static int stop_at_each(once *o, kiln_result (*work)(const void *data), const vo
 static void a_stop_reaches_other_threads(void **state)
 {
     (void)state;
-    once o;
+    watched o;
     ki_writer w = {.context = context};
-    kiln_context_def def = {.thread_count = 2, .progress = stop_once, .progress_user = &o};
+    kiln_context_def def = {.thread_count = 2, .progress = stop_on_caller, .progress_user = &o};
     put_tile(&w, TILE_WIDTH, TILE_HEIGHT / 2, EXR_COMPRESSION_ZIP);
     assert_false(w.failed);
     CHECK_OK(kiln_context_create(&def, &own, &error));
@@ -464,9 +463,9 @@ static kiln_result bake_file(const void *path)
 static void a_stopped_bake_does_not_begin_again(void **state)
 {
     (void)state;
-    once o;
+    watched o;
     ki_writer w = {.context = context};
-    kiln_context_def def = {.thread_count = 1, .progress = stop_once, .progress_user = &o};
+    kiln_context_def def = {.thread_count = 1, .progress = stop_on_caller, .progress_user = &o};
     put_holes_exr(&w);
     assert_false(w.failed);
     folder_make();

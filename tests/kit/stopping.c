@@ -11,6 +11,14 @@ bool count_down(void *user, const char *stage, double fraction)
     return c->left-- > 0;
 }
 
+bool stop_once(void *user, const char *stage, double fraction)
+{
+    once *o = user;
+    assert_non_null(stage);
+    assert_true(fraction >= 0 && fraction <= 1);
+    return ++o->calls != o->stop_at;
+}
+
 int count_questions(countdown *c, kiln_result (*work)(const void *data), const void *data)
 {
     *c = (countdown){.left = 1 << 30};

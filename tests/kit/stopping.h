@@ -15,6 +15,15 @@ typedef struct countdown {
 /// and that the fraction is in [0, 1].
 bool count_down(void *user, const char *stage, double fraction);
 
+/// Work that is told once to stop, and again to go on if it asks further.
+typedef struct once {
+    int stop_at; // the report that stops the work, counted from 1; 0 for none
+    int calls;   // number of reports until now
+} once;
+
+/// A progress callback of a context whose user pointer is a `once`.
+bool stop_once(void *user, const char *stage, double fraction);
+
 /// Does `work`, which must succeed with a context of the countdown `c`, again and again, and stops
 /// it at its first question, at its second, and so on. Returns the number of its questions. Work in
 /// steps asks once more after each twentieth of a second, so that on a busy machine it may ask more

@@ -4,6 +4,7 @@
 #include "table/table_text.h"
 
 #include "kit/context.h"
+#include "kit/stopping.h"
 
 #include <math.h>
 
@@ -319,19 +320,6 @@ static int end(void **state)
     for (int taps = 1; taps <= 3; taps++)
         kiln_table_free(&tables[taps]);
     return tear_down_folder(state);
-}
-
-// A progress callback that says at one of its calls that the work is to stop, and at all others
-// that it may go on.
-typedef struct once {
-    int calls, stop_at;
-} once;
-
-static bool stop_once(void *user, const char *stage, double fraction)
-{
-    once *o = user;
-    (void)stage, (void)fraction;
-    return ++o->calls != o->stop_at;
 }
 
 // Work that was told once to stop ends there, on two threads too, and neither goes on with numbers
