@@ -114,11 +114,10 @@ static inline const float *ki_resample_rows(const ki_resample_run *run, int firs
     size_t line = 6 * (size_t)size;
     if (run->source)
         return run->source + line * (size_t)first;
-    bool south = 2 * first + count > size;
-    int depth = south ? size - 1 - first : first + count - 1;
+    int depth = ki_stencil_depth(first, count, size);
     if (depth < run->from || depth >= run->to)
         return NULL;
-    const ki_rows *rows = &run->rows[south];
+    const ki_rows *rows = &run->rows[2 * first + count > size];
     return rows->rgb + line * (size_t)(first - rows->first);
 }
 /// Sets `fine_area`, the solid angles by which the method gather averages a finer map.

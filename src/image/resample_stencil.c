@@ -357,35 +357,42 @@ ALWAYS_INLINE void gather_place(const ki_stencil_grid *grid, int chunk,
     } while (cursor_next(&c));
 }
 
-// Returns whether some rows from `low` to `high` - 1 have a depth in the band of a run, measured
-// from any pole.
-static bool meets_band(const ki_resample_run *run, int low, int high)
+// Returns the number of stencils of a chunk that have a depth below `depth`.
+static size_t count_above(const ki_stencil_grid *grid, const ki_stencil_chunk *chunk, int depth)
 {
-    int size = run->plan->source_size;
-    return (low < run->to && high > run->from) || (size - high < run->to && size - low > run->from);
+    size_t low = 0, high = chunk->stencil_count;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        const ki_stencil *s = &chunk->stencils[chunk->by_depth[middle].index];
+        if (ki_stencil_depth(s->row, s->rows, grid->height) < depth)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
 }
 
-// Sums the stencils of a chunk, at one place of the map, that belong to the band of the run.
-static void gather_band(const ki_resample_run *run, const ki_stencil_grid *grid, int chunk,
-                        const ki_stencil_place *place)
+// Sums the stencils of a chunk, at one place of the map, that belong to the band of the run: those
+// from `first` to `end` - 1 in the order of their depths.
+ALWAYS_INLINE void gather_band(const ki_resample_run *run, const ki_stencil_grid *grid, int chunk,
+                               const ki_stencil_place *place, bool mirror, size_t first, size_t end)
 {
     const ki_stencil_chunk *stencils = &grid->chunks[chunk];
     int height = grid->height, width = 2 * height;
-    ptrdiff_t line = 3 * (ptrdiff_t)width;
-    int low = place->flip ? height - stencils->end_row : stencils->first_row;
-    if (!meets_band(run, low, low + stencils->end_row - stencils->first_row))
-        return;
-    cursor c = cursor_start(grid, chunk, place);
-    do {
-        const ki_stencil *s = c.stencil;
-        int row = place->flip ? height - s->row - s->rows : s->row;
-        const float *source = ki_resample_rows(run, row, s->rows);
+    ptrdiff_t line = 3 * (ptrdiff_t)width, across = place->across, down = place->down;
+    bool flip = place->flip;
+    for (size_t k = first; k < end; k++) {
+        const ki_stencil_entry *e = &stencils->by_depth[k];
+        const ki_stencil *s = &stencils->stencils[e->index];
+        const float *source =
+            ki_resample_rows(run, flip ? height - s->row - s->rows : s->row, s->rows);
         if (!source)
             continue;
-        source += place->flip ? line * (s->rows - 1) : 0;
-        gather_texel(s, c.weights, source, place->flip ? -line : line, width,
-                     first_column(s, place, width), place->mirror, run->fine + 3 * c.texel);
-    } while (cursor_next(&c));
+        source += flip ? line * (s->rows - 1) : 0;
+        gather_texel(s, stencils->weights + 4 * (size_t)e->blocks, source, flip ? -line : line,
+                     width, first_column(s, place, width), mirror,
+                     run->fine + 3 * (place->base + e->i * across + e->j * down));
+    }
 }
 
 int ki_resample_gather_reach(const ki_resample_plan *plan)
@@ -409,10 +416,16 @@ void ki_resample_gather(void *data, int index)
     const ki_stencil_grid *grid = plan->grid;
     while (index >= grid->chunk_count)
         index -= (grid++)->chunk_count;
+    // flipped stencils have the same depths, so that the same ones belong to the band everywhere
+    bool bands = !run->source;
+    size_t first = bands ? count_above(grid, &grid->chunks[index], run->from) : 0;
+    size_t end = bands ? count_above(grid, &grid->chunks[index], run->to) : 0;
     for (int k = 0; k < grid->place_count; k++) {
         const ki_stencil_place *place = &grid->place[k];
-        if (!run->source)
-            gather_band(run, grid, index, place);
+        if (bands && place->mirror)
+            gather_band(run, grid, index, place, true, first, end);
+        else if (bands)
+            gather_band(run, grid, index, place, false, first, end);
         else if (place->mirror)
             gather_place(grid, index, place, true, run->source, run->fine);
         else

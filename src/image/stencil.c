@@ -494,6 +494,41 @@ static bool build_rows(builder *b, int begin, int stop, grid_line bottom, grid_l
     return true;
 }
 
+// Lists the stencils of a chunk, whose first row of the grid is `begin`, by their depths. Returns
+// false when memory runs out.
+static bool order_by_depth(const builder *b, int begin)
+{
+    ki_stencil_chunk *chunk = b->chunk;
+    int height = b->grid->height;
+    size_t depths = (size_t)(height + 1) / 2 + 1;
+    // how many stencils have a smaller depth, and then how many of these or of the same are listed
+    size_t *place = ki_alloc(b->context, depths + 1, sizeof *place);
+    chunk->by_depth = ki_alloc_raw(b->context, chunk->stencil_count, sizeof *chunk->by_depth);
+    if (!place || !chunk->by_depth) {
+        ki_free(place);
+        return false;
+    }
+    for (size_t k = 0; k < chunk->stencil_count; k++) {
+        const ki_stencil *s = &chunk->stencils[k];
+        place[ki_stencil_depth(s->row, s->rows, height) + 1]++;
+    }
+    for (size_t k = 0; k < depths; k++)
+        place[k + 1] += place[k];
+    uint32_t blocks = 0;
+    const ki_stencil *s = chunk->stencils;
+    for (int j = begin; s < chunk->stencils + chunk->stencil_count; j++) {
+        int i, end;
+        ki_stencil_grid_range(b->grid, j, &i, &end);
+        for (; i < end; i++, s++) {
+            chunk->by_depth[place[ki_stencil_depth(s->row, s->rows, height)]++] =
+                (ki_stencil_entry){(uint32_t)(s - chunk->stencils), blocks, i, j};
+            blocks += (uint32_t)s->rows * s->blocks;
+        }
+    }
+    ki_free(place);
+    return true;
+}
+
 static void build_chunk(void *data, int index)
 {
     builder b = *(const builder *)data;
@@ -529,6 +564,7 @@ static void build_chunk(void *data, int index)
         grid_line top = {corners + count, arcs + count, entries + line};
         chunk->failed = !build_rows(&b, begin, stop, bottom, top, entries + 2 * line, line);
     }
+    chunk->failed = chunk->failed || !order_by_depth(&b, begin);
 done:
     ki_free(b.area);
     ki_free(entries);
@@ -593,6 +629,7 @@ void ki_stencil_grid_free(ki_stencil_grid *grid)
     for (int k = 0; grid->chunks && k < grid->chunk_count; k++) {
         ki_free(grid->chunks[k].stencils);
         ki_free(grid->chunks[k].weights);
+        ki_free(grid->chunks[k].by_depth);
     }
     ki_free(grid->chunks);
     grid->chunks = NULL;

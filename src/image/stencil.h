@@ -21,10 +21,18 @@ typedef struct ki_stencil {
     float area; ///< solid angle of the texel of the cube or octahedron
 } ki_stencil;
 
+/// Where a stencil of a chunk is, in the order of the stencils' depths.
+typedef struct ki_stencil_entry {
+    uint32_t index;  ///< index of the stencil among the chunk's stencils
+    uint32_t blocks; ///< number of blocks of 4 weights before its weights
+    int32_t i, j;    ///< the texel of the grid to which it belongs
+} ki_stencil_entry;
+
 /// The stencils of at most KI_STENCIL_ROWS rows of a grid, row by row.
 typedef struct ki_stencil_chunk {
     ki_stencil *stencils;
     float *weights;
+    ki_stencil_entry *by_depth; ///< all stencils, see ki_stencil_depth, the least depth first
     size_t stencil_count, weight_count; ///< numbers of stencils and weights that are in use
     size_t weight_room;                 ///< number of weights that are allocated
     /// Range of panorama rows that the stencils of the chunk cover together.
@@ -73,6 +81,14 @@ typedef struct ki_stencil_grid {
 /// (i, j) that the grid has in its row j.
 int ki_stencil_grid_rows(const ki_stencil_grid *grid);
 void ki_stencil_grid_range(const ki_stencil_grid *grid, int j, int *first, int *end);
+
+/// Returns the depth of a box of panorama rows: the number of rows between a pole and the row of
+/// the box that is farthest from this pole, the nearer one. The depth stays the same if the rows
+/// are flipped, row r becoming height - 1 - r.
+static inline int ki_stencil_depth(int row, int rows, int height)
+{
+    return 2 * row + rows > height ? height - 1 - row : row + rows - 1;
+}
 
 /// Computes the chunks of a grid, which hold all its stencils, from the fields `kind` to `halved`.
 kiln_result ki_stencil_grid_build(kiln_context *context, ki_stencil_grid *grid, kiln_error *error);
