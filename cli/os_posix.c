@@ -4,53 +4,19 @@
 
 #include <dirent.h>
 #include <errno.h>
-#if defined(__GLIBC__)
-#include <malloc.h>
-#endif
 #include <poll.h>
 #include <signal.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <sys/ioctl.h>
-#include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
-// Linux stops a process at the first use of every 4 KiB of memory, or of every 2 MiB where it grants
-// large pages. The library asks for large pages for its blocks of 2 MiB and more. This function does
-// so for smaller blocks: it makes glibc's heap large at once, which takes addresses but no memory,
-// and keeps it, so that freed memory is used again without another stop. All threads share the heap.
-// Without glibc the smaller blocks stay on pages of 4 KiB.
-#if defined(__GLIBC__) && defined(MADV_HUGEPAGE)
-static void ask_for_large_pages(void)
-{
-    enum { PAGE = 1 << 21, HEAP = 16 << 20, BLOCK = 1 << 18 };
-    mallopt(M_MMAP_THRESHOLD, PAGE);
-    mallopt(M_TRIM_THRESHOLD, 2 * HEAP);
-    mallopt(M_TOP_PAD, HEAP);
-    mallopt(M_ARENA_MAX, 1);
-    char *block = malloc(BLOCK), *end = sbrk(0); // the block is larger than a new heap
-    if (block && end > block && end - block <= 2 * HEAP) {
-        ptrdiff_t to_page = PAGE - 1 - (ptrdiff_t)((uintptr_t)(block - 1) % PAGE);
-        ptrdiff_t size = (end - block - to_page) / PAGE * PAGE;
-        if (size > 0)
-            madvise(block + to_page, (size_t)size, MADV_HUGEPAGE);
-    }
-    free(block);
-}
-#else
-static void ask_for_large_pages(void)
-{
-}
-#endif
-
 bool os_begin(int *argc, char ***argv)
 {
     (void)argc;
     (void)argv;
-    ask_for_large_pages();
     return true;
 }
 

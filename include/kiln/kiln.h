@@ -110,7 +110,8 @@ typedef struct kiln_context_def {
     void *(*allocate)(void *user, size_t size);
     void (*release)(void *user, void *memory, size_t size);
     void *allocator_user;
-    /// number of bytes that the context's objects may hold at once; 0 for no limit
+    /// Number of bytes that the context's objects may hold at once; 0 for no limit. Memory that is
+    /// free between the objects is not counted.
     size_t memory_limit;
     /// Number of threads, 1 to 256; 0 for one per core. If the system starts fewer threads, the
     /// context works with those; see kiln_context_threads.

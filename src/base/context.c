@@ -24,6 +24,7 @@ typedef struct ki_block {
     size_t size; // size of the memory block in bytes, with this header
     ki_scratch *scratch;
     struct ki_block *below;
+    ki_region *region; // the region that the block lies in, or NULL
     // position of the block in the scratch memory; beyond its end for a block that did not fit
     size_t offset;
     // is_freed: the block is freed, but not all blocks taken from the scratch memory after it.
@@ -59,6 +60,9 @@ static ki_heap *heap_create(const kiln_context_def *def)
     heap->release = def->release;
     heap->user = def->allocator_user;
     heap->limit = def->memory_limit;
+    heap->has_regions = def->allocate == system_allocate && ki_regions_help();
+    if (heap->has_regions)
+        ki_regions_begin(&heap->regions);
     atomic_store(&heap->owners, 1);
     return heap;
 }
@@ -67,8 +71,11 @@ static ki_heap *heap_create(const kiln_context_def *def)
 // heap.
 static void heap_leave(ki_heap *heap)
 {
-    if (atomic_fetch_sub(&heap->owners, 1) == 1)
-        heap->release(heap->user, heap, sizeof *heap);
+    if (atomic_fetch_sub(&heap->owners, 1) != 1)
+        return;
+    if (heap->has_regions)
+        ki_regions_end(&heap->regions);
+    heap->release(heap->user, heap, sizeof *heap);
 }
 
 size_t ki_block_size(size_t count, size_t size)
@@ -81,10 +88,18 @@ size_t ki_block_size(size_t count, size_t size)
 
 static ki_block *heap_take(ki_heap *heap, size_t bytes)
 {
+    // A context that holds less memory than this leaves medium blocks to the system too, so that it
+    // does not take a large page for them.
+    enum { FEW = 1 << 20 };
     size_t held = atomic_fetch_add(&heap->held, bytes) + bytes;
     ki_block *block = NULL;
-    if (!heap->limit || (held <= heap->limit && held >= bytes))
-        block = heap->allocate(heap->user, bytes);
+    ki_region *region = NULL;
+    if (!heap->limit || (held <= heap->limit && held >= bytes)) {
+        if (heap->has_regions && held > FEW && bytes >= KI_REGION_LEAST && bytes <= KI_REGION_MOST)
+            block = ki_region_take(&heap->regions, bytes, &region);
+        if (!block)
+            block = heap->allocate(heap->user, bytes);
+    }
     if (!block) {
         atomic_fetch_sub(&heap->held, bytes);
         return NULL;
@@ -93,7 +108,7 @@ static ki_block *heap_take(ki_heap *heap, size_t bytes)
     size_t peak = atomic_load(&heap->peak);
     while (held > peak && !atomic_compare_exchange_weak(&heap->peak, &peak, held)) {
     }
-    *block = (ki_block){.heap = heap, .size = bytes};
+    *block = (ki_block){.heap = heap, .size = bytes, .region = region};
     return block;
 }
 
@@ -102,7 +117,10 @@ static void heap_give(ki_block *block)
     ki_heap *heap = block->heap;
     size_t size = block->size;
     atomic_fetch_sub(&heap->held, size);
-    heap->release(heap->user, block, size);
+    if (block->region)
+        ki_region_give(&heap->regions, block->region, block, size);
+    else
+        heap->release(heap->user, block, size);
     heap_leave(heap);
 }
 
@@ -118,6 +136,7 @@ static ki_block *scratch_take(ki_heap *heap, ki_scratch *scratch, size_t bytes)
                         .size = bytes,
                         .scratch = scratch,
                         .below = scratch->top,
+                        .region = is_inside ? NULL : block->region,
                         .offset = offset,
                         .is_inside = is_inside};
     scratch->top = block;

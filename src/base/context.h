@@ -4,6 +4,7 @@
 
 #include "base/base.h"
 #include "base/os.h"
+#include "base/region.h"
 
 #include <stdatomic.h>
 
@@ -42,6 +43,10 @@ typedef struct ki_heap {
     size_t limit; // greatest number of bytes that blocks may take at the same time, 0 for no limit
     atomic_size_t held, peak;
     atomic_size_t owners; // number of owners that keep the heap alive: the context and every block
+    // Used for blocks of medium size if has_regions is set: if the memory is the system's rather
+    // than a caller's.
+    ki_regions regions;
+    bool has_regions;
 } ki_heap;
 
 struct kiln_context {
