@@ -111,7 +111,7 @@ static double srgb(double x)
 // on, and returns the number of these questions.
 static int check_samples(const ki_writer *w, const uint8_t *wanted, size_t samples)
 {
-    once c = {0};
+    single_stop c = {0};
     kiln_context *own;
     kiln_context_def def = {.thread_count = 1, .progress = stop_once, .progress_user = &c};
     ki_decoded decoded;
@@ -123,7 +123,7 @@ static int check_samples(const ki_writer *w, const uint8_t *wanted, size_t sampl
     ki_decoded_free(&decoded);
     int calls = c.calls;
     for (int stop = 1; stop <= calls; stop += 1 + stop / 8) {
-        c = (once){.stop_at = stop};
+        c = (single_stop){.stop_at = stop};
         assert_int_equal(ki_decode(own, w->bytes, w->size, "a.jpg", &decoded, &info, &error),
                          KILN_ERROR_CANCELLED);
         assert_int_equal(c.calls, stop);

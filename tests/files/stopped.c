@@ -407,7 +407,7 @@ static void large_tiles_can_be_stopped(void **state)
 
 // Work that is told once to stop, on the thread that called the library.
 typedef struct watched {
-    once once;
+    single_stop once;
     pthread_t caller;
 } watched;
 

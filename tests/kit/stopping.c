@@ -13,7 +13,7 @@ bool count_down(void *user, const char *stage, double fraction)
 
 bool stop_once(void *user, const char *stage, double fraction)
 {
-    once *o = user;
+    single_stop *o = user;
     assert_non_null(stage);
     assert_true(fraction >= 0 && fraction <= 1);
     return ++o->calls != o->stop_at;

@@ -16,12 +16,12 @@ typedef struct countdown {
 bool count_down(void *user, const char *stage, double fraction);
 
 /// Work that is told once to stop, and again to go on if it asks further.
-typedef struct once {
+typedef struct single_stop {
     int stop_at; // the report that stops the work, counted from 1; 0 for none
     int calls;   // number of reports until now
-} once;
+} single_stop;
 
-/// A progress callback of a context whose user pointer is a `once`.
+/// A progress callback of a context whose user pointer is a `single_stop`.
 bool stop_once(void *user, const char *stage, double fraction);
 
 /// Does `work`, which must succeed with a context of the countdown `c`, again and again, and stops

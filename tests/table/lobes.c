@@ -328,7 +328,7 @@ static void one_stop_is_enough(void **state)
 {
     (void)state;
     enum { MOST = 12, POINTS = 2000 };
-    once o;
+    single_stop o;
     kiln_context *own;
     kiln_table table;
     static double nov[POINTS], roughness[POINTS];
@@ -337,18 +337,18 @@ static void one_stop_is_enough(void **state)
     kiln_context_def how = {.thread_count = 2, .progress = stop_once, .progress_user = &o};
     CHECK_OK(kiln_context_create(&how, &own, &error));
     for (int at = 1; at < MOST; at++) {
-        o = (once){.stop_at = at};
+        o = (single_stop){.stop_at = at};
         assert_int_equal(kiln_table_create(own, &def, &table, &error), KILN_ERROR_CANCELLED);
         assert_int_equal(o.calls, at);
     }
-    o = (once){0};
+    o = (single_stop){0};
     CHECK_OK(kiln_table_create(own, &def, &table, &error));
     for (int i = 0; i < POINTS; i++) {
         nov[i] = (i % 40 + 0.5) / 40;
         roughness[i] = 0.2 + 0.7 * i / POINTS;
     }
     for (int at = 1; at < 4; at++) {
-        o = (once){.stop_at = at};
+        o = (single_stop){.stop_at = at};
         kiln_result result = kiln_lobes_errors(own, &table, nov, roughness, POINTS, errors, &error);
         assert_int_equal(result, o.calls < at ? KILN_OK : KILN_ERROR_CANCELLED);
         for (int i = 0; i < POINTS && result; i++)
