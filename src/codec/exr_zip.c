@@ -13,23 +13,27 @@ enum { PART = 1 << 20 }; // bytes between two calls of ki_exr_go_on
 
 // Undoes the differences of EXR's method ZIP: each byte was stored as its difference from the byte
 // before, plus 128. Sixteen running sums are computed at a time, in four steps that add to each
-// byte the sum 1, 2, 4 and 8 places to its left.
+// byte the sum 1, 2, 4 and 8 places to its left. Only the addition to `before`, the sum of all
+// bytes before the sixteen, has to wait for the sixteen before.
 // Returns the last sum. `last` is the sum before the first byte.
 static uint8_t undo_differences(uint8_t *bytes, size_t size, uint8_t last)
 {
     size_t i = 0;
+    ki_bytes16 before = (ki_bytes16){0} + last;
     for (; i + 16 <= size; i += 16) {
-        ki_bytes16 v;
+        ki_bytes16 v, sum;
         memcpy(&v, bytes + i, sizeof v);
         v -= 128;
         v += SHIFTED(v, 1);
         v += SHIFTED(v, 2);
         v += SHIFTED(v, 4);
         v += SHIFTED(v, 8);
-        v += last;
-        last = v[15];
-        memcpy(bytes + i, &v, sizeof v);
+        sum = v + before;
+        before +=
+            KI_SHUFFLE16(v, v, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15);
+        memcpy(bytes + i, &sum, sizeof sum);
     }
+    last = before[0];
     for (; i < size; i++)
         bytes[i] = last = (uint8_t)(last + bytes[i] - 128);
     return last;
