@@ -3,16 +3,17 @@
 // in the file is 0.
 #include "base/vector.h"
 #include "codec/exr.h"
-#include "image/pack.h"
+#include "image/convert.h"
 
 #include <string.h>
 
 enum { STRETCH = 256 }; // number of samples of a line that are converted at a time
 
-static void to_floats(const uint8_t *restrict samples, int type, int count, float *restrict values)
+static void to_floats(kiln_context *context, const uint8_t *restrict samples, int type, int count,
+                      float *restrict values)
 {
     if (type == KI_EXR_HALF) {
-        ki_floats_from_half_bytes(samples, (size_t)count, values);
+        KI_FASTEST(context, ki_widen_halfs)(samples, (size_t)count, values);
     } else if (type == KI_EXR_FLOAT) {
         memcpy(values, samples, (size_t)count * sizeof *values);
     } else {
@@ -47,8 +48,8 @@ static void interleave(const float *restrict r, const float *restrict g, const f
 
 // Converts one line of the channels that become red, green and blue to RGB texels. samples[c] is
 // NULL where the file has no channel for colour c.
-static void put_line(const uint8_t *const samples[3], const ki_exr_channel *const channel[3],
-                     int count, float *rgb)
+static void put_line(kiln_context *context, const uint8_t *const samples[3],
+                     const ki_exr_channel *const channel[3], int count, float *rgb)
 {
     float values[3][STRETCH];
     for (int c = 0; c < 3; c++)
@@ -58,21 +59,21 @@ static void put_line(const uint8_t *const samples[3], const ki_exr_channel *cons
         int n = ki_min(STRETCH, count - x);
         for (int c = 0; c < 3; c++)
             if (samples[c])
-                to_floats(samples[c] + (size_t)x * (size_t)channel[c]->bytes, channel[c]->type, n,
-                          values[c]);
+                to_floats(context, samples[c] + (size_t)x * (size_t)channel[c]->bytes,
+                          channel[c]->type, n, values[c]);
         interleave(values[0], values[1], values[2], n, rgb + 3 * (size_t)x);
     }
 }
 
 // Converts one line of a channel that has a sample for each `sampling` columns, the first of them
 // at column `first`, to one channel of RGB.
-static void put_samples(const uint8_t *samples, const ki_exr_channel *channel, int first, int count,
-                        float *rgb)
+static void put_samples(kiln_context *context, const uint8_t *samples,
+                        const ki_exr_channel *channel, int first, int count, float *rgb)
 {
     int sampling = channel->x_sampling, n = (count - first + sampling - 1) / sampling;
     for (int i = 0; i < n; i++) {
         float value;
-        to_floats(samples + (size_t)i * (size_t)channel->bytes, channel->type, 1, &value);
+        to_floats(context, samples + (size_t)i * (size_t)channel->bytes, channel->type, 1, &value);
         rgb[3 * ((size_t)first + (size_t)i * (size_t)sampling)] = value;
     }
 }
@@ -107,8 +108,8 @@ static const uint8_t *find_sources(const ki_exr_picture *p, const ki_exr_box *bo
 }
 
 // Writes line `y` of a box to the columns from `left` to `right` - 1 of the picture.
-static void put_sources(const ki_exr_picture *p, const ki_exr_box *box, const sources *found, int y,
-                        int left, int right)
+static void put_sources(kiln_context *context, const ki_exr_picture *p, const ki_exr_box *box,
+                        const sources *found, int y, int left, int right)
 {
     size_t row = (size_t)(y - p->top);
     const uint8_t *samples[3] = {NULL};
@@ -121,11 +122,11 @@ static void put_sources(const ki_exr_picture *p, const ki_exr_box *box, const so
         if (channel[k]->x_sampling == 1)
             samples[k] = found->start[k] + (size_t)(left - box->x) * (size_t)channel[k]->bytes;
     }
-    put_line(samples, channel, right - left, rgb);
+    put_line(context, samples, channel, right - left, rgb);
     for (int k = 0; k < 3; k++)
         if (found->start[k] && !samples[k])
-            put_samples(found->start[k], channel[k], modulo(-box->x, channel[k]->x_sampling),
-                        right - left, rgb + k);
+            put_samples(context, found->start[k], channel[k],
+                        modulo(-box->x, channel[k]->x_sampling), right - left, rgb + k);
 }
 
 kiln_result ki_exr_put_box(ki_exr_workspace *work, const ki_exr_picture *p, const ki_exr_box *box,
@@ -139,7 +140,7 @@ kiln_result ki_exr_put_box(ki_exr_workspace *work, const ki_exr_picture *p, cons
         raw = find_sources(p, box, runs, count, y, raw, &found);
         if (y < p->top || y - p->top >= p->height || left >= right)
             continue;
-        put_sources(p, box, &found, y, left, right);
+        put_sources(work->context, p, box, &found, y, left, right);
         if (!ki_exr_go_on(work, 3 * sizeof(float) * (size_t)(right - left)))
             return KILN_ERROR_CANCELLED;
     }

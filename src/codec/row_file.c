@@ -36,7 +36,7 @@ static kiln_result read_rows(ki_row_file *f, int first, int count, bool weigh, f
         ki_row_finds *finds = &f->finds[first + i];
         bool weighs = weigh || finds->weighed || atomic_load(&f->is_negative);
         if (d->converts)
-            ki_row_transform(&d->matrix, rgb, 2 * d->size);
+            ki_row_transform(f->input.context, &d->matrix, rgb, 2 * d->size);
         ki_row_mend(d->size, first + i, f->def.negative, weighs, rgb, finds);
         if (finds->negative_count)
             atomic_store(&f->is_negative, true);

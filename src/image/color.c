@@ -6,6 +6,7 @@
 #include "image/color.h"
 
 #include "base/vector.h"
+#include "image/convert.h"
 
 #include <math.h>
 #include <string.h>
@@ -169,10 +170,8 @@ bool ki_rec709_from_rgb(const ki_primaries *primaries, const double *neutral, ki
 
 // --------------------------------------------------------------------------------------- pictures
 
-// Number of texels that are multiplied by a matrix at once.
-enum { STRETCH = 64 };
-
 typedef struct transform_job {
+    kiln_context *context;
     const ki_matrix3 *matrix;
     kiln_image *image;
 } transform_job;
@@ -189,55 +188,12 @@ static void transform_texel(const ki_matrix3 *matrix, float rgb[3])
         rgb[c] = (float)ki_clamp(color[c], -(double)FLT_MAX, (double)FLT_MAX);
 }
 
-// Splits STRETCH texels into red, green and blue.
-static void split(const float *rgb, ki_float4 colors[3][STRETCH / 4])
+void ki_row_transform(kiln_context *context, const ki_matrix3 *matrix, float *rgb, int width)
 {
-    for (int i = 0; i < STRETCH / 4; i++) {
-        ki_float4 texels[3], four[3];
-        memcpy(texels, rgb + 12 * (size_t)i, sizeof texels);
-        ki_split_rgb4(texels, four);
-        for (int c = 0; c < 3; c++)
-            colors[c][i] = four[c];
-    }
-}
-
-static void join(ki_float4 colors[3][STRETCH / 4], float *rgb)
-{
-    for (int i = 0; i < STRETCH / 4; i++) {
-        ki_float4 texels[3], four[3] = {colors[0][i], colors[1][i], colors[2][i]};
-        ki_join_rgb4(four, texels);
-        memcpy(rgb + 12 * (size_t)i, texels, sizeof texels);
-    }
-}
-
-// Multiplies STRETCH texels by the matrix with the arithmetic of transform_texel, in loops that
-// compilers turn into vector instructions, and returns true. Returns false and changes nothing if a
-// channel is not finite or a product is beyond the largest float. In both cases a product becomes a
-// float that is not finite, since 0 times infinity is not a number.
-static bool transform_stretch(const ki_matrix3 *matrix, float *rgb)
-{
-    ki_float4 in[3][STRETCH / 4], out[3][STRETCH / 4];
-    float(*from)[STRETCH] = (float(*)[STRETCH])in, (*to)[STRETCH] = (float(*)[STRETCH])out;
-    const ki_matrix3 a = *matrix;
-    int rare = 0;
-    split(rgb, in);
-    for (int i = 0; i < STRETCH; i++) {
-        double r = (double)from[0][i], g = (double)from[1][i], b = (double)from[2][i];
-        for (int c = 0; c < 3; c++) {
-            to[c][i] = (float)(a.m[c][0] * r + a.m[c][1] * g + a.m[c][2] * b);
-            rare |= !(fabsf(to[c][i]) <= FLT_MAX);
-        }
-    }
-    if (!rare)
-        join(out, rgb);
-    return !rare;
-}
-
-void ki_row_transform(const ki_matrix3 *matrix, float *rgb, int width)
-{
+    ki_transform_stretch *transform_stretch = KI_FASTEST(context, ki_transform_stretch);
     for (int x = 0, end; x < width; x = end) {
-        end = ki_min(x + STRETCH, width);
-        if (end - x == STRETCH && transform_stretch(matrix, rgb + 3 * (size_t)x))
+        end = ki_min(x + KI_STRETCH, width);
+        if (end - x == KI_STRETCH && transform_stretch(matrix, rgb + 3 * (size_t)x))
             continue;
         for (int i = x; i < end; i++)
             transform_texel(matrix, rgb + 3 * (size_t)i);
@@ -249,11 +205,12 @@ static void transform_row(void *data, int row)
 {
     const transform_job *job = data;
     int width = job->image->width;
-    ki_row_transform(job->matrix, job->image->pixels + 3 * (size_t)width * (size_t)row, width);
+    ki_row_transform(job->context, job->matrix,
+                     job->image->pixels + 3 * (size_t)width * (size_t)row, width);
 }
 
 bool ki_image_transform(kiln_context *context, const ki_matrix3 *matrix, kiln_image *image)
 {
-    transform_job job = {matrix, image};
+    transform_job job = {context, matrix, image};
     return ki_parallel_steps(context, NULL, image->height, transform_row, &job);
 }

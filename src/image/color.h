@@ -43,6 +43,6 @@ ki_matrix3 ki_matrix_multiply(const ki_matrix3 *a, const ki_matrix3 *b);
 /// Returns false if the caller asks to stop; some rows are then not converted.
 bool ki_image_transform(kiln_context *context, const ki_matrix3 *matrix, kiln_image *image);
 /// Does the same to one row of `width` texels.
-void ki_row_transform(const ki_matrix3 *matrix, float *rgb, int width);
+void ki_row_transform(kiln_context *context, const ki_matrix3 *matrix, float *rgb, int width);
 
 #endif

@@ -3,26 +3,12 @@
 // operations only, so that every machine gives the same bits. The roundings are to nearest, ties to
 // even.
 #include "image/pack.h"
+#include "image/convert.h"
+#include "image/small_float.h"
 #include "math/math.h"
 
 #include <stdbool.h>
 #include <string.h>
-
-// Returns the bits of a float as a signed integer, because vector units compare signed integers
-// fastest.
-static inline int32_t bits_of(float value)
-{
-    int32_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    return bits;
-}
-
-static inline float float_of(int32_t bits)
-{
-    float value;
-    memcpy(&value, &bits, sizeof value);
-    return value;
-}
 
 // Converts the bits of a non-negative float to a small float of 5 exponent bits, biased by 15, and
 // `m` mantissa bits. The code has no branches, so that compilers vectorise loops over it.
@@ -38,30 +24,19 @@ static inline int32_t small_float(int32_t bits, int m)
     bits = bits < largest ? bits : largest;
     int32_t exponent = (bits > 113 << 23 ? bits : 113 << 23) & 0x7f800000;
     int32_t power = exponent + ((23 - m) << 23);
-    int32_t mantissa = bits_of(float_of(bits) + float_of(power)) - power;
+    int32_t mantissa = ki_bits_of(ki_float_of(bits) + ki_float_of(power)) - power;
     return mantissa + (exponent >> (23 - m)) - (113 << m);
-}
-
-// Converts a small float without sign, of 5 exponent bits and `m` mantissa bits, to a float.
-static inline float large_float(int32_t bits, int m)
-{
-    // bits of the float 2^(9-m), whose unit in the last place, 2^(-14-m), is that of the smallest
-    // numbers of the small format
-    int32_t unit = (127 + 9 - m) << 23;
-    float low = float_of(bits + unit) - float_of(unit);
-    int32_t high = (bits << (23 - m)) + (bits >> m == 31 ? 224 << 23 : 112 << 23);
-    return bits >> m == 0 ? low : float_of(high);
 }
 
 static inline uint16_t half_of(float value)
 {
-    int32_t bits = bits_of(value), sign = value == value ? bits >> 16 & 0x8000 : 0;
+    int32_t bits = ki_bits_of(value), sign = value == value ? bits >> 16 & 0x8000 : 0;
     return (uint16_t)(sign | small_float(bits & 0x7fffffff, 10));
 }
 
 static inline uint32_t unsigned_of(float value, int m)
 {
-    return value > 0 ? (uint32_t)small_float(bits_of(value), m) : 0;
+    return value > 0 ? (uint32_t)small_float(ki_bits_of(value), m) : 0;
 }
 
 uint16_t ki_half_from_float(float value)
@@ -71,8 +46,7 @@ uint16_t ki_half_from_float(float value)
 
 float ki_float_from_half(uint16_t half)
 {
-    float magnitude = large_float(half & 0x7fffU, 10);
-    return half & 0x8000U ? -magnitude : magnitude;
+    return ki_float_of_half(half);
 }
 
 void ki_halfs_from_floats(const float *restrict values, size_t count, uint16_t *restrict halfs)
@@ -83,22 +57,17 @@ void ki_halfs_from_floats(const float *restrict values, size_t count, uint16_t *
 
 void ki_floats_from_halfs(const uint16_t *restrict halfs, size_t count, float *restrict values)
 {
-    for (size_t i = 0; i < count; i++) {
-        float magnitude = large_float(halfs[i] & 0x7fff, 10);
-        values[i] = float_of(bits_of(magnitude) | (int32_t)((uint32_t)(halfs[i] >> 15) << 31));
-    }
+    for (size_t i = 0; i < count; i++)
+        values[i] = ki_float_of_half(halfs[i]);
 }
 
-void ki_floats_from_half_bytes(const void *restrict bytes, size_t count, float *restrict values)
+void ki_floats_from_half_bytes(const void *bytes, size_t count, float *values)
 {
-    enum { STRETCH = 256 };
-    const uint8_t *from = bytes;
-    for (size_t done = 0; done < count; done += STRETCH) {
-        size_t n = count - done < STRETCH ? count - done : STRETCH;
-        uint16_t halfs[STRETCH];
-        memcpy(halfs, from + 2 * done, 2 * n);
-        ki_floats_from_halfs(halfs, n, values + done);
-    }
+#if defined(KILN_HAVE_SIMD128)
+    ki_widen_halfs_simd128(bytes, count, values);
+#else
+    ki_widen_halfs_scalar(bytes, count, values);
+#endif
 }
 
 // Packs by EXT_texture_shared_exponent: a channel is mantissa 2^(exponent - 15 - 9), with mantissas
@@ -113,12 +82,12 @@ uint32_t ki_rgb9e5_from_float(const float rgb[3])
         c[i] = c[i] > largest ? largest : c[i];
         most = c[i] > most ? c[i] : most;
     }
-    int exponent = (bits_of(most) >> 23) - 127 + 16;
+    int exponent = (ki_bits_of(most) >> 23) - 127 + 16;
     exponent = exponent < 0 ? 0 : exponent;
     // The unit in the last place of the float 2^23 is 1, so adding 2^23 rounds a mantissa to an
     // integer, ties to even.
     const float round = 8388608;
-    float scale = float_of((127 + 24 - exponent) << 23);
+    float scale = ki_float_of((127 + 24 - exponent) << 23);
     if ((most * scale + round) - round >= 512) {
         exponent++;
         scale *= 0.5f;
@@ -131,7 +100,7 @@ uint32_t ki_rgb9e5_from_float(const float rgb[3])
 
 void ki_float_from_rgb9e5(uint32_t packed, float rgb[3])
 {
-    float scale = float_of((int32_t)(127 - 24 + (packed >> 27)) << 23);
+    float scale = ki_float_of((int32_t)(127 - 24 + (packed >> 27)) << 23);
     for (int i = 0; i < 3; i++)
         rgb[i] = (float)(packed >> (9 * i) & 511U) * scale;
 }
@@ -143,9 +112,9 @@ uint32_t ki_b10g11r11_from_float(const float rgb[3])
 
 void ki_float_from_b10g11r11(uint32_t packed, float rgb[3])
 {
-    rgb[0] = large_float((int32_t)(packed & 0x7ffU), 6);
-    rgb[1] = large_float((int32_t)(packed >> 11 & 0x7ffU), 6);
-    rgb[2] = large_float((int32_t)(packed >> 22), 5);
+    rgb[0] = ki_large_float((int32_t)(packed & 0x7ffU), 6);
+    rgb[1] = ki_large_float((int32_t)(packed >> 11 & 0x7ffU), 6);
+    rgb[2] = ki_large_float((int32_t)(packed >> 22), 5);
 }
 
 // Converts STRETCH texels at a time: RGB floats to RGB halves without gaps, then the halves to RGBA
