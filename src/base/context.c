@@ -46,8 +46,7 @@ static void *system_allocate(void *user, size_t size)
 static void system_release(void *user, void *memory, size_t size)
 {
     (void)user;
-    (void)size;
-    ki_os_release(memory);
+    ki_os_release(memory, size);
 }
 
 static ki_heap *heap_create(const kiln_context_def *def)

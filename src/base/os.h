@@ -86,9 +86,19 @@ float ki_os_read_float(const char *text);
 
 // ------------------------------------------------------------------------------------------ memory
 
+/// Defined in programs that check the use of each block, for which each block is one of malloc.
+#if defined(__SANITIZE_ADDRESS__)
+#define KI_OS_CHECKS_BLOCKS
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(memory_sanitizer)
+#define KI_OS_CHECKS_BLOCKS
+#endif
+#endif
+
 /// Allocates `size` bytes aligned to 64. Returns NULL on failure.
 void *ki_os_allocate(size_t size);
-void ki_os_release(void *memory);
+/// Frees a block of `size` bytes; `memory` may be NULL.
+void ki_os_release(void *memory, size_t size);
 
 // ----------------------------------------------------------------------------------------- threads
 

@@ -198,8 +198,9 @@ void *ki_os_allocate(size_t size)
     return aligned_alloc(64, (size + 63) & ~(size_t)63);
 }
 
-void ki_os_release(void *memory)
+void ki_os_release(void *memory, size_t size)
 {
+    (void)size;
     free(memory);
 }
 

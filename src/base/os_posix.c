@@ -256,25 +256,68 @@ float ki_os_read_float(const char *text)
 
 // ------------------------------------------------------------------------------------------ memory
 
+#if defined(__linux__) && defined(MADV_HUGEPAGE) && !defined(KI_OS_CHECKS_BLOCKS)
+// Large blocks get pages of 2 MiB where Linux grants them. Linux else stops at the first use of
+// every 4 KiB. They are mapped one by one, because malloc keeps some of what is freed, depending on
+// what was freed before.
+enum { LARGE_PAGE = 1 << 21 };
+
+static bool is_large(size_t size)
+{
+    return size >= LARGE_PAGE && size <= SIZE_MAX / 2;
+}
+
+// Number of bytes of a large block in large pages. The last, incomplete page is one if it is full to
+// three quarters, so that a block takes at most 512 KiB, a seventh of its size, more than its size.
+static size_t paged_size(size_t size)
+{
+    return (size + LARGE_PAGE / 4) / LARGE_PAGE * LARGE_PAGE;
+}
+
+// Number of bytes that are mapped for a large block: whole pages, which have up to 64 KiB on some
+// machines.
+static size_t mapped_size(size_t size)
+{
+    size_t paged = paged_size(size), whole = (size + 0xffff) & ~(size_t)0xffff;
+    return paged > whole ? paged : whole;
+}
+
+static void *map_large(size_t size)
+{
+    size_t wanted = mapped_size(size), all = wanted + LARGE_PAGE;
+    char *start = mmap(NULL, all, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (start == MAP_FAILED)
+        return NULL;
+    // what lies before the first address that is a multiple of a large page, and behind the block
+    size_t before = (LARGE_PAGE - (uintptr_t)start % LARGE_PAGE) % LARGE_PAGE;
+    if (before)
+        munmap(start, before);
+    if (all - before > wanted)
+        munmap(start + before + wanted, all - before - wanted);
+    madvise(start + before, paged_size(size), MADV_HUGEPAGE);
+    return start + before;
+}
+#endif
+
 void *ki_os_allocate(size_t size)
 {
-#if defined(__linux__) && defined(MADV_HUGEPAGE)
-    // Large blocks get pages of 2 MiB where Linux grants them. Linux else stops at the first use of
-    // every 4 KiB. The last, incomplete page is a large one if it is full to three quarters, so
-    // that a block takes at most 512 KiB, a seventh of its size, more than its size.
-    const size_t page = (size_t)1 << 21;
-    if (size >= page) {
-        void *memory = aligned_alloc(page, (size + page - 1) / page * page);
-        if (memory)
-            madvise(memory, (size + page / 4) / page * page, MADV_HUGEPAGE);
-        return memory;
-    }
+#if defined(__linux__) && defined(MADV_HUGEPAGE) && !defined(KI_OS_CHECKS_BLOCKS)
+    if (is_large(size))
+        return map_large(size);
 #endif
     return aligned_alloc(64, (size + 63) & ~(size_t)63);
 }
 
-void ki_os_release(void *memory)
+void ki_os_release(void *memory, size_t size)
 {
+#if defined(__linux__) && defined(MADV_HUGEPAGE) && !defined(KI_OS_CHECKS_BLOCKS)
+    if (is_large(size)) {
+        if (memory)
+            munmap(memory, mapped_size(size));
+        return;
+    }
+#endif
+    (void)size;
     free(memory);
 }
 

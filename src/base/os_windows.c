@@ -358,8 +358,9 @@ void *ki_os_allocate(size_t size)
     return _aligned_malloc(size, 64);
 }
 
-void ki_os_release(void *memory)
+void ki_os_release(void *memory, size_t size)
 {
+    (void)size;
     _aligned_free(memory);
 }
 

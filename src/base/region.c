@@ -20,14 +20,8 @@ enum { HEAD = (sizeof(ki_region) + KI_REGION_UNIT - 1) / KI_REGION_UNIT };
 
 bool ki_regions_help(void)
 {
-#if defined(__wasm__) || defined(__SANITIZE_ADDRESS__)
+#if defined(__wasm__) || defined(KI_OS_CHECKS_BLOCKS)
     return false;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(memory_sanitizer)
-    return false;
-#else
-    return true;
-#endif
 #else
     return true;
 #endif
@@ -43,7 +37,7 @@ void ki_regions_end(ki_regions *regions)
 {
     for (ki_region *r = regions->first, *next; r; r = next) {
         next = r->next;
-        ki_os_release(r);
+        ki_os_release(r, KI_REGION_BYTES);
     }
     ki_os_mutex_end(&regions->mutex);
 }
@@ -137,5 +131,5 @@ void ki_region_give(ki_regions *regions, ki_region *region, void *memory, size_t
         gone = region;
     }
     ki_os_unlock(&regions->mutex);
-    ki_os_release(gone);
+    ki_os_release(gone, KI_REGION_BYTES);
 }
