@@ -499,28 +499,32 @@ static bool build_rows(builder *b, int begin, int stop, grid_line bottom, grid_l
 static bool order_by_depth(const builder *b, int begin)
 {
     ki_stencil_chunk *chunk = b->chunk;
-    int height = b->grid->height;
-    size_t depths = (size_t)(height + 1) / 2 + 1;
-    // how many stencils have a smaller depth, and then how many of these or of the same are listed
+    const ki_stencil *stop = chunk->stencils + chunk->stencil_count;
+    int height = b->grid->height, least = height, most = 0;
+    for (const ki_stencil *s = chunk->stencils; s < stop; s++) {
+        int depth = ki_stencil_depth(s->row, s->rows, height);
+        least = ki_min(least, depth);
+        most = ki_max(most, depth);
+    }
+    // place[depth - least]: the number of stencils that come before the next one of this depth
+    size_t depths = (size_t)(most - least) + 1;
     size_t *place = ki_alloc(b->context, depths + 1, sizeof *place);
     chunk->by_depth = ki_alloc_raw(b->context, chunk->stencil_count, sizeof *chunk->by_depth);
     if (!place || !chunk->by_depth) {
         ki_free(place);
         return false;
     }
-    for (size_t k = 0; k < chunk->stencil_count; k++) {
-        const ki_stencil *s = &chunk->stencils[k];
-        place[ki_stencil_depth(s->row, s->rows, height) + 1]++;
-    }
+    for (const ki_stencil *s = chunk->stencils; s < stop; s++)
+        place[ki_stencil_depth(s->row, s->rows, height) - least + 1]++;
     for (size_t k = 0; k < depths; k++)
         place[k + 1] += place[k];
     uint32_t blocks = 0;
     const ki_stencil *s = chunk->stencils;
-    for (int j = begin; s < chunk->stencils + chunk->stencil_count; j++) {
+    for (int j = begin; s < stop; j++) {
         int i, end;
         ki_stencil_grid_range(b->grid, j, &i, &end);
         for (; i < end; i++, s++) {
-            chunk->by_depth[place[ki_stencil_depth(s->row, s->rows, height)]++] =
+            chunk->by_depth[place[ki_stencil_depth(s->row, s->rows, height) - least]++] =
                 (ki_stencil_entry){(uint32_t)(s - chunk->stencils), blocks, i, j};
             blocks += (uint32_t)s->rows * s->blocks;
         }

@@ -82,6 +82,23 @@ static void sizes_and_blocks(void **state)
         }
 }
 
+// Texels of level 0 that each cover many rows, those on the horizon rows of both sides.
+static void texels_of_many_rows(void **state)
+{
+    (void)state;
+    static const int sizes[] = {128, 255, 512};
+    for (int i = 0; i < 3; i++) {
+        kiln_map map = make_noise(context, KILN_SHAPE_PANORAMA, sizes[i], 9);
+        for (int shape = KILN_SHAPE_PANORAMA; shape <= KILN_SHAPE_OCTAHEDRON; shape++)
+            compare(context, &map,
+                    &(kiln_bake_def){
+                        .levels = {.shape = (kiln_shape)shape, .size = 32, .level_count = 1},
+                        .irradiance_size = KILN_NO_IRRADIANCE},
+                    16, 0);
+        kiln_map_free(&map);
+    }
+}
+
 // Suns in all rows: at both poles, on both sides of the equator, two in neighbouring rows, and so
 // many that each ring has one.
 static void suns(void **state)
@@ -197,9 +214,10 @@ static void little_memory(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sizes_and_blocks), cmocka_unit_test(suns),
-        cmocka_unit_test(every_option),     cmocka_unit_test(bakes_of_all_rows),
-        cmocka_unit_test(failures),         cmocka_unit_test(little_memory),
+        cmocka_unit_test(sizes_and_blocks),    cmocka_unit_test(suns),
+        cmocka_unit_test(texels_of_many_rows), cmocka_unit_test(every_option),
+        cmocka_unit_test(bakes_of_all_rows),   cmocka_unit_test(failures),
+        cmocka_unit_test(little_memory),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -129,6 +129,7 @@ static void energy_is_kept(void **state)
         {KILN_SHAPE_PANORAMA, KILN_SHAPE_CUBE, 96, 2, 0},
         {KILN_SHAPE_PANORAMA, KILN_SHAPE_OCTAHEDRON, 64, 40, 0},
         {KILN_SHAPE_PANORAMA, KILN_SHAPE_OCTAHEDRON, 33, 80, 71},
+        {KILN_SHAPE_PANORAMA, KILN_SHAPE_OCTAHEDRON, 256, 32, 0},
         {KILN_SHAPE_PANORAMA, KILN_SHAPE_PANORAMA, 64, 31, 12.5},
         {KILN_SHAPE_PANORAMA, KILN_SHAPE_PANORAMA, 30, 64, 0},
         {KILN_SHAPE_CUBE, KILN_SHAPE_PANORAMA, 32, 64, 0},
@@ -136,6 +137,7 @@ static void energy_is_kept(void **state)
         {KILN_SHAPE_CUBE, KILN_SHAPE_CUBE, 32, 12, 90},
         {KILN_SHAPE_CUBE, KILN_SHAPE_CUBE, 31, 64, 0},
         {KILN_SHAPE_OCTAHEDRON, KILN_SHAPE_PANORAMA, 40, 64, -20},
+        {KILN_SHAPE_OCTAHEDRON, KILN_SHAPE_PANORAMA, 32, 256, 0},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         kiln_map source = make_map(context, cases[k].from, cases[k].source, 1);
