@@ -464,7 +464,9 @@ static kiln_result list_work(const kiln_plan *p, plan_workspace *w, ki_row_work 
         ki_row_mirror *mirror = &work->mirrors[work->mirror_count++];
         *mirror =
             (ki_row_mirror){.plan = levels->mirrors[i], .target = environment->levels.level[i]};
-        result = ki_resample_reserve(p->context, mirror->plan, &mirror->buffer, error);
+        result = ki_resample_plan_bands(p->context, levels->mirrors[i], error);
+        if (result == KILN_OK)
+            result = ki_resample_reserve(p->context, mirror->plan, &mirror->buffer, error);
     }
     return result;
 }

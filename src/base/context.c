@@ -85,11 +85,12 @@ size_t ki_block_size(size_t count, size_t size)
     return (bytes + sizeof(ki_block) + 63) & ~(size_t)63;
 }
 
+// A context that holds less memory than this, in bytes, leaves medium blocks to the system too and
+// keeps no region without a block, so that it takes no large page.
+enum { FEW = 1 << 20 };
+
 static ki_block *heap_take(ki_heap *heap, size_t bytes)
 {
-    // A context that holds less memory than this leaves medium blocks to the system too, so that it
-    // does not take a large page for them.
-    enum { FEW = 1 << 20 };
     size_t held = atomic_fetch_add(&heap->held, bytes) + bytes;
     ki_block *block = NULL;
     ki_region *region = NULL;
@@ -115,11 +116,14 @@ static void heap_give(ki_block *block)
 {
     ki_heap *heap = block->heap;
     size_t size = block->size;
-    atomic_fetch_sub(&heap->held, size);
-    if (block->region)
-        ki_region_give(&heap->regions, block->region, block, size);
+    size_t left = atomic_fetch_sub(&heap->held, size) - size;
+    ki_region *region = block->region;
+    if (region)
+        ki_region_give(&heap->regions, region, block, size);
     else
         heap->release(heap->user, block, size);
+    if (heap->has_regions && left <= FEW && (region || left + size > FEW))
+        ki_regions_trim(&heap->regions);
     heap_leave(heap);
 }
 

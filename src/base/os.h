@@ -87,7 +87,7 @@ float ki_os_read_float(const char *text);
 // ------------------------------------------------------------------------------------------ memory
 
 /// Defined in programs that check the use of each block, for which each block is one of malloc.
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_HWADDRESS__)
 #define KI_OS_CHECKS_BLOCKS
 #elif defined(__has_feature)
 #if __has_feature(address_sanitizer) || __has_feature(memory_sanitizer)

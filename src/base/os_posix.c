@@ -267,8 +267,9 @@ static bool is_large(size_t size)
     return size >= LARGE_PAGE && size <= SIZE_MAX / 2;
 }
 
-// Number of bytes of a large block in large pages. The last, incomplete page is one if it is full to
-// three quarters, so that a block takes at most 512 KiB, a seventh of its size, more than its size.
+// Number of bytes of a large block in large pages. The last, incomplete page is large too if it is
+// full to three quarters, so that a block takes at most 512 KiB, a seventh of its size, more than
+// its size.
 static size_t paged_size(size_t size)
 {
     return (size + LARGE_PAGE / 4) / LARGE_PAGE * LARGE_PAGE;
@@ -286,8 +287,11 @@ static void *map_large(size_t size)
 {
     size_t wanted = mapped_size(size), all = wanted + LARGE_PAGE;
     char *start = mmap(NULL, all, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (start == MAP_FAILED)
-        return NULL;
+    if (start == MAP_FAILED) {
+        // there may be no room for more than the block, which then begins at any page
+        start = mmap(NULL, wanted, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+        return start == MAP_FAILED ? NULL : start;
+    }
     // what lies before the first address that is a multiple of a large page, and behind the block
     size_t before = (LARGE_PAGE - (uintptr_t)start % LARGE_PAGE) % LARGE_PAGE;
     if (before)

@@ -10,7 +10,7 @@ enum { BITS = 64, WORDS = KI_REGION_UNITS / BITS };
 
 // The head of a region lies in the first units of its memory.
 struct ki_region {
-    ki_region *next;
+    ki_region *next, *previous;
     // upper bound of the length of the longest run of free units, and the number of free units
     int room, free;
     uint64_t taken[WORDS];
@@ -73,17 +73,37 @@ static int find_run(ki_region *r, int count)
     return -1;
 }
 
+static void link_after(ki_regions *regions, ki_region *before, ki_region *r)
+{
+    r->previous = before;
+    r->next = before ? before->next : regions->first;
+    *(before ? &before->next : &regions->first) = r;
+    *(r->next ? &r->next->previous : &regions->last) = r;
+}
+
+static void unlink_region(ki_regions *regions, ki_region *r)
+{
+    *(r->previous ? &r->previous->next : &regions->first) = r->next;
+    *(r->next ? &r->next->previous : &regions->last) = r->previous;
+}
+
+// Returns whether the region has a run of `count` free units, and sets *first to its first unit.
+static bool has_run(ki_region *r, int count, int *first)
+{
+    *first = r->room < count ? -1 : find_run(r, count);
+    return *first >= 0;
+}
+
 // Adds a region after the last one and returns it, or NULL if there is no memory.
 static ki_region *add_region(ki_regions *regions)
 {
-    ki_region *r = ki_os_allocate(KI_REGION_BYTES), **last = &regions->first;
+    ki_region *r = ki_os_allocate(KI_REGION_BYTES);
     if (!r)
         return NULL;
     *r = (ki_region){.room = KI_REGION_UNITS - HEAD, .free = KI_REGION_UNITS - HEAD};
     turn(r, 0, HEAD);
-    while (*last)
-        last = &(*last)->next;
-    *last = r;
+    link_after(regions, regions->last, r);
+    regions->count++;
     return r;
 }
 
@@ -97,8 +117,8 @@ void *ki_region_take(ki_regions *regions, size_t size, ki_region **region)
     int count = unit_count(size), first = -1;
     ki_os_lock(&regions->mutex);
     ki_region *r = regions->first;
-    while (r && (r->room < count || (first = find_run(r, count)) < 0))
-        r = r->next;
+    for (int left = KI_REGION_SEARCH; r && !has_run(r, count, &first); left--)
+        r = left > 1 ? r->next : r == regions->last ? NULL : regions->last;
     if (!r) {
         r = add_region(regions);
         first = HEAD;
@@ -121,14 +141,30 @@ void ki_region_give(ki_regions *regions, ki_region *region, void *memory, size_t
     turn(region, (int)(((char *)memory - (char *)region) / KI_REGION_UNIT), count);
     region->free += count;
     region->room = region->free;
-    if (region->free == KI_REGION_UNITS - HEAD && !regions->empty) {
-        regions->empty = region;
-    } else if (region->free == KI_REGION_UNITS - HEAD) {
-        ki_region **link = &regions->first;
-        while (*link != region)
-            link = &(*link)->next;
-        *link = region->next;
+    bool is_empty = region->free == KI_REGION_UNITS - HEAD;
+    if (is_empty && regions->empty) {
+        unlink_region(regions, region);
+        regions->count--;
         gone = region;
+    } else if (is_empty) {
+        regions->empty = region;
+    }
+    if (!gone && regions->count > KI_REGION_SEARCH) {
+        unlink_region(regions, region);
+        link_after(regions, NULL, region);
+    }
+    ki_os_unlock(&regions->mutex);
+    ki_os_release(gone, KI_REGION_BYTES);
+}
+
+void ki_regions_trim(ki_regions *regions)
+{
+    ki_os_lock(&regions->mutex);
+    ki_region *gone = regions->empty;
+    if (gone) {
+        unlink_region(regions, gone);
+        regions->count--;
+        regions->empty = NULL;
     }
     ki_os_unlock(&regions->mutex);
     ki_os_release(gone, KI_REGION_BYTES);

@@ -172,6 +172,15 @@ bool ki_resample_has_bands(const ki_resample_plan *plan)
     return plan->method == KI_RESAMPLE_GATHER || plan->method == KI_RESAMPLE_SEPARABLE;
 }
 
+kiln_result ki_resample_plan_bands(kiln_context *context, ki_resample_plan *plan, kiln_error *error)
+{
+    kiln_result result = KILN_OK;
+    bool gathers = plan->method == KI_RESAMPLE_GATHER;
+    for (int k = 0; gathers && k < plan->grid_count && result == KILN_OK; k++)
+        result = ki_stencil_grid_order(context, &plan->grid[k], error);
+    return result;
+}
+
 int ki_resample_reach(const ki_resample_plan *plan)
 {
     int most = 1;

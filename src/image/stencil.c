@@ -494,45 +494,6 @@ static bool build_rows(builder *b, int begin, int stop, grid_line bottom, grid_l
     return true;
 }
 
-// Lists the stencils of a chunk, whose first row of the grid is `begin`, by their depths. Returns
-// false when memory runs out.
-static bool order_by_depth(const builder *b, int begin)
-{
-    ki_stencil_chunk *chunk = b->chunk;
-    const ki_stencil *stop = chunk->stencils + chunk->stencil_count;
-    int height = b->grid->height, least = height, most = 0;
-    for (const ki_stencil *s = chunk->stencils; s < stop; s++) {
-        int depth = ki_stencil_depth(s->row, s->rows, height);
-        least = ki_min(least, depth);
-        most = ki_max(most, depth);
-    }
-    // place[depth - least]: the number of stencils that come before the next one of this depth
-    size_t depths = (size_t)(most - least) + 1;
-    size_t *place = ki_alloc(b->context, depths + 1, sizeof *place);
-    chunk->by_depth = ki_alloc_raw(b->context, chunk->stencil_count, sizeof *chunk->by_depth);
-    if (!place || !chunk->by_depth) {
-        ki_free(place);
-        return false;
-    }
-    for (const ki_stencil *s = chunk->stencils; s < stop; s++)
-        place[ki_stencil_depth(s->row, s->rows, height) - least + 1]++;
-    for (size_t k = 0; k < depths; k++)
-        place[k + 1] += place[k];
-    uint32_t blocks = 0;
-    const ki_stencil *s = chunk->stencils;
-    for (int j = begin; s < stop; j++) {
-        int i, end;
-        ki_stencil_grid_range(b->grid, j, &i, &end);
-        for (; i < end; i++, s++) {
-            chunk->by_depth[place[ki_stencil_depth(s->row, s->rows, height) - least]++] =
-                (ki_stencil_entry){(uint32_t)(s - chunk->stencils), blocks, i, j};
-            blocks += (uint32_t)s->rows * s->blocks;
-        }
-    }
-    ki_free(place);
-    return true;
-}
-
 static void build_chunk(void *data, int index)
 {
     builder b = *(const builder *)data;
@@ -568,7 +529,6 @@ static void build_chunk(void *data, int index)
         grid_line top = {corners + count, arcs + count, entries + line};
         chunk->failed = !build_rows(&b, begin, stop, bottom, top, entries + 2 * line, line);
     }
-    chunk->failed = chunk->failed || !order_by_depth(&b, begin);
 done:
     ki_free(b.area);
     ki_free(entries);
@@ -626,6 +586,61 @@ done:
     if (result)
         ki_stencil_grid_free(grid);
     return result;
+}
+
+// Task of one thread: lists the stencils of one chunk by their depths, unless they are listed.
+static void order_chunk(void *data, int index)
+{
+    const builder *b = data;
+    ki_stencil_chunk *chunk = &b->grid->chunks[index];
+    const ki_stencil *stop = chunk->stencils + chunk->stencil_count;
+    int height = b->grid->height, least = height, most = 0;
+    if (chunk->by_depth)
+        return;
+    for (const ki_stencil *s = chunk->stencils; s < stop; s++) {
+        int depth = ki_stencil_depth(s->row, s->rows, height);
+        least = ki_min(least, depth);
+        most = ki_max(most, depth);
+    }
+    // place[depth - least]: the number of stencils that come before the next one of this depth
+    size_t depths = (size_t)(most - least) + 1;
+    size_t *place = ki_alloc(b->context, depths + 1, sizeof *place);
+    chunk->by_depth = ki_alloc_raw(b->context, chunk->stencil_count, sizeof *chunk->by_depth);
+    chunk->failed = !place || !chunk->by_depth;
+    if (chunk->failed) {
+        ki_free(place);
+        ki_free(chunk->by_depth);
+        chunk->by_depth = NULL;
+        return;
+    }
+    for (const ki_stencil *s = chunk->stencils; s < stop; s++)
+        place[ki_stencil_depth(s->row, s->rows, height) - least + 1]++;
+    for (size_t k = 0; k < depths; k++)
+        place[k + 1] += place[k];
+    uint32_t blocks = 0;
+    const ki_stencil *s = chunk->stencils;
+    for (int j = index * KI_STENCIL_ROWS; s < stop; j++) {
+        int i, end;
+        ki_stencil_grid_range(b->grid, j, &i, &end);
+        for (; i < end; i++, s++) {
+            chunk->by_depth[place[ki_stencil_depth(s->row, s->rows, height) - least]++] =
+                (ki_stencil_entry){(uint32_t)(s - chunk->stencils), blocks, i, j};
+            blocks += (uint32_t)s->rows * s->blocks;
+        }
+    }
+    ki_free(place);
+}
+
+kiln_result ki_stencil_grid_order(kiln_context *context, ki_stencil_grid *grid, kiln_error *error)
+{
+    builder build = {.context = context, .grid = grid};
+    if (!ki_parallel_steps(context, NULL, grid->chunk_count, order_chunk, &build))
+        return ki_fail_cancelled(error, "planning");
+    for (int k = 0; k < grid->chunk_count; k++)
+        if (grid->chunks[k].failed)
+            return ki_fail_memory(context, error, "resampling",
+                                  grid->chunks[k].stencil_count * sizeof(ki_stencil_entry));
+    return KILN_OK;
 }
 
 void ki_stencil_grid_free(ki_stencil_grid *grid)

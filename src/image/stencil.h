@@ -32,7 +32,8 @@ typedef struct ki_stencil_entry {
 typedef struct ki_stencil_chunk {
     ki_stencil *stencils;
     float *weights;
-    ki_stencil_entry *by_depth; ///< all stencils, see ki_stencil_depth, the least depth first
+    /// all stencils, the least depth first (ki_stencil_depth); NULL before ki_stencil_grid_order
+    ki_stencil_entry *by_depth;
     size_t stencil_count, weight_count; ///< numbers of stencils and weights that are in use
     size_t weight_room;                 ///< number of weights that are allocated
     /// Range of panorama rows that the stencils of the chunk cover together.
@@ -92,6 +93,8 @@ static inline int ki_stencil_depth(int row, int rows, int height)
 
 /// Computes the chunks of a grid, which hold all its stencils, from the fields `kind` to `halved`.
 kiln_result ki_stencil_grid_build(kiln_context *context, ki_stencil_grid *grid, kiln_error *error);
+/// Lists the stencils of each chunk by their depths.
+kiln_result ki_stencil_grid_order(kiln_context *context, ki_stencil_grid *grid, kiln_error *error);
 void ki_stencil_grid_free(ki_stencil_grid *grid);
 
 #endif

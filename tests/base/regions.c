@@ -100,12 +100,61 @@ static void free_memory_is_used_again(void **state)
     const unsigned char *place = blocks[8].memory;
     give(&regions, &blocks[8]);
     give(&regions, &blocks[9]);
-    block large = take(&regions, 2 << 20, 200);
+    block large = take(&regions, KI_REGION_MOST, 200);
     assert_ptr_equal(large.memory, place);
     give(&regions, &large);
     for (int i = 0; i < COUNT; i++)
         if (blocks[i].memory)
             give(&regions, &blocks[i]);
+    assert_ptr_equal(regions.first, regions.empty);
+    ki_regions_end(&regions);
+}
+
+static void four_of_the_largest_fit(void **state)
+{
+    (void)state;
+    ki_regions regions;
+    block blocks[5];
+    ki_regions_begin(&regions);
+    for (int i = 0; i < 5; i++)
+        blocks[i] = take(&regions, KI_REGION_MOST, (unsigned char)i);
+    assert_ptr_equal(blocks[3].region, blocks[0].region);
+    assert_ptr_not_equal(blocks[4].region, blocks[0].region);
+    for (int i = 0; i < 5; i++)
+        give(&regions, &blocks[i]);
+    // one region is kept for the next block until it is asked back
+    assert_int_equal(regions.count, 1);
+    ki_regions_trim(&regions);
+    assert_int_equal(regions.count, 0);
+    assert_null(regions.first);
+    assert_null(regions.last);
+    ki_regions_end(&regions);
+}
+
+// In a context with many regions a block is looked for in some of them only. A region in which
+// memory becomes free is among these.
+static void many_regions_are_not_searched(void **state)
+{
+    (void)state;
+    enum { COUNT = 7 * (KI_REGION_SEARCH + 20) }; // seven blocks of 1 MiB fit into a region
+    static block blocks[COUNT];
+    ki_regions regions;
+    ki_regions_begin(&regions);
+    for (int i = 0; i < COUNT; i++) {
+        blocks[i].memory = ki_region_take(&regions, 1 << 20, &blocks[i].region);
+        assert_non_null(blocks[i].memory);
+    }
+    assert_int_equal(regions.count, KI_REGION_SEARCH + 20);
+    for (int i = 3; i < COUNT; i += 50) {
+        unsigned char *place = blocks[i].memory;
+        ki_region_give(&regions, blocks[i].region, place, 1 << 20);
+        blocks[i].memory = ki_region_take(&regions, 1 << 20, &blocks[i].region);
+        assert_ptr_equal(blocks[i].memory, place);
+    }
+    assert_int_equal(regions.count, KI_REGION_SEARCH + 20);
+    for (int i = 0; i < COUNT; i++)
+        ki_region_give(&regions, blocks[i].region, blocks[i].memory, 1 << 20);
+    assert_ptr_equal(regions.first, regions.last);
     assert_ptr_equal(regions.first, regions.empty);
     ki_regions_end(&regions);
 }
@@ -161,6 +210,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(blocks_keep_what_is_written),
         cmocka_unit_test(free_memory_is_used_again),
+        cmocka_unit_test(four_of_the_largest_fit),
+        cmocka_unit_test(many_regions_are_not_searched),
         cmocka_unit_test(threads_share_regions),
         cmocka_unit_test(objects_outlive_their_context),
     };

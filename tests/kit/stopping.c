@@ -1,5 +1,6 @@
 #include "stopping.h"
 
+#include "base/os.h"
 #include "check.h"
 
 bool count_down(void *user, const char *stage, double fraction)
@@ -21,7 +22,7 @@ bool stop_once(void *user, const char *stage, double fraction)
 
 int after_stop(int stop)
 {
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(KI_OS_CHECKS_BLOCKS)
     enum { EACH = 10, STEP = 7 };
     return stop < EACH ? stop + 1 : stop + STEP;
 #else

@@ -30,9 +30,9 @@ bool stop_once(void *user, const char *stage, double fraction);
 int after_stop(int stop);
 
 /// Does `work`, which must succeed with a context of the countdown `c`, again and again, and stops
-/// it at its first question, at its second, and so on, by after_stop. Returns the number of its questions. Work in
-/// steps asks once more after each twentieth of a second, so that on a busy machine it may ask more
-/// often one time than the next: the least number counts.
+/// it at its first question, at its second, and so on, by after_stop. Returns the number of its
+/// questions. Work in steps asks once more after each twentieth of a second, so that on a busy
+/// machine it may ask more often one time than the next: the least number counts.
 int count_questions(countdown *c, kiln_result (*work)(const void *data), const void *data);
 
 #endif
