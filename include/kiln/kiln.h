@@ -101,12 +101,12 @@ typedef enum kiln_cpu {
     KILN_CPU_AVX512
 } kiln_cpu;
 
-/// Settings of a context. {0} selects the system's memory, no memory limit, one thread per core, no
-/// progress reports and the best instruction set that the processor has.
+/// Settings of a context. {0} selects memory from malloc and the operating system, no memory limit,
+/// one thread per core, no progress reports and the best instruction set that the processor has.
 typedef struct kiln_context_def {
     /// `allocate` returns `size` bytes aligned to 64, or NULL when there is no memory. `release`
     /// frees such a block of `size` bytes. Either both functions are set or both are NULL, which
-    /// selects the system's memory, see docs/embedding.md.
+    /// selects malloc and, for larger blocks, the operating system (docs/embedding.md, Allocators).
     void *(*allocate)(void *user, size_t size);
     void (*release)(void *user, void *memory, size_t size);
     void *allocator_user;

@@ -60,8 +60,7 @@ struct kiln_context {
     ki_progress_range said; // stage and range of the last progress report, which ki_go_on repeats
     int depth;              // number of progress callbacks that run, one within the other
     // Number of progress reports that asked to stop, of the calls at each depth. A callback may
-    // call the library, and a stop of that call does not stop the call whose callback made
-    // it.
+    // call the library. A stop of that inner call does not stop the call whose callback made it.
     atomic_uint stops[KI_MAX_DEPTH];
     ki_pool pool;
 };

@@ -86,7 +86,8 @@ float ki_os_read_float(const char *text);
 
 // ------------------------------------------------------------------------------------------ memory
 
-/// Defined in programs that check the use of each block, for which each block is one of malloc.
+/// Defined in programs that are compiled with a sanitizer of memory. It sees errors only in blocks
+/// that come from malloc, so that every block comes from malloc there.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_HWADDRESS__)
 #define KI_OS_CHECKS_BLOCKS
 #elif defined(__has_feature)

@@ -275,8 +275,8 @@ static size_t paged_size(size_t size)
     return (size + LARGE_PAGE / 4) / LARGE_PAGE * LARGE_PAGE;
 }
 
-// Number of bytes that are mapped for a large block: whole pages, which have up to 64 KiB on some
-// machines.
+// Number of bytes that are mapped for a large block. Mappings consist of whole pages. Pages have 4
+// KiB on most machines and up to 64 KiB on some, so the number is a multiple of 64 KiB.
 static size_t mapped_size(size_t size)
 {
     size_t paged = paged_size(size), whole = (size + 0xffff) & ~(size_t)0xffff;
@@ -288,7 +288,8 @@ static void *map_large(size_t size)
     size_t wanted = mapped_size(size), all = wanted + LARGE_PAGE;
     char *start = mmap(NULL, all, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (start == MAP_FAILED) {
-        // there may be no room for more than the block, which then begins at any page
+        // Addresses may be short, for example under a limit of them. The block alone, without the
+        // alignment that large pages need, may still fit.
         start = mmap(NULL, wanted, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
         return start == MAP_FAILED ? NULL : start;
     }

@@ -33,9 +33,11 @@ typedef struct ki_regions {
     int count;        ///< number of regions
 } ki_regions;
 
-/// Returns whether regions are of use on this system. They are not in WebAssembly, whose memory is
-/// never given back, nor in programs that check each block, such as AddressSanitizer's.
+/// Returns whether contexts should use regions. They should not in WebAssembly, where no memory is
+/// ever given back to the system, nor in programs that are compiled with a sanitizer, which checks
+/// the blocks of malloc alone.
 bool ki_regions_help(void);
+/// Makes an empty set. ki_regions_end must be called at its end.
 void ki_regions_begin(ki_regions *regions);
 /// Gives the regions back to the system. No block may be in them.
 void ki_regions_end(ki_regions *regions);

@@ -4,7 +4,7 @@
 
 #include "image/color.h"
 
-/// Number of texels that are multiplied by a matrix at once.
+/// Number of texels that one call of ki_transform_stretch multiplies by a matrix.
 enum { KI_STRETCH = 64 };
 
 /// Multiplies KI_STRETCH RGB texels by the matrix and returns true. Returns false and changes

@@ -32,8 +32,9 @@ static void join(ki_float4 colors[3][KI_STRETCH / 4], float *rgb)
     }
 }
 
-// If a channel is not finite, a product is not finite either, since 0 times infinity is not a
-// number.
+// Only the products are tested. Each product is a sum over all three channels of a texel, so it is
+// not finite if a channel is infinite or not a number, even where the matrix is 0, because 0 times
+// infinity is not a number.
 bool TRANSFORM(const ki_matrix3 *matrix, float *rgb)
 {
     ki_float4 in[3][KI_STRETCH / 4], out[3][KI_STRETCH / 4];

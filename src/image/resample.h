@@ -32,16 +32,18 @@ bool ki_resample_execute(kiln_context *context, const ki_resample_plan *plan, ki
 /// Returns whether a plan can be executed by ki_resample_band: from a panorama, without a turn that
 /// takes rows to other places than rows.
 bool ki_resample_has_bands(const ki_resample_plan *plan);
-/// Prepares a plan for which ki_resample_has_bands is true for ki_resample_band.
+/// Prepares a plan for executions by ki_resample_band; ki_resample_has_bands must be true for it.
+/// Does nothing if the plan is prepared already.
 kiln_result ki_resample_plan_bands(kiln_context *context, ki_resample_plan *plan,
                                    kiln_error *error);
 /// Returns the greatest number of source rows from which a texel of the target is computed.
 int ki_resample_reach(const ki_resample_plan *plan);
 /// Computes all texels whose last source row has a depth from `from` to `to` - 1, with the same
-/// bits as ki_resample_execute, by a plan that ki_resample_plan_bands prepared. rows[0] holds the rows from the north pole, rows[1] those from the
-/// south pole, as many of them up to this depth as ki_resample_reach says. `buffer` was reserved
-/// for the plan and keeps its content from the first band to ki_resample_end_bands. Returns false
-/// if the caller of the library stops the work.
+/// bits as ki_resample_execute. ki_resample_plan_bands must have prepared the plan. rows[0] holds
+/// the rows from the north pole, rows[1] those from the south pole, as many of them up to this
+/// depth as ki_resample_reach says. `buffer` was reserved for the plan and keeps its content from
+/// the first band to ki_resample_end_bands. Returns false if the caller of the library stops the
+/// work.
 bool ki_resample_band(kiln_context *context, const ki_resample_plan *plan, ki_buffer *buffer,
                       const ki_rows rows[2], int from, int to, float *target);
 /// Completes the target after all bands.

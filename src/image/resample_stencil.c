@@ -372,8 +372,8 @@ static size_t count_above(const ki_stencil_grid *grid, const ki_stencil_chunk *c
     return low;
 }
 
-// Sums the stencils of a chunk, at one place of the map, that belong to the band of the run: those
-// from `first` to `end` - 1 in the order of their depths.
+// Computes the texels of a chunk, at one place of the map, that the rows of the run's band
+// complete. Their stencils are the entries from `first` to `end` - 1 of the chunk's list by depth.
 ALWAYS_INLINE void gather_band(const ki_resample_run *run, const ki_stencil_grid *grid, int chunk,
                                const ki_stencil_place *place, bool mirror, size_t first, size_t end)
 {
@@ -416,7 +416,8 @@ void ki_resample_gather(void *data, int index)
     const ki_stencil_grid *grid = plan->grid;
     while (index >= grid->chunk_count)
         index -= (grid++)->chunk_count;
-    // flipped stencils have the same depths, so that the same ones belong to the band everywhere
+    // A stencil has the same depth at every place of the map, so the band has the same stencils at
+    // all places.
     bool bands = !run->source;
     size_t first = bands ? count_above(grid, &grid->chunks[index], run->from) : 0;
     size_t end = bands ? count_above(grid, &grid->chunks[index], run->to) : 0;

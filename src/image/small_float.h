@@ -1,5 +1,6 @@
-// The conversion of numbers of 16, 14, 11 and 10 bits to floats, for loops that compilers turn into
-// vector instructions: integers and exact float operations only, without branches.
+// Inline functions that convert the small floats of textures, of 16, 14, 11 and 10 bits, to floats.
+// They use integers and exact float operations alone, so that every machine gives the same bits,
+// and no branches, so that compilers turn loops that call them into vector instructions.
 #ifndef KI_SMALL_FLOAT_H
 #define KI_SMALL_FLOAT_H
 
@@ -15,6 +16,7 @@ static inline int32_t ki_bits_of(float value)
     return bits;
 }
 
+/// Returns the float that has these bits.
 static inline float ki_float_of(int32_t bits)
 {
     float value;

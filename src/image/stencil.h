@@ -83,9 +83,10 @@ typedef struct ki_stencil_grid {
 int ki_stencil_grid_rows(const ki_stencil_grid *grid);
 void ki_stencil_grid_range(const ki_stencil_grid *grid, int j, int *first, int *end);
 
-/// Returns the depth of a box of panorama rows: the number of rows between a pole and the row of
-/// the box that is farthest from this pole, the nearer one. The depth stays the same if the rows
-/// are flipped, row r becoming height - 1 - r.
+/// Returns the depth of a box of panorama rows: how many rows must be read, beginning at a pole and
+/// without the last one, until the box is complete. The pole is the one that is nearer to the
+/// middle of the box. A box that is flipped, so that row r becomes row height - 1 - r, has the same
+/// depth.
 static inline int ki_stencil_depth(int row, int rows, int height)
 {
     return 2 * row + rows > height ? height - 1 - row : row + rows - 1;

@@ -89,7 +89,7 @@ static void free_memory_is_used_again(void **state)
     // 7 blocks of 256 units lie in each region of 2048 units, of which its head takes the first
     assert_ptr_equal(blocks[6].region, blocks[0].region);
     assert_ptr_not_equal(blocks[7].region, blocks[0].region);
-    // a block fits where one was, and goes to the first such place
+    // A block that is given back leaves the first place where a block of this size fits.
     for (int i = 3; i < COUNT; i += 9) {
         const unsigned char *place = blocks[i].memory;
         give(&regions, &blocks[i]);
