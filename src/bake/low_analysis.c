@@ -4,7 +4,6 @@
 #include "bake/low_analysis.h"
 
 #include "image/image.h"
-#include "sphere/grid.h"
 #include "sphere/sh.h"
 
 void ki_low_free(ki_low_workspace *w)
@@ -17,11 +16,10 @@ void ki_low_free(ki_low_workspace *w)
 kiln_result ki_low_create(kiln_context *context, int size, int degree, ki_analysis **analysis,
                           ki_low_workspace *w, kiln_error *error)
 {
-    double density[KI_IRRADIANCE_DEGREE + 1];
-    ki_model_density(degree, density);
-    kiln_result result = ki_analysis_create(context, size, degree, density, analysis, error);
+    kiln_result result = ki_analysis_create(context, size, degree, KI_MANY_RINGS, analysis, error);
     if (result == KILN_OK)
-        result = ki_analysis_workspace_create(context, *analysis, true, &w->analysis, error);
+        result = ki_analysis_workspace_create(context, *analysis, KI_ANALYSIS_WHOLE, &w->analysis,
+                                              error);
     if (result == KILN_OK)
         result = ki_spectrum_create(context, *analysis, &w->spectrum, error);
     return result;

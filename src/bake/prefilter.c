@@ -147,7 +147,6 @@ kiln_result ki_prefilter_create(kiln_context *context, int panorama_size, const 
     kiln_lobe lobes[KILN_MAX_LEVELS];
     ki_zonal zonals[KILN_MAX_LEVELS];
     ki_zonal_spectrum spectra[KILN_MAX_LEVELS] = {{0}};
-    double *density = NULL;
     ki_prefilter *p = *plan = ki_alloc(context, 1, sizeof *p);
     if (!p)
         return ki_fail_memory(context, error, "a plan", sizeof *p);
@@ -159,8 +158,9 @@ kiln_result ki_prefilter_create(kiln_context *context, int panorama_size, const 
     if (p->tilt.any)
         p->def.rotation = 0;
 
-    // Least degree to which the panorama is analysed. Low degrees cost little, and with the larger
-    // number of latitude rings a constant environment stays constant to the last bit of a float.
+    // Least degree to which the panorama is analysed. Low degrees cost little, and the larger number
+    // of latitude rings makes the harmonics and the irradiance more accurate, which may come from
+    // the same analysis.
     int degree = p->def.tolerance < 1e-3 ? 192 : 64;
     if (reading) {
         result = plan_tuning(context, p, reading, &lobes[0], error);
@@ -177,13 +177,7 @@ kiln_result ki_prefilter_create(kiln_context *context, int panorama_size, const 
             goto done;
         degree = ki_max(degree, spectra[i].degree);
     }
-    density = ki_alloc(context, (size_t)degree + 1, sizeof *density);
-    if (!density) {
-        result = ki_fail_memory(context, error, "a plan", (size_t)degree * sizeof *density);
-        goto done;
-    }
-    ki_model_density(degree, density);
-    result = ki_analysis_create(context, panorama_size, degree, density, &p->analysis, error);
+    result = ki_analysis_create(context, panorama_size, degree, KI_FEW_RINGS, &p->analysis, error);
     for (int i = 0; i < p->def.level_count && result == KILN_OK; i++) {
         int size = ki_max(ki_max(1, p->def.smallest), p->def.size >> i);
         if (!ki_progress(context, planning, (double)i / p->def.level_count))
@@ -195,7 +189,6 @@ kiln_result ki_prefilter_create(kiln_context *context, int panorama_size, const 
                                      p->def.shape, size, &p->tilt, &p->levels[i], error);
     }
 done:
-    ki_free(density);
     for (int i = 0; i < KILN_MAX_LEVELS; i++)
         ki_zonal_free(&spectra[i]);
     if (result != KILN_OK) {
@@ -209,8 +202,12 @@ kiln_result ki_prefilter_workspace_create(kiln_context *context, const ki_prefil
                                           ki_prefilter_workspace *workspace, kiln_error *error)
 {
     *workspace = (ki_prefilter_workspace){.context = context};
-    kiln_result result =
-        ki_analysis_workspace_create(context, p->analysis, true, &workspace->analysis, error);
+    kiln_result result = ki_analysis_workspace_create(context, p->analysis, KI_ANALYSIS_BORROWS,
+                                                      &workspace->analysis, error);
+    // The analysis needs larger buffers than the levels do, as a rule, and comes first so that the
+    // buffers need not be made twice.
+    if (result == KILN_OK)
+        result = ki_prefilter_begin(p, workspace, error);
     if (result == KILN_OK)
         result = ki_spectrum_create(context, p->analysis, &workspace->spectrum, error);
     for (int i = 0; i < p->def.level_count && result == KILN_OK; i++)
@@ -218,8 +215,6 @@ kiln_result ki_prefilter_workspace_create(kiln_context *context, const ki_prefil
             result = ki_level_reserve(context, p->levels[i], &workspace->levels, error);
         else if (p->mirrors[i])
             result = ki_resample_reserve(context, p->mirrors[i], &workspace->resampling, error);
-    if (result == KILN_OK)
-        result = ki_prefilter_begin(p, workspace, error);
     if (result != KILN_OK)
         ki_prefilter_workspace_free(workspace);
     return result;

@@ -39,7 +39,7 @@ struct ki_analysis_workspace {
     // The twelve are the real and imaginary parts of r, g, b: first of the part that is even about
     // the equator, then of the odd part.
     double *orders;
-    bool borrows; // true: `orders` and `scratch` are those of ki_analysis_borrow
+    bool borrows; // `orders` and `scratch` are those of ki_analysis_borrow
     // Scratch memory of each worker: two FFT buffers and 16 latitude rings, or the state of the
     // Legendre recurrence.
     double *scratch;
@@ -67,9 +67,10 @@ enum {
 };
 
 kiln_result ki_analysis_workspace_create(kiln_context *context, const ki_analysis *analysis,
-                                         bool whole, ki_analysis_workspace **workspace,
+                                         ki_analysis_use use, ki_analysis_workspace **workspace,
                                          kiln_error *error)
 {
+    bool whole = use != KI_ANALYSIS_ROWS, owns = use != KI_ANALYSIS_BORROWS;
     size_t width = 2 * (size_t)analysis->size, rings = 2 * (size_t)analysis->rings.pair_count;
     size_t threads = (size_t)ki_context_threads(context), row, ring_bytes;
     size_t vectors = (size_t)analysis->rings.vector_count;
@@ -77,6 +78,7 @@ kiln_result ki_analysis_workspace_create(kiln_context *context, const ki_analysi
     if (!w)
         return ki_fail_memory(context, error, "an analysis", sizeof *w);
     w->context = context;
+    w->borrows = !owns;
     w->scratch_size = width * 16 * 2 + (whole ? width * 3 * RING_SET : 0);
     if (w->scratch_size < 16 * vectors)
         w->scratch_size = 16 * vectors;
@@ -86,24 +88,17 @@ kiln_result ki_analysis_workspace_create(kiln_context *context, const ki_analysi
     w->row_sums = ki_alloc_raw(context, (size_t)analysis->size, 3 * sizeof(double));
     w->row_peaks = ki_alloc_raw(context, (size_t)analysis->size, sizeof(float));
     w->candidates = ki_alloc_raw(context, KI_MAX_SUNS, sizeof *w->candidates);
-    w->orders =
-        ki_alloc_raw(context, ((size_t)analysis->degree + 1) * vectors, 96 * sizeof(double));
-    w->scratch = ki_alloc_raw(context, threads * w->scratch_size, sizeof(double));
-    if ((w->rings || whole) && w->row_sums && w->row_peaks && w->candidates && w->orders &&
-        w->scratch)
+    if (owns) {
+        w->orders =
+            ki_alloc_raw(context, ((size_t)analysis->degree + 1) * vectors, 96 * sizeof(double));
+        w->scratch = ki_alloc_raw(context, threads * w->scratch_size, sizeof(double));
+    }
+    if ((w->rings || whole) && w->row_sums && w->row_peaks && w->candidates &&
+        (!owns || (w->orders && w->scratch)))
         return KILN_OK;
     ki_analysis_workspace_destroy(w);
     *workspace = NULL;
     return ki_fail_memory(context, error, "the rings of an analysis", whole ? row : ring_bytes);
-}
-
-// Frees the memory that a workspace may borrow, unless the memory is borrowed.
-static void free_own(ki_analysis_workspace *w)
-{
-    if (w->borrows)
-        return;
-    ki_free(w->orders);
-    ki_free(w->scratch);
 }
 
 kiln_result ki_analysis_borrow(const ki_analysis *analysis, ki_analysis_workspace *workspace,
@@ -115,8 +110,6 @@ kiln_result ki_analysis_borrow(const ki_analysis *analysis, ki_analysis_workspac
     if (!ki_buffer_reserve(w->context, orders, count, 96 * sizeof(double)) ||
         !ki_buffer_reserve(w->context, scratch, threads * w->scratch_size, sizeof(double)))
         return ki_fail_memory(w->context, error, "an analysis", count * 96 * sizeof(double));
-    free_own(w);
-    w->borrows = true;
     w->orders = orders->memory;
     w->scratch = scratch->memory;
     return KILN_OK;
@@ -130,7 +123,10 @@ void ki_analysis_workspace_destroy(ki_analysis_workspace *workspace)
     ki_free(workspace->row_sums);
     ki_free(workspace->row_peaks);
     ki_free(workspace->candidates);
-    free_own(workspace);
+    if (!workspace->borrows) {
+        ki_free(workspace->orders);
+        ki_free(workspace->scratch);
+    }
     ki_free(workspace);
 }
 
@@ -410,6 +406,18 @@ static void transform_rings(void *data, int worker, int index)
         transform_channel(r, vector, channel, rings, buffer);
 }
 
+// Takes from the rings, in order 0, what the kink of sin theta at the poles puts in them (see
+// ki_analysis). The radiance at a pole is that of the ring next to it. A constant panorama thus has
+// no coefficient but that of degree 0.
+static void correct_poles(const ki_analysis *a, double *orders)
+{
+    for (int c = 0; c < 2 * KI_COMPONENTS; c++) {
+        double *component = orders + KI_LANES * c, pole = component[0];
+        for (int k = 0; k < a->rings.pair_count; k++)
+            component[96 * (k / KI_LANES) + k % KI_LANES] -= a->pole_excess[k] * pole;
+    }
+}
+
 // Task of one thread: computes the coefficients a_lm of one order m from the Fourier coefficients
 // of the rings.
 static void analyze_order(void *data, int worker, int m)
@@ -420,6 +428,8 @@ static void analyze_order(void *data, int worker, int m)
     size_t vectors = (size_t)a->rings.vector_count, row = ki_legendre_row(&a->legendre, m);
     int count = a->degree - m + 1;
     double *out = r->spectrum->a + ki_coefficient_row(a->degree, m);
+    if (m == 0)
+        correct_poles(a, w->orders);
     a->kernels->analyze(a->legendre.f + row, count, a->rings.twice_cos,
                         a->rings.start + 8 * vectors * (size_t)m,
                         w->orders + 96 * vectors * (size_t)m, a->rings.first[m],

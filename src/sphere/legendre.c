@@ -93,10 +93,10 @@ bool ki_rings_create(kiln_context *context, const double *theta, int pair_count,
     return true;
 }
 
-bool ki_rings_create_grid(kiln_context *context, int degree, ki_rings *rings)
+bool ki_rings_create_grid(kiln_context *context, int degree, ki_ring_excess excess, ki_rings *rings)
 {
     *rings = (ki_rings){0};
-    int pairs = (degree + degree / 2 + 8 + 31) / 32 * 16;
+    int pairs = (degree + degree * (int)excess / 8 + 8 + 31) / 32 * 16;
     double *theta = ki_alloc_raw(context, (size_t)pairs, sizeof *theta);
     if (!theta)
         return false;

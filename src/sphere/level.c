@@ -179,7 +179,7 @@ static bool plan_grid(kiln_context *context, ki_level *v, const kiln_map *map)
 {
     bool alike = v->shape == KILN_SHAPE_CUBE && !v->tilt.any; // faces have each other's positions
     size_t texels = kiln_map_texels(map, 0) / (alike ? 3 : 1);
-    if (!ki_rings_create_grid(context, v->degree, &v->rings) ||
+    if (!ki_rings_create_grid(context, v->degree, KI_FEW_RINGS, &v->rings) ||
         !ki_fft_create(context, ki_fft_good_length(4 * v->rings.pair_count), &v->fft))
         return false;
     int width = v->fft.length + 2 * PAD, rows = 2 * v->rings.pair_count + 2 * PAD;

@@ -54,17 +54,20 @@ typedef struct ki_analysis {
     // Integral of exp(-i m phi) over the width of texel column 0 for each order m, [m][real,
     // imaginary].
     double *column;
-    int *
-        // Index in `row_weights` of the first weight of each latitude ring, [rings + 1].
-        ring_start;
+    // The weights of a ring are integrals of interpolating functions times sin theta, which has a
+    // kink at the poles. The integrals of a constant therefore deviate from those of Fejer's rule,
+    // which is exact, by up to 5 % of the ring at the pole, with a sign that changes from ring to
+    // ring. This array has the deviations, of rings in the north, relative to the weight of the ring
+    // at the pole, [pair_count].
+    double *pole_excess;
+    // Index in `row_weights` of the first weight of each latitude ring, [rings + 1].
+    int *ring_start;
     // Weights of panorama rows for latitude rings, sorted by ring and then by row.
     ki_row_weight *row_weights;
 } ki_analysis;
 
-/// Prepares the analysis of panoramas with `size` rows up to `degree`. `density[l]` is the expected
-/// power at degree l, for which the interpolation between latitude rings is designed, see
-/// ki_taps_design.
-kiln_result ki_analysis_create(kiln_context *context, int size, int degree, const double *density,
+/// Prepares the analysis of panoramas with `size` rows up to `degree`.
+kiln_result ki_analysis_create(kiln_context *context, int size, int degree, ki_ring_excess excess,
                                ki_analysis **analysis, kiln_error *error);
 /// Frees an analysis. `analysis` may be NULL.
 void ki_analysis_destroy(ki_analysis *analysis);
@@ -77,17 +80,24 @@ kiln_result ki_spectrum_create(kiln_context *context, const ki_analysis *analysi
 /// over the rows that have been added so far. The threads are those of the workspace's context.
 typedef struct ki_analysis_workspace ki_analysis_workspace;
 
-/// Creates a workspace for an analysis. With `whole`, panoramas are analysed by
-/// ki_analysis_execute, and the workspace has the latitude rings of one vector for each thread.
-/// Else the workspace has all latitude rings, and one panorama is analysed by ki_analysis_add_rows
-/// and ki_analysis_finish.
+typedef enum ki_analysis_use {
+    /// One panorama is analysed by ki_analysis_add_rows and ki_analysis_finish. The workspace has
+    /// all latitude rings.
+    KI_ANALYSIS_ROWS,
+    /// Panoramas are analysed by ki_analysis_execute. The workspace has the latitude rings of one
+    /// vector for each thread.
+    KI_ANALYSIS_WHOLE,
+    /// as KI_ANALYSIS_WHOLE, in the buffers of ki_analysis_borrow, which is called before
+    KI_ANALYSIS_BORROWS,
+} ki_analysis_use;
+
 kiln_result ki_analysis_workspace_create(kiln_context *context, const ki_analysis *analysis,
-                                         bool whole, ki_analysis_workspace **workspace,
+                                         ki_analysis_use use, ki_analysis_workspace **workspace,
                                          kiln_error *error);
-/// Lets a workspace work in two buffers, which are made large enough, in place of its own memory:
-/// `orders` for the Fourier coefficients of the rings, and `scratch` for the threads. The buffers
-/// may be used for other purposes between the executions, and may move if ki_analysis_borrow is
-/// called again before the next execution.
+/// Gives a workspace that borrows its memory two buffers, which are made large enough: `orders` for
+/// the Fourier coefficients of the rings, and `scratch` for the threads. The buffers may be used
+/// for other purposes between the executions, and may move if ki_analysis_borrow is called again
+/// before the next execution.
 kiln_result ki_analysis_borrow(const ki_analysis *analysis, ki_analysis_workspace *workspace,
                                ki_buffer *orders, ki_buffer *scratch, kiln_error *error);
 /// Frees a workspace. `workspace` may be NULL.

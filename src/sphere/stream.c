@@ -4,7 +4,6 @@
 
 #include "image/image.h"
 #include "math/math.h"
-#include "sphere/grid.h"
 
 struct kiln_stream {
     kiln_context *context;
@@ -34,19 +33,15 @@ kiln_result kiln_stream_begin(kiln_context *context, int size, int degree, kiln_
     if (degree == 0)
         degree = ki_min(2 * size, KILN_MAX_DEGREE);
     degree = ki_max(degree, 8);
-    double *density = ki_alloc(context, (size_t)degree + 1, sizeof *density);
     kiln_stream *s = ki_alloc(context, 1, sizeof *s);
-    if (!density || !s) {
-        ki_free(density);
-        ki_free(s);
+    if (!s)
         return ki_fail_memory(context, error, "a stream", sizeof *s);
-    }
     s->context = context;
-    ki_model_density(degree, density);
-    kiln_result result = ki_analysis_create(context, size, degree, density, &s->analysis, error);
+    kiln_result result =
+        ki_analysis_create(context, size, degree, KI_MANY_RINGS, &s->analysis, error);
     if (result == KILN_OK)
-        result = ki_analysis_workspace_create(context, s->analysis, false, &s->workspace, error);
-    ki_free(density);
+        result = ki_analysis_workspace_create(context, s->analysis, KI_ANALYSIS_ROWS, &s->workspace,
+                                              error);
     if (result == KILN_OK)
         *stream = s;
     else

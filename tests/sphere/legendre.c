@@ -50,7 +50,7 @@ static void skipped_rings_hold_nothing(void **state)
         int degree = degrees[n];
         ki_rings rings;
         ki_legendre legendre;
-        assert_true(ki_rings_create_grid(context, degree, &rings));
+        assert_true(ki_rings_create_grid(context, degree, KI_FEW_RINGS, &rings));
         assert_true(ki_legendre_create(context, degree, &legendre));
         double most = 0;
         for (int m = 0; m <= degree; m += 1 + degree / 60) {
