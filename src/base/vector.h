@@ -48,6 +48,19 @@ typedef int64_t ki_index_doubles4 __attribute__((vector_size(32)));
     }
 #endif
 
+/// Transposes a matrix of 4 x 4 floats, given as four rows.
+static inline void ki_transpose4(ki_float4 rows[4])
+{
+    ki_float4 low01 = KI_SHUFFLE4(rows[0], rows[1], 0, 4, 1, 5);
+    ki_float4 low23 = KI_SHUFFLE4(rows[2], rows[3], 0, 4, 1, 5);
+    ki_float4 high01 = KI_SHUFFLE4(rows[0], rows[1], 2, 6, 3, 7);
+    ki_float4 high23 = KI_SHUFFLE4(rows[2], rows[3], 2, 6, 3, 7);
+    rows[0] = KI_SHUFFLE4(low01, low23, 0, 1, 4, 5);
+    rows[1] = KI_SHUFFLE4(low01, low23, 2, 3, 6, 7);
+    rows[2] = KI_SHUFFLE4(high01, high23, 0, 1, 4, 5);
+    rows[3] = KI_SHUFFLE4(high01, high23, 2, 3, 6, 7);
+}
+
 /// Converts four RGB texels of three floats each to vectors of red, green and blue.
 static inline void ki_split_rgb4(const ki_float4 texels[3], ki_float4 rgb[3])
 {

@@ -141,8 +141,9 @@ static int piece_count(const ki_analysis *a)
 // Adds the weighted panorama rows of the run to one piece of a latitude ring. The two halves of a
 // row (`half` 0 and 1) are cut at the same places, so that a ring beyond a pole, half a turn away,
 // receives the same piece of the other half. The rows are added in their order, so that the sums do
-// not depend on how many rows come at a time.
-static void add_to_piece(const run *r, int ring, int half, int piece, double *accumulator)
+// not depend on how many rows come at a time. With `is_first`, the piece counts as 0 before.
+static void add_to_piece(const run *r, int ring, int half, int piece, bool is_first,
+                         double *accumulator)
 {
     enum { MOST = 32 };
     const ki_analysis *a = r->analysis;
@@ -161,12 +162,15 @@ static void add_to_piece(const run *r, int ring, int half, int piece, double *ac
         offsets[n] = (ptrdiff_t)row * size * 6 + (from_row->half_turn ? there : here);
         weights[n++] = from_row->weight;
         if (n == MOST) {
-            a->kernels->add_weighted(accumulator + here, rows->rgb, offsets, weights, n, 3 * count);
+            a->kernels->add_weighted(accumulator + here, is_first, rows->rgb, offsets, weights, n,
+                                     3 * count);
+            is_first = false;
             n = 0;
         }
     }
-    if (n)
-        a->kernels->add_weighted(accumulator + here, rows->rgb, offsets, weights, n, 3 * count);
+    if (n || is_first)
+        a->kernels->add_weighted(accumulator + here, is_first, rows->rgb, offsets, weights, n,
+                                 3 * count);
 }
 
 // Task of one thread: adds one piece of the run's panorama rows to all latitude rings.
@@ -175,7 +179,7 @@ static void add_to_rings(void *data, int index)
     const run *r = data;
     int pieces = piece_count(r->analysis);
     for (int ring = 0; ring < 2 * r->analysis->rings.pair_count; ring++)
-        add_to_piece(r, ring, index / pieces, index % pieces,
+        add_to_piece(r, ring, index / pieces, index % pieces, false,
                      r->work->rings + (ptrdiff_t)ring * r->analysis->size * 6);
 }
 
@@ -394,11 +398,10 @@ static void transform_rings(void *data, int worker, int index)
         rings[j] =
             w->rings ? w->rings + (size_t)number[j] * pitch : buffer + buffers + (size_t)j * pitch;
     if (!w->rings) {
-        memset(rings[0], 0, RING_SET * pitch * sizeof(double));
         int pieces = piece_count(a);
         for (int piece = 0; piece < 2 * pieces; piece++)
             for (int j = 0; j < RING_SET; j++)
-                add_to_piece(r, number[j], piece / pieces, piece % pieces, rings[j]);
+                add_to_piece(r, number[j], piece / pieces, piece % pieces, true, rings[j]);
     }
     for (int j = 0; j < RING_SET; j++)
         subtract_suns(r, number[j], rings[j]);

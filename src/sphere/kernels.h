@@ -82,9 +82,9 @@ typedef struct ki_kernels {
     double *(*fft)(const ki_fft *fft, double *data, double *work);
 
     /// Adds weighted rows: accumulator[i] += weights[k] * (rows + offsets[k])[i] for i < count,
-    /// with k = 0 .. row_count - 1 in this order.
-    void (*add_weighted)(double *accumulator, const float *rows, const ptrdiff_t *offsets,
-                         const double *weights, int row_count, int count);
+    /// with k = 0 .. row_count - 1 in this order. With `is_first`, the accumulator counts as 0.
+    void (*add_weighted)(double *accumulator, bool is_first, const float *rows,
+                         const ptrdiff_t *offsets, const double *weights, int row_count, int count);
 
     /// Sums the magnitudes of a row of `count` RGB texels by channel and returns the largest
     /// magnitude of the row.

@@ -188,8 +188,8 @@ static double *fft(const ki_fft *plan, double *data, double *work)
 
 // ------------------------------------------------------------------------------------------ rings
 
-static void add_weighted(double *accumulator, const float *rows, const ptrdiff_t *offsets,
-                         const double *weights, int row_count, int count)
+static void add_weighted(double *accumulator, bool is_first, const float *rows,
+                         const ptrdiff_t *offsets, const double *weights, int row_count, int count)
 {
     // number of native vectors that are summed at once, which hides the latency of additions
     enum { AT_ONCE = 4 };
@@ -197,7 +197,7 @@ static void add_weighted(double *accumulator, const float *rows, const ptrdiff_t
     for (; i + AT_ONCE * KI_WIDTH <= count; i += AT_ONCE * KI_WIDTH) {
         vec sum[AT_ONCE];
         for (ptrdiff_t n = 0; n < AT_ONCE; n++)
-            sum[n] = load(accumulator + i + n * KI_WIDTH);
+            sum[n] = is_first ? splat(0) : load(accumulator + i + n * KI_WIDTH);
         for (int k = 0; k < row_count; k++)
             for (ptrdiff_t n = 0; n < AT_ONCE; n++)
                 sum[n] += weights[k] * widen(rows + offsets[k] + i + n * KI_WIDTH);
@@ -205,14 +205,16 @@ static void add_weighted(double *accumulator, const float *rows, const ptrdiff_t
             store(accumulator + i + n * KI_WIDTH, sum[n]);
     }
     for (; i + KI_WIDTH <= count; i += KI_WIDTH) {
-        vec sum = load(accumulator + i);
+        vec sum = is_first ? splat(0) : load(accumulator + i);
         for (int k = 0; k < row_count; k++)
             sum += weights[k] * widen(rows + offsets[k] + i);
         store(accumulator + i, sum);
     }
-    for (; i < count; i++)
+    for (; i < count; i++) {
+        accumulator[i] = is_first ? 0 : accumulator[i];
         for (int k = 0; k < row_count; k++)
             accumulator[i] += weights[k] * (double)rows[offsets[k] + i];
+    }
 }
 
 static float sum_row(const float *row, int count, double sum[3])

@@ -6,6 +6,7 @@
 // kept out of the spectrum, are added as points.
 #include "sphere/level.h"
 
+#include "base/vector.h"
 #include "image/image.h"
 #include "math/math.h"
 #include "sphere/grid.h"
@@ -352,21 +353,27 @@ enum { COLUMNS = 32 }; // number of columns that are stored in the grid at once
 
 // Stores columns of the rings of a vector in the rows of one channel of the grid. The Fourier
 // transform `z` has the values of eight southern and eight northern rings side by side. Few columns
-// at a time keep the rows in the first cache.
+// at a time keep the rows in the first cache, and blocks of four columns of four rings are turned
+// in registers. `from` and `to` are multiples of four.
 static void store_columns(const ki_level *v, int vector, const double *z, int from, int to,
                           float *plane)
 {
-    float values[COLUMNS][2 * KI_LANES];
-    for (int x = from; x < to; x++)
-        for (int j = 0; j < 2 * KI_LANES; j++)
-            values[x - from][j] = (float)z[2 * KI_LANES * x + j];
-    for (int j = 0; j < KI_LANES; j++) {
-        int k = KI_LANES * vector + j, last = PAD + 2 * v->rings.pair_count - 1;
-        float *north = plane + (size_t)(PAD + k) * v->pitch + from;
-        float *south = plane + (size_t)(last - k) * v->pitch + from;
-        for (int x = 0; x < to - from; x++) {
-            north[x] = values[x][KI_LANES + j];
-            south[x] = values[x][j];
+    for (int j = 0; j < 2 * KI_LANES; j += 4) {
+        float *row[4];
+        for (int i = 0; i < 4; i++) {
+            int k = KI_LANES * vector + (j + i) % KI_LANES;
+            int south = PAD + 2 * v->rings.pair_count - 1 - k;
+            row[i] = plane + (size_t)(j < KI_LANES ? south : PAD + k) * v->pitch;
+        }
+        for (int x = from; x < to; x += 4) {
+            ki_float4 block[4];
+            for (int i = 0; i < 4; i++) {
+                const double *p = z + 2 * KI_LANES * (x + i) + j;
+                block[i] = (ki_float4){(float)p[0], (float)p[1], (float)p[2], (float)p[3]};
+            }
+            ki_transpose4(block);
+            for (int i = 0; i < 4; i++)
+                memcpy(row[i] + x, &block[i], sizeof block[i]);
         }
     }
 }
