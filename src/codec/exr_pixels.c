@@ -25,33 +25,13 @@ static void to_floats(kiln_context *context, const uint8_t *restrict samples, in
     }
 }
 
-// Interleaves a line of red, green and blue to RGB texels, four texels at a time.
-static void interleave(const float *restrict r, const float *restrict g, const float *restrict b,
-                       int count, float *restrict rgb)
-{
-    int i = 0;
-    for (; i + 4 <= count; i += 4) {
-        ki_float4 colors[3], texels[3];
-        memcpy(&colors[0], r + i, sizeof colors[0]);
-        memcpy(&colors[1], g + i, sizeof colors[1]);
-        memcpy(&colors[2], b + i, sizeof colors[2]);
-        ki_join_rgb4(colors, texels);
-        memcpy(rgb + 3 * (size_t)i, texels, sizeof texels);
-    }
-    for (; i < count; i++) {
-        float *texel = rgb + 3 * (size_t)i;
-        texel[0] = r[i];
-        texel[1] = g[i];
-        texel[2] = b[i];
-    }
-}
-
 // Converts one line of the channels that become red, green and blue to RGB texels. samples[c] is
 // NULL where the file has no channel for colour c.
 static void put_line(kiln_context *context, const uint8_t *const samples[3],
                      const ki_exr_channel *const channel[3], int count, float *rgb)
 {
     float values[3][STRETCH];
+    const float *const colors[3] = {values[0], values[1], values[2]};
     for (int c = 0; c < 3; c++)
         if (!samples[c])
             memset(values[c], 0, sizeof values[c]);
@@ -61,7 +41,7 @@ static void put_line(kiln_context *context, const uint8_t *const samples[3],
             if (samples[c])
                 to_floats(context, samples[c] + (size_t)x * (size_t)channel[c]->bytes,
                           channel[c]->type, n, values[c]);
-        interleave(values[0], values[1], values[2], n, rgb + 3 * (size_t)x);
+        KI_FASTEST(context, ki_join_colors)(colors, (size_t)n, rgb + 3 * (size_t)x);
     }
 }
 

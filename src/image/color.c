@@ -190,13 +190,11 @@ static void transform_texel(const ki_matrix3 *matrix, float rgb[3])
 
 void ki_row_transform(kiln_context *context, const ki_matrix3 *matrix, float *rgb, int width)
 {
-    ki_transform_stretch *transform_stretch = KI_FASTEST(context, ki_transform_stretch);
-    for (int x = 0, end; x < width; x = end) {
-        end = ki_min(x + KI_STRETCH, width);
-        if (end - x == KI_STRETCH && transform_stretch(matrix, rgb + 3 * (size_t)x))
-            continue;
-        for (int i = x; i < end; i++)
-            transform_texel(matrix, rgb + 3 * (size_t)i);
+    ki_transform_texels *transform_texels = KI_FASTEST(context, ki_transform_texels);
+    for (int x = 0; x < width;) {
+        x += (int)transform_texels(matrix, rgb + 3 * (size_t)x, (size_t)(width - x));
+        for (int end = ki_min(x + KI_TRANSFORMED, width); x < end; x++)
+            transform_texel(matrix, rgb + 3 * (size_t)x);
     }
 }
 

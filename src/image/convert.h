@@ -4,14 +4,20 @@
 
 #include "image/color.h"
 
-/// Number of texels that one call of ki_transform_stretch multiplies by a matrix.
-enum { KI_STRETCH = 64 };
+/// Number of texels that ki_transform_texels multiplies at once.
+enum { KI_TRANSFORMED = 8 };
 
-/// Multiplies KI_STRETCH RGB texels by the matrix and returns true. Returns false and changes
-/// nothing if a channel is not finite or a product is beyond the largest float.
-typedef bool ki_transform_stretch(const ki_matrix3 *matrix, float *rgb);
-ki_transform_stretch ki_transform_stretch_scalar, ki_transform_stretch_simd128,
-    ki_transform_stretch_avx2, ki_transform_stretch_avx512;
+/// Multiplies RGB texels by the matrix, KI_TRANSFORMED at a time, and returns the number of texels
+/// that it has multiplied. Ends where fewer are left, and before texels of which a channel is not
+/// finite or a product is beyond the largest float.
+typedef size_t ki_transform_texels(const ki_matrix3 *matrix, float *rgb, size_t count);
+ki_transform_texels ki_transform_texels_scalar, ki_transform_texels_simd128,
+    ki_transform_texels_avx2, ki_transform_texels_avx512;
+
+/// Joins `count` values of red, green and blue to RGB texels.
+typedef void ki_join_colors(const float *const colors[3], size_t count, float *rgb);
+ki_join_colors ki_join_colors_scalar, ki_join_colors_simd128, ki_join_colors_avx2,
+    ki_join_colors_avx512;
 
 /// Converts `count` half floats, which may lie at any address, to floats.
 typedef void ki_widen_halfs(const void *bytes, size_t count, float *values);

@@ -136,7 +136,7 @@ static void pictures_are_converted(void **unused)
     kiln_context_destroy(context);
 }
 
-// Rows of 150 texels have two stretches that the library multiplies at once, and a rest. Every
+// Rows of 150 texels have 18 groups of eight that the library multiplies at once, and a rest. Every
 // texel has the bits of the three sums in double precision, also next to texels with a channel that
 // is infinite or not a number, which stay, and to products beyond the largest float, which become
 // it.
