@@ -93,10 +93,11 @@ static void pack(const ki_pixel_format *pixel, const float *rgb, size_t count, u
             memcpy(bytes + 8 * done, halfs, 8 * n);
             continue;
         }
-        uint32_t words[STRETCH] = {0};
-        for (size_t i = 0; i < n; i++)
-            words[i] = pixel->format == KILN_FORMAT_RGB9E5 ? ki_rgb9e5_from_float(from + 3 * i)
-                                                           : ki_b10g11r11_from_float(from + 3 * i);
+        uint32_t words[STRETCH];
+        if (pixel->format == KILN_FORMAT_RGB9E5)
+            ki_pack_rgb9e5(from, n, words);
+        else
+            ki_pack_b10g11r11(from, n, words);
         memcpy(bytes + 4 * done, words, 4 * n);
     }
 }

@@ -3,6 +3,8 @@
 // operations only, so that every machine gives the same bits. The roundings are to nearest, ties to
 // even.
 #include "image/pack.h"
+
+#include "base/vector.h"
 #include "image/convert.h"
 #include "image/small_float.h"
 #include "math/math.h"
@@ -72,30 +74,35 @@ void ki_floats_from_half_bytes(const void *bytes, size_t count, float *values)
 
 // Packs by EXT_texture_shared_exponent: a channel is mantissa 2^(exponent - 15 - 9), with mantissas
 // of 9 bits and one exponent for all three. The exponent is the smallest for which the mantissa of
-// the largest channel, rounded, still fits in 9 bits.
-uint32_t ki_rgb9e5_from_float(const float rgb[3])
+// the largest channel, rounded, still fits in 9 bits. The code has no branches.
+static inline uint32_t rgb9e5_of(float r, float g, float b)
 {
     const float largest = KI_RGB9E5_MAX; // the largest value of the format, 511 / 512 * 2^16
-    float c[3], most = 0;
-    for (int i = 0; i < 3; i++) {
-        c[i] = rgb[i] > 0 ? rgb[i] : 0;
-        c[i] = c[i] > largest ? largest : c[i];
-        most = c[i] > most ? c[i] : most;
-    }
-    int exponent = (ki_bits_of(most) >> 23) - 127 + 16;
-    exponent = exponent < 0 ? 0 : exponent;
     // The unit in the last place of the float 2^23 is 1, so adding 2^23 rounds a mantissa to an
-    // integer, ties to even.
+    // integer, ties to even, which the low bits of the sum then hold.
     const float round = 8388608;
+    r = r > 0 ? r : 0;
+    g = g > 0 ? g : 0;
+    b = b > 0 ? b : 0;
+    r = r > largest ? largest : r;
+    g = g > largest ? largest : g;
+    b = b > largest ? largest : b;
+    float most = r > g ? r : g;
+    most = most > b ? most : b;
+    int32_t exponent = (ki_bits_of(most) >> 23) - 127 + 16;
+    exponent = exponent < 0 ? 0 : exponent;
     float scale = ki_float_of((127 + 24 - exponent) << 23);
-    if ((most * scale + round) - round >= 512) {
-        exponent++;
-        scale *= 0.5f;
-    }
-    uint32_t packed = (uint32_t)exponent << 27;
-    for (int i = 0; i < 3; i++)
-        packed |= (uint32_t)((c[i] * scale + round) - round) << (9 * i);
-    return packed;
+    exponent += (most * scale + round) - round >= 512 ? 1 : 0;
+    scale = ki_float_of((127 + 24 - exponent) << 23);
+    uint32_t red = (uint32_t)ki_bits_of(r * scale + round) & 511U;
+    uint32_t green = (uint32_t)ki_bits_of(g * scale + round) & 511U;
+    uint32_t blue = (uint32_t)ki_bits_of(b * scale + round) & 511U;
+    return (uint32_t)exponent << 27 | blue << 18 | green << 9 | red;
+}
+
+uint32_t ki_rgb9e5_from_float(const float rgb[3])
+{
+    return rgb9e5_of(rgb[0], rgb[1], rgb[2]);
 }
 
 void ki_float_from_rgb9e5(uint32_t packed, float rgb[3])
@@ -105,9 +112,14 @@ void ki_float_from_rgb9e5(uint32_t packed, float rgb[3])
         rgb[i] = (float)(packed >> (9 * i) & 511U) * scale;
 }
 
+static inline uint32_t b10g11r11_of(float r, float g, float b)
+{
+    return unsigned_of(r, 6) | unsigned_of(g, 6) << 11 | unsigned_of(b, 5) << 22;
+}
+
 uint32_t ki_b10g11r11_from_float(const float rgb[3])
 {
-    return unsigned_of(rgb[0], 6) | unsigned_of(rgb[1], 6) << 11 | unsigned_of(rgb[2], 5) << 22;
+    return b10g11r11_of(rgb[0], rgb[1], rgb[2]);
 }
 
 void ki_float_from_b10g11r11(uint32_t packed, float rgb[3])
@@ -117,12 +129,52 @@ void ki_float_from_b10g11r11(uint32_t packed, float rgb[3])
     rgb[2] = ki_large_float((int32_t)(packed >> 22), 5);
 }
 
+enum { STRETCH = 64 }; // number of texels that are packed at a time
+
+// Splits up to STRETCH texels into red, green and blue.
+static void split(const float *rgb, size_t count, float colors[3][STRETCH])
+{
+    size_t i = 0;
+    for (; i + 4 <= count; i += 4) {
+        ki_float4 texels[3], four[3];
+        memcpy(texels, rgb + 3 * i, sizeof texels);
+        ki_split_rgb4(texels, four);
+        for (int c = 0; c < 3; c++)
+            memcpy(colors[c] + i, &four[c], sizeof four[c]);
+    }
+    for (; i < count; i++)
+        for (size_t c = 0; c < 3; c++)
+            colors[c][i] = rgb[3 * i + c];
+}
+
+// The compiler makes vector instructions of the innermost loops of the two functions.
+void ki_pack_rgb9e5(const float *rgb, size_t count, uint32_t *words)
+{
+    float c[3][STRETCH];
+    for (size_t done = 0; done < count; done += STRETCH) {
+        size_t n = count - done < STRETCH ? count - done : STRETCH;
+        split(rgb + 3 * done, n, c);
+        for (size_t i = 0; i < n; i++)
+            words[done + i] = rgb9e5_of(c[0][i], c[1][i], c[2][i]);
+    }
+}
+
+void ki_pack_b10g11r11(const float *rgb, size_t count, uint32_t *words)
+{
+    float c[3][STRETCH];
+    for (size_t done = 0; done < count; done += STRETCH) {
+        size_t n = count - done < STRETCH ? count - done : STRETCH;
+        split(rgb + 3 * done, n, c);
+        for (size_t i = 0; i < n; i++)
+            words[done + i] = b10g11r11_of(c[0][i], c[1][i], c[2][i]);
+    }
+}
+
 // Converts STRETCH texels at a time: RGB floats to RGB halves without gaps, then the halves to RGBA
 // texels. The compiler makes vector instructions of the first loop and copies of whole words of the
 // second.
 void ki_pack_rgba16f(const float *rgb, size_t count, uint16_t *rgba)
 {
-    enum { STRETCH = 64 };
     // Three halves a texel and one more, because each texel is copied as four halves.
     uint16_t half[STRETCH * 3 + 1] = {0};
     while (count) {

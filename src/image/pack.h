@@ -30,6 +30,10 @@ void ki_float_from_b10g11r11(uint32_t packed, float rgb[3]);
 /// Converts `count` RGB texels of floats to RGBA texels of halves with alpha 1, with vector
 /// instructions.
 void ki_pack_rgba16f(const float *rgb, size_t count, uint16_t *rgba);
+/// Convert `count` RGB texels as ki_rgb9e5_from_float and ki_b10g11r11_from_float do, with vector
+/// instructions.
+void ki_pack_rgb9e5(const float *rgb, size_t count, uint32_t *words);
+void ki_pack_b10g11r11(const float *rgb, size_t count, uint32_t *words);
 /// The exact sRGB transfer function: convert an sRGB value in [0, 1] to linear, and back.
 float ki_linear_from_srgb(float value);
 float ki_srgb_from_linear(float value);

@@ -168,6 +168,19 @@ static void texels_pack_as_single_values_do(void **state)
         for (size_t i = counts[k] * 4; i < RGBA; i++)
             assert_int_equal(rgba[i], 0xabab);
     }
+    static uint32_t words[COUNT];
+    static void (*const pack[2])(const float *, size_t, uint32_t *) = {ki_pack_rgb9e5,
+                                                                       ki_pack_b10g11r11};
+    static uint32_t (*const pack_one[2])(const float *) = {ki_rgb9e5_from_float,
+                                                           ki_b10g11r11_from_float};
+    for (int format = 0; format < 2; format++)
+        for (size_t k = 0; k < sizeof counts / sizeof *counts; k++) {
+            memset(words, 0xab, sizeof words);
+            pack[format](rgb, counts[k], words);
+            for (size_t i = 0; i < COUNT; i++)
+                assert_int_equal(words[i],
+                                 i < counts[k] ? pack_one[format](rgb + 3 * i) : 0xabababab);
+        }
     ki_halfs_from_floats(rgb, RGB, halfs);
     ki_floats_from_halfs(halfs, RGB, values);
     for (int i = 0; i < RGB; i++) {
