@@ -338,10 +338,8 @@ static void subtract_suns(const run *r, int ring, double *accumulator)
         }
 }
 
-// Computes the Fourier transforms of eight pairs of latitude rings for one channel. The real part
-// of the data is the northern ring of a pair, the imaginary part the southern ring. The sum of the
-// transforms of both rings is the pair's part that is even about the equator, their difference the
-// odd part.
+// Computes the Fourier transforms of eight pairs of latitude rings for one channel, and splits them
+// into orders.
 static void transform_channel(const run *r, int vector, int channel, double *const *rings,
                               double *buffer)
 {
@@ -352,24 +350,9 @@ static void transform_channel(const run *r, int vector, int channel, double *con
         for (int j = 0; j < RING_SET; j++)
             buffer[RING_SET * x + j] = rings[j][3 * x + channel];
     const double *z = a->kernels->fft(&a->fft, buffer, buffer + 16 * (size_t)width);
-    for (int m = 0, i = 0; m <= a->degree; m++, i = i + 1 == width ? 0 : i + 1) {
-        if (vector < a->rings.first[m])
-            continue;
-        const double *p = z + 16 * (size_t)i, *q = z + 16 * (size_t)(i ? width - i : 0);
-        double *orders = r->work->orders + 96 * ((size_t)m * vectors + (size_t)vector);
-        double *even = orders + 16 * (size_t)channel, *odd = even + 48;
-        const double *column = a->column + 2 * (size_t)m;
-        double fr = column[0] * 0.5, fi = column[1] * 0.5;
-        for (int j = 0; j < KI_LANES; j++) {
-            double nr = p[j] + q[j], ni = p[8 + j] - q[8 + j];
-            double sr = p[8 + j] + q[8 + j], si = q[j] - p[j];
-            double er = nr + sr, ei = ni + si, dr = nr - sr, di = ni - si;
-            even[j] = er * fr - ei * fi;
-            even[8 + j] = er * fi + ei * fr;
-            odd[j] = dr * fr - di * fi;
-            odd[8 + j] = dr * fi + di * fr;
-        }
-    }
+    a->kernels->split_orders(z, width, a->degree, a->column, a->rings.first, vector,
+                             r->work->orders + 96 * (size_t)vector + 16 * (size_t)channel,
+                             96 * vectors);
 }
 
 // Sets the numbers of the latitude rings of a vector: eight northern rings, then for each of them

@@ -90,6 +90,23 @@ typedef struct ki_kernels {
     /// magnitude of the row.
     float (*sum_row)(const float *row, int count, double sum[3]);
 
+    /// Splits one channel of the Fourier transforms of eight pairs of latitude rings, z[length]
+    /// [2][lane], into the orders m = 0 .. degree. The northern ring of a pair is the real part of
+    /// the transformed data, the southern ring the imaginary part. The parts of the pairs that are
+    /// even and odd about the equator are multiplied by column[m] {real, imaginary} and written to
+    /// orders[m * pitch], as `data` of `analyze` has them for one channel and one vector: at 0 and
+    /// 8 the real and imaginary parts that are even, at 48 and 56 those that are odd. Orders with
+    /// first[m] > vector are left out.
+    void (*split_orders)(const double *z, int length, int degree, const double *column,
+                         const int *first, int vector, double *orders, size_t pitch);
+
+    /// The reverse, before the Fourier transform of the synthesis: fills buffer[length][2][lane]
+    /// from orders[m * pitch] as `synthesize` writes them, those with first[m] > vector being 0.
+    /// Real and imaginary parts are swapped, which makes the forward transform an inverse
+    /// transform: the result has southern rings, then northern rings.
+    void (*join_orders)(const double *orders, size_t pitch, int degree, const int *first,
+                        int vector, int length, double *buffer);
+
     /// Analyses one order m of `count` degrees: out[l - m][6] is the sum, over the latitude rings
     /// of the vectors first .. last - 1, of q_l (legendre.h) times the data of the ring.
     /// data[vector][12][lane] holds six components (real and imaginary part of r, g, b) of the

@@ -372,6 +372,58 @@ static void synthesize(const double *f, int count, const double *twice_cos, cons
 }
 #endif
 
+static void split_orders(const double *z, int length, int degree, const double *column,
+                         const int *first, int vector, double *orders, size_t pitch)
+{
+    for (int m = 0, i = 0; m <= degree; m++, i = i + 1 == length ? 0 : i + 1) {
+        if (vector < first[m])
+            continue;
+        const double *p = z + 16 * (size_t)i, *q = z + 16 * (size_t)(i ? length - i : 0);
+        double *even = orders + pitch * (size_t)m, *odd = even + 48;
+        double fr = column[2 * (size_t)m] * 0.5, fi = column[2 * (size_t)m + 1] * 0.5;
+        for (int h = 0; h < KI_LANES; h += KI_WIDTH) {
+            vec pr = load(p + h), pi = load(p + 8 + h), qr = load(q + h), qi = load(q + 8 + h);
+            vec nr = pr + qr, ni = pi - qi, sr = pi + qi, si = qr - pr;
+            vec er = nr + sr, ei = ni + si, dr = nr - sr, di = ni - si;
+            store(even + h, er * fr - ei * fi);
+            store(even + 8 + h, er * fi + ei * fr);
+            store(odd + h, dr * fr - di * fi);
+            store(odd + 8 + h, dr * fi + di * fr);
+        }
+    }
+}
+
+static void join_orders(const double *orders, size_t pitch, int degree, const int *first,
+                        int vector, int length, double *buffer)
+{
+    // between the highest positive and the highest negative order
+    memset(buffer + 16 * (size_t)(degree + 1), 0,
+           16 * (size_t)(length - 2 * degree - 1) * sizeof *buffer);
+    for (int m = 0; m <= degree; m++) {
+        double *plus = buffer + 16 * (size_t)m, *minus = buffer + 16 * (size_t)(m ? length - m : 0);
+        if (vector < first[m]) {
+            memset(plus, 0, 16 * sizeof *buffer);
+            memset(minus, 0, 16 * sizeof *buffer);
+            continue;
+        }
+        const double *even = orders + pitch * (size_t)m, *odd = even + 48;
+        for (int h = 0; h < KI_LANES; h += KI_WIDTH) {
+            vec er = load(even + h), ei = load(even + 8 + h), dr = load(odd + h),
+                di = load(odd + 8 + h);
+            vec nr = er + dr, ni = ei + di, sr = er - dr, si = ei - di;
+            if (m == 0) {
+                store(plus + h, sr);
+                store(plus + 8 + h, nr);
+                continue;
+            }
+            store(plus + h, ni + sr);
+            store(plus + 8 + h, nr - si);
+            store(minus + h, sr - ni);
+            store(minus + 8 + h, nr + si);
+        }
+    }
+}
+
 static void sum_orders(const double *orders, size_t pitch, int count, const double *cosine,
                        const double *sine, const double *sign, double *rgb)
 {
@@ -683,5 +735,6 @@ static void sum_degrees(const double *x, const double *w, ptrdiff_t count, int l
         sums[k] = (lanes[k][0] + lanes[k][2]) + (lanes[k][1] + lanes[k][3]);
 }
 
-const ki_kernels KI_TABLE = {fft,        add_weighted, sum_row,  analyze,      synthesize,
-                             sum_orders, interpolate,  suns_ggx, suns_mixture, sum_degrees};
+const ki_kernels KI_TABLE = {fft,         add_weighted, sum_row,      split_orders,
+                             join_orders, analyze,      synthesize,   sum_orders,
+                             interpolate, suns_ggx,     suns_mixture, sum_degrees};

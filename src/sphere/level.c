@@ -289,42 +289,6 @@ static void weigh_order(void *data, int m)
         memset(to + 6 * (size_t)count, 0, 6 * sizeof *to);
 }
 
-// Copies one channel of the Fourier coefficients of a vector of latitude rings, for all orders m,
-// to a buffer for the Fourier transform: the northern ring of a pair as real part, the southern
-// ring as imaginary part. Real and imaginary parts are then swapped, which makes the forward
-// transform an inverse transform.
-static void place_orders(const ki_level *v, const double *orders, int vector, int channel,
-                         double *buffer)
-{
-    int length = v->fft.length;
-    // The orders that no ring of the vector has are 0: those between the highest positive and the
-    // highest negative order, and those that are skipped near the poles.
-    memset(buffer + 16 * (size_t)(v->degree + 1), 0,
-           16 * (size_t)(length - 2 * v->degree - 1) * sizeof *buffer);
-    for (int m = 0; m <= v->degree; m++) {
-        if (vector < v->rings.first[m]) {
-            memset(buffer + 16 * (size_t)m, 0, 16 * sizeof *buffer);
-            memset(buffer + 16 * (size_t)(m ? length - m : 0), 0, 16 * sizeof *buffer);
-            continue;
-        }
-        const double *even = orders + 192 * (size_t)m + 16 * (size_t)channel, *odd = even + 48;
-        double *plus = buffer + 16 * (size_t)m, *minus = buffer + 16 * (size_t)(m ? length - m : 0);
-        for (int j = 0; j < KI_LANES; j++) {
-            double nr = even[j] + odd[j], ni = even[8 + j] + odd[8 + j];
-            double sr = even[j] - odd[j], si = even[8 + j] - odd[8 + j];
-            if (m == 0) {
-                plus[j] = sr;
-                plus[8 + j] = nr;
-            } else {
-                plus[j] = ni + sr;
-                plus[8 + j] = nr - si;
-                minus[j] = sr - ni;
-                minus[8 + j] = nr + si;
-            }
-        }
-    }
-}
-
 // Sums the spherical harmonics over the degrees l, for all orders m, on the two vectors of latitude
 // rings 2 * index and 2 * index + 1. Returns the Fourier coefficients of the rings,
 // [m][vector][12][lane]: six components of the part even about the equator, then six of the odd
@@ -390,7 +354,8 @@ static void fill_grid(void *data, int worker, int index)
     for (int half = 0; half < 2; half++)
         for (int c = 0; c < 3; c++) {
             int vector = 2 * index + half;
-            place_orders(v, orders + 96 * (size_t)half, vector, c, buffer);
+            v->kernels->join_orders(orders + 96 * (size_t)half + 16 * (size_t)c, 192, v->degree,
+                                    v->rings.first, vector, length, buffer);
             const double *z = v->kernels->fft(&v->fft, buffer, buffer + 16 * (size_t)length);
             float *plane = r->grid + (size_t)c * v->plane + TAP_OFFSET;
             for (int from = 0; from < length; from += COLUMNS)
