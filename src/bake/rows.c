@@ -211,7 +211,7 @@ static kiln_result add_suns(pass *p, const ki_row_analysis *a, kiln_error *error
 {
     ki_rows rows[2];
     kiln_result result = KILN_OK;
-    ki_analysis_choose_suns(a->workspace, a->spectrum);
+    ki_analysis_choose_suns(a->analysis, a->workspace, a->spectrum);
     for (int vector = 0;
          result == KILN_OK && ki_analysis_next_sun(a->analysis, a->spectrum, &vector, rows);
          vector++) {

@@ -193,14 +193,6 @@ static void sum_one_row(void *data, int index)
         r->rows[0].rgb + (size_t)index * (size_t)size * 6, 2 * size, w->row_sums + 3 * (size_t)row);
 }
 
-static double row_solid_angle(int row, int size)
-{
-    // The solid angle of one texel is its width in longitude times the difference of cos theta
-    // between its upper and lower edge.
-    double high = ki_sin((row + 0.5) * KI_PI / size) * ki_sin(KI_PI / size / 2);
-    return KI_PI / size * 2 * high;
-}
-
 // Returns true if a texel with the radiance `rgb` and this solid angle holds more than `share` of
 // the total light in some channel.
 static bool holds_share(const float rgb[3], double solid, double share, const double total[3])
@@ -213,12 +205,12 @@ static bool holds_share(const float rgb[3], double solid, double share, const do
 
 // Removes the candidate suns that hold too small a share of the light of all rows so far, since
 // that light grows with every row.
-static void drop_candidates(ki_analysis_workspace *w, int size, double share)
+static void drop_candidates(const ki_analysis *a, ki_analysis_workspace *w, double share)
 {
     int count = 0;
     for (int i = 0; i < w->candidate_count; i++) {
         ki_sun sun = w->candidates[i];
-        if (holds_share(sun.radiance, row_solid_angle(sun.row, size), share, w->total))
+        if (holds_share(sun.radiance, a->solid[sun.row], share, w->total))
             w->candidates[count++] = sun;
     }
     w->candidate_count = count;
@@ -243,7 +235,7 @@ static void gather_candidates(const run *r)
     int size = r->analysis->size;
     for (int j = 0; j < rows->count; j++) {
         int row = rows->first + j;
-        double solid = row_solid_angle(row, size);
+        double solid = r->analysis->solid[row];
         add_total(w, row, solid);
         float peak = w->row_peaks[row], peaks[3] = {peak, peak, peak};
         if (!holds_share(peaks, solid, share, w->total))
@@ -253,7 +245,7 @@ static void gather_candidates(const run *r)
             if (!holds_share(rgb, solid, share, w->total))
                 continue;
             if (w->candidate_count == KI_MAX_SUNS)
-                drop_candidates(w, size, share);
+                drop_candidates(r->analysis, w, share);
             if (w->candidate_count < KI_MAX_SUNS)
                 w->candidates[w->candidate_count++] = (ki_sun){row, x, {rgb[0], rgb[1], rgb[2]}};
         }
@@ -300,13 +292,13 @@ static void sort_candidates(ki_analysis_workspace *w)
 
 // Writes the list of suns of the spectrum: the candidates that hold the share sun_share of the
 // whole panorama's light and are sun_contrast times brighter than its mean.
-static void select_suns(ki_analysis_workspace *w, kiln_spectrum *spectrum)
+static void select_suns(const ki_analysis *a, ki_analysis_workspace *w, kiln_spectrum *spectrum)
 {
     int count = 0, size = spectrum->size;
     memset(w->total, 0, sizeof w->total);
     for (int row = 0; row < size; row++)
-        add_total(w, row, row_solid_angle(row, size));
-    drop_candidates(w, size, sun_share);
+        add_total(w, row, a->solid[row]);
+    drop_candidates(a, w, sun_share);
     sort_candidates(w);
     for (int i = 0; i < w->candidate_count; i++) {
         const ki_sun *sun = &w->candidates[i];
@@ -444,7 +436,7 @@ kiln_result ki_analysis_finish(const ki_analysis *analysis, ki_analysis_workspac
         return ki_fail(error, KILN_ERROR_ARGUMENT, "the panorama has %d rows, only %d came",
                        analysis->size, w->row_count);
     run r = {.analysis = analysis, .work = w, .spectrum = spectrum};
-    select_suns(w, spectrum);
+    select_suns(analysis, w, spectrum);
     bool go_on = transform_vectors(&r, 0, analysis->rings.vector_count) && sum_orders(&r);
     return go_on ? KILN_OK : ki_fail_cancelled(error, "analysing");
 }
@@ -456,7 +448,7 @@ bool ki_analysis_execute(const ki_analysis *analysis, ki_analysis_workspace *w, 
     run r = {.analysis = analysis, .work = w, .rows = {all, all}, .spectrum = spectrum};
     ki_analysis_begin(w, spectrum);
     see_rows(&r);
-    select_suns(w, spectrum);
+    select_suns(analysis, w, spectrum);
     return transform_vectors(&r, 0, analysis->rings.vector_count) && sum_orders(&r);
 }
 
@@ -527,9 +519,10 @@ bool ki_analysis_add_band(const ki_analysis *analysis, ki_analysis_workspace *w,
     return transform_vectors(&r, first, end - first);
 }
 
-void ki_analysis_choose_suns(ki_analysis_workspace *w, kiln_spectrum *spectrum)
+void ki_analysis_choose_suns(const ki_analysis *analysis, ki_analysis_workspace *w,
+                             kiln_spectrum *spectrum)
 {
-    select_suns(w, spectrum);
+    select_suns(analysis, w, spectrum);
 }
 
 bool ki_analysis_next_sun(const ki_analysis *analysis, const kiln_spectrum *spectrum, int *vector,

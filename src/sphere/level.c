@@ -273,20 +273,23 @@ static void weigh_order(void *data, int m)
     const double *from = r->spectrum->a + ki_coefficient_row(r->spectrum->degree, m);
     const double *scale = v->legendre->scale + ki_legendre_row(v->legendre, m);
     double *to = r->coefficients + ki_coefficient_row(v->degree, m), sine, cosine;
-    ki_sincos(m * r->rotation * KI_PI / 180, &sine, &cosine);
-    for (int i = 0; i <= v->degree - m; i++) {
+    bool turns = r->rotation != 0;
+    ki_sincos(turns ? m * r->rotation * KI_PI / 180 : 0, &sine, &cosine);
+    for (int i = 0; i <= v->degree - m; i++, from += KI_COMPONENTS, to += KI_COMPONENTS) {
         double weight = v->lobe.k[m + i] * scale[i];
-        for (int c = 0; c < 3; c++) {
-            double re = from[6 * i + 2 * c] * weight, im = from[6 * i + 2 * c + 1] * weight;
-            to[6 * i + 2 * c] = re * cosine - im * sine;
-            to[6 * i + 2 * c + 1] = re * sine + im * cosine;
+        for (int c = 0; c < KI_COMPONENTS && !turns; c++)
+            to[c] = from[c] * weight;
+        for (int c = 0; c < KI_COMPONENTS && turns; c += 2) {
+            double re = from[c] * weight, im = from[c + 1] * weight;
+            to[c] = re * cosine - im * sine;
+            to[c + 1] = re * sine + im * cosine;
         }
     }
     // The kernel `synthesize` reads an even number of degrees, so the entry of padding that follows
     // an odd number must be 0.
     int count = v->degree - m + 1;
     if (count % 2)
-        memset(to + 6 * (size_t)count, 0, 6 * sizeof *to);
+        memset(to, 0, KI_COMPONENTS * sizeof *to);
 }
 
 // Sums the spherical harmonics over the degrees l, for all orders m, on the two vectors of latitude

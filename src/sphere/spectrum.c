@@ -136,7 +136,8 @@ kiln_result ki_analysis_create(kiln_context *context, int size, int degree, ki_r
     a->size = size;
     a->degree = degree;
     a->column = ki_alloc_raw(context, (size_t)degree + 1, 2 * sizeof(double));
-    if (!a->column || !ki_legendre_create(context, degree, &a->legendre) ||
+    a->solid = ki_alloc_raw(context, (size_t)size, sizeof *a->solid);
+    if (!a->column || !a->solid || !ki_legendre_create(context, degree, &a->legendre) ||
         !ki_rings_create_grid(context, degree, excess, &a->rings) ||
         !ki_fft_create(context, 2 * size, &a->fft))
         goto failed;
@@ -153,6 +154,10 @@ kiln_result ki_analysis_create(kiln_context *context, int size, int degree, ki_r
         column[0] = cosine * width;
         column[1] = sine * width;
     }
+    // The solid angle of a texel is its width in longitude times the difference of cos theta between
+    // its upper and lower edge.
+    for (int row = 0; row < size; row++)
+        a->solid[row] = d * (2 * ki_sin((row + 0.5) * d) * ki_sin(d / 2));
     ki_model_density(degree, density);
     ki_taps_design(KI_PI / (2 * a->rings.pair_count), density, degree, taps);
     if (!plan_row_weights(context, a, taps) || !find_pole_excess(context, a))
@@ -177,6 +182,7 @@ void ki_analysis_destroy(ki_analysis *analysis)
     ki_rings_destroy(&analysis->rings);
     ki_fft_destroy(&analysis->fft);
     ki_free(analysis->column);
+    ki_free(analysis->solid);
     ki_free(analysis->pole_excess);
     ki_free(analysis->ring_start);
     ki_free(analysis->row_weights);

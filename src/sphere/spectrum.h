@@ -54,6 +54,7 @@ typedef struct ki_analysis {
     // Integral of exp(-i m phi) over the width of texel column 0 for each order m, [m][real,
     // imaginary].
     double *column;
+    double *solid; // solid angle of a texel in each row of the panorama, [size]
     // The weights of a ring are integrals of interpolating functions times sin theta, which has a
     // kink at the poles. The integrals of a constant therefore deviate from those of Fejer's rule,
     // which is exact, by up to 5 % of the ring at the pole, with a sign that changes from ring to
@@ -138,7 +139,8 @@ void ki_analysis_see_rows(const ki_analysis *analysis, ki_analysis_workspace *wo
 bool ki_analysis_add_band(const ki_analysis *analysis, ki_analysis_workspace *workspace,
                           const ki_rows rows[2], int from, int to, kiln_spectrum *spectrum);
 /// Decides which texels are suns, after all rows were seen.
-void ki_analysis_choose_suns(ki_analysis_workspace *workspace, kiln_spectrum *spectrum);
+void ki_analysis_choose_suns(const ki_analysis *analysis, ki_analysis_workspace *workspace,
+                             kiln_spectrum *spectrum);
 /// Finds the first vector of rings from *vector on to which a sun contributes: sets *vector, and
 /// `first` and `count` of the rows from which its northern and its southern rings are summed.
 /// Returns false if there is none.
