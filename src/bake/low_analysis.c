@@ -16,7 +16,7 @@ void ki_low_free(ki_low_workspace *w)
 kiln_result ki_low_create(kiln_context *context, int size, int degree, ki_analysis **analysis,
                           ki_low_workspace *w, kiln_error *error)
 {
-    kiln_result result = ki_analysis_create(context, size, degree, KI_MANY_RINGS, analysis, error);
+    kiln_result result = ki_analysis_create(context, size, degree, analysis, error);
     if (result == KILN_OK)
         result = ki_analysis_workspace_create(context, *analysis, KI_ANALYSIS_WHOLE, &w->analysis,
                                               error);

@@ -158,9 +158,8 @@ kiln_result ki_prefilter_create(kiln_context *context, int panorama_size, const 
     if (p->tilt.any)
         p->def.rotation = 0;
 
-    // Least degree to which the panorama is analysed. Low degrees cost little, and the larger number
-    // of latitude rings makes the harmonics and the irradiance more accurate, which may come from
-    // the same analysis.
+    // Least degree to which the panorama is analysed. Low degrees cost little, and with the larger
+    // number of latitude rings a constant environment stays constant to the last bit of a float.
     int degree = p->def.tolerance < 1e-3 ? 192 : 64;
     if (reading) {
         result = plan_tuning(context, p, reading, &lobes[0], error);
@@ -177,7 +176,7 @@ kiln_result ki_prefilter_create(kiln_context *context, int panorama_size, const 
             goto done;
         degree = ki_max(degree, spectra[i].degree);
     }
-    result = ki_analysis_create(context, panorama_size, degree, KI_FEW_RINGS, &p->analysis, error);
+    result = ki_analysis_create(context, panorama_size, degree, &p->analysis, error);
     for (int i = 0; i < p->def.level_count && result == KILN_OK; i++) {
         int size = ki_max(ki_max(1, p->def.smallest), p->def.size >> i);
         if (!ki_progress(context, planning, (double)i / p->def.level_count))

@@ -384,18 +384,6 @@ static void transform_rings(void *data, int worker, int index)
         transform_channel(r, vector, channel, rings, buffer);
 }
 
-// Takes from the rings, in order 0, what the kink of sin theta at the poles puts in them (see
-// ki_analysis). The radiance at a pole is that of the ring next to it. A constant panorama thus has
-// no coefficient but that of degree 0.
-static void correct_poles(const ki_analysis *a, double *orders)
-{
-    for (int c = 0; c < 2 * KI_COMPONENTS; c++) {
-        double *component = orders + KI_LANES * c, pole = component[0];
-        for (int k = 0; k < a->rings.pair_count; k++)
-            component[96 * (k / KI_LANES) + k % KI_LANES] -= a->pole_excess[k] * pole;
-    }
-}
-
 // Task of one thread: computes the coefficients a_lm of one order m from the Fourier coefficients
 // of the rings.
 static void analyze_order(void *data, int worker, int m)
@@ -406,8 +394,6 @@ static void analyze_order(void *data, int worker, int m)
     size_t vectors = (size_t)a->rings.vector_count, row = ki_legendre_row(&a->legendre, m);
     int count = a->degree - m + 1;
     double *out = r->spectrum->a + ki_coefficient_row(a->degree, m);
-    if (m == 0)
-        correct_poles(a, w->orders);
     a->kernels->analyze(a->legendre.f + row, count, a->rings.twice_cos,
                         a->rings.start + 8 * vectors * (size_t)m,
                         w->orders + 96 * vectors * (size_t)m, a->rings.first[m],

@@ -47,10 +47,9 @@ bool ki_rings_create(kiln_context *context, const double *theta, int pair_count,
 /// quarter, a half and the whole of degree 412, the interpolation errs by 1e-4, 2e-3 and a half of
 /// the wave with few rings, and by 1e-5, 3e-4 and a twelfth with many.
 typedef enum ki_ring_excess {
-    /// for a spectrum that is multiplied by the coefficients of the lobe that the degree was chosen
-    /// for, which are small at the highest degrees
+    /// for the synthesis of a filtered spectrum, whose highest degrees the lobe has made small
     KI_FEW_RINGS = 1,
-    KI_MANY_RINGS = 4, ///< for a spectrum that is used as it is
+    KI_MANY_RINGS = 4, ///< for the analysis of a panorama, whose degrees are all large
 } ki_ring_excess;
 
 /// Creates pairs of latitude rings at equal steps: the northern ring of pair k lies at

@@ -93,39 +93,8 @@ static bool plan_row_weights(kiln_context *context, ki_analysis *a, const double
     return good;
 }
 
-// Returns the weight of latitude ring `ring` in Fejer's quadrature rule, which integrates
-// polynomials of cos theta exactly if their degree is below the number of rings.
-static double fejer_weight(int ring, int count)
-{
-    // cos(2 j theta) for j = 0, 1, ... by its recurrence
-    double twice = 2 * ki_cos((2 * ring + 1) * KI_PI / count), before = 1, now = twice / 2, sum = 0;
-    for (int j = 1; j <= count / 2; j++) {
-        sum += now / (4.0 * j * j - 1);
-        double next = twice * now - before;
-        before = now;
-        now = next;
-    }
-    return (2 - 4 * sum) / count;
-}
-
-// Fills in a->pole_excess.
-static bool find_pole_excess(kiln_context *context, ki_analysis *a)
-{
-    int pairs = a->rings.pair_count;
-    a->pole_excess = ki_alloc(context, (size_t)pairs, sizeof *a->pole_excess);
-    double first = 0;
-    for (int k = 0; k < pairs && a->pole_excess; k++) {
-        double weight = 0;
-        for (int i = a->ring_start[k]; i < a->ring_start[k + 1]; i++)
-            weight += a->row_weights[i].weight;
-        first = k ? first : weight;
-        a->pole_excess[k] = (weight - fejer_weight(k, 2 * pairs)) / first;
-    }
-    return a->pole_excess != NULL;
-}
-
-kiln_result ki_analysis_create(kiln_context *context, int size, int degree, ki_ring_excess excess,
-                               ki_analysis **analysis, kiln_error *error)
+kiln_result ki_analysis_create(kiln_context *context, int size, int degree, ki_analysis **analysis,
+                               kiln_error *error)
 {
     ki_analysis *a = *analysis = ki_alloc(context, 1, sizeof *a);
     double *taps = ki_alloc_raw(context, KI_TAP_TABLE, sizeof *taps);
@@ -138,7 +107,7 @@ kiln_result ki_analysis_create(kiln_context *context, int size, int degree, ki_r
     a->column = ki_alloc_raw(context, (size_t)degree + 1, 2 * sizeof(double));
     a->solid = ki_alloc_raw(context, (size_t)size, sizeof *a->solid);
     if (!a->column || !a->solid || !ki_legendre_create(context, degree, &a->legendre) ||
-        !ki_rings_create_grid(context, degree, excess, &a->rings) ||
+        !ki_rings_create_grid(context, degree, KI_MANY_RINGS, &a->rings) ||
         !ki_fft_create(context, 2 * size, &a->fft))
         goto failed;
 
@@ -160,7 +129,7 @@ kiln_result ki_analysis_create(kiln_context *context, int size, int degree, ki_r
         a->solid[row] = d * (2 * ki_sin((row + 0.5) * d) * ki_sin(d / 2));
     ki_model_density(degree, density);
     ki_taps_design(KI_PI / (2 * a->rings.pair_count), density, degree, taps);
-    if (!plan_row_weights(context, a, taps) || !find_pole_excess(context, a))
+    if (!plan_row_weights(context, a, taps))
         goto failed;
     ki_free(density);
     ki_free(taps);
@@ -183,7 +152,6 @@ void ki_analysis_destroy(ki_analysis *analysis)
     ki_fft_destroy(&analysis->fft);
     ki_free(analysis->column);
     ki_free(analysis->solid);
-    ki_free(analysis->pole_excess);
     ki_free(analysis->ring_start);
     ki_free(analysis->row_weights);
     ki_free(analysis);

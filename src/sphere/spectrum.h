@@ -55,12 +55,6 @@ typedef struct ki_analysis {
     // imaginary].
     double *column;
     double *solid; // solid angle of a texel in each row of the panorama, [size]
-    // The weights of a ring are integrals of interpolating functions times sin theta, which has a
-    // kink at the poles. The integrals of a constant therefore deviate from those of Fejer's rule,
-    // which is exact, by up to 5 % of the ring at the pole, with a sign that changes from ring to
-    // ring. This array has the deviations, of rings in the north, relative to the weight of the ring
-    // at the pole, [pair_count].
-    double *pole_excess;
     // Index in `row_weights` of the first weight of each latitude ring, [rings + 1].
     int *ring_start;
     // Weights of panorama rows for latitude rings, sorted by ring and then by row.
@@ -68,8 +62,8 @@ typedef struct ki_analysis {
 } ki_analysis;
 
 /// Prepares the analysis of panoramas with `size` rows up to `degree`.
-kiln_result ki_analysis_create(kiln_context *context, int size, int degree, ki_ring_excess excess,
-                               ki_analysis **analysis, kiln_error *error);
+kiln_result ki_analysis_create(kiln_context *context, int size, int degree, ki_analysis **analysis,
+                               kiln_error *error);
 /// Frees an analysis. `analysis` may be NULL.
 void ki_analysis_destroy(ki_analysis *analysis);
 

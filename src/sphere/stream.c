@@ -37,8 +37,7 @@ kiln_result kiln_stream_begin(kiln_context *context, int size, int degree, kiln_
     if (!s)
         return ki_fail_memory(context, error, "a stream", sizeof *s);
     s->context = context;
-    kiln_result result =
-        ki_analysis_create(context, size, degree, KI_MANY_RINGS, &s->analysis, error);
+    kiln_result result = ki_analysis_create(context, size, degree, &s->analysis, error);
     if (result == KILN_OK)
         result = ki_analysis_workspace_create(context, s->analysis, KI_ANALYSIS_ROWS, &s->workspace,
                                               error);
