@@ -462,8 +462,9 @@ static inline void taps_at(const float *table, double fraction, float taps[KI_TA
         taps[i] = a[i] + t * (b[i] - a[i]);
 }
 
-// The texels of the next row of a cube's side lie about two rings further, in which no texel was
-// interpolated before. The ring behind the eight is therefore fetched to the cache.
+// The next row of texels on a side of a cube needs rings that no texel has needed before, about two
+// rings further south. They are fetched to the cache ahead of time. The address may lie behind the
+// grid, where nothing is read, so it is computed as an integer.
 static void interpolate(const float *grid, size_t plane, size_t pitch, const float *ring_taps,
                         const float *column_taps, const double *position, int count, float *rgb)
 {
@@ -474,7 +475,8 @@ static void interpolate(const float *grid, size_t plane, size_t pitch, const flo
         taps_at(column_taps, position[1] - (double)column, b);
         const float *corner = grid + ring * pitch + column;
         for (int c = 0; c < 3; c++, corner += plane) {
-            __builtin_prefetch(corner + (KI_TAPS + 1) * pitch + KI_TAPS / 2);
+            size_t ahead = ((KI_TAPS + 1) * pitch + KI_TAPS / 2) * sizeof *corner;
+            __builtin_prefetch((const void *)((uintptr_t)corner + ahead));
             float sums[KI_TAPS];
             for (int h = 0; h < KI_TAPS; h += FLOATS) {
                 floats sum = load_floats(corner + h) * a[0];
