@@ -203,8 +203,8 @@ kiln_result ki_prefilter_workspace_create(kiln_context *context, const ki_prefil
     *workspace = (ki_prefilter_workspace){.context = context};
     kiln_result result = ki_analysis_workspace_create(context, p->analysis, KI_ANALYSIS_BORROWS,
                                                       &workspace->analysis, error);
-    // The analysis needs larger buffers than the levels do, as a rule, and comes first so that the
-    // buffers need not be made twice.
+    // The analysis shares two buffers with the levels and mostly needs more of them. It reserves
+    // them first, so that they are not allocated small and then replaced.
     if (result == KILN_OK)
         result = ki_prefilter_begin(p, workspace, error);
     if (result == KILN_OK)

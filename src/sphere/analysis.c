@@ -141,7 +141,7 @@ static int piece_count(const ki_analysis *a)
 // Adds the weighted panorama rows of the run to one piece of a latitude ring. The two halves of a
 // row (`half` 0 and 1) are cut at the same places, so that a ring beyond a pole, half a turn away,
 // receives the same piece of the other half. The rows are added in their order, so that the sums do
-// not depend on how many rows come at a time. With `is_first`, the piece counts as 0 before.
+// not depend on how many rows come at a time. With `is_first`, what `accumulator` held is overwritten.
 static void add_to_piece(const run *r, int ring, int half, int piece, bool is_first,
                          double *accumulator)
 {

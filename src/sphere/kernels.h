@@ -82,7 +82,7 @@ typedef struct ki_kernels {
     double *(*fft)(const ki_fft *fft, double *data, double *work);
 
     /// Adds weighted rows: accumulator[i] += weights[k] * (rows + offsets[k])[i] for i < count,
-    /// with k = 0 .. row_count - 1 in this order. With `is_first`, the accumulator counts as 0.
+    /// with k = 0 .. row_count - 1 in this order. With `is_first`, the sums replace what it held.
     void (*add_weighted)(double *accumulator, bool is_first, const float *rows,
                          const ptrdiff_t *offsets, const double *weights, int row_count, int count);
 

@@ -320,7 +320,7 @@ enum { COLUMNS = 32 }; // number of columns that are stored in the grid at once
 
 // Stores columns of the rings of a vector in the rows of one channel of the grid. The Fourier
 // transform `z` has the values of eight southern and eight northern rings side by side. Few columns
-// at a time keep the rows in the first cache, and blocks of four columns of four rings are turned
+// at a time keep the rows in the first cache. Blocks of four columns and four rings are transposed
 // in registers. `from` and `to` are multiples of four.
 static void store_columns(const ki_level *v, int vector, const double *z, int from, int to,
                           float *plane)

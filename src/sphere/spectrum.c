@@ -123,8 +123,8 @@ kiln_result ki_analysis_create(kiln_context *context, int size, int degree, ki_a
         column[0] = cosine * width;
         column[1] = sine * width;
     }
-    // The solid angle of a texel is its width in longitude times the difference of cos theta between
-    // its upper and lower edge.
+    // The solid angle of a texel is its width in longitude times the difference of cos theta
+    // between its upper and lower edge.
     for (int row = 0; row < size; row++)
         a->solid[row] = d * (2 * ki_sin((row + 0.5) * d) * ki_sin(d / 2));
     ki_model_density(degree, density);

@@ -75,6 +75,7 @@ kiln_result ki_spectrum_create(kiln_context *context, const ki_analysis *analysi
 /// over the rows that have been added so far. The threads are those of the workspace's context.
 typedef struct ki_analysis_workspace ki_analysis_workspace;
 
+/// What a workspace is used for, which decides the memory that it has.
 typedef enum ki_analysis_use {
     /// One panorama is analysed by ki_analysis_add_rows and ki_analysis_finish. The workspace has
     /// all latitude rings.
@@ -82,10 +83,12 @@ typedef enum ki_analysis_use {
     /// Panoramas are analysed by ki_analysis_execute. The workspace has the latitude rings of one
     /// vector for each thread.
     KI_ANALYSIS_WHOLE,
-    /// as KI_ANALYSIS_WHOLE, in the buffers of ki_analysis_borrow, which is called before
+    /// Panoramas are analysed as with KI_ANALYSIS_WHOLE, or row by row from both poles, in buffers
+    /// that belong to the caller. ki_analysis_borrow must be called before the first analysis.
     KI_ANALYSIS_BORROWS,
 } ki_analysis_use;
 
+/// Creates a workspace for an analysis.
 kiln_result ki_analysis_workspace_create(kiln_context *context, const ki_analysis *analysis,
                                          ki_analysis_use use, ki_analysis_workspace **workspace,
                                          kiln_error *error);

@@ -1,6 +1,6 @@
 // The promise: on real panoramas and the sky, 256 random texels of every level differ from the sum
-// over every source texel by at most 1e-4 (relative RMS) and 2e-3 (each), and so do the texels around a
-// pole where the light is concentrated.
+// over every source texel by at most 1e-4 (relative RMS) and 2e-3 (each). So do the texels around a
+// pole of panoramas that have most of their light there.
 #include "kit/context.h"
 
 static void check_levels(const kiln_map *panorama, const char *name)
@@ -87,8 +87,8 @@ static void the_sky(void **state)
     kiln_map_free(&sky);
 }
 
-// Writes the panoramas whose light is concentrated at the north pole: a lamp of one row, half a row,
-// and light that falls by e every three rows.
+// Fills a panorama with light at the north pole. Kind 0: a lamp of one row. Kind 1: a lamp of half
+// a row. Kind 2: light that falls to 1 / e every three rows.
 static void light_pole(kiln_map *map, int kind)
 {
     int size = map->size;
@@ -102,8 +102,8 @@ static void light_pole(kiln_map *map, int kind)
         }
 }
 
-// Returns the first five bands of a panorama at an angle from the north pole, for panoramas that are
-// the same all around it. The integral of P_l over a row is the difference of
+// Returns the sum of the first five bands of a panorama, whose rows are constant, at an angle from
+// the north pole that has this cosine. The integral of P_l over a row is the difference of
 // (P_{l+1} - P_{l-1}) / (2 l + 1) between its edges.
 static double zonal_bands(const kiln_map *map, double cosine)
 {
@@ -128,7 +128,7 @@ static double zonal_bands(const kiln_map *map, double cosine)
     return sum;
 }
 
-// Latitude rings are closest to each other at the poles, where a row of texels is small.
+// The weights of the latitude rings next to a pole matter only for panoramas with light there.
 static void light_at_a_pole(void **state)
 {
     (void)state;

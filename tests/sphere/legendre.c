@@ -46,11 +46,12 @@ static void skipped_rings_hold_nothing(void **state)
 {
     (void)state;
     static const int degrees[] = {9, 64, 364, 1600};
-    for (int n = 0; n < 4; n++) {
-        int degree = degrees[n];
+    static const ki_ring_excess excesses[] = {KI_FEW_RINGS, KI_MANY_RINGS};
+    for (int n = 0; n < 8; n++) {
+        int degree = degrees[n / 2];
         ki_rings rings;
         ki_legendre legendre;
-        assert_true(ki_rings_create_grid(context, degree, KI_FEW_RINGS, &rings));
+        assert_true(ki_rings_create_grid(context, degree, excesses[n % 2], &rings));
         assert_true(ki_legendre_create(context, degree, &legendre));
         double most = 0;
         for (int m = 0; m <= degree; m += 1 + degree / 60) {
