@@ -147,27 +147,29 @@ static void split(const float *rgb, size_t count, float colors[3][STRETCH])
             colors[c][i] = rgb[3 * i + c];
 }
 
-// The compiler makes vector instructions of the innermost loops of the two functions.
-void ki_pack_rgb9e5(const float *rgb, size_t count, uint32_t *words)
+// Packs texels to words by `pack_one`. The function is part of its callers, each with its own
+// `pack_one`, so that the compiler makes vector instructions of the innermost loop.
+__attribute__((always_inline)) static inline void
+pack_words(const float *rgb, size_t count, uint32_t (*pack_one)(float r, float g, float b),
+           uint32_t *words)
 {
     float c[3][STRETCH];
     for (size_t done = 0; done < count; done += STRETCH) {
         size_t n = count - done < STRETCH ? count - done : STRETCH;
         split(rgb + 3 * done, n, c);
         for (size_t i = 0; i < n; i++)
-            words[done + i] = rgb9e5_of(c[0][i], c[1][i], c[2][i]);
+            words[done + i] = pack_one(c[0][i], c[1][i], c[2][i]);
     }
+}
+
+void ki_pack_rgb9e5(const float *rgb, size_t count, uint32_t *words)
+{
+    pack_words(rgb, count, rgb9e5_of, words);
 }
 
 void ki_pack_b10g11r11(const float *rgb, size_t count, uint32_t *words)
 {
-    float c[3][STRETCH];
-    for (size_t done = 0; done < count; done += STRETCH) {
-        size_t n = count - done < STRETCH ? count - done : STRETCH;
-        split(rgb + 3 * done, n, c);
-        for (size_t i = 0; i < n; i++)
-            words[done + i] = b10g11r11_of(c[0][i], c[1][i], c[2][i]);
-    }
+    pack_words(rgb, count, b10g11r11_of, words);
 }
 
 // Converts STRETCH texels at a time: RGB floats to RGB halves without gaps, then the halves to RGBA
