@@ -14,8 +14,12 @@ static inline vec splat(double x)
 {
 #if KI_WIDTH == 1
     return x;
+#elif KI_WIDTH == 2
+    return (vec){x, x};
+#elif KI_WIDTH == 4
+    return (vec){x, x, x, x};
 #else
-    return (vec){0} + x;
+    return (vec){x, x, x, x, x, x, x, x};
 #endif
 }
 
