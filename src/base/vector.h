@@ -34,6 +34,8 @@ typedef uint8_t ki_bytes16 __attribute__((vector_size(16)));
 #define KI_SHUFFLE_DOUBLES2(a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
 #define KI_SHUFFLE_DOUBLES4(a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
 #define KI_JOIN_DOUBLES4(a, b) __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7)
+#define KI_LOWER_DOUBLES4(v) __builtin_shufflevector(v, v, 0, 1, 2, 3)
+#define KI_UPPER_DOUBLES4(v) __builtin_shufflevector(v, v, 4, 5, 6, 7)
 #else
 typedef int32_t ki_index4 __attribute__((vector_size(16)));
 #define KI_SHUFFLE4(a, b, ...) __builtin_shuffle(a, b, (ki_index4){__VA_ARGS__})
@@ -45,6 +47,14 @@ typedef int64_t ki_index_doubles4 __attribute__((vector_size(32)));
 #define KI_JOIN_DOUBLES4(a, b)                                                                     \
     {                                                                                              \
         a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3]                                             \
+    }
+#define KI_LOWER_DOUBLES4(v)                                                                       \
+    {                                                                                              \
+        v[0], v[1], v[2], v[3]                                                                     \
+    }
+#define KI_UPPER_DOUBLES4(v)                                                                       \
+    {                                                                                              \
+        v[4], v[5], v[6], v[7]                                                                     \
     }
 #endif
 

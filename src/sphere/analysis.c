@@ -80,8 +80,8 @@ kiln_result ki_analysis_workspace_create(kiln_context *context, const ki_analysi
     w->context = context;
     w->borrows = !owns;
     w->scratch_size = width * 16 * 2 + (whole ? width * 3 * RING_SET : 0);
-    if (w->scratch_size < 16 * vectors)
-        w->scratch_size = 16 * vectors;
+    if (w->scratch_size < 24 * vectors)
+        w->scratch_size = 24 * vectors;
     if (!ki_mul_size(width, 3 * sizeof(double), &row) || !ki_mul_size(row, rings, &ring_bytes))
         ring_bytes = SIZE_MAX;
     w->rings = whole ? NULL : ki_alloc(context, ring_bytes, 1);
@@ -342,7 +342,8 @@ static void transform_channel(const run *r, int vector, int channel, double *con
         for (int j = 0; j < RING_SET; j++)
             buffer[RING_SET * x + j] = rings[j][3 * x + channel];
     const double *z = a->kernels->fft(&a->fft, buffer, buffer + 16 * (size_t)width);
-    a->kernels->split_orders(z, width, a->degree, a->column, a->rings.first, vector,
+    a->kernels->split_orders(z, width, a->degree, a->column,
+                             a->rings.twice_cos + KI_LANES * (size_t)vector, a->rings.first, vector,
                              r->work->orders + 96 * (size_t)vector + 16 * (size_t)channel,
                              96 * vectors);
 }
@@ -394,10 +395,12 @@ static void analyze_order(void *data, int worker, int m)
     size_t vectors = (size_t)a->rings.vector_count, row = ki_legendre_row(&a->legendre, m);
     int count = a->degree - m + 1;
     double *out = r->spectrum->a + ki_coefficient_row(a->degree, m);
-    a->kernels->analyze(a->legendre.f + row, count, a->rings.twice_cos,
+    a->kernels->analyze(a->legendre.steps + row, count, a->rings.twice_cos,
                         a->rings.start + 8 * vectors * (size_t)m,
-                        w->orders + 96 * vectors * (size_t)m, a->rings.first[m],
-                        a->rings.vector_count, w->scratch + (size_t)worker * w->scratch_size, out);
+                        w->orders + 96 * vectors * (size_t)m, a->rings.skip + vectors * (size_t)m,
+                        a->rings.first[m], a->rings.vector_count,
+                        w->scratch + (size_t)worker * w->scratch_size, out);
+    ki_legendre_part_odd(a->degree, m, out);
     for (int i = 0; i < count; i++)
         for (int c = 0; c < KI_COMPONENTS; c++)
             out[KI_COMPONENTS * i + c] *= a->legendre.scale[row + (size_t)i];

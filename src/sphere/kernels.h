@@ -93,12 +93,13 @@ typedef struct ki_kernels {
     /// Splits one channel of the Fourier transforms of eight pairs of latitude rings, z[length]
     /// [2][lane], into the orders m = 0 .. degree. The northern ring of a pair is the real part of
     /// the transformed data, the southern ring the imaginary part. The parts of the pairs that are
-    /// even and odd about the equator are multiplied by column[m] {real, imaginary} and written to
-    /// orders[m * pitch], as `data` of `analyze` has them for one channel and one vector: at 0 and
-    /// 8 the real and imaginary parts that are even, at 48 and 56 those that are odd. Orders with
-    /// first[m] > vector are left out.
+    /// even and odd about the equator are multiplied by column[m] {real, imaginary}, the odd part
+    /// also by `twice_cos` [lane], and written to orders[m * pitch], as `data` of `analyze` has them
+    /// for one channel and one vector: at 0 and 8 the real and imaginary parts that are even, at 48
+    /// and 56 those that are odd. Orders with first[m] > vector are left out.
     void (*split_orders)(const double *z, int length, int degree, const double *column,
-                         const int *first, int vector, double *orders, size_t pitch);
+                         const double *twice_cos, const int *first, int vector, double *orders,
+                         size_t pitch);
 
     /// The reverse, before the Fourier transform of the synthesis: fills buffer[length][2][lane]
     /// from orders[m * pitch] as `synthesize` writes them, those with first[m] > vector being 0.
@@ -107,21 +108,25 @@ typedef struct ki_kernels {
     void (*join_orders)(const double *orders, size_t pitch, int degree, const int *first,
                         int vector, int length, double *buffer);
 
-    /// Analyses one order m of `count` degrees: out[l - m][6] is the sum, over the latitude rings
-    /// of the vectors first .. last - 1, of q_l (legendre.h) times the data of the ring.
-    /// data[vector][12][lane] holds six components (real and imaginary part of r, g, b) of the
-    /// data's part that is even about the equator, then six of the odd part. The even part is read
-    /// where l - m is even, the odd part where l - m is odd. `f` holds the coefficients of the
-    /// recurrence of q_l from l = m on. `twice_cos` and `start`, both [vector][lane], hold 2 cos
-    /// theta and sin^m theta of the rings. `state` is scratch memory, [vector][2][lane].
-    void (*analyze)(const double *f, int count, const double *twice_cos, const double *start,
-                    const double *data, int first, int last, double *state, double *out);
+    /// Analyses one order m of `count` degrees on the latitude rings of the vectors first ..
+    /// last - 1: out[k][12] is the sum over the rings of q_{m+2k} (legendre.h) times
+    /// data[vector][12][lane], for 2 k < count. The data are six components (real and imaginary part
+    /// of r, g, b) of the part that is even about the equator, then six of the odd part times
+    /// 2 cos theta. The sums of the odd part become coefficients by ki_legendre_part_odd. `steps`
+    /// holds the steps of the order, `start` sin^m theta and `twice_cos` 2 cos theta of the rings,
+    /// both [vector][lane]. The functions with k < skip[vector], even numbers that do not increase,
+    /// are left out. `state` is scratch memory, [vector][3][lane].
+    void (*analyze)(const double *steps, int count, const double *twice_cos, const double *start,
+                    const double *data, const int *skip, int first, int last, double *state,
+                    double *out);
 
-    /// The transpose of `analyze`, for two neighbouring vectors of latitude rings: sums q_l times
-    /// coefficients[l - m][6] over the degrees l. Writes [12][lane] for each vector: six sums of
-    /// the terms with even l - m, then six of the terms with odd l - m.
-    void (*synthesize)(const double *f, int count, const double *twice_cos, const double *start,
-                       const double *coefficients, double *out0, double *out1);
+    /// The transpose of `analyze`, for two neighbouring vectors of latitude rings: sums q_{m+2k}
+    /// times coefficients[k][12] over k, without the functions with k < skip. The coefficients are
+    /// those of two degrees, the odd ones joined by ki_legendre_join_odd. Writes [12][lane] for each
+    /// vector: six sums that are even about the equator, then six sums times 2 cos theta, which are
+    /// odd.
+    void (*synthesize)(const double *steps, int count, const double *twice_cos, const double *start,
+                       const double *coefficients, int skip, double *out0, double *out1);
 
     /// Sums the Fourier series over the orders m = 0 .. count - 1 at one point of each of eight
     /// latitude rings. `orders` is [m][pitch], as `synthesize` writes it for one vector. `cosine`

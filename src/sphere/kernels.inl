@@ -3,8 +3,8 @@
 // interpolation of texels. In and out: arrays of doubles in groups of eight lanes.
 //
 // The including file defines KI_WIDTH, the number of doubles in a native vector (1, 2, 4 or 8);
-// KI_BLOCK, the number of degrees that the analysis sums at once (2 or 4, as many as the registers
-// hold); and KI_TABLE, the name of the table of kernels.
+// KI_BLOCK, the number of functions of one order that the analysis sums at once (1 or 2, as many as
+// the registers hold); and KI_TABLE, the name of the table of kernels.
 #include "sphere/kernels.h"
 
 #include "base/lanes.inl"
@@ -49,6 +49,47 @@ static inline floats load_floats(const float *p)
 static inline double sum_lanes(const double *v)
 {
     return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
+}
+
+#if KI_WIDTH >= 4
+typedef double four __attribute__((vector_size(32), may_alias));
+
+static inline four load_four(const double *p)
+{
+    four v;
+    memcpy(&v, p, sizeof v);
+    return v;
+}
+#endif
+
+// Adds the lanes h to h + KI_WIDTH - 1 of a vector to an array of four, in which lanes i and i + 4
+// are summed. The lanes come in increasing order.
+static inline void fold_lanes(double to[4], int h, vec v)
+{
+#if KI_WIDTH == 8
+    (void)h;
+    four low = KI_LOWER_DOUBLES4(v), high = KI_UPPER_DOUBLES4(v), sum = low + high;
+    memcpy(to, &sum, sizeof sum);
+#else
+    if (h >= 4)
+        v += load(to + h - 4);
+    store(to + h % 4, v);
+#endif
+}
+
+// Sums four arrays that fold_lanes has filled, with the result of sum_lanes for each.
+static inline void sum_folded(const double v[4][4], double sums[4])
+{
+#if KI_WIDTH >= 4
+    four a = load_four(v[0]), b = load_four(v[1]), c = load_four(v[2]), d = load_four(v[3]);
+    four ac = KI_SHUFFLE_DOUBLES4(a, c, 0, 1, 4, 5) + KI_SHUFFLE_DOUBLES4(a, c, 2, 3, 6, 7);
+    four bd = KI_SHUFFLE_DOUBLES4(b, d, 0, 1, 4, 5) + KI_SHUFFLE_DOUBLES4(b, d, 2, 3, 6, 7);
+    four sum = KI_SHUFFLE_DOUBLES4(ac, bd, 0, 4, 2, 6) + KI_SHUFFLE_DOUBLES4(ac, bd, 1, 5, 3, 7);
+    memcpy(sums, &sum, sizeof sum);
+#else
+    for (int i = 0; i < 4; i++)
+        sums[i] = (v[i][0] + v[i][2]) + (v[i][1] + v[i][3]);
+#endif
 }
 
 // --------------------------------------------------------------------------------------------- FFT
@@ -246,134 +287,173 @@ static float sum_row(const float *row, int count, double sum[3])
 
 // ---------------------------------------------------------------------------------------- Legendre
 
-// The kernel `analyze` of kernels.h. Sums products of data and q_l, which are the associated
-// Legendre functions up to a factor that depends only on l and m. The recurrence q_l = 2 x q_{l-1}
-// - f_l q_{l-2} (legendre.h) computes them.
-static void analyze(const double *f, int count, const double *twice_cos, const double *start,
-                    const double *data, int first, int last, double *state, double *out)
+// Moves the recurrence of the functions q_{m+2k} (legendre.h) from one k to the next. `step` has the
+// two coefficients of the step. Returns the next value, and keeps the present one in *before.
+static inline vec next_even(const double *step, vec squared, vec now, vec *before)
 {
-    for (ptrdiff_t g = first; g < last; g++) {
-        memcpy(state + 16 * g, start + 8 * g, 8 * sizeof *state);
-        memset(state + 16 * g + 8, 0, 8 * sizeof *state);
-    }
-    for (int l = 0; l < count; l += KI_BLOCK) {
-        double sums[KI_BLOCK][KI_COMPONENTS][KI_LANES];
+    vec next = (squared - splat(step[0])) * now - splat(step[1]) * *before;
+    *before = now;
+    return next;
+}
+
+// Moves the recurrence by KI_BLOCK steps on vectors of rings where the functions are negligible.
+static inline void skip_block(const double *steps, double *state, ptrdiff_t first, ptrdiff_t end)
+{
+    for (ptrdiff_t g = first; g < end; g++)
         for (int h = 0; h < KI_LANES; h += KI_WIDTH) {
-            vec acc[KI_BLOCK][KI_COMPONENTS];
+            double *st = state + 24 * g + h;
+            vec now = load(st), before = load(st + 8), squared = load(st + 16);
             for (int k = 0; k < KI_BLOCK; k++)
-                for (int c = 0; c < KI_COMPONENTS; c++)
-                    acc[k][c] = splat(0);
-            vec f1 = splat(f[l + 1]), f2 = splat(f[l + 2]);
-#if KI_BLOCK == 4
-            vec f3 = splat(f[l + 3]), f4 = splat(f[l + 4]);
-#endif
-            for (ptrdiff_t g = first; g < last; g++) {
-                double *st = state + 16 * g + h;
-                const double *even = data + 96 * g + h, *odd = even + 48;
-                vec x = load(twice_cos + 8 * g + h);
-                vec q0 = load(st), before = load(st + 8);
-                vec q1 = x * q0 - f1 * before;
-                vec q2 = x * q1 - f2 * q0;
-#if KI_BLOCK == 4
-                vec q3 = x * q2 - f3 * q1;
-                vec q4 = x * q3 - f4 * q2;
-                store(st, q4);
-                store(st + 8, q3);
-#else
-                store(st, q2);
-                store(st + 8, q1);
-#endif
-                for (ptrdiff_t c = 0; c < KI_COMPONENTS; c++) {
-                    vec e = load(even + 8 * c), o = load(odd + 8 * c);
-                    acc[0][c] += q0 * e;
-                    acc[1][c] += q1 * o;
-#if KI_BLOCK == 4
-                    acc[2][c] += q2 * e;
-                    acc[3][c] += q3 * o;
-#endif
-                }
-            }
-            for (int k = 0; k < KI_BLOCK; k++)
-                for (int c = 0; c < KI_COMPONENTS; c++)
-                    store(&sums[k][c][h], acc[k][c]);
+                now = next_even(steps + 2 * k, squared, now, &before);
+            store(st, now);
+            store(st + 8, before);
         }
-        for (int k = 0; k < KI_BLOCK && l + k < count; k++)
-            for (int c = 0; c < KI_COMPONENTS; c++)
-                out[KI_COMPONENTS * (l + k) + c] = sum_lanes(sums[k][c]);
-    }
 }
 
-// Sums the products of q_l and coefficients of one order m on KI_WIDTH pairs of latitude rings, as
-// the kernel `synthesize` of kernels.h does for two vectors. All sums stay in registers.
-static inline void synthesize_one(const double *f, int count, vec x, vec q0, const double *b,
-                                  double *out)
-{
-    vec e[KI_COMPONENTS], o[KI_COMPONENTS], before = splat(0);
-    for (int c = 0; c < KI_COMPONENTS; c++)
-        e[c] = o[c] = splat(0);
-    for (int l = 0; l < count; l += 2, b += 12) {
-        vec q1 = x * q0 - splat(f[l + 1]) * before;
-        vec q2 = x * q1 - splat(f[l + 2]) * q0;
-        for (int c = 0; c < KI_COMPONENTS; c++) {
-            e[c] += q0 * splat(b[c]);
-            o[c] += q1 * splat(b[6 + c]);
-        }
-        before = q1;
-        q0 = q2;
-    }
-    for (ptrdiff_t c = 0; c < KI_COMPONENTS; c++) {
-        store(out + 8 * c, e[c]);
-        store(out + 48 + 8 * c, o[c]);
-    }
-}
-
-#if KI_WIDTH == 8
-// The kernel `synthesize` of kernels.h. Sums both vectors in one loop, which hides the latency of
-// the recurrence.
-static void synthesize(const double *f, int count, const double *twice_cos, const double *start,
-                       const double *b, double *out0, double *out1)
-{
-    vec x = load(twice_cos), y = load(twice_cos + 8), p0 = load(start), q0 = load(start + 8);
-    vec p_before = splat(0), q_before = splat(0);
-    vec pe[KI_COMPONENTS], po[KI_COMPONENTS], qe[KI_COMPONENTS], qo[KI_COMPONENTS];
-    for (int c = 0; c < KI_COMPONENTS; c++)
-        pe[c] = po[c] = qe[c] = qo[c] = splat(0);
-    for (int l = 0; l < count; l += 2, b += 12) {
-        vec f1 = splat(f[l + 1]), f2 = splat(f[l + 2]);
-        vec p1 = x * p0 - f1 * p_before, q1 = y * q0 - f1 * q_before;
-        vec p2 = x * p1 - f2 * p0, q2 = y * q1 - f2 * q0;
-        for (int c = 0; c < KI_COMPONENTS; c++) {
-            vec even = splat(b[c]), odd = splat(b[6 + c]);
-            pe[c] += p0 * even;
-            qe[c] += q0 * even;
-            po[c] += p1 * odd;
-            qo[c] += q1 * odd;
-        }
-        p_before = p1;
-        q_before = q1;
-        p0 = p2;
-        q0 = q2;
-    }
-    for (ptrdiff_t c = 0; c < KI_COMPONENTS; c++) {
-        store(out0 + 8 * c, pe[c]);
-        store(out0 + 48 + 8 * c, po[c]);
-        store(out1 + 8 * c, qe[c]);
-        store(out1 + 48 + 8 * c, qo[c]);
-    }
-}
-#else
-static void synthesize(const double *f, int count, const double *twice_cos, const double *start,
-                       const double *b, double *out0, double *out1)
+// Sums KI_BLOCK functions times the data of the latitude rings of some vectors, and moves the
+// recurrence on. The function is not inlined, since GCC 12 does not keep all sums in registers
+// otherwise.
+__attribute__((noinline)) static void sum_block(const double *steps, const double *data,
+                                                ptrdiff_t count, double *state,
+                                                double sums[KI_BLOCK][2 * KI_COMPONENTS][4])
 {
     for (int h = 0; h < KI_LANES; h += KI_WIDTH) {
-        synthesize_one(f, count, load(twice_cos + h), load(start + h), b, out0 + h);
-        synthesize_one(f, count, load(twice_cos + 8 + h), load(start + 8 + h), b, out1 + h);
+        vec acc[KI_BLOCK][2 * KI_COMPONENTS];
+        for (int b = 0; b < KI_BLOCK; b++)
+            for (int c = 0; c < 2 * KI_COMPONENTS; c++)
+                acc[b][c] = splat(0);
+        for (ptrdiff_t g = 0; g < count; g++) {
+            double *st = state + 24 * g + h;
+            const double *in = data + 96 * g + h;
+            vec q0 = load(st), before = load(st + 8), squared = load(st + 16);
+            vec q = next_even(steps, squared, q0, &before);
+#if KI_BLOCK == 2
+            vec q1 = q;
+            q = next_even(steps + 2, squared, q1, &before);
+#endif
+            store(st, q);
+            store(st + 8, before);
+            for (ptrdiff_t c = 0; c < 2 * KI_COMPONENTS; c++) {
+                vec value = load(in + 8 * c);
+                acc[0][c] += q0 * value;
+#if KI_BLOCK == 2
+                acc[1][c] += q1 * value;
+#endif
+            }
+        }
+        for (int b = 0; b < KI_BLOCK; b++)
+            for (int c = 0; c < 2 * KI_COMPONENTS; c++)
+                fold_lanes(sums[b][c], h, acc[b][c]);
     }
 }
+
+// Does the work of the kernel `analyze` for a part of its vectors. The sums are added to `out`, or
+// replace what it held with `is_first`.
+static void analyze_part(const double *steps, int count, const double *data, const int *skip,
+                         int first, int last, bool is_first, double *state, double *out)
+{
+    ptrdiff_t begin = last; // the first vector of rings where the functions are not negligible
+    for (int k = 0; 2 * k < count; k += KI_BLOCK, steps += 2 * KI_BLOCK) {
+        double sums[KI_BLOCK][2 * KI_COMPONENTS][4];
+        while (begin > first && skip[begin - 1] <= k)
+            begin--;
+        skip_block(steps, state, first, begin);
+        sum_block(steps, data + 96 * begin, last - begin, state + 24 * begin, sums);
+        double *to = out + 2 * KI_COMPONENTS * k;
+        for (int b = 0; b < KI_BLOCK && 2 * (k + b) < count; b++)
+            for (int c = 0; c < 2 * KI_COMPONENTS; c += 4, to += 4) {
+                double sum[4];
+                sum_folded((const double(*)[4])sums[b] + c, sum);
+                for (int i = 0; i < 4; i++)
+                    to[i] = is_first ? sum[i] : to[i] + sum[i];
+            }
+    }
+}
+
+static void analyze(const double *steps, int count, const double *twice_cos, const double *start,
+                    const double *data, const int *skip, int first, int last, double *state,
+                    double *out)
+{
+    // Greatest number of vectors whose data and state, 960 bytes each, are read again and again for
+    // one degree after the other: they fit in a first cache of 32 KiB.
+    enum { MOST = 24 };
+    for (ptrdiff_t g = first; g < last; g++)
+        for (int h = 0; h < KI_LANES; h += KI_WIDTH) {
+            double *st = state + 24 * g + h;
+            vec x = load(twice_cos + 8 * g + h);
+            store(st, load(start + 8 * g + h));
+            store(st + 8, splat(0));
+            store(st + 16, x * x);
+        }
+    int parts = ki_max(1, (last - first + MOST - 1) / MOST), from = first;
+    for (int part = 0; part < parts; part++) {
+        int to = first + (last - first) * (part + 1) / parts;
+        analyze_part(steps, count, data, skip, from, to, part == 0, state, out);
+        from = to;
+    }
+}
+
+// Number of vectors of rings that the synthesis sums in one loop, as many as the registers hold.
+// Two hide the latency of the recurrence better than one.
+enum { RING_VECTORS = KI_WIDTH == 8 ? 2 : 1 };
+
+// Sums the products of the functions of one order and coefficients on RING_VECTORS * KI_WIDTH pairs
+// of latitude rings, as the kernel `synthesize` of kernels.h does. All sums stay in registers.
+static inline void synthesize_lanes(const double *steps, int count, const double *twice_cos,
+                                    const double *start, const double *b, int skip,
+                                    double *const out[RING_VECTORS])
+{
+    enum { N = RING_VECTORS, C = 2 * KI_COMPONENTS };
+    vec squared[N], now[N], next[N], sums[N][C];
+    for (ptrdiff_t n = 0; n < N; n++) {
+        for (int c = 0; c < C; c++)
+            sums[n][c] = splat(0);
+        vec x = load(twice_cos + 8 * n), nothing = splat(0);
+        squared[n] = x * x;
+        now[n] = load(start + 8 * n);
+        next[n] = now[n];
+        next[n] = next_even(steps, squared[n], now[n], &nothing);
+    }
+    int k = 0;
+    for (; k < skip && 2 * k < count; k++, b += C) {
+        steps += 2;
+        for (int n = 0; n < N; n++)
+            next[n] = next_even(steps, squared[n], next[n], &now[n]);
+    }
+    for (; 2 * k < count; k++, b += C) {
+        steps += 2;
+        for (int n = 0; n < N; n++) {
+            vec q = now[n];
+            next[n] = next_even(steps, squared[n], next[n], &now[n]);
+            for (int c = 0; c < C; c++)
+                sums[n][c] += q * splat(b[c]);
+        }
+    }
+    for (ptrdiff_t n = 0; n < N; n++)
+        for (ptrdiff_t c = 0; c < KI_COMPONENTS; c++) {
+            store(out[n] + 8 * c, sums[n][c]);
+            store(out[n] + 48 + 8 * c, sums[n][KI_COMPONENTS + c] * load(twice_cos + 8 * n));
+        }
+}
+
+static void synthesize(const double *steps, int count, const double *twice_cos, const double *start,
+                       const double *b, int skip, double *out0, double *out1)
+{
+#if KI_WIDTH == 8
+    double *const out[2] = {out0, out1};
+    synthesize_lanes(steps, count, twice_cos, start, b, skip, out);
+#else
+    for (int h = 0; h < KI_LANES; h += KI_WIDTH) {
+        double *const north[1] = {out0 + h}, *const south[1] = {out1 + h};
+        synthesize_lanes(steps, count, twice_cos + h, start + h, b, skip, north);
+        synthesize_lanes(steps, count, twice_cos + 8 + h, start + 8 + h, b, skip, south);
+    }
 #endif
+}
 
 static void split_orders(const double *z, int length, int degree, const double *column,
-                         const int *first, int vector, double *orders, size_t pitch)
+                         const double *twice_cos, const int *first, int vector, double *orders,
+                         size_t pitch)
 {
     for (int m = 0, i = 0; m <= degree; m++, i = i + 1 == length ? 0 : i + 1) {
         if (vector < first[m])
@@ -387,8 +467,9 @@ static void split_orders(const double *z, int length, int degree, const double *
             vec er = nr + sr, ei = ni + si, dr = nr - sr, di = ni - si;
             store(even + h, er * fr - ei * fi);
             store(even + 8 + h, er * fi + ei * fr);
-            store(odd + h, dr * fr - di * fi);
-            store(odd + 8 + h, dr * fi + di * fr);
+            vec x = load(twice_cos + h);
+            store(odd + h, (dr * fr - di * fi) * x);
+            store(odd + 8 + h, (dr * fi + di * fr) * x);
         }
     }
 }
@@ -599,15 +680,6 @@ static void suns_ggx(const ki_sun_points *suns, double alpha, const double *dire
 }
 
 #if KI_WIDTH >= 4
-typedef double four __attribute__((vector_size(32), may_alias));
-
-static inline four load_four(const double *p)
-{
-    four v;
-    memcpy(&v, p, sizeof v);
-    return v;
-}
-
 // Loads four cubics, and sets c[k] to the coefficients k of all of them.
 static inline void load_four_cubics(const double (*cubics)[4], const int64_t *row, four c[4])
 {

@@ -11,6 +11,13 @@ size_t ki_legendre_row(const ki_legendre *legendre, int m)
     return row * length - row * (row - (row > 0)) / 2;
 }
 
+// Returns the coefficient f_lm of the recurrence. It is 0 for l = m + 1.
+static double recurrence(int l, int m)
+{
+    double k = l - 1;
+    return 4 * (k * k - (double)m * m) / (4 * k * k - 1);
+}
+
 void ki_legendre_order(int degree, int m, double *start, double *f, double *scale)
 {
     // For order m, P_mm = sqrt((2m+1)!! / (2m)!! / 4 pi) sin^m theta. For l > m,
@@ -25,8 +32,8 @@ void ki_legendre_order(int degree, int m, double *start, double *f, double *scal
     scale[0] = *start;
     double m2 = (double)m * m;
     for (int i = 1; i < degree + 1 - m + KI_LEGENDRE_PADDING; i++) {
-        double l = m + i, k = l - 1;
-        f[i] = i > 1 ? 4 * (k * k - m2) / (4 * k * k - 1) : 0;
+        double l = m + i;
+        f[i] = i > 1 ? recurrence(m + i, m) : 0;
         scale[i] = scale[i - 1] * 0.5 * sqrt((4 * l * l - 1) / (l * l - m2));
     }
 }
@@ -35,32 +42,80 @@ bool ki_legendre_create(kiln_context *context, int degree, ki_legendre *legendre
 {
     *legendre = (ki_legendre){.degree = degree};
     size_t count = ki_legendre_row(legendre, degree + 1);
-    legendre->f = ki_alloc_raw(context, count, sizeof(double));
+    double *f = ki_alloc_raw(context, (size_t)degree + 1 + KI_LEGENDRE_PADDING, sizeof *f);
+    legendre->steps = ki_alloc_raw(context, count, sizeof(double));
     legendre->scale = ki_alloc_raw(context, count, sizeof(double));
-    if (!legendre->f || !legendre->scale) {
+    if (!f || !legendre->steps || !legendre->scale) {
+        ki_free(f);
         ki_legendre_destroy(legendre);
         return false;
     }
     double start = 0;
     for (int m = 0; m <= degree; m++) {
         size_t row = ki_legendre_row(legendre, m);
-        ki_legendre_order(degree, m, &start, legendre->f + row, legendre->scale + row);
+        int length = degree + 1 - m + KI_LEGENDRE_PADDING;
+        double *steps = legendre->steps + row;
+        ki_legendre_order(degree, m, &start, f, legendre->scale + row);
+        for (int i = 0; i < length; i++)
+            steps[i] = i % 2 ? f[i - 1] * f[i] : i + 2 < length ? f[i + 1] + f[i + 2] : 0;
     }
+    ki_free(f);
     return true;
 }
 
 void ki_legendre_destroy(ki_legendre *legendre)
 {
-    ki_free(legendre->f);
+    ki_free(legendre->steps);
     ki_free(legendre->scale);
     *legendre = (ki_legendre){0};
 }
 
-// Returns the margin by which m must exceed l sin theta so that |P_lm| is below 1e-13 of its
-// largest value. Beyond the turning point m = l sin theta, P_lm decays like an Airy function.
-static double order_margin(double l_sin)
+// From the highest degree down, b_l q_l = 2 x b_l q_{l-1} - f_l b_l q_{l-2}: the first term is one of
+// the sum that is wanted, the second changes the coefficient of the degree l - 2.
+void ki_legendre_join_odd(int degree, int m, double *row)
 {
-    return 12 + 9 * ki_pow(l_sin, 1.0 / 3);
+    for (int l = m + (degree - m + 1) / 2 * 2 - 1; l > m + 2; l -= 2) {
+        double *at = row + KI_COMPONENTS * (size_t)(l - m), f = recurrence(l, m);
+        for (int c = 0; c < KI_COMPONENTS; c++)
+            at[c - 2 * KI_COMPONENTS] -= f * at[c];
+    }
+}
+
+void ki_legendre_part_odd(int degree, int m, double *row)
+{
+    for (int l = m + 3; l <= degree; l += 2) {
+        double *at = row + KI_COMPONENTS * (size_t)(l - m), f = recurrence(l, m);
+        for (int c = 0; c < KI_COMPONENTS; c++)
+            at[c] -= f * at[c - 2 * KI_COMPONENTS];
+    }
+}
+
+// Returns the least l sin theta at which |P_lm| is above 1e-13 of its largest value. Beyond the
+// turning point, where l sin theta is less than m, P_lm decays like an Airy function. It is
+// negligible where m > t + 12 + 9 t^(1/3) with t = l sin theta. The root of this cubic equation for
+// t^(1/3) is Cardano's.
+static double order_begin(int m)
+{
+    if (m <= 12)
+        return 0;
+    double half = (m - 12) / 2.0, w = ki_pow(half + sqrt(half * half + 27), 1.0 / 3);
+    double root = w - 3 / w;
+    return root * root * root;
+}
+
+// Finds which functions of order m are negligible on vectors of rings. `sines` holds the largest
+// sin theta of each vector.
+static void find_skips(ki_rings *rings, int m, const double *sines)
+{
+    double begin = order_begin(m);
+    int *skip = rings->skip + (size_t)m * (size_t)rings->vector_count;
+    for (int g = 0; g < rings->vector_count; g++) {
+        if (begin > rings->degree * sines[g])
+            rings->first[m] = g + 1;
+        // The degree from which on the functions count. sin theta may be 0, at a pole.
+        double degree = begin > 0 ? fmin(begin / sines[g], rings->degree) : 0;
+        skip[g] = degree > m ? ((int)degree - m) / 4 * 2 : 0;
+    }
 }
 
 bool ki_rings_create(kiln_context *context, const double *theta, int pair_count, int degree,
@@ -71,7 +126,10 @@ bool ki_rings_create(kiln_context *context, const double *theta, int pair_count,
     rings->twice_cos = ki_alloc_raw(context, (size_t)lanes, sizeof(double));
     rings->start = ki_alloc_raw(context, (size_t)lanes * (size_t)(degree + 1), sizeof(double));
     rings->first = ki_alloc(context, (size_t)degree + 1, sizeof(int));
-    if (!rings->twice_cos || !rings->start || !rings->first) {
+    rings->skip = ki_alloc_raw(context, (size_t)vectors * (size_t)(degree + 1), sizeof(int));
+    double *sines = ki_alloc_raw(context, (size_t)vectors, sizeof *sines);
+    if (!rings->twice_cos || !rings->start || !rings->first || !rings->skip || !sines) {
+        ki_free(sines);
         ki_rings_destroy(rings);
         return false;
     }
@@ -79,17 +137,18 @@ bool ki_rings_create(kiln_context *context, const double *theta, int pair_count,
         double sine, cosine, power = 1;
         ki_sincos(theta[k < pair_count ? k : pair_count - 1], &sine, &cosine);
         rings->twice_cos[k] = 2 * cosine;
-        double reach = degree * sine + order_margin(degree * sine);
+        // Rings lie nearer to the equator from lane to lane. The last lane of a vector therefore has
+        // the largest sin theta, and decides which functions are negligible on all its rings.
+        if (k % KI_LANES == KI_LANES - 1)
+            sines[k / KI_LANES] = sine;
         for (int m = 0; m <= degree; m++) {
             rings->start[(size_t)m * (size_t)lanes + (size_t)k] = power;
             power = power > 1e-280 ? power * sine : 0;
-            // Rings lie nearer to the equator from lane to lane. The last lane of a vector
-            // therefore has the largest sin theta, and decides whether the vector contributes to
-            // order m.
-            if (k % KI_LANES == KI_LANES - 1 && m > reach)
-                rings->first[m] = k / KI_LANES + 1;
         }
     }
+    for (int m = 0; m <= degree; m++)
+        find_skips(rings, m, sines);
+    ki_free(sines);
     return true;
 }
 
@@ -112,6 +171,7 @@ void ki_rings_destroy(ki_rings *rings)
     ki_free(rings->twice_cos);
     ki_free(rings->start);
     ki_free(rings->first);
+    ki_free(rings->skip);
     *rings = (ki_rings){0};
 }
 

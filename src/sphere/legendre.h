@@ -8,9 +8,18 @@
 /// Coefficients of the recurrence for all orders m up to a degree. P_lm, orthonormal over the
 /// sphere and without the Condon-Shortley sign, is scale_lm q_lm with
 ///     q_lm = 2 x q_{l-1,m} - f_lm q_{l-2,m},   q_mm = sin^m theta,   x = cos theta.
+///
+/// Only the functions with even l - m are computed. Two steps of the recurrence make one:
+///     q_{l+2} = (4 x^2 - f_{l+1} - f_{l+2}) q_l - f_l f_{l+1} q_{l-2}.
+/// A sum of the functions with odd l - m is 2 x times a sum of those with even l - m, which has other
+/// coefficients (ki_legendre_join_odd). That takes four operations for every two degrees in place of
+/// six, and each step waits for the one before half as often.
 typedef struct ki_legendre {
     int degree;
-    double *f, *scale;
+    // Entry l - m of the row of order m is f_{l+1} + f_{l+2} if l - m is even, and f_{l-1} f_l if it
+    // is odd: two entries for every step.
+    double *steps;
+    double *scale;
 } ki_legendre;
 
 /// Number of unused entries after the last degree in each order's row of coefficients. The kernels
@@ -22,7 +31,15 @@ enum { KI_LEGENDRE_PADDING = 8 };
 void ki_legendre_order(int degree, int m, double *start, double *f, double *scale);
 bool ki_legendre_create(kiln_context *context, int degree, ki_legendre *legendre);
 void ki_legendre_destroy(ki_legendre *legendre);
-/// Returns the index in `f` and `scale` at which the row of order m begins. The row holds the
+
+/// Replaces the coefficients b_l of the functions q_l with odd l - m by coefficients d_l, so that
+///     sum_l b_l q_l = 2 x sum_l d_l q_{l-1}   over the l <= degree with odd l - m.
+/// `row` holds six numbers for every degree from m on. Those with even l - m stay as they are.
+void ki_legendre_join_odd(int degree, int m, double *row);
+/// The transpose of ki_legendre_join_odd: replaces the sums of 2 x q_{l-1} times some data by the sums
+/// of q_l times the same data, for the l <= degree with odd l - m.
+void ki_legendre_part_odd(int degree, int m, double *row);
+/// Returns the index in `steps` and `scale` at which the row of order m begins. The row holds the
 /// degrees l = m .. degree and eight entries of padding.
 size_t ki_legendre_row(const ki_legendre *legendre, int m);
 
@@ -35,6 +52,9 @@ typedef struct ki_rings {
     // The first vector of rings that contributes to each order m, [degree + 1]. P_lm is negligible
     // on the rings of the vectors before, which are nearer to the poles.
     int *first;
+    // Number of functions with even l - m at the beginning of each order m that are negligible on all
+    // rings of a vector, rounded down to an even number, [m][vector].
+    int *skip;
 } ki_rings;
 
 /// Creates pairs of latitude rings at the given increasing theta, each at most pi / 2. The last

@@ -290,6 +290,7 @@ static void weigh_order(void *data, int m)
     int count = v->degree - m + 1;
     if (count % 2)
         memset(to, 0, KI_COMPONENTS * sizeof *to);
+    ki_legendre_join_odd(v->degree, m, r->coefficients + ki_coefficient_row(v->degree, m));
 }
 
 // Sums the spherical harmonics over the degrees l, for all orders m, on the two vectors of latitude
@@ -309,9 +310,10 @@ static const double *synthesize_orders(const run *r, int worker, int index)
             continue;
         }
         v->kernels->synthesize(
-            v->legendre->f + row, v->degree - m + 1, v->rings.twice_cos + 16 * (size_t)index,
+            v->legendre->steps + row, v->degree - m + 1, v->rings.twice_cos + 16 * (size_t)index,
             v->rings.start + 8 * ((size_t)m * (size_t)vectors + 2 * (size_t)index),
-            r->coefficients + ki_coefficient_row(v->degree, m), out, out + 96);
+            r->coefficients + ki_coefficient_row(v->degree, m),
+            v->rings.skip[(size_t)m * (size_t)vectors + 2 * (size_t)index + 1], out, out + 96);
     }
     return orders;
 }

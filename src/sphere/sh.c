@@ -59,19 +59,20 @@ kiln_result ki_sh_project(const kiln_spectrum *spectrum, int bands, const ki_til
 {
     enum { DEGREE = KILN_MAX_BANDS - 1, RINGS = 8, COLUMNS = 16 };
     kiln_context *context = spectrum->context;
-    ki_legendre legendre;
+    double f[DEGREE + 1][DEGREE + 1 + KI_LEGENDRE_PADDING];
+    double scale[DEGREE + 1][DEGREE + 1 + KI_LEGENDRE_PADDING], start = 0;
     size_t count = ki_coefficient_count(DEGREE);
     *sh = (kiln_sh){.bands = bands};
     double *a = ki_alloc(context, count, sizeof *a);
-    if (!a || !ki_legendre_create(context, DEGREE, &legendre)) {
-        ki_free(a);
+    if (!a)
         return ki_fail_memory(context, error, "spherical harmonics", count * sizeof *a);
-    }
-    for (int m = 0; m <= DEGREE; m++)
+    for (int m = 0; m <= DEGREE; m++) {
+        ki_legendre_order(DEGREE, m, &start, f[m], scale[m]);
         for (int l = m; l <= DEGREE && l <= spectrum->degree; l++)
             memcpy(a + ki_coefficient_row(DEGREE, m) + 6 * (size_t)(l - m),
                    spectrum->a + ki_coefficient_row(spectrum->degree, m) + 6 * (size_t)(l - m),
                    6 * sizeof *a);
+    }
     kiln_result result = ki_spectrum_add_suns(spectrum, DEGREE, a, error);
     if (result != KILN_OK)
         goto done;
@@ -83,16 +84,14 @@ kiln_result ki_sh_project(const kiln_spectrum *spectrum, int bands, const ki_til
             double sine = sqrt((1 - nodes[j]) * (1 + nodes[j])), value[3] = {0}, power = 1;
             double u = (double)i / COLUMNS;
             for (int m = 0; m <= DEGREE; m++, power *= sine) {
-                const double *f = legendre.f + ki_legendre_row(&legendre, m);
-                const double *scale = legendre.scale + ki_legendre_row(&legendre, m);
                 const double *row = a + ki_coefficient_row(DEGREE, m);
                 double q = power, before = 0, re, im;
                 ki_sincos(2 * KI_PI * m * (u + rotation / 360), &im, &re);
                 for (int l = 0; l <= DEGREE - m; l++, row += 6) {
-                    double p = q * scale[l] * (m ? 2 : 1);
+                    double p = q * scale[m][l] * (m ? 2 : 1);
                     for (size_t c = 0; c < 3; c++)
                         value[c] += p * (row[2 * c] * re - row[2 * c + 1] * im);
-                    double next = 2 * nodes[j] * q - f[l + 1] * before;
+                    double next = 2 * nodes[j] * q - f[m][l + 1] * before;
                     before = q;
                     q = next;
                 }
@@ -109,7 +108,6 @@ kiln_result ki_sh_project(const kiln_spectrum *spectrum, int bands, const ki_til
                     sh->c[k][n] += y[k] * value[n] * weights[j] * 2 * KI_PI / COLUMNS;
         }
 done:
-    ki_legendre_destroy(&legendre);
     ki_free(a);
     return result;
 }
