@@ -531,16 +531,33 @@ static void sum_orders(const double *orders, size_t pitch, int count, const doub
 
 // ----------------------------------------------------------------------------------------- texels
 
+enum { TAP_VECTORS = KI_TAPS / FLOATS }; // number of native vectors of eight weights
+
 // Interpolates the eight weights at a fraction in [0, 1] of the way between two grid points,
 // linearly between two entries of the table that ki_taps_design wrote.
-static inline void taps_at(const float *table, double fraction, float taps[KI_TAPS])
+static inline void taps_at(const float *table, double fraction, floats taps[TAP_VECTORS])
 {
     double at = fraction * KI_TAP_STEPS;
     int step = (int)at;
     float t = (float)(at - step);
     const float *a = table + KI_TAPS * (ptrdiff_t)step, *b = a + KI_TAPS;
-    for (int i = 0; i < KI_TAPS; i++)
-        taps[i] = a[i] + t * (b[i] - a[i]);
+    for (ptrdiff_t i = 0; i < TAP_VECTORS; i++) {
+        floats low = load_floats(a + FLOATS * i);
+        taps[i] = low + t * (load_floats(b + FLOATS * i) - low);
+    }
+}
+
+static inline float sum_taps(const floats v[TAP_VECTORS])
+{
+#if KI_WIDTH == 1
+    return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
+#else
+    typedef float four_floats __attribute__((vector_size(16), may_alias));
+    four_floats half[2];
+    memcpy(half, v, sizeof half);
+    four_floats sum = half[0] + half[1];
+    return (sum[0] + sum[2]) + (sum[1] + sum[3]);
+#endif
 }
 
 // The next row of texels on a side of a cube needs rings that no texel has needed before, about two
@@ -551,23 +568,23 @@ static void interpolate(const float *grid, size_t plane, size_t pitch, const flo
 {
     for (int i = 0; i < count; i++, position += 2) {
         size_t ring = (size_t)position[0], column = (size_t)position[1];
-        float a[KI_TAPS], b[KI_TAPS];
-        taps_at(ring_taps, position[0] - (double)ring, a);
-        taps_at(column_taps, position[1] - (double)column, b);
+        floats along[TAP_VECTORS], across[TAP_VECTORS], sum[TAP_VECTORS];
+        float weight[KI_TAPS];
+        taps_at(ring_taps, position[0] - (double)ring, across);
+        taps_at(column_taps, position[1] - (double)column, along);
+        memcpy(weight, across, sizeof weight);
         const float *corner = grid + ring * pitch + column;
         for (int c = 0; c < 3; c++, corner += plane) {
             size_t ahead = ((KI_TAPS + 1) * pitch + KI_TAPS / 2) * sizeof *corner;
             __builtin_prefetch((const void *)((uintptr_t)corner + ahead));
-            float sums[KI_TAPS];
-            for (int h = 0; h < KI_TAPS; h += FLOATS) {
-                floats sum = load_floats(corner + h) * a[0];
+            for (ptrdiff_t h = 0; h < TAP_VECTORS; h++) {
+                const float *p = corner + FLOATS * h;
+                sum[h] = load_floats(p) * weight[0];
                 for (int k = 1; k < KI_TAPS; k++)
-                    sum += load_floats(corner + (size_t)k * pitch + h) * a[k];
-                sum *= load_floats(b + h);
-                memcpy(sums + h, &sum, sizeof sum);
+                    sum[h] += load_floats(p + (size_t)k * pitch) * weight[k];
+                sum[h] *= along[h];
             }
-            rgb[3 * i + c] += ((sums[0] + sums[4]) + (sums[2] + sums[6])) +
-                              ((sums[1] + sums[5]) + (sums[3] + sums[7]));
+            rgb[3 * i + c] += sum_taps(sum);
         }
     }
 }
