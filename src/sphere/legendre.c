@@ -38,6 +38,13 @@ void ki_legendre_order(int degree, int m, double *start, double *f, double *scal
     }
 }
 
+void ki_legendre_steps(int degree, int m, const double *f, double *steps)
+{
+    int length = degree + 1 - m + KI_LEGENDRE_PADDING;
+    for (int i = 0; i < length; i++)
+        steps[i] = i % 2 ? f[i - 1] * f[i] : i + 2 < length ? f[i + 1] + f[i + 2] : 0;
+}
+
 bool ki_legendre_create(kiln_context *context, int degree, ki_legendre *legendre)
 {
     *legendre = (ki_legendre){.degree = degree};
@@ -53,11 +60,8 @@ bool ki_legendre_create(kiln_context *context, int degree, ki_legendre *legendre
     double start = 0;
     for (int m = 0; m <= degree; m++) {
         size_t row = ki_legendre_row(legendre, m);
-        int length = degree + 1 - m + KI_LEGENDRE_PADDING;
-        double *steps = legendre->steps + row;
         ki_legendre_order(degree, m, &start, f, legendre->scale + row);
-        for (int i = 0; i < length; i++)
-            steps[i] = i % 2 ? f[i - 1] * f[i] : i + 2 < length ? f[i + 1] + f[i + 2] : 0;
+        ki_legendre_steps(degree, m, f, legendre->steps + row);
     }
     ki_free(f);
     return true;

@@ -29,6 +29,8 @@ enum { KI_LEGENDRE_PADDING = 8 };
 /// Fills the rows f and scale of order m: degrees m to `degree`, and the padding. *start, which
 /// receives the scale of degree m, holds that of the order m - 1 before, unless m is 0.
 void ki_legendre_order(int degree, int m, double *start, double *f, double *scale);
+/// Fills the row `steps` of order m from the row f, as ki_legendre has it.
+void ki_legendre_steps(int degree, int m, const double *f, double *steps);
 bool ki_legendre_create(kiln_context *context, int degree, ki_legendre *legendre);
 void ki_legendre_destroy(ki_legendre *legendre);
 

@@ -11,61 +11,95 @@
 
 #include <string.h>
 
-enum { NODES = 4 }; // quadrature nodes over the height of a texel
+// NODES: number of quadrature nodes over the height of a texel. The nodes of two rows of suns are the
+// lanes of a vector, as latitude rings are in an analysis.
+// Of each vector are stored, one after the other and in lanes: the sine and the cosine of theta of the
+// nodes, the latter times 2; their weights times the solid angle and sin^m theta of the order m that
+// comes next; the data of the kernel `analyze`, and its state.
+enum {
+    NODES = 4,
+    VECTOR_ROWS = KI_LANES / NODES,
+    VECTOR_SIZE = (3 + 2 * KI_COMPONENTS + 3) * KI_LANES
+};
 
-// The suns of one row of the panorama, from `first` to before `end`, and the quadrature nodes over
-// the height of the row. `start` is the node's weight times the solid angle and sin^m theta of the
-// order m that comes next.
+// The suns of one row of the panorama, from `first` to before `end`.
 typedef struct sun_row {
     int first, end;
-    double sine[NODES], twice_cos[NODES], start[NODES];
 } sun_row;
 
-// Returns the rows that hold suns, and sets *count to their number. The list of suns is sorted by
-// row.
-static sun_row *place_nodes(const kiln_spectrum *s, int *count)
+// The rows that hold suns, and what one order needs.
+typedef struct order {
+    sun_row *rows;
+    int row_count, vector_count;
+    double *vectors;                                 // all vectors, as VECTOR_SIZE says
+    double *sine, *twice_cos, *start, *data, *state; // the parts of `vectors`
+    int *skip;                 // zeros for the kernel `analyze`, which then leaves no function out
+    double first_scale;        // the scale of the order's first degree
+    double *f, *scale, *steps; // coefficients of the recurrence
+    double *row, *sums;        // coefficients a_lm of the order, and those of the suns
+} order;
+
+static void destroy_order(order *o)
 {
-    sun_row *all = ki_alloc_raw(s->context, (size_t)s->sun_count, sizeof *all);
-    double step = KI_PI / s->size, x[NODES], weights[NODES];
-    ki_gauss_legendre(NODES, x, weights);
-    *count = 0;
-    for (int i = 0; i < s->sun_count && all; i++) {
-        sun_row *row = &all[*count];
-        if (i == 0 || s->suns[i].row != s->suns[i - 1].row) {
-            row->first = i;
-            for (int n = 0; n < NODES; n++) {
-                double sine, cosine;
-                ki_sincos(step * (s->suns[i].row + 0.5 + 0.5 * x[n]), &sine, &cosine);
-                row->sine[n] = sine;
-                row->twice_cos[n] = 2 * cosine;
-                row->start[n] = step * step * 0.5 * weights[n] * sine;
-            }
-        }
-        row->end = i + 1;
-        if (i + 1 == s->sun_count || s->suns[i + 1].row != s->suns[i].row)
-            ++*count;
-    }
-    return all;
+    ki_free(o->rows);
+    ki_free(o->vectors);
+    ki_free(o->skip);
+    ki_free(o->f);
+    ki_free(o->row);
+    *o = (order){0};
 }
 
-// Adds the light of a row of suns at `count` degrees of one order. `light` has the real and
-// imaginary part of each channel's radiance, turned to the suns' longitudes. q_l of legendre.h is
-// linear in q_m, so that its recurrence carries the nodes' weights.
-static void add_order(const sun_row *nodes, const double light[KI_COMPONENTS], int count,
-                      const double *f, const double *scale, double *out)
+// Finds the rows that hold suns. The list of suns is sorted by row.
+static void find_rows(const kiln_spectrum *s, order *o)
 {
-    double q[NODES], before[NODES] = {0};
-    memcpy(q, nodes->start, sizeof q);
-    for (int l = 0; l < count; l++, out += KI_COMPONENTS) {
-        double p = ((q[0] + q[1]) + (q[2] + q[3])) * scale[l];
-        for (int n = 0; n < NODES; n++) {
-            double next = nodes->twice_cos[n] * q[n] - f[l + 1] * before[n];
-            before[n] = q[n];
-            q[n] = next;
-        }
-        for (int c = 0; c < KI_COMPONENTS; c++)
-            out[c] += p * light[c];
+    for (int i = 0; i < s->sun_count; i++) {
+        if (i == 0 || s->suns[i].row != s->suns[i - 1].row)
+            o->rows[o->row_count++].first = i;
+        o->rows[o->row_count - 1].end = i + 1;
     }
+    o->vector_count = (o->row_count + VECTOR_ROWS - 1) / VECTOR_ROWS;
+}
+
+// Places the quadrature nodes of all rows. The lanes of a row that is missing in the last vector stay
+// 0.
+static void place_nodes(const kiln_spectrum *s, order *o)
+{
+    double step = KI_PI / s->size, x[NODES], weights[NODES];
+    ki_gauss_legendre(NODES, x, weights);
+    for (int i = 0; i < NODES * o->row_count; i++) {
+        int row = s->suns[o->rows[i / NODES].first].row, n = i % NODES;
+        double cosine;
+        ki_sincos(step * (row + 0.5 + 0.5 * x[n]), &o->sine[i], &cosine);
+        o->twice_cos[i] = 2 * cosine;
+        o->start[i] = step * step * 0.5 * weights[n] * o->sine[i];
+    }
+}
+
+static bool create_order(const kiln_spectrum *s, int degree, order *o)
+{
+    kiln_context *context = s->context;
+    size_t count = (size_t)degree + 1 + KI_LEGENDRE_PADDING, suns = (size_t)s->sun_count;
+    *o = (order){.rows = ki_alloc(context, suns, sizeof *o->rows),
+                 .f = ki_alloc_raw(context, 3 * count, sizeof *o->f),
+                 .row = ki_alloc_raw(context, 2 * KI_COMPONENTS * count, sizeof *o->row)};
+    if (!o->rows || !o->f || !o->row)
+        return false;
+    find_rows(s, o);
+    size_t vectors = (size_t)o->vector_count, lanes = vectors * KI_LANES;
+    o->vectors = ki_alloc(context, vectors, VECTOR_SIZE * sizeof *o->vectors);
+    o->skip = ki_alloc(context, vectors, sizeof *o->skip);
+    if (!o->vectors || !o->skip)
+        return false;
+    o->scale = o->f + count;
+    o->steps = o->scale + count;
+    o->sums = o->row + KI_COMPONENTS * count;
+    o->sine = o->vectors;
+    o->twice_cos = o->sine + lanes;
+    o->start = o->twice_cos + lanes;
+    o->data = o->start + lanes;
+    o->state = o->data + 2 * KI_COMPONENTS * lanes;
+    place_nodes(s, o);
+    return true;
 }
 
 // Sums the light of a row of suns in order m: the real and imaginary part of each channel's
@@ -86,64 +120,51 @@ static void sum_light(const kiln_spectrum *s, const sun_row *row, int m,
     }
 }
 
-// Adds the suns' harmonics of order m, of `count` degrees from m on, to `out`, and makes the nodes
-// ready for the order m + 1.
-static void add_suns(const kiln_spectrum *s, sun_row *rows, int row_count, int m, int count,
-                     const double *f, const double *scale, double *out)
+// Adds the suns' harmonics of order m up to `degree` to `out`, and makes the nodes ready for the order
+// m + 1. The kernel multiplies the light by q_l of legendre.h, which is linear in q_m and therefore
+// carries the nodes' weights.
+static void add_suns(const kiln_spectrum *s, order *o, int m, int degree, double *out)
 {
-    for (sun_row *row = rows; row < rows + row_count; row++) {
-        double light[KI_COMPONENTS], most = 0;
-        sum_light(s, row, m, light);
-        add_order(row, light, count, f, scale, out);
-        for (int n = 0; n < NODES; n++) {
-            row->start[n] *= row->sine[n];
-            most = most > row->start[n] ? most : row->start[n];
-        }
-        if (most <
-            1e-280) // far below a rounding error at every degree, and slow as denormal numbers
-            memset(row->start, 0, sizeof row->start);
+    ki_legendre_steps(degree, m, o->f, o->steps);
+    for (size_t r = 0; r < (size_t)o->row_count; r++) {
+        double light[KI_COMPONENTS];
+        size_t vector = r / VECTOR_ROWS;
+        sum_light(s, &o->rows[r], m, light);
+        for (size_t i = NODES * r; i < NODES * (r + 1); i++)
+            for (size_t c = 0; c < KI_COMPONENTS; c++) {
+                double *to = o->data + KI_LANES * (2 * KI_COMPONENTS * vector + c) + i % KI_LANES;
+                to[0] = light[c];
+                to[KI_COMPONENTS * KI_LANES] = light[c] * o->twice_cos[i];
+            }
     }
-}
-
-// What one order needs: the recurrence's coefficients, and the coefficients a_lm of the order.
-typedef struct order {
-    double start; // scale of the order's first degree
-    double *f, *scale, *row;
-} order;
-
-static bool create_order(kiln_context *context, int degree, order *o)
-{
-    size_t count = (size_t)degree + 1 + KI_LEGENDRE_PADDING;
-    *o = (order){.f = ki_alloc_raw(context, 2 * count, sizeof *o->f),
-                 .row = ki_alloc_raw(context, KI_COMPONENTS * count, sizeof *o->row)};
-    o->scale = o->f ? o->f + count : NULL;
-    return o->f && o->row;
-}
-
-static void destroy_order(order *o)
-{
-    ki_free(o->f);
-    ki_free(o->row);
+    int count = degree - m + 1;
+    ki_sphere_kernels(s->context)
+        ->analyze(o->steps, count, o->twice_cos, o->start, o->data, o->skip, 0, o->vector_count,
+                  o->state, o->sums);
+    ki_legendre_part_odd(degree, m, o->sums);
+    for (int i = 0; i < count; i++)
+        for (int c = 0; c < KI_COMPONENTS; c++)
+            out[KI_COMPONENTS * i + c] += o->sums[KI_COMPONENTS * i + c] * o->scale[i];
+    for (int i = 0; i < NODES * o->row_count; i++) {
+        double next = o->start[i] * o->sine[i];
+        // Smaller numbers are far below a rounding error at every degree, and denormal ones are slow.
+        o->start[i] = next > 1e-280 ? next : 0;
+    }
 }
 
 kiln_result ki_spectrum_add_suns(const kiln_spectrum *spectrum, int degree, double *a,
                                  kiln_error *error)
 {
     order o;
-    bool good = create_order(spectrum->context, degree, &o);
-    int row_count;
-    sun_row *rows = place_nodes(spectrum, &row_count);
-    for (int m = 0; m <= degree && good && rows; m++) {
-        ki_legendre_order(degree, m, &o.start, o.f, o.scale);
-        add_suns(spectrum, rows, row_count, m, degree - m + 1, o.f, o.scale,
-                 a + ki_coefficient_row(degree, m));
+    bool good = create_order(spectrum, degree, &o);
+    for (int m = 0; m <= degree && good && spectrum->sun_count; m++) {
+        ki_legendre_order(degree, m, &o.first_scale, o.f, o.scale);
+        add_suns(spectrum, &o, m, degree, a + ki_coefficient_row(degree, m));
     }
-    good = good && rows;
     destroy_order(&o);
-    ki_free(rows);
     return good ? KILN_OK
                 : ki_fail_memory(spectrum->context, error, "the suns' coefficients",
-                                 (size_t)spectrum->sun_count * sizeof *rows);
+                                 ki_suns_power_size((size_t)spectrum->sun_count));
 }
 
 // Adds to power[l], for the degrees of order m, the squares of the coefficients in `row`.
@@ -161,26 +182,22 @@ kiln_result ki_spectrum_power(const kiln_spectrum *spectrum, int degree, double 
 {
     order o;
     size_t size = ((size_t)degree + 1) * sizeof *all;
-    bool good = create_order(spectrum->context, degree, &o);
-    int row_count;
-    sun_row *rows = place_nodes(spectrum, &row_count);
+    bool good = create_order(spectrum, degree, &o);
     int known = ki_min(degree, spectrum->degree);
     memset(calm, 0, size);
     memset(all, 0, size);
-    for (int m = 0; m <= degree && good && rows; m++) {
+    for (int m = 0; m <= degree && good; m++) {
         memset(o.row, 0, KI_COMPONENTS * ((size_t)(degree - m) + 1) * sizeof *o.row);
         if (m <= known)
             memcpy(o.row, spectrum->a + ki_coefficient_row(spectrum->degree, m),
                    KI_COMPONENTS * ((size_t)(known - m) + 1) * sizeof *o.row);
         add_squares(o.row, m, known, calm);
-        ki_legendre_order(degree, m, &o.start, o.f, o.scale);
+        ki_legendre_order(degree, m, &o.first_scale, o.f, o.scale);
         if (spectrum->sun_count)
-            add_suns(spectrum, rows, row_count, m, degree - m + 1, o.f, o.scale, o.row);
+            add_suns(spectrum, &o, m, degree, o.row);
         add_squares(o.row, m, degree, all);
     }
-    good = good && rows;
     destroy_order(&o);
-    ki_free(rows);
     return good ? KILN_OK
                 : ki_fail_memory(spectrum->context, error, "a spectrum's power",
                                  ((size_t)degree + 1) * KI_COMPONENTS * sizeof *o.row);
@@ -188,5 +205,8 @@ kiln_result ki_spectrum_power(const kiln_spectrum *spectrum, int degree, double 
 
 size_t ki_suns_power_size(size_t count)
 {
-    return ki_block_size(count, sizeof(sun_row));
+    size_t vectors = (count + VECTOR_ROWS - 1) / VECTOR_ROWS;
+    return ki_block_size(count, sizeof(sun_row)) +
+           ki_block_size(vectors, VECTOR_SIZE * sizeof(double)) +
+           ki_block_size(vectors, sizeof(int));
 }
