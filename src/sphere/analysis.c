@@ -37,7 +37,7 @@ struct ki_analysis_workspace {
 
     // Fourier coefficients of the latitude rings for each order m, [m][vector of rings][12][lane].
     // The twelve are the real and imaginary parts of r, g, b: first of the part that is even about
-    // the equator, then of the odd part.
+    // the equator, then of the odd part times 2 cos theta, as the kernel `analyze` reads them.
     double *orders;
     bool borrows; // `orders` and `scratch` are those of ki_analysis_borrow
     // Scratch memory of each worker: two FFT buffers and 16 latitude rings, or the state of the

@@ -112,17 +112,19 @@ typedef struct ki_kernels {
     /// last - 1: out[k][12] is the sum over the rings of q_{m+2k} (legendre.h) times
     /// data[vector][12][lane], for 2 k < count. The data are six components (real and imaginary part
     /// of r, g, b) of the part that is even about the equator, then six of the odd part times
-    /// 2 cos theta. The sums of the odd part become coefficients by ki_legendre_part_odd. `steps`
-    /// holds the steps of the order, `start` sin^m theta and `twice_cos` 2 cos theta of the rings,
-    /// both [vector][lane]. The functions with k < skip[vector], even numbers that do not increase,
-    /// are left out. `state` is scratch memory, [vector][3][lane].
+    /// 2 cos theta. The sums of the odd part become coefficients by ki_legendre_part_odd. With an odd
+    /// `count` the last six numbers of `out` mean nothing. `steps` holds the steps of the order,
+    /// `start` sin^m theta and `twice_cos` 2 cos theta of the rings, both [vector][lane]. The
+    /// functions with k < skip[vector] are left out; the numbers in `skip` are even and do not
+    /// increase. `state` is scratch memory, [vector][3][lane]. All arrays begin with vector 0.
     void (*analyze)(const double *steps, int count, const double *twice_cos, const double *start,
                     const double *data, const int *skip, int first, int last, double *state,
                     double *out);
 
     /// The transpose of `analyze`, for two neighbouring vectors of latitude rings: sums q_{m+2k}
-    /// times coefficients[k][12] over k, without the functions with k < skip. The coefficients are
-    /// those of two degrees, the odd ones joined by ki_legendre_join_odd. Writes [12][lane] for each
+    /// times coefficients[k][12] over k, without the functions with k < skip, which are negligible in
+    /// both vectors. The coefficients are those of two degrees, the odd ones joined by
+    /// ki_legendre_join_odd. With an odd `count` the last six must be 0. Writes [12][lane] for each
     /// vector: six sums that are even about the equator, then six sums times 2 cos theta, which are
     /// odd.
     void (*synthesize)(const double *steps, int count, const double *twice_cos, const double *start,

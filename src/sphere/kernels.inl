@@ -398,7 +398,9 @@ static void analyze(const double *steps, int count, const double *twice_cos, con
 enum { RING_VECTORS = KI_WIDTH == 8 ? 2 : 1 };
 
 // Sums the products of the functions of one order and coefficients on RING_VECTORS * KI_WIDTH pairs
-// of latitude rings, as the kernel `synthesize` of kernels.h does. All sums stay in registers.
+// of latitude rings, as the kernel `synthesize` of kernels.h does. All sums stay in registers. The
+// function after the next is computed before the products with the present one, which do not wait
+// for it.
 static inline void synthesize_lanes(const double *steps, int count, const double *twice_cos,
                                     const double *start, const double *b, int skip,
                                     double *const out[RING_VECTORS])
@@ -411,7 +413,6 @@ static inline void synthesize_lanes(const double *steps, int count, const double
         vec x = load(twice_cos + 8 * n), nothing = splat(0);
         squared[n] = x * x;
         now[n] = load(start + 8 * n);
-        next[n] = now[n];
         next[n] = next_even(steps, squared[n], now[n], &nothing);
     }
     int k = 0;
@@ -444,9 +445,9 @@ static void synthesize(const double *steps, int count, const double *twice_cos, 
     synthesize_lanes(steps, count, twice_cos, start, b, skip, out);
 #else
     for (int h = 0; h < KI_LANES; h += KI_WIDTH) {
-        double *const north[1] = {out0 + h}, *const south[1] = {out1 + h};
-        synthesize_lanes(steps, count, twice_cos + h, start + h, b, skip, north);
-        synthesize_lanes(steps, count, twice_cos + 8 + h, start + 8 + h, b, skip, south);
+        double *const first[1] = {out0 + h}, *const second[1] = {out1 + h};
+        synthesize_lanes(steps, count, twice_cos + h, start + h, b, skip, first);
+        synthesize_lanes(steps, count, twice_cos + 8 + h, start + 8 + h, b, skip, second);
     }
 #endif
 }

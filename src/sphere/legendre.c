@@ -94,10 +94,10 @@ void ki_legendre_part_odd(int degree, int m, double *row)
     }
 }
 
-// Returns the least l sin theta at which |P_lm| is above 1e-13 of its largest value. Beyond the
-// turning point, where l sin theta is less than m, P_lm decays like an Airy function. It is
-// negligible where m > t + 12 + 9 t^(1/3) with t = l sin theta. The root of this cubic equation for
-// t^(1/3) is Cardano's.
+// Returns an l sin theta below which |P_lm| is certain to be less than 1e-13 of its largest value, and
+// is less than 1e-16 up to degree 412. Beyond the turning point, where l sin theta is less than m,
+// P_lm decays like an Airy function. It is negligible where m > t + 12 + 9 t^(1/3) with t = l sin
+// theta. The root of this cubic equation for t^(1/3) is Cardano's.
 static double order_begin(int m)
 {
     if (m <= 12)

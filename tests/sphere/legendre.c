@@ -42,7 +42,7 @@ static void legendre_functions_are_orthonormal(void **state)
 }
 
 // Functions that are left out must not matter: the largest |P_lm| among them stays below 1e-12 of
-// what it reaches elsewhere (about sqrt(degree)). Whole orders are left out on the rings of vectors
+// what it reaches elsewhere (0.4 sqrt(degree)). Whole orders are left out on the rings of vectors
 // near the poles, and on the others the first functions of an order.
 static void skipped_functions_hold_nothing(void **state)
 {
