@@ -11,11 +11,11 @@
 
 #include <string.h>
 
-// NODES: number of quadrature nodes over the height of a texel. The nodes of two rows of suns are the
-// lanes of a vector, as latitude rings are in an analysis.
-// Of each vector are stored, one after the other and in lanes: the sine and the cosine of theta of the
-// nodes, the latter times 2; their weights times the solid angle and sin^m theta of the order m that
-// comes next; the data of the kernel `analyze`, and its state.
+// NODES: number of quadrature nodes over the height of a texel. VECTOR_ROWS: number of rows of suns
+// whose nodes are the lanes of a vector, as latitude rings are in an analysis. VECTOR_SIZE: number of
+// doubles that are stored for a vector: in each lane the sine of theta, 2 cos theta, and the node's
+// weight times the solid angle and sin^m theta of the order m that comes next; then twelve data of the
+// kernel `analyze` and its state of three.
 enum {
     NODES = 4,
     VECTOR_ROWS = KI_LANES / NODES,
@@ -31,7 +31,7 @@ typedef struct sun_row {
 typedef struct order {
     sun_row *rows;
     int row_count, vector_count;
-    double *vectors;                                 // all vectors, as VECTOR_SIZE says
+    double *vectors;                                 // what is stored for all vectors
     double *sine, *twice_cos, *start, *data, *state; // the parts of `vectors`
     int *skip;                 // zeros for the kernel `analyze`, which then leaves no function out
     double first_scale;        // the scale of the order's first degree
