@@ -183,6 +183,9 @@ static void print_levels_report(checker *c, const char *path, const kiln_engine 
                "%.3g %% at roughness %.2f\n",
                engine->name, 100 * shown->all, 100 * shown->worst, shown->worst_roughness);
     print_findings(&report->findings);
+    if (!good && !report->findings.fault_count)
+        printf("  note   'kiln bake --for' tunes levels for what the engine shows, so that they "
+               "differ from exact ones on purpose; '--tune none' writes exact ones\n");
 }
 
 static kiln_result save_picture(kiln_context *context, const kiln_map *difference, const char *path,
@@ -342,12 +345,34 @@ static int check_file(checker *c, const char *path)
     return code;
 }
 
+// Returns the first of the files to check that is a panorama, if the file that is named in the place of
+// the panorama has mip levels: the two were named in the wrong order. Returns NULL otherwise.
+static const char *find_swapped(const cli_arguments *a, cli_work *work, int *level_count)
+{
+    kiln_file_info info;
+    if (kiln_file_describe(work->context, a->rest[0], &info, NULL) != KILN_OK ||
+        info.level_count < 2)
+        return NULL;
+    *level_count = info.level_count;
+    for (int i = 1; i < a->rest_count; i++)
+        if (kiln_file_describe(work->context, a->rest[i], &info, NULL) == KILN_OK &&
+            info.level_count == 1 && strcmp(info.layout, "panorama") == 0)
+            return a->rest[i];
+    return NULL;
+}
+
 static int check_files(const cli_arguments *a, const check_values *v, cli_work *work)
 {
     json j = {0};
     checker c = {.work = work, .values = v, .json = v->json ? &j : NULL};
     const kiln_load_def load = {.negative = (kiln_negative)v->negative, .layer = v->layer};
     c.engine = v->engine >= 0 ? kiln_engine_at(v->engine) : NULL;
+    int level_count;
+    const char *panorama = v->table ? NULL : find_swapped(a, work, &level_count);
+    if (panorama)
+        return cli_wrong(&cli_check,
+                         "%s has %d levels, and %s is a panorama: name the panorama first",
+                         a->rest[0], level_count, panorama);
     int code = v->table ? CLI_GO : cli_load(work, a->rest, 1, &load, &c.panorama);
     if (code != CLI_GO)
         return code;

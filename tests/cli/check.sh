@@ -29,6 +29,11 @@ grep -q 'WRONG  the environment is mirrored: left and right are swapped' log/out
 wrong sky.exr right.ktx2 --for filament -q
 [ ! -s log/out ] || die "--quiet prints"
 
+# Levels that are tuned for an engine are not exact, which is said.
+expect 0 "" bake sky.exr -o tuned.ktx2 --for three -q
+wrong sky.exr tuned.ktx2
+grep -q "note   'kiln bake --for' tunes levels" log/out || die "the note about tuned levels"
+
 # A tolerance below the rounding of halfs, and above.
 expect 0 "" bake sky.exr -o half.ktx2 --size 32 --levels 4 -q
 expect 0 "" check sky.exr half.ktx2 --tolerance 0.001
@@ -54,10 +59,11 @@ grep -q '"height":	512' log/out || die "the height of the picture"
 
 expect 2 "no input is named" check
 expect 2 "no file to check is named" check sky.exr
+expect 2 "right.ktx2 has 4 levels, and sky.exr is a panorama: name the panorama first" check right.ktx2 sky.exr
 expect 2 "no table is named" check --table
 expect 2 "takes neither --for nor --picture" check --table table.exr --for three
 expect 2 "picture a.exr: must end in .png" check sky.exr half.ktx2 --picture a.exr
 expect 2 "takes one file to check, 2 are named" check sky.exr half.ktx2 right.ktx2 --picture a.png
 expect 2 "tolerance is -1" check sky.exr half.ktx2 --tolerance -1
-only sky.exr right.ktx2 mirrored.ktx2 half.ktx2 sh.json table.exr errors.png
+only sky.exr right.ktx2 mirrored.ktx2 half.ktx2 sh.json table.exr tuned.ktx2 errors.png
 passed
