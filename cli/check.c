@@ -121,14 +121,18 @@ static void print_levels_json(json *j, const kiln_check_levels_report *report)
     json_end(j);
 }
 
-static void print_shown_json(json *j, const kiln_check_shown_report *shown)
+static void print_shown_json(json *j, const kiln_engine *engine,
+                             const kiln_check_shown_report *shown)
 {
     if (!shown->direction_count)
         return;
     json_object(j, "shown");
+    json_text(j, "engine", engine->name);
     json_rounded(j, "all", shown->all, 6);
     json_rounded(j, "worst", shown->worst, 6);
     json_rounded(j, "displayed", shown->displayed, 6);
+    json_rounded(j, "exact_all", shown->exact_all, 6);
+    json_rounded(j, "exact_displayed", shown->exact_displayed, 6);
     json_array(j, "rms");
     for (int i = 0; i < KILN_SHOWN; i++)
         json_rounded(j, NULL, shown->rms[i], 6);
@@ -148,10 +152,15 @@ static void add_replaced(const kiln_load_report *loaded, kiln_findings *findings
     snprintf(finding->text, sizeof finding->text, "%zu texels are infinite or not a number", count);
 }
 
-// Counts a report as good or not, and opens its object in JSON. Returns whether the report is good.
-static bool judge(checker *c, const char *kind, const kiln_findings *findings, double error)
+// Returns whether no fault was found and an error is within the tolerance.
+static bool within(const checker *c, const kiln_findings *findings, double error)
 {
-    bool good = !findings->fault_count && error <= c->values->tolerance;
+    return !findings->fault_count && error <= c->values->tolerance;
+}
+
+// Counts a report as good or not, and opens its object in JSON. Returns whether the report is good.
+static bool judge(checker *c, const char *kind, bool good)
+{
     c->good &= good;
     cli_clear_progress(c->work);
     if (c->json) {
@@ -161,31 +170,47 @@ static bool judge(checker *c, const char *kind, const kiln_findings *findings, d
     return good;
 }
 
-static void print_levels_report(checker *c, const char *path, const kiln_engine *engine,
+static void print_levels_report(checker *c, const char *path,
                                 const kiln_check_levels_report *report,
                                 const kiln_check_shown_report *shown)
 {
-    bool good = judge(c, "levels", &report->findings, report->worst);
+    bool good = judge(c, "levels", kiln_check_right(report, shown, c->values->tolerance));
     if (c->json) {
         print_levels_json(c->json, report);
-        print_shown_json(c->json, shown);
+        print_shown_json(c->json, report->engine, shown);
         print_findings_json(c->json, &report->findings);
         json_end(c->json);
         return;
     }
     if (c->values->quiet)
         return;
-    printf("%s: %s, the largest error of a level is %.3g %%\n", cli_show(path).text,
-           good ? "right" : "WRONG", 100 * report->worst);
+    bool tuned = good && report->worst > c->values->tolerance;
+    if (tuned)
+        printf("%s: right, tuned for %s\n", cli_show(path).text, report->engine->name);
+    else
+        printf("%s: %s, the largest error of a level is %.3g %%\n", cli_show(path).text,
+               good ? "right" : "WRONG", 100 * report->worst);
     print_levels(report);
-    if (shown->direction_count)
+    if (shown->direction_count) {
         printf("  %s shows it with an error of %.3g %% over 19 roughnesses from 0.1 to 1, at most "
-               "%.3g %% at roughness %.2f\n",
-               engine->name, 100 * shown->all, 100 * shown->worst, shown->worst_roughness);
+               "%.3g %% at roughness %.2f, and exact levels with %.3g %%\n",
+               report->engine->name, 100 * shown->all, 100 * shown->worst, shown->worst_roughness,
+               100 * shown->exact_all);
+        printf("  as values x / (x + mean) of a display, it errs by %.3g %% of white, and exact "
+               "levels by "
+               "%.3g %%\n",
+               100 * shown->displayed, 100 * shown->exact_displayed);
+    }
     print_findings(&report->findings);
-    if (!good && !report->findings.fault_count)
-        printf("  note   'kiln bake --for' tunes levels for what the engine shows, so that they "
-               "differ from exact ones on purpose; '--tune none' writes exact ones\n");
+    if (tuned)
+        printf("  note   the levels are not exact, and right because %s shows less error with "
+               "them than with exact ones\n",
+               report->engine->name);
+    else if (!good && !report->findings.fault_count && shown->direction_count)
+        printf(
+            "  note   no fault was found; if the levels are tuned for %s, they differ from exact "
+            "ones on purpose, and the %d directions of this check do not show their use\n",
+            report->engine->name, shown->direction_count);
 }
 
 static kiln_result save_picture(kiln_context *context, const kiln_map *difference, const char *path,
@@ -214,14 +239,17 @@ static int check_levels(checker *c, const char *path, const kiln_engine *engine)
         result = kiln_check_levels(context, &c->panorama, &levels, &def, &report, &difference,
                                    &c->work->error);
     }
-    if (result == KILN_OK && engine && levels.shape == KILN_SHAPE_CUBE &&
-        kiln_engine_level(engine, 0.5, levels.size, levels.level_count) >= 0)
-        result = kiln_check_shown(context, &c->panorama, &levels, engine, &shown, &c->work->error);
+    // Without an engine, what one shows matters only where the levels are not exact.
+    bool shows = result == KILN_OK && levels.shape == KILN_SHAPE_CUBE && report.engine &&
+                 kiln_engine_level(report.engine, 0.5, levels.size, levels.level_count) >= 0;
+    if (shows && (engine || !kiln_check_right(&report, NULL, c->values->tolerance)))
+        result = kiln_check_shown(context, &c->panorama, &levels, report.engine, &shown,
+                                  &c->work->error);
     if (result == KILN_OK && c->values->picture)
         result = save_picture(context, &difference, c->values->picture, &c->work->error);
     if (result == KILN_OK) {
         add_replaced(&loaded, &report.findings);
-        print_levels_report(c, path, engine, &report, &shown);
+        print_levels_report(c, path, &report, &shown);
     }
     kiln_map_free(&difference);
     kiln_map_free(&levels);
@@ -257,7 +285,7 @@ static int check_harmonics(checker *c, const char *path, const kiln_file_info *i
             sh.c[i][k] = (double)info->sh[i][k];
     if (kiln_check_sh(c->work->context, &c->panorama, &sh, engine, &report, &c->work->error))
         return CLI_FAILED;
-    bool good = judge(c, "harmonics", &report.findings, report.rms);
+    bool good = judge(c, "harmonics", within(c, &report.findings, report.rms));
     if (c->json)
         json_rounded(c->json, "rms", report.rms, 6);
     else if (!c->values->quiet)
@@ -286,7 +314,7 @@ static int check_table(checker *c, const char *path)
     if (result == KILN_OK)
         result = kiln_check_table(context, &image, flip, &report, &c->work->error);
     if (result == KILN_OK) {
-        bool good = judge(c, "table", &report.findings, report.rms);
+        bool good = judge(c, "table", within(c, &report.findings, report.rms));
         if (c->json) {
             json_rounded(c->json, "rms", report.rms, 6);
             json_rounded(c->json, "largest", report.largest, 6);

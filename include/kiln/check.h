@@ -104,6 +104,9 @@ typedef struct kiln_check_levels_report {
     int level_count;
     kiln_check_level level[KILN_MAX_LEVELS];
     double worst; ///< largest `rms` of the levels
+    /// The engine of the definition; without one, the first engine that kiln tunes levels for and
+    /// whose axes and roughness the levels have, or NULL if there is none.
+    const kiln_engine *engine;
     /// The file shows in direction e the light from the panorama's direction d, where d[i] =
     /// sign[i] e[axis[i]].
     int axis[3], sign[3];
@@ -155,6 +158,8 @@ typedef struct kiln_check_shown_report {
     /// mean of all values of the source. Such a curve shows any light between black, 0, and white,
     /// 1.
     double displayed;
+    /// What `all` and `displayed` would be of exact levels of the same sizes and roughness.
+    double exact_all, exact_displayed;
     int direction_count;
 } kiln_check_shown_report;
 
@@ -166,6 +171,13 @@ KILN_API KILN_CHECKED kiln_result kiln_check_shown(kiln_context *context, const 
                                                    const kiln_engine *engine,
                                                    kiln_check_shown_report *report,
                                                    kiln_error *error);
+
+/// Returns whether levels are right: no fault was found, and either every level is within
+/// `tolerance` of the exact level, or one of the errors `all` and `displayed` of what the engine
+/// shows is smaller by a hundredth or more than with exact levels, as with levels that are tuned for
+/// the engine. `shown` may be NULL or empty.
+KILN_API bool kiln_check_right(const kiln_check_levels_report *levels,
+                               const kiln_check_shown_report *shown, double tolerance);
 
 // --------------------------------------------------------------------------------------- harmonics
 

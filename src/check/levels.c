@@ -207,6 +207,26 @@ static kiln_result check_all(check *c, const kiln_map *levels, kiln_error *error
     return result == KILN_OK ? measure(c, &mapping, error) : result;
 }
 
+// Returns the first engine that levels are tuned for whose axes and roughness the levels have.
+static const kiln_engine *find_engine(const kiln_map *levels,
+                                      const kiln_check_levels_report *report)
+{
+    const ki_recipe *recipe;
+    ki_axes axes;
+    memcpy(axes.axis, report->axis, sizeof axes.axis);
+    memcpy(axes.sign, report->sign, sizeof axes.sign);
+    for (int i = 0; (recipe = ki_recipe_at(i)) != NULL; i++) {
+        bool fits = recipe->level && recipe->about.tune && levels->shape == KILN_SHAPE_CUBE &&
+                    !recipe->flat && ki_axes_equal(&axes, &recipe->axes);
+        for (int k = 0; k < levels->level_count && fits; k++)
+            fits = fabs(recipe->roughness(k, levels->level_count, levels->size) -
+                        report->level[k].roughness) < 1e-4;
+        if (fits)
+            return &recipe->about;
+    }
+    return NULL;
+}
+
 // Moves the levels to `difference`, and subtracts the exact levels.
 static void take_difference(check *c, kiln_map *difference)
 {
@@ -238,6 +258,9 @@ kiln_result kiln_check_levels(kiln_context *context, const kiln_map *source, con
     if (result == KILN_OK) {
         c.panorama = source->shape == KILN_SHAPE_PANORAMA ? source : &panorama;
         result = check_all(&c, levels, error);
+        report->engine = c.def->engine                  ? c.def->engine
+                         : c.def->lobe == KILN_LOBE_GGX ? find_engine(levels, report)
+                                                        : NULL;
     }
     if (difference && result == KILN_OK)
         take_difference(&c, difference);

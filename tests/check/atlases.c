@@ -92,14 +92,45 @@ static void displayed_errors_are_of_values_on_a_display(void **state)
     CHECK_OK(kiln_check_shown(context, &source, &cube, kiln_engine_find("three"), &shown, &error));
     CHECK_NEAR(shown.all, 1, 1e-6);
     CHECK_NEAR(shown.displayed, 1.0 / 6, 1e-7);
+    // Exact levels of a source of 1 are 1.
+    CHECK_BELOW(shown.exact_all, 1e-6);
+    CHECK_BELOW(shown.exact_displayed, 1e-6);
     kiln_map_free(&source);
     kiln_map_free(&cube);
+}
+
+// Levels are right within the tolerance, or where an engine shows less error of them than of exact
+// levels; never with a fault.
+static void levels_are_right_or_tuned(void **state)
+{
+    (void)state;
+    kiln_check_levels_report levels = {.worst = 0.02};
+    kiln_check_shown_report shown = {
+        .all = 0.1, .displayed = 0.01, .exact_all = 0.1, .exact_displayed = 0.01};
+    assert_true(kiln_check_right(&levels, NULL, 0.02));
+    assert_false(kiln_check_right(&levels, NULL, 0.01));
+    shown.direction_count = 192;
+    assert_false(kiln_check_right(&levels, &shown, 0.01));
+    shown.all = 0.098;
+    assert_true(kiln_check_right(&levels, &shown, 0.01));
+    shown.direction_count = 0; // nothing was measured
+    assert_false(kiln_check_right(&levels, &shown, 0.01));
+    shown = (kiln_check_shown_report){.all = 0.2,
+                                      .displayed = 0.0098,
+                                      .exact_all = 0.1,
+                                      .exact_displayed = 0.01,
+                                      .direction_count = 192};
+    assert_true(kiln_check_right(&levels, &shown, 0.01));
+    levels.findings.fault_count = 1;
+    assert_false(kiln_check_right(&levels, &shown, 0.01));
+    assert_false(kiln_check_right(&levels, NULL, 1));
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(atlases_are_right),
-        cmocka_unit_test(displayed_errors_are_of_values_on_a_display)};
+        cmocka_unit_test(displayed_errors_are_of_values_on_a_display),
+        cmocka_unit_test(levels_are_right_or_tuned)};
     return cmocka_run_group_tests(tests, begin, end);
 }

@@ -59,6 +59,9 @@ class ShownReport(NamedTuple):
     worst: float  #: largest of rms
     worst_roughness: float
     direction_count: int
+    displayed: float  #: root mean square difference of x / (x + mean), for values x and the mean of the source
+    exact_all: float  #: what all would be of exact levels of the same sizes and roughness
+    exact_displayed: float  #: what displayed would be of these
 
 
 class HarmonicsReport(NamedTuple):
@@ -159,7 +162,8 @@ def check_shown(source: Source, levels: Any, engine: Union[str, Engine], *, prog
         given = _levels(levels, engine, used)
         used.run("kiln_check_shown", read.checked(), given.checked(), _pointer(engine), ctypes.byref(report),
                  progress=progress)
-    return ShownReport(np.array(report.rms), report.all, report.worst, report.worst_roughness, report.direction_count)
+    return ShownReport(np.array(report.rms), report.all, report.worst, report.worst_roughness, report.direction_count,
+                       report.displayed, report.exact_all, report.exact_displayed)
 
 
 def check_harmonics(source: Source, harmonics: Harmonics, engine: Union[str, Engine, None] = None, *,
