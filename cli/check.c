@@ -239,10 +239,11 @@ static int check_levels(checker *c, const char *path, const kiln_engine *engine)
         result = kiln_check_levels(context, &c->panorama, &levels, &def, &report, &difference,
                                    &c->work->error);
     }
-    // Without an engine, what one shows matters only where the levels are not exact.
+    // Without --for, what an engine shows matters only where it decides whether the file is right.
     bool shows = result == KILN_OK && levels.shape == KILN_SHAPE_CUBE && report.engine &&
                  kiln_engine_level(report.engine, 0.5, levels.size, levels.level_count) >= 0;
-    if (shows && (engine || !kiln_check_right(&report, NULL, c->values->tolerance)))
+    bool undecided = !report.findings.fault_count && report.worst > c->values->tolerance;
+    if (shows && (engine || undecided))
         result = kiln_check_shown(context, &c->panorama, &levels, report.engine, &shown,
                                   &c->work->error);
     if (result == KILN_OK && c->values->picture)
