@@ -162,5 +162,6 @@ bool kiln_check_right(const kiln_check_levels_report *levels, const kiln_check_s
     bool tuned = shown && shown->direction_count &&
                  (shown->all <= 0.99 * shown->exact_all ||
                   shown->displayed <= 0.99 * shown->exact_displayed);
-    return !levels->findings.fault_count && (levels->worst <= tolerance || tuned);
+    return levels->level_count > 0 && !levels->findings.fault_count &&
+           (levels->worst <= tolerance || tuned);
 }

@@ -104,7 +104,7 @@ static void displayed_errors_are_of_values_on_a_display(void **state)
 static void levels_are_right_or_tuned(void **state)
 {
     (void)state;
-    kiln_check_levels_report levels = {.worst = 0.02};
+    kiln_check_levels_report levels = {.level_count = 1, .worst = 0.02};
     kiln_check_shown_report shown = {
         .all = 0.1, .displayed = 0.01, .exact_all = 0.1, .exact_displayed = 0.01};
     assert_true(kiln_check_right(&levels, NULL, 0.02));

@@ -435,6 +435,13 @@ static void checks(void **state)
         SWEEP(kiln_check_shown(c, &panorama, &wrong, three, &shown, &e), !shown.direction_count);
     }
     SWEEP(kiln_check_shown(c, &panorama, &cube, NULL, &shown, &e), !shown.direction_count);
+    // Numbers that are not finite are never right, whatever the tolerance, nor is an empty report.
+    EACH_REAL (x) {
+        const kiln_check_levels_report odd = {.level_count = 1, .worst = x};
+        shown = (kiln_check_shown_report){.all = x, .displayed = x, .direction_count = 1};
+        assert_true(isfinite(x) || x < 0 || !kiln_check_right(&odd, &shown, 1));
+        assert_false(kiln_check_right(&(kiln_check_levels_report){.worst = x}, &shown, 1));
+    }
     kiln_check_sh_report bands;
     kiln_sh sh = {.bands = 3};
     EACH_REAL (x) {
