@@ -174,7 +174,7 @@ KILN_API KILN_CHECKED kiln_result kiln_check_shown(kiln_context *context, const 
 
 /// Returns whether levels are right: no fault was found, and either every level is within
 /// `tolerance` of the exact level, or one of the errors `all` and `displayed` of what the engine
-/// shows is smaller by a hundredth or more than with exact levels, as with levels that are tuned for
+/// shows is more than 1 % smaller than with exact levels, as with levels that are tuned for
 /// the engine. `shown` may be NULL or empty. Returns false for an empty report of levels.
 KILN_API bool kiln_check_right(const kiln_check_levels_report *levels,
                                const kiln_check_shown_report *shown, double tolerance);

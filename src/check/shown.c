@@ -159,9 +159,9 @@ kiln_result kiln_check_shown(kiln_context *context, const kiln_map *source, cons
 bool kiln_check_right(const kiln_check_levels_report *levels, const kiln_check_shown_report *shown,
                       double tolerance)
 {
-    bool tuned = shown && shown->direction_count &&
-                 (shown->all <= 0.99 * shown->exact_all ||
-                  shown->displayed <= 0.99 * shown->exact_displayed);
+    bool tuned =
+        shown && shown->direction_count &&
+        (shown->all < 0.99 * shown->exact_all || shown->displayed < 0.99 * shown->exact_displayed);
     return levels->level_count > 0 && !levels->findings.fault_count &&
            (levels->worst <= tolerance || tuned);
 }

@@ -121,6 +121,10 @@ static void levels_are_right_or_tuned(void **state)
                                       .exact_displayed = 0.01,
                                       .direction_count = 192};
     assert_true(kiln_check_right(&levels, &shown, 0.01));
+    // Under a black source exact levels show no error, and nothing is better than they are.
+    shown = (kiln_check_shown_report){.displayed = 1, .direction_count = 192};
+    assert_false(kiln_check_right(&levels, &shown, 0.01));
+    shown.exact_displayed = 2;
     levels.findings.fault_count = 1;
     assert_false(kiln_check_right(&levels, &shown, 0.01));
     assert_false(kiln_check_right(&levels, NULL, 1));

@@ -64,6 +64,8 @@ grep -q '"height":	512' log/out || die "the height of the picture"
 expect 2 "no input is named" check
 expect 2 "no file to check is named" check sky.exr
 expect 2 "right.ktx2 has 4 levels, and sky.exr is a panorama: name the panorama first" check right.ktx2 sky.exr
+checks=$((checks + 1))
+"$KILN" check - right.ktx2 -q <sky.exr || die "a panorama on standard input"
 expect 2 "no table is named" check --table
 expect 2 "takes neither --for nor --picture" check --table table.exr --for three
 expect 2 "picture a.exr: must end in .png" check sky.exr half.ktx2 --picture a.exr
